@@ -1,0 +1,97 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Compose and invert poses, one or many.
+
+A pose is that of a child frame in a parent frame: x y z of the child's origin in metres and the
+unit quaternion x y z w of its axes, both expressed in the parent. Poses chain as
+``pose of c in a = product(pose of b in a, pose of c in b)``.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+PoseArray: TypeAlias = npt.NDArray[np.float64]
+"""Poses as rows: shape (n, 7), x y z in metres, unit quaternion x y z w."""
+
+
+class Pose(NamedTuple):
+    """Pose of a child frame in a parent frame: metres, and a unit quaternion."""
+
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+    qx: float = 0.0
+    qy: float = 0.0
+    qz: float = 0.0
+    qw: float = 1.0
+
+
+def pose_product(a: Pose, b: Pose) -> Pose:
+    """
+    Chain two poses.
+
+    :param a: pose of frame B in frame A.
+    :param b: pose of frame C in frame B.
+    :return: pose of frame C in frame A; its quaternion is as long as the product of theirs.
+    """
+    ax, ay, az, aqx, aqy, aqz, aqw = a
+    bx, by, bz, bqx, bqy, bqz, bqw = b
+    ux = 2.0 * (aqy * bz - aqz * by)
+    uy = 2.0 * (aqz * bx - aqx * bz)
+    uz = 2.0 * (aqx * by - aqy * bx)
+    return Pose(
+        ax + bx + aqw * ux + aqy * uz - aqz * uy,
+        ay + by + aqw * uy + aqz * ux - aqx * uz,
+        az + bz + aqw * uz + aqx * uy - aqy * ux,
+        aqw * bqx + aqx * bqw + aqy * bqz - aqz * bqy,
+        aqw * bqy - aqx * bqz + aqy * bqw + aqz * bqx,
+        aqw * bqz + aqx * bqy - aqy * bqx + aqz * bqw,
+        aqw * bqw - aqx * bqx - aqy * bqy - aqz * bqz)
+
+
+def pose_inverse(a: Pose) -> Pose:
+    """
+    Turn a pose around.
+
+    :param a: pose of frame B in frame A.
+    :return: pose of frame A in frame B.
+    """
+    x, y, z, qx, qy, qz, qw = a
+    return pose_product(Pose(0.0, 0.0, 0.0, -qx, -qy, -qz, qw), Pose(-x, -y, -z))
+
+
+def pose_products(a: PoseArray, b: PoseArray) -> PoseArray:
+    """
+    Chain many pairs of poses.
+
+    :param a: poses of frames B in frames A, shape (n, 7) or (1, 7).
+    :param b: poses of frames C in frames B, shape (n, 7).
+    :return: poses of frames C in frames A, shape (n, 7); quaternions are as long as the products
+        of theirs.
+    """
+    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    # The same formula serves columns: every operation is between arrays of n.
+    columns = pose_product(Pose(*a.T), Pose(*b.T))
+    for target, column in zip(product.T, columns, strict=True):
+        target[:] = column
+    return product
+
+
+def pose_inverses(a: PoseArray) -> PoseArray:
+    """
+    Turn many poses around.
+
+    :param a: poses of frames B in frames A, shape (n, 7).
+    :return: poses of frames A in frames B, shape (n, 7).
+    """
+    conjugates = a * np.array([0.0, 0.0, 0.0, -1.0, -1.0, -1.0, 1.0])
+    origins = np.zeros_like(a)
+    origins[:, :3] = -a[:, :3]
+    origins[:, 6] = 1.0
+    return pose_products(conjugates, origins)

@@ -1,0 +1,169 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The resolved, immutable content of a file: names, kinds, parents and poses as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+import dataclasses
+from functools import cached_property
+from typing import NamedTuple
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from sdf_pose_bridge.elements import SensorFacts
+from sdf_pose_bridge.errors import hint_from_names
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.errors import UnknownFrameError
+from sdf_pose_bridge.names import FRAME_KINDS
+from sdf_pose_bridge.names import Kind
+from sdf_pose_bridge.poses import Pose
+from sdf_pose_bridge.poses import pose_inverse
+from sdf_pose_bridge.poses import pose_product
+from sdf_pose_bridge.poses import PoseArray
+
+Indices: TypeAlias = npt.NDArray[np.int32]
+
+
+class Joint(NamedTuple):
+    """A joint and what it joins, all as indices into the scene."""
+
+    element: int
+    type: str
+    """As SDFormat spells it: ``revolute``, ``fixed``, ..."""
+    parent: int
+    """The frame that is the parent; a world or implicit root for ``world``."""
+    child: int
+    """The frame that is the child."""
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Scene:
+    """
+    Everything in a file that has a pose.
+
+    Entry i of each sequence and array is about element i. Elements stand in file order, each after
+    the one that holds it. Arrays are read-only.
+    """
+
+    path: str
+    """The file, as it was opened."""
+    files: tuple[str, ...]
+    """All files that were read, the first one included."""
+    names: tuple[str, ...]
+    """Absolute names such as ``robot::arm::hand``; ``world`` for a world's own frame."""
+    kinds: npt.NDArray[np.uint8]
+    """Values of :class:`~sdf_pose_bridge.names.Kind`."""
+    parents: Indices
+    """The element that holds each one in the file; -1 for a world and the implicit root."""
+    roots: Indices
+    """The world or implicit root that each belongs to: each of them is a tree of its own."""
+    poses: PoseArray
+    """Shape (n, 7): pose of each in its root, x y z in metres, unit quaternion x y z w, w >= 0."""
+    attachments: Indices
+    """The frame that each frame is fixed to; -1 for links, static models and roots."""
+    bodies: Indices
+    """The link, static model or root that carries each frame; -1 for what is no frame."""
+    canonical_links: Indices
+    """The canonical link of each model; -1 for one without links and for other kinds."""
+    static_models: frozenset[int]
+    """The models that are static."""
+    joints: tuple[Joint, ...]
+    """All joints, in file order."""
+    sensors: Mapping[int, SensorFacts]
+    """What is known of each sensor."""
+    lines: Indices
+    """The line that each stands in; 0 where none can be named."""
+    file_indices: Indices
+    """Which of the files each stands in."""
+    world_names: Mapping[int, str]
+    """The name of each world; a model file has none."""
+    warnings: tuple[SdfWarning, ...]
+    """What libsdformat would accept but its author should know of, in file order."""
+
+    def pose(self, frame: str, relative_to: str = '', *, world: str = '') -> Pose:
+        """
+        Return the pose of one element in the frame of another.
+
+        :param frame: absolute name such as ``robot::arm::hand``.
+        :param relative_to: absolute name; empty for the world or the implicit root.
+        :param world: the world to look in, for a file that holds several.
+        :return: pose of ``frame`` in ``relative_to``: x y z in metres, unit quaternion x y z w
+            with w >= 0.
+        :raises UnknownFrameError: if there is no such name, or more than one.
+        """
+        index = self.index(frame, world=world)
+        pose = self._pose_of(index)
+        if not relative_to:
+            return pose
+        reference = self.index(relative_to, world=world or self._world_of(index))
+        relative = pose_product(pose_inverse(self._pose_of(reference)), pose)
+        return Pose(*relative[:3], *_canonical(relative[3:]))
+
+    def index(self, name: str, *, world: str = '') -> int:
+        """
+        Find an element by its name.
+
+        Where a frame and something else share a name, the frame is meant.
+
+        :param name: absolute name such as ``robot::arm::hand``.
+        :param world: the world to look in, for a file that holds several.
+        :return: its index.
+        :raises UnknownFrameError: if there is no such name, or more than one.
+        """
+        found = self._indices.get(name, [])
+        if len(found) == 1 and not world:
+            return found[0]
+        if world:
+            found = [i for i in found if self._world_of(i) == world]
+        frames = [i for i in found if self.kinds[i] in _FRAMES_AND_ROOTS]
+        for candidates in (frames, found):
+            if len(candidates) == 1:
+                return candidates[0]
+        raise self._unknown(name, world, frames or found)
+
+    def place(self, index: int) -> Place:
+        """
+        Tell where an element stands.
+
+        :param index: its index.
+        :return: its file and line.
+        """
+        return Place(self.files[self.file_indices[index]], int(self.lines[index]))
+
+    @cached_property
+    def _indices(self) -> dict[str, list[int]]:
+        indices: dict[str, list[int]] = {}
+        for index, name in enumerate(self.names):
+            indices.setdefault(name, []).append(index)
+        return indices
+
+    def _pose_of(self, index: int) -> Pose:
+        return Pose(*self.poses[index].tolist())
+
+    def _world_of(self, index: int) -> str:
+        return self.world_names.get(int(self.roots[index]), '')
+
+    def _unknown(self, name: str, world: str, found: list[int]) -> UnknownFrameError:
+        place = Place(self.path)
+        if found:
+            kinds = ', '.join(
+                f'a {Kind(self.kinds[i]).label} in {self._world_of(i) or "the file"}'
+                for i in found)
+            msg = f'"{name}" is the name of more than one element: {kinds}'
+        else:
+            where = f'world "{world}"' if world else 'the file'
+            msg = f'"{name}" names nothing in {where}{hint_from_names(name, self._indices)}'
+        return UnknownFrameError(msg, place)
+
+
+_FRAMES_AND_ROOTS = FRAME_KINDS | {Kind.WORLD, Kind.ROOT}
+
+
+def _canonical(quat_xyzw: tuple[float, ...]) -> tuple[float, ...]:
+    """Return a unit quaternion with w >= 0 and without negative zeros."""
+    sign = -1.0 if quat_xyzw[3] < 0.0 else 1.0
+    return tuple(sign * value + 0.0 for value in quat_xyzw)
