@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+import re
 from typing import NamedTuple
 from typing import TypeAlias
 
@@ -20,14 +21,25 @@ from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import SdfWarning
 
 XmlElement: TypeAlias = etree._Element  # noqa: SLF001  # lxml has no public name for it
+
+_COMMENT: object = etree.Comment
 
 WHITE_SPACE = ' \t\n\r\f\v'
 """ASCII white space; SDFormat knows no other, so a no-break space is part of a name."""
 
 _NAMESPACE_ERRORS = frozenset({'NS_ERR_UNDEFINED_NAMESPACE', 'NS_ERR_QNAME', 'NS_ERR_COLON'})
 """Prefixes that are not declared are common in SDF files; only lxml minds them."""
+
+_FORGIVEN_ERRORS = frozenset({'ERR_HYPHEN_IN_COMMENT', 'ERR_DOCUMENT_END'})
+"""Two hyphens in a comment, something after the outermost element: libsdformat reads on."""
+
+_DECLARATION_ERROR = 'ERR_RESERVED_XML_NAME'
+"""A declaration that is not at the start; only white space before it is forgiven."""
+
+_WHITE_SPACE_RUN = re.compile(r'[ \t\n\r\f\v]+')
 
 
 class Document(NamedTuple):
@@ -39,6 +51,8 @@ class Document(NamedTuple):
     """The ``sdf`` element."""
     version: str
     """Value of its ``version`` attribute, as written."""
+    warnings: tuple[SdfWarning, ...] = ()
+    """What is wrong with its XML, but does not stand in the way."""
 
 
 def document_from_file(path: str | os.PathLike[str]) -> Document:
@@ -51,25 +65,31 @@ def document_from_file(path: str | os.PathLike[str]) -> Document:
     :raises ParsingError: if its outermost element is not ``sdf``.
     """
     name = os.fspath(path)
-    try:
-        text = Path(name).read_bytes()
-    except OSError as error:
-        msg = f'the file cannot be read: {error.strerror or error}'
-        raise FileReadError(msg, Place(name)) from error
-    return document_from_text(text, name)
+    return document_from_text(_bytes_from_file(name), name)
 
 
-def document_from_text(text: bytes, path: str) -> Document:
+def root_from_file(path: str) -> XmlElement:
+    """
+    Read a file of any XML, with the same care.
+
+    :param path: path of the file.
+    :return: its outermost element.
+    :raises FileReadError: if it is missing, unreadable or not XML.
+    """
+    return _root_from_text(_bytes_from_file(path), path)[0]
+
+
+def document_from_text(text: bytes | str, path: str) -> Document:
     """
     Read the content of a file.
 
-    :param text: XML, in the encoding that it declares.
+    :param text: XML; bytes are in the encoding that it declares.
     :param path: the name to use in errors.
     :return: as for :func:`document_from_file`.
     :raises SdfError: as for :func:`document_from_file`.
     """
-    root = _root_from_text(text, path)
-    tag = local_name(root)
+    root, warnings = _root_from_text(text, path)
+    tag = str(root.tag)
     place = Place(path, _line(root), f'/{tag}')
     if tag == 'robot':
         msg = ('this is URDF, not SDFormat; publish it with robot_state_publisher, or convert it '
@@ -82,12 +102,24 @@ def document_from_text(text: bytes, path: str) -> Document:
     if version is None:
         msg = '<sdf> declares no version, such as version="1.10"'
         raise FileReadError(msg, place)
-    return Document(path, root, version)
+    return Document(path, root, version, warnings)
 
 
-def _root_from_text(text: bytes, path: str) -> XmlElement:
+def _bytes_from_file(path: str) -> bytes:
+    try:
+        return Path(path).read_bytes()
+    except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
+        msg = f'the file cannot be read: {getattr(error, "strerror", None) or error}'
+        raise FileReadError(msg, Place(path)) from error
+
+
+def _root_from_text(text: bytes | str, path: str) -> tuple[XmlElement, tuple[SdfWarning, ...]]:
+    warnings = []
+    encoding = 'utf-8' if isinstance(text, str) else None  # whatever the text declares
+    text = text.encode(errors='surrogatepass') if isinstance(text, str) else text
     parser = etree.XMLParser(
-        recover=True, resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False)
+        encoding=encoding, recover=True, resolve_entities=False, no_network=True, load_dtd=False,
+        huge_tree=False)
     root: XmlElement | None = None
     failure: SdfError | None = None
     try:
@@ -95,32 +127,58 @@ def _root_from_text(text: bytes, path: str) -> XmlElement:
     except etree.XMLSyntaxError as error:
         failure = FileReadError(f'this is not XML: {error.msg}', Place(path, error.lineno or 0))
     for entry in parser.error_log:
-        if entry.type_name not in _NAMESPACE_ERRORS:
-            msg = f'this is not well-formed XML: {entry.message}'
+        msg = f'this is not well-formed XML: {entry.message.strip()}'
+        is_early = entry.type_name == _DECLARATION_ERROR and text.lstrip().startswith(b'<?xml')
+        if is_early or (entry.type_name in _FORGIVEN_ERRORS and root is not None):
+            warnings.append(SdfWarning('WARNING', msg, Place(path, entry.line)))
+        elif entry.type_name not in _NAMESPACE_ERRORS:
             raise FileReadError(msg, Place(path, entry.line)) from None
     if failure is not None:
         raise failure
     if root is None:
         msg = 'this is not XML: it has no element'
         raise FileReadError(msg, Place(path))
-    return root
+    _refuse_what_hides_text(root, path)
+    if b'xmlns' in text:
+        _forget_default_namespaces(root)
+    return root, tuple(warnings)
 
 
-def local_name(element: XmlElement) -> str:
+def _refuse_what_hides_text(root: XmlElement, path: str) -> None:
+    """Refuse what an XML parser takes out of the text, or puts into it."""
+    definitions = root.getroottree().docinfo.internalDTD
+    if definitions is not None and next(definitions.iterentities(), None) is not None:
+        msg = 'the file declares entities, which SDFormat does not have'
+        raise FileReadError(msg, Place(path, 1))
+    instruction = next(root.iter(etree.PI), None)
+    if instruction is not None:
+        msg = f'the processing instruction <?{instruction.text}?> can only stand before <sdf>'
+        raise FileReadError(msg, Place(path, instruction.sourceline or 0))
+
+
+def _forget_default_namespaces(root: XmlElement) -> None:
+    """Name elements as they are written: SDFormat knows prefixes, but no namespaces."""
+    for element in root.iter(etree.Element):
+        tag = str(element.tag)
+        if tag.startswith('{'):
+            name = tag[tag.index('}') + 1:]
+            if not element.prefix:
+                element.tag = name
+
+
+def is_data(element: XmlElement) -> bool:
     """
-    Return an element's tag as SDFormat sees it, which knows no namespaces.
+    Tell whether SDFormat reads an element at all.
 
-    :param element: any node of a tree.
-    :return: the tag without a default namespace; with the prefix where one is written
-        (``drake:joint``); empty for a comment or a processing instruction.
+    :param element: any element of a tree.
+    :return: false for what stands in a plugin or in an element of another namespace.
     """
-    tag = element.tag
-    if not isinstance(tag, str):
-        return ''
-    if tag[0] != '{':
-        return tag
-    name = tag[tag.index('}') + 1:]
-    return f'{element.prefix}:{name}' if element.prefix else name
+    while element is not None:
+        tag = str(element.tag)
+        if tag == 'plugin' or ':' in tag:
+            return False
+        element = element.getparent()  # type: ignore[assignment]  # None ends the loop
+    return True
 
 
 def text_of(element: XmlElement) -> str:
@@ -136,7 +194,7 @@ def text_of(element: XmlElement) -> str:
     if text is not None and not text.isspace():
         return text
     for child in element:
-        if not isinstance(child, etree._Comment):
+        if child.tag is not _COMMENT:
             break
         tail = child.tail
         if tail is not None and not tail.isspace():
@@ -146,12 +204,12 @@ def text_of(element: XmlElement) -> str:
 
 def value_of(element: XmlElement) -> str:
     """
-    Return an element's text without the white space around it.
+    Return an element's text, with every run of white space in it as one blank and none around.
 
     :param element: an element that holds a single value, such as a name.
-    :return: its stripped text.
+    :return: its text.
     """
-    return text_of(element).strip(WHITE_SPACE)
+    return _WHITE_SPACE_RUN.sub(' ', text_of(element)).strip(' ')
 
 
 def boolean_from_text(text: str) -> bool | None:

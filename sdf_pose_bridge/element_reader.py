@@ -4,6 +4,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import NamedTuple
+
 from lxml import etree
 
 from sdf_pose_bridge.document import boolean_from_text
@@ -16,9 +19,9 @@ from sdf_pose_bridge.elements import Elements
 from sdf_pose_bridge.elements import FrameFacts
 from sdf_pose_bridge.elements import JointFacts
 from sdf_pose_bridge.elements import ModelFacts
+from sdf_pose_bridge.elements import NOWHERE
 from sdf_pose_bridge.elements import Reference
 from sdf_pose_bridge.elements import SensorFacts
-from sdf_pose_bridge.elements import step
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import AttributeMissingError
 from sdf_pose_bridge.errors import DuplicateNameError
@@ -27,10 +30,16 @@ from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import JointChildError
 from sdf_pose_bridge.errors import JointParentError
+from sdf_pose_bridge.errors import MergeIncludeError
 from sdf_pose_bridge.errors import ReservedNameError
+from sdf_pose_bridge.include_reader import Include
+from sdf_pose_bridge.include_reader import include_from_xml
+from sdf_pose_bridge.inclusions import DocumentSet
+from sdf_pose_bridge.inclusions import Inclusion
 from sdf_pose_bridge.names import Kind
+from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import ROOT_FRAME
-from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 
 _NO_REFERENCE = Reference('', 0)
@@ -48,131 +57,232 @@ _LINK_CHILD_KINDS = {
     'particle_emitter': Kind.PARTICLE_EMITTER,
     'projector': Kind.PROJECTOR,
 }
-_NAMES_WITH_SEPARATOR = etree.XPath('//*[contains(@name, "::")]')
 
 
-def elements_from_document(document: Document, problems: Problems) -> Elements:
+class _Scope(NamedTuple):
+    """Where elements are being read into."""
+
+    holder: int
+    """Index of the model, world or root."""
+    proxy: str = ''
+    """For what a merge brings: the frame that stands for the merged model's own."""
+
+    def name(self, reference: str) -> str:
+        """Return a reference as it has to be written in the scope."""
+        return self.proxy if self.proxy and reference == MODEL_FRAME else reference
+
+
+def elements_from_documents(
+    documents: DocumentSet,
+    problems: Problems,
+    *,
+    broken: frozenset[str] = frozenset(),
+    skips_missing: bool = False,
+) -> Elements:
     """
     Read all elements that carry a pose.
 
-    :param document: a file in the newest grammar.
+    :param documents: a file and what it includes, in the newest grammar.
     :param problems: takes what is wrong with names, values and structure; references are not
         looked up here.
+    :param broken: paths of files that are known not to be valid, which are not merged.
+    :param skips_missing: whether an include that cannot be found is left out with a warning.
     :return: the elements. Where something is wrong the element is kept if it can be, so that
         other errors are found and none follows from the first.
     """
-    table = ElementBuilder(document.path, problems)
-    _ElementReader(table).read(document)
+    table = ElementBuilder(documents.document, problems)
+    _ElementReader(table, documents.inclusions, broken, skips_missing).read(documents.document)
     return table.elements()
 
 
 class _ElementReader:
     """Walks the XML; one method for each element of the grammar."""
 
-    def __init__(self, table: ElementBuilder) -> None:
+    def __init__(
+        self,
+        table: ElementBuilder,
+        inclusions: Mapping[XmlElement, Inclusion],
+        broken: frozenset[str],
+        skips_missing: bool,  # noqa: FBT001
+    ) -> None:
         self._table = table
+        self._inclusions = inclusions
+        self._broken = broken
+        self._skips_missing = skips_missing
 
     # The file
 
     def read(self, document: Document) -> None:
-        self._check_separators(document.root)
-        root = -1
+        for warning in document.warnings:
+            self._table.note_warning(warning)
+        self._table.check_separators(document)
         first = ''
         for xml in document.root.iterchildren(etree.Element):
-            tag = xml.tag
-            if tag == 'world':
+            if xml.tag == 'world':
                 self._world(xml)
-            elif tag == 'include':
-                self._include(xml, -1)
-            elif tag in _TOP_KINDS:
+            elif xml.tag in _TOP_KINDS or xml.tag == 'include':
                 if first:
                     self._second_at_top(xml, first)
                     continue
-                first = step(tag, xml.get('name', '').strip(WHITE_SPACE))
-                root = self._table.add(Kind.ROOT, xml, ROOT_FRAME, -1, -1)
-                if tag == 'model':
-                    self._top_model(xml, root)
+                first = self._table.described(xml)
+                root = _Scope(self._table.add(Kind.ROOT, xml, ROOT_FRAME, NOWHERE, NOWHERE))
+                if xml.tag == 'model':
+                    self._table.check_top_pose(xml, root.holder)
+                    self._model(xml, root)
+                elif xml.tag == 'include':
+                    self._include(xml, root)
                 else:
-                    self._leaf(_TOP_KINDS[tag], xml, root, root)
+                    self._leaf(_TOP_KINDS[str(xml.tag)], xml, root.holder, root)
 
     def _second_at_top(self, xml: XmlElement, first: str) -> None:
-        this = step(str(xml.tag), xml.get('name', '').strip(WHITE_SPACE))
+        this = self._table.described(xml)
         if this == first:
             msg = f'{this} stands at the top of this file already'
-            self._table.error(DuplicateNameError, xml, msg, -1, this)
+            self._table.error(DuplicateNameError, xml, msg, NOWHERE, this)
         else:
             msg = (f'{this} stands at the top of this file after {first}; only one model, light '
                    'or actor may')
-            self._table.error(ElementIncorrectTypeError, xml, msg, -1, this)
+            self._table.error(ElementIncorrectTypeError, xml, msg, NOWHERE, this)
 
-    def _top_model(self, xml: XmlElement, root: int) -> None:
-        model = self._model(xml, root)
-        relative_to = '' if model is None else self._table.element(model).relative_to
-        if model is not None and relative_to:
-            msg = (f'relative_to="{relative_to}": the model at the top of a file is placed in the '
-                   'implicit root, which has no frames')
-            self._table.error(AttributeInvalidError, xml, msg, model, 'pose')
-            self._table.forget_relative_to(model)
+    # Includes
 
-    def _check_separators(self, root: XmlElement) -> None:
-        found: list[XmlElement] = _NAMES_WITH_SEPARATOR(root)
-        for xml in found:
-            path = [xml, *xml.iterancestors()]
-            if any(':' in str(step.tag) or step.tag == 'plugin' for step in path):
-                continue
-            msg = f'the name "{xml.get("name")}" holds "{SEPARATOR}", which stands between scopes'
-            part = '/'.join(str(step.tag) for step in path[-2::-1])
-            self._table.error(ReservedNameError, xml, msg, -1, part)
+    def _include(self, xml: XmlElement, scope: _Scope) -> None:
+        include = include_from_xml(
+            xml, self._inclusions[xml], self._table, scope.holder,
+            skips_missing=self._skips_missing)
+        if include is None:
+            return
+        top = include.top
+        kind = _TOP_KINDS[str(top.tag)]
+        if include.is_merge:
+            self._merge(include, scope)
+        elif kind is Kind.MODEL:
+            self._included_model(include, scope)
+        elif self._table.element(scope.holder).kind is not Kind.MODEL:
+            name = self._table.claimed_name(kind, xml, scope.holder, include.name)
+            if name is not None and include.has_pose:
+                self._table.add(kind, xml, name, scope.holder, scope.holder)
+            elif name is not None:
+                with self._table.reading(include.document):
+                    self._table.add(kind, top, name, scope.holder, scope.holder)
+        else:
+            msg = f'the included {kind.label} is left out; a model can include only models'
+            self._table.warning(xml, msg, scope.holder, 'include')
 
-    def _include(self, xml: XmlElement, parent: int) -> None:
-        uri = next((value_of(child) for child in xml.iterchildren('uri')), '')
-        msg = f'the include of "{uri}" cannot be read: includes are not supported yet'
-        self._table.error(ElementInvalidError, xml, msg, parent, 'include')
+    def _included_model(self, include: Include, scope: _Scope) -> None:
+        name = self._table.claimed_name(Kind.MODEL, include.xml, scope.holder, include.name)
+        if name is None:
+            return
+        model = NOWHERE
+        if include.has_pose:
+            model = self._table.add(Kind.MODEL, include.xml, name, scope.holder, scope.holder)
+        with self._table.reading(include.document):
+            if not include.has_pose:
+                model = self._table.add(Kind.MODEL, include.top, name, scope.holder, scope.holder)
+            self._complete_model(include.top, model, scope, include)
+
+    def _merge(self, include: Include, scope: _Scope) -> None:
+        holder = self._table.element(scope.holder).kind
+        if include.top.tag != 'model' or holder not in (Kind.MODEL, Kind.WORLD):
+            msg = (f'merge="true" on the include of {self._table.described(include.top)}: only a '
+                   'model can be merged, into a model or a world')
+            self._table.error(MergeIncludeError, include.xml, msg, scope.holder, 'include')
+            return
+        proxy = f'_merged__{include.name}__model__'
+        if (include.document.path in self._broken
+                or self._table.claimed_name(
+                    Kind.FRAME, include.xml, scope.holder, proxy) is None):
+            return
+        frame = NOWHERE
+        if include.has_pose:
+            frame = self._table.add(
+                Kind.FRAME, include.xml, proxy, scope.holder, scope.holder)
+        with self._table.reading(include.document):
+            if not include.has_pose:
+                frame = self._table.add(
+                    Kind.FRAME, include.top, proxy, scope.holder, scope.holder)
+            own_frame = MODEL_FRAME if holder is Kind.MODEL else WORLD_FRAME
+            relative_to = self._table.element(frame).relative_to or own_frame
+            self._table.set_relative_to(frame, scope.name(relative_to))
+            placement = include.placement_frame or self._table.reference(
+                include.top, 'placement_frame', frame)
+            merged = _Scope(scope.holder, proxy)
+            self._model_children(include.top, merged, is_in_world=holder is Kind.WORLD)
+            self._table.set_facts(frame, FrameFacts(
+                self._table.reference(include.top, 'canonical_link', frame)
+                or self._table.first_link_name(frame + 1, scope.holder),
+                merged.name(placement)))
 
     # World and model
 
     def _world(self, xml: XmlElement) -> None:
-        name = self._table.claimed_name(Kind.WORLD, xml, -1)
+        name = self._table.claimed_name(Kind.WORLD, xml, NOWHERE)
         if name is None:
             return
-        world = self._table.add(Kind.WORLD, xml, name, -1, -1)
+        scope = _Scope(self._table.add(Kind.WORLD, xml, name, NOWHERE, NOWHERE))
         for child in xml.iterchildren(etree.Element):
             tag = child.tag
             if tag == 'model':
-                self._model(child, world)
+                self._model(child, scope)
             elif tag == 'frame':
-                self._frame(child, world)
+                self._frame(child, scope)
             elif tag == 'joint':
-                self._joint(child, world)
+                self._joint(child, scope)
             elif tag == 'light':
-                self._leaf(Kind.LIGHT, child, world, world)
+                self._leaf(Kind.LIGHT, child, scope.holder, scope)
             elif tag == 'actor':
-                self._leaf(Kind.ACTOR, child, world, world)
+                self._leaf(Kind.ACTOR, child, scope.holder, scope)
             elif tag == 'include':
-                self._include(child, world)
+                self._include(child, scope)
 
-    def _model(self, xml: XmlElement, parent: int) -> int | None:
-        name = self._table.claimed_name(Kind.MODEL, xml, parent)
+    def _model(self, xml: XmlElement, scope: _Scope) -> None:
+        name = self._table.claimed_name(Kind.MODEL, xml, scope.holder)
         if name is None:
-            return None
-        model = self._table.add(Kind.MODEL, xml, name, parent, parent)
+            return
+        model = self._table.add(Kind.MODEL, xml, name, scope.holder, scope.holder)
+        self._complete_model(xml, model, scope)
+
+    def _complete_model(
+        self, xml: XmlElement, model: int, scope: _Scope, include: Include | None = None,
+    ) -> None:
+        self._hang_on_proxy(model, scope)
+        placement = '' if include is None else include.placement_frame
+        is_static = None if include is None else include.is_static
         self._table.set_facts(model, ModelFacts(
-            self._static(xml, model),
+            self._static(xml, model) if is_static is None else is_static,
             self._table.reference(xml, 'canonical_link', model),
-            self._table.reference(xml, 'placement_frame', model)))
+            placement or self._table.reference(xml, 'placement_frame', model)))
+        self._model_children(xml, _Scope(model))
+
+    def _model_children(
+        self, xml: XmlElement, scope: _Scope, *, is_in_world: bool = False,
+    ) -> None:
         for child in xml.iterchildren(etree.Element):
             tag = child.tag
             if tag == 'link':
-                self._link(child, model)
+                if is_in_world:
+                    msg = (f'{self._table.described(child)} cannot be merged into a world, which '
+                           'has no links of its own')
+                    self._table.error(MergeIncludeError, child, msg, scope.holder, '')
+                else:
+                    self._link(child, scope)
             elif tag == 'joint':
-                self._joint(child, model)
+                self._joint(child, scope)
             elif tag == 'frame':
-                self._frame(child, model)
+                self._frame(child, scope)
             elif tag == 'model':
-                self._model(child, model)
+                self._model(child, scope)
             elif tag == 'include':
-                self._include(child, model)
-        return model
+                self._include(child, scope)
+
+    def _hang_on_proxy(self, index: int, scope: _Scope) -> None:
+        """Place what a merge brings in the frame that stands for the merged model's own."""
+        if not scope.proxy:
+            return
+        element = self._table.element(index)
+        has_own_default = element.kind in (Kind.FRAME, Kind.JOINT)
+        if element.relative_to == MODEL_FRAME or not (element.relative_to or has_own_default):
+            self._table.set_relative_to(index, scope.proxy)
 
     def _static(self, xml: XmlElement, model: int) -> bool:
         static = next(xml.iterchildren('static'), None)
@@ -185,43 +295,46 @@ class _ElementReader:
 
     # What a model and a world hold
 
-    def _link(self, xml: XmlElement, model: int) -> None:
-        name = self._table.claimed_name(Kind.LINK, xml, model)
+    def _link(self, xml: XmlElement, scope: _Scope) -> None:
+        name = self._table.claimed_name(Kind.LINK, xml, scope.holder)
         if name is None:
             return
-        link = self._table.add(Kind.LINK, xml, name, model, model)
+        link = self._table.add(Kind.LINK, xml, name, scope.holder, scope.holder)
+        self._hang_on_proxy(link, scope)
         for child in xml.iterchildren(etree.Element):
             kind = _LINK_CHILD_KINDS.get(str(child.tag))
             if kind is Kind.SENSOR:
-                self._sensor(child, link, model)
+                self._sensor(child, link, scope)
             elif kind is Kind.INERTIAL:
-                self._table.add(kind, child, kind.label, link, model)
+                self._table.add(kind, child, kind.label, link, scope.holder)
             elif kind is not None:
-                self._leaf(kind, child, link, model)
+                self._leaf(kind, child, link, scope)
 
-    def _frame(self, xml: XmlElement, scope: int) -> None:
-        name = self._table.claimed_name(Kind.FRAME, xml, scope)
+    def _frame(self, xml: XmlElement, scope: _Scope) -> None:
+        name = self._table.claimed_name(Kind.FRAME, xml, scope.holder)
         if name is None:
             return
-        frame = self._table.add(Kind.FRAME, xml, name, scope, scope)
+        frame = self._table.add(Kind.FRAME, xml, name, scope.holder, scope.holder)
+        self._hang_on_proxy(frame, scope)
         attached_to = self._table.reference(xml, 'attached_to', frame)
-        self._table.set_facts(frame, FrameFacts(attached_to))
+        self._table.set_facts(frame, FrameFacts(scope.name(attached_to) or scope.proxy))
 
-    def _joint(self, xml: XmlElement, scope: int) -> None:
-        name = self._table.claimed_name(Kind.JOINT, xml, scope)
+    def _joint(self, xml: XmlElement, scope: _Scope) -> None:
+        name = self._table.claimed_name(Kind.JOINT, xml, scope.holder)
         if name is None:
             return
-        joint = self._table.add(Kind.JOINT, xml, name, scope, scope)
+        joint = self._table.add(Kind.JOINT, xml, name, scope.holder, scope.holder)
+        self._hang_on_proxy(joint, scope)
         joint_type = self._joint_type(xml, joint)
+        expressed_in = [
+            Reference(scope.name(xyz.get('expressed_in', '').strip(WHITE_SPACE)),
+                      xyz.sourceline or 0)
+            for axis in xml.iterchildren('axis', 'axis2') for xyz in axis.iterchildren('xyz')]
         self._table.set_facts(joint, JointFacts(
             joint_type,
-            self._joint_end(xml, 'parent', joint, joint_type),
-            self._joint_end(xml, 'child', joint, joint_type),
-            tuple(
-                Reference(xyz.get('expressed_in', '').strip(WHITE_SPACE), xyz.sourceline or 0)
-                for axis in xml.iterchildren('axis', 'axis2')
-                for xyz in axis.iterchildren('xyz')
-                if xyz.get('expressed_in', '').strip(WHITE_SPACE))))
+            self._joint_end(xml, 'parent', joint, joint_type, scope),
+            self._joint_end(xml, 'child', joint, joint_type, scope),
+            tuple(reference for reference in expressed_in if reference.name)))
         for child in xml.iterchildren('sensor'):
             self._sensor(child, joint, scope)
 
@@ -237,10 +350,16 @@ class _ElementReader:
             self._table.error(AttributeInvalidError, xml, msg, joint, '')
         return joint_type
 
-    def _joint_end(self, xml: XmlElement, end: str, joint: int, joint_type: str) -> Reference:
+    def _joint_end(
+        self, xml: XmlElement, end: str, joint: int, joint_type: str, scope: _Scope,
+    ) -> Reference:
         element = next(xml.iterchildren(end), None)
         name = '' if element is None else value_of(element)
-        if element is None or not name:
+        if element is not None and not name:
+            msg = f'<{end}> is empty; it must name a frame'
+            self._table.error(ElementInvalidError, element, msg, joint, end)
+            return _NO_REFERENCE
+        if element is None:
             missing = JointParentError if end == 'parent' else JointChildError
             self._table.error(
                 missing if joint_type == 'ball' else ElementMissingError,
@@ -250,9 +369,9 @@ class _ElementReader:
             msg = f'"{name}" is reserved; it cannot be the {end} of a joint'
             self._table.error(ReservedNameError, element, msg, joint, end)
             return _NO_REFERENCE
-        return Reference(name, element.sourceline or 0)
+        return Reference(scope.name(name), element.sourceline or 0)
 
-    def _sensor(self, xml: XmlElement, parent: int, scope: int) -> None:
+    def _sensor(self, xml: XmlElement, parent: int, scope: _Scope) -> None:
         sensor = self._leaf(Kind.SENSOR, xml, parent, scope)
         if sensor is None:
             return
@@ -265,6 +384,13 @@ class _ElementReader:
             camera is not None,
             '' if optical is None else value_of(optical)))
 
-    def _leaf(self, kind: Kind, xml: XmlElement, parent: int, scope: int) -> int | None:
+    def _leaf(self, kind: Kind, xml: XmlElement, parent: int, scope: _Scope) -> int | None:
         name = self._table.claimed_name(kind, xml, parent)
-        return None if name is None else self._table.add(kind, xml, name, parent, scope)
+        if name is None:
+            return None
+        leaf = self._table.add(kind, xml, name, parent, scope.holder)
+        if scope.proxy and self._table.element(leaf).relative_to == MODEL_FRAME:
+            msg = ('relative_to="__model__" means the model that this is merged into, not the one '
+                   'that it was written in')
+            self._table.warning(xml, msg, leaf, 'pose')
+        return leaf

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from collections.abc import Sequence
 from typing import NamedTuple
 from typing import TypeAlias
@@ -13,6 +14,9 @@ import numpy.typing as npt
 
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.names import Kind
+
+NOWHERE = -1
+"""Stands for an index where there is none."""
 
 
 class Reference(NamedTuple):
@@ -37,6 +41,8 @@ class FrameFacts(NamedTuple):
 
     attached_to: str
     """Value of the attribute; empty for the frame of its scope."""
+    placement_frame: str = ''
+    """The frame that the pose places, for a frame that stands for a merged model's."""
 
 
 class JointFacts(NamedTuple):
@@ -96,6 +102,9 @@ class Elements(NamedTuple):
     elements: Sequence[Element]
     poses: npt.NDArray[np.float64]
     files: Sequence[str]
+    missing: Mapping[int, Mapping[str, str]]
+    """For each element that should hold something that was not found: its name and URI. An empty
+    name stands for a merge, which could have brought any name."""
 
     def place(self, index: int, line: int = 0, part: str = '') -> Place:
         """

@@ -235,6 +235,24 @@ class ExpressedInError(SdfError):
     code = 'JOINT_AXIS_EXPRESSED_IN_INVALID'
 
 
+class UriLookupError(SdfError):
+    """What an include names was not found."""
+
+    code = 'URI_LOOKUP'
+
+
+class PlacementFrameError(SdfError):
+    """An include names a placement frame, but not where it is placed."""
+
+    code = 'MODEL_PLACEMENT_FRAME_INVALID'
+
+
+class MergeIncludeError(SdfError):
+    """Something cannot be merged into what includes it."""
+
+    code = 'MERGE_INCLUDE_UNSUPPORTED'
+
+
 class UnknownFrameError(SdfError, LookupError):
     """A query names a frame that the scene does not have, or has more than once."""
 

@@ -16,6 +16,7 @@ from sdf_pose_bridge.elements import Elements
 from sdf_pose_bridge.elements import FrameFacts
 from sdf_pose_bridge.elements import JointFacts
 from sdf_pose_bridge.elements import ModelFacts
+from sdf_pose_bridge.elements import NOWHERE
 from sdf_pose_bridge.errors import AttachedToCycleError
 from sdf_pose_bridge.errors import AttachedToError
 from sdf_pose_bridge.errors import CanonicalLinkError
@@ -29,9 +30,6 @@ from sdf_pose_bridge.names import FRAME_KINDS
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scopes import Scopes
-
-NOWHERE = -1
-"""Stands for an index where there is none."""
 
 
 class FrameGraph(NamedTuple):
@@ -54,7 +52,8 @@ class FrameGraph(NamedTuple):
     joints: Sequence[JointEnds]
     """The ends of every joint, in file order."""
     lost: frozenset[int]
-    """Elements whose reference does not exist, which libsdformat loads but cannot place."""
+    """Elements that cannot be placed: link children whose reference does not exist, which
+    libsdformat loads all the same, and what refers to something that was left out."""
 
 
 def frame_graph_from_elements(table: Elements, problems: Problems) -> FrameGraph:
@@ -76,6 +75,7 @@ class _Builder:
         self._problems = problems
         self._scopes = Scopes(table)
         self._reported_rings: set[frozenset[int]] = set()
+        self._lost: dict[int, str] = {}
 
     def graph(self) -> FrameGraph:
         joints = {
@@ -89,12 +89,15 @@ class _Builder:
         for index, element in enumerate(self._elements):
             if element.kind not in FRAME_KINDS and element.parent >= 0:
                 bodies[index] = NOWHERE
-        check_joints(self._table, self._scopes, joints.values(), bodies, self._problems)
-        references, lost = self._references(joints)
+        kept_joints = [ends for ends in joints.values() if ends.joint not in self._lost]
+        check_joints(self._table, self._scopes, kept_joints, bodies, self._problems)
+        references = self._references(joints)
         placements = self._placements()
+        self._lose_dependents(references, attachments, joints)
         return FrameGraph(
             self._scopes.names, self._scopes.roots, references, placements, attachments, bodies,
-            self._canonical_links(canonical, bodies), tuple(joints.values()), lost)
+            self._canonical_links(canonical, bodies), tuple(joints.values()),
+            frozenset(self._lost))
 
     # What carries what
 
@@ -105,6 +108,9 @@ class _Builder:
         else:
             parent = self._scopes.frame(scope, facts.parent.name)
         child = self._scopes.frame(scope, facts.child.name)
+        for end, name in ((parent, facts.parent.name), (child, facts.child.name)):
+            if end is None and (uri := self._scopes.missing_uri(scope, name)):
+                self._lost[index] = uri
         return JointEnds(
             index, NOWHERE if parent is None else parent, NOWHERE if child is None else child)
 
@@ -141,12 +147,18 @@ class _Builder:
                 first_links.setdefault(element.parent, index)
             elif element.kind is Kind.MODEL:
                 first_models.setdefault(element.parent, index)
-        return {
-            index: self._canonical_pointer(
-                index, element.facts, first_links.get(index, first_models.get(index)))
-            for index, element in enumerate(self._elements)
-            if isinstance(element.facts, ModelFacts)
-        }
+        pointers: dict[int, int] = {}
+        for index in range(len(self._elements) - 1, -1, -1):
+            facts = self._elements[index].facts
+            if isinstance(facts, ModelFacts):
+                first = first_links.get(index, first_models.get(index))
+                # A nested model's own link is meant, even where that model is static and its
+                # frame therefore not attached to the link.
+                inside = NOWHERE if first is None else pointers.get(first, NOWHERE)
+                if inside >= 0 and self._elements[inside].kind is Kind.LINK:
+                    first = inside
+                pointers[index] = self._canonical_pointer(index, facts, first)
+        return pointers
 
     def _canonical_pointer(self, index: int, facts: ModelFacts, first: int | None) -> int:
         name = facts.canonical_link
@@ -156,15 +168,15 @@ class _Builder:
                 return found
             if not facts.is_static:
                 self._unknown(CanonicalLinkError, index, 'canonical_link', name, index)
-        elif first is None and not facts.is_static:
+        elif first is None and not facts.is_static and index not in self._table.missing:
             msg = (f'model "{self._scopes.names[index]}" has no link and no nested model; only a '
                    'static model may have none')
-            self._problems.error(index, ModelWithoutLinkError(msg, self._table.place(index)))
+            self._problems.error(ModelWithoutLinkError(msg, self._table.place(index)))
         return NOWHERE if first is None else first
 
     def _canonical_links(self, canonical: dict[int, int], bodies: Sequence[int]) -> list[int]:
         links = [NOWHERE] * len(self._elements)
-        for index in reversed(canonical):
+        for index in canonical:  # inner models come first
             target = canonical[index]
             if target >= 0 and self._elements[target].kind is not Kind.MODEL:
                 target = bodies[target]
@@ -178,9 +190,8 @@ class _Builder:
 
     # What is placed in what
 
-    def _references(self, joints: dict[int, JointEnds]) -> tuple[list[int], frozenset[int]]:
+    def _references(self, joints: dict[int, JointEnds]) -> list[int]:
         references = [NOWHERE] * len(self._elements)
-        lost = set()
         for index, element in enumerate(self._elements):
             if element.parent < 0:
                 continue
@@ -195,10 +206,9 @@ class _Builder:
                               element.scope, element.pose_line, 'pose')
                 references[index] = element.parent
             else:
-                lost.add(index)
-                self._warn_lost(index, element)
+                self._lose(index, element)
         self._break_rings(references, RelativeToCycleError, 'relative to')
-        return references, frozenset(lost)
+        return references
 
     def _default_reference(
         self, index: int, element: Element, joints: dict[int, JointEnds],
@@ -216,11 +226,12 @@ class _Builder:
         placements = [NOWHERE] * len(self._elements)
         for index, element in enumerate(self._elements):
             facts = element.facts
-            if isinstance(facts, ModelFacts) and facts.placement_frame:
-                found = self._scopes.frame(index, facts.placement_frame)
+            if isinstance(facts, ModelFacts | FrameFacts) and facts.placement_frame:
+                scope = index if element.kind is Kind.MODEL else element.scope
+                found = self._scopes.frame(scope, facts.placement_frame)
                 if found is None:
                     self._unknown(
-                        RelativeToError, index, 'placement_frame', facts.placement_frame, index)
+                        RelativeToError, index, 'placement_frame', facts.placement_frame, scope)
                 elif found != index:
                     placements[index] = found
         return placements
@@ -231,16 +242,47 @@ class _Builder:
         self, error_class: type[SdfError], index: int, attribute: str, name: str, scope: int,
         line: int = 0, part: str = '',
     ) -> None:
+        uri = self._scopes.missing_uri(scope, name)
+        if uri:
+            self._lost[index] = uri
+            return
         msg = (f'{attribute}="{name}" names no frame in {self._scopes.described(scope)}'
                f'{self._scopes.hint(scope, name)}')
-        self._problems.error(index, error_class(msg, self._table.place(index, line, part)))
+        self._problems.error(error_class(msg, self._table.place(index, line, part)))
 
-    def _warn_lost(self, index: int, element: Element) -> None:
+    def _lose(self, index: int, element: Element) -> None:
         name = element.relative_to
+        self._lost[index] = self._scopes.missing_uri(element.scope, name)
+        if self._lost[index]:
+            return
         msg = (f'relative_to="{name}" names no frame in {self._scopes.described(element.scope)}'
                f'{self._scopes.hint(element.scope, name)}; the {element.kind.label} is left out')
         self._problems.warning(
-            index, RelativeToError.code, msg, self._table.place(index, element.pose_line, 'pose'))
+            RelativeToError.code, msg, self._table.place(index, element.pose_line, 'pose'))
+
+    def _lose_dependents(
+        self, references: Sequence[int], attachments: Sequence[int], joints: dict[int, JointEnds],
+    ) -> None:
+        """Leave out what stands on something that is left out, and say how much that is."""
+        before = -1
+        while before != len(self._lost):
+            before = len(self._lost)
+            for index, element in enumerate(self._elements):
+                needed = [element.parent, references[index], attachments[index]]
+                if index in joints:
+                    needed.append(joints[index].parent)
+                for other in needed:
+                    if other in self._lost:
+                        self._lost.setdefault(index, self._lost[other])
+        if self._problems.errors:
+            return
+        for uri in sorted(set(self._lost.values()) - {''}):
+            lost = [index for index, cause in self._lost.items() if cause == uri]
+            names = ', '.join(f'"{self._scopes.names[index]}"' for index in sorted(lost)[:5])
+            rest = f' and {len(lost) - 5} more' if len(lost) > 5 else ''
+            msg = (f'because "{uri}" is missing, {len(lost)} more elements are left out, which '
+                   f'refer to it: {names}{rest}')
+            self._problems.warning('WARNING', msg, self._table.place(min(lost)))
 
     def _break_rings(
         self, pointers: list[int], error_class: type[SdfError], verb: str,
@@ -261,7 +303,7 @@ class _Builder:
             if error_class is RelativeToCycleError and any(map(self._is_placed_in_child, ring)):
                 msg += '; a joint that says nothing else is placed in its child'
             place = self._table.place(index, self._elements[index].pose_line)
-            self._problems.error(index, error_class(msg, place))
+            self._problems.error(error_class(msg, place))
 
     def _is_placed_in_child(self, index: int) -> bool:
         element = self._elements[index]

@@ -125,4 +125,4 @@ class _JointCheck:
 
     def _error(self, error_class: type[SdfError], message: str, line: int, part: str) -> None:
         index = self._ends.joint
-        self._problems.error(index, error_class(message, self._table.place(index, line, part)))
+        self._problems.error(error_class(message, self._table.place(index, line, part)))

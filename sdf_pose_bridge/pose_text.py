@@ -28,6 +28,7 @@ SMALLEST_QUATERNION_NORM = 1e-9
 """A quaternion shorter than this has no direction that its author can have meant."""
 
 _NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?')
+_NOT_ZERO = re.compile(r'[^eE]*[1-9]')
 _NUMBER_CHARACTERS = b'0123456789+-.eE \t\n\r'
 _RPY_COUNT = 6
 _QUATERNION_COUNT = 7
@@ -78,8 +79,10 @@ def poses_from_texts(
                 _one_at_a_time(index, texts[index], poses, failures)
         for form, indices in rows.items():
             table = np.array(values[form]).reshape(len(indices), -1)
-            doubtful = _fill(poses, np.array(indices), table, *form)
-            for index in doubtful.tolist():
+            doubtful = set(_fill(poses, np.array(indices), table, *form).tolist())
+            # A number too small for a double has become zero by now.
+            doubtful.update(index for index in indices if 'e-' in texts[index].text.lower())
+            for index in doubtful:
                 _one_at_a_time(index, texts[index], poses, failures)
     else:
         failures = []
@@ -107,7 +110,7 @@ def pose_from_text(pose: PoseText) -> tuple[float, ...]:
         if not _NUMBER.fullmatch(token):
             msg = f'"{token[:80]}" in the pose "{shown}" is not a finite decimal number'
             raise PoseTextError(msg)
-        if not _is_representable(float(token)):
+        if not _is_representable(token):
             msg = f'"{token[:80]}" in the pose "{shown}" is beyond the range of a double'
             raise PoseTextError(msg)
     if len(tokens) != count:
@@ -137,9 +140,12 @@ def _are_plain(texts: Sequence[PoseText]) -> bool:
     return not characters.translate(None, _NUMBER_CHARACTERS)
 
 
-def _is_representable(value: float) -> bool:
-    """Tell whether C's strtod takes a value without a range error."""
-    return value == 0.0 or sys.float_info.min <= abs(value) <= sys.float_info.max
+def _is_representable(number: str) -> bool:
+    """Tell whether C's strtod takes a number without a range error."""
+    value = float(number)
+    if value == 0.0:
+        return not _NOT_ZERO.match(number)
+    return sys.float_info.min <= abs(value) <= sys.float_info.max
 
 
 def _one_at_a_time(
@@ -151,6 +157,7 @@ def _one_at_a_time(
     try:
         poses[index] = pose_from_text(text)
     except PoseTextError as error:
+        poses[index] = IDENTITY
         failures.append((index, str(error)))
 
 

@@ -4,50 +4,91 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from collections.abc import Sequence
+from typing import Protocol
+from typing import TypeVar
+
 from sdf_pose_bridge.errors import LoadError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 
 
+class _Problem(Protocol):
+
+    @property
+    def code(self) -> str: ...
+    @property
+    def message(self) -> str: ...
+    @property
+    def place(self) -> Place: ...
+
+
+_AnyProblem = TypeVar('_AnyProblem', bound=_Problem)
+
+
 class Problems:
-    """Errors and warnings of one load, each with the element that it belongs to."""
+    """
+    Errors and warnings of one load.
 
-    def __init__(self) -> None:
-        self._errors: list[tuple[int, SdfError]] = []
-        self._warnings: list[tuple[int, SdfWarning]] = []
+    :param files: the files that are read, the first one first; problems are told in this order,
+        and by line within each.
+    """
 
-    def error(self, order: int, error: SdfError) -> None:
+    def __init__(self, files: Iterable[str]) -> None:
+        self._ranks = {path: rank for rank, path in enumerate(files)}
+        self._errors: list[SdfError] = []
+        self._warnings: list[SdfWarning] = []
+
+    def error(self, error: SdfError) -> None:
         """
         Note an error.
 
-        :param order: index of the element that it is about; errors are told in this order.
         :param error: the error, with its place.
         """
-        self._errors.append((order, error))
+        self._errors.append(error)
 
-    def warning(self, order: int, code: str, message: str, place: Place) -> None:
+    def warning(self, code: str, message: str, place: Place) -> None:
         """
         Note a warning.
 
-        :param order: index of the element that it is about; warnings are told in this order.
         :param code: code of the error that the same thing is elsewhere, or ``WARNING``.
         :param message: one sentence.
         :param place: where it stands.
         """
-        self._warnings.append((order, SdfWarning(code, message, place)))
+        self._warnings.append(SdfWarning(code, message, place))
+
+    def extend(self, other: Problems) -> None:
+        """
+        Take over what another collection holds.
+
+        :param other: the other collection.
+        """
+        self._errors += other.errors
+        self._warnings += other.warnings
+
+    @property
+    def errors(self) -> tuple[SdfError, ...]:
+        """All errors, each once, in the order of the files."""
+        return tuple(self._in_order(self._errors))
 
     @property
     def warnings(self) -> tuple[SdfWarning, ...]:
-        """All warnings, in file order."""
-        return tuple(entry[1] for entry in sorted(self._warnings, key=lambda entry: entry[0]))
+        """All warnings, each once, in the order of the files."""
+        return tuple(self._in_order(self._warnings))
 
     def raise_any(self) -> None:
         """
         Do nothing if there are no errors.
 
-        :raises LoadError: with all errors in file order, if there is one.
+        :raises LoadError: with all errors and warnings, if there is an error.
         """
         if self._errors:
-            errors = [entry[1] for entry in sorted(self._errors, key=lambda entry: entry[0])]
-            raise LoadError(errors, self.warnings)
+            raise LoadError(self.errors, self.warnings)
+
+    def _in_order(self, problems: Sequence[_AnyProblem]) -> list[_AnyProblem]:
+        once = {(problem.code, problem.message, problem.place): problem for problem in problems}
+        last = len(self._ranks)
+        return sorted(once.values(), key=lambda problem: (
+            self._ranks.get(problem.place.file, last), problem.place.line))

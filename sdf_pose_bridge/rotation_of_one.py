@@ -231,8 +231,9 @@ def quaternion_product(a_xyzw: Sequence[float], b_xyzw: Sequence[float]) -> Quad
 
 def quaternion_inverse(quat_xyzw: Sequence[float]) -> Quadruple:
     """Return the rotation that turns back."""
-    x, y, z, w = quat_xyzw
-    return canonical_quaternion((-x, -y, -z, w))
+    x, y, z, w = canonical_quaternion(quat_xyzw)
+    # A half turn is its own inverse, and canonical already.
+    return (0.0 - x, 0.0 - y, 0.0 - z, w) if w else (x, y, z, w)
 
 
 def rotated_vector(quat_xyzw: Sequence[float], vector: Sequence[float]) -> Triple:

@@ -96,12 +96,39 @@ class Scene:
         :raises UnknownFrameError: if there is no such name, or more than one.
         """
         index = self.index(frame, world=world)
-        pose = self._pose_of(index)
         if not relative_to:
-            return pose
-        reference = self.index(relative_to, world=world or self._world_of(index))
-        relative = pose_product(pose_inverse(self._pose_of(reference)), pose)
+            return self.pose_of(index)
+        reference = self.index(relative_to, world=world or self.world_of(index))
+        return self.relative_pose_of(index, reference)
+
+    def pose_of(self, index: int) -> Pose:
+        """
+        Return the pose of an element in its root.
+
+        :param index: its index.
+        :return: its pose in its world or implicit root.
+        """
+        return Pose(*self.poses[index].tolist())
+
+    def relative_pose_of(self, index: int, reference: int) -> Pose:
+        """
+        Return the pose of an element in the frame of another.
+
+        :param index: its index.
+        :param reference: index of the other, of the same root.
+        :return: pose of the first in the second; unit quaternion with w >= 0.
+        """
+        relative = pose_product(pose_inverse(self.pose_of(reference)), self.pose_of(index))
         return Pose(*relative[:3], *_canonical(relative[3:]))
+
+    def world_of(self, index: int) -> str:
+        """
+        Name the world that an element belongs to.
+
+        :param index: its index.
+        :return: the world's name; empty in a model file.
+        """
+        return self.world_names.get(int(self.roots[index]), '')
 
     def index(self, name: str, *, world: str = '') -> int:
         """
@@ -118,7 +145,7 @@ class Scene:
         if len(found) == 1 and not world:
             return found[0]
         if world:
-            found = [i for i in found if self._world_of(i) == world]
+            found = [i for i in found if self.world_of(i) == world]
         frames = [i for i in found if self.kinds[i] in _FRAMES_AND_ROOTS]
         for candidates in (frames, found):
             if len(candidates) == 1:
@@ -141,17 +168,11 @@ class Scene:
             indices.setdefault(name, []).append(index)
         return indices
 
-    def _pose_of(self, index: int) -> Pose:
-        return Pose(*self.poses[index].tolist())
-
-    def _world_of(self, index: int) -> str:
-        return self.world_names.get(int(self.roots[index]), '')
-
     def _unknown(self, name: str, world: str, found: list[int]) -> UnknownFrameError:
         place = Place(self.path)
         if found:
             kinds = ', '.join(
-                f'a {Kind(self.kinds[i]).label} in {self._world_of(i) or "the file"}'
+                f'a {Kind(self.kinds[i]).label} in {self.world_of(i) or "the file"}'
                 for i in found)
             msg = f'"{name}" is the name of more than one element: {kinds}'
         else:

@@ -17,6 +17,7 @@ from sdf_pose_bridge.elements import ModelFacts
 from sdf_pose_bridge.elements import SensorFacts
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.frame_graph import FrameGraph
+from sdf_pose_bridge.inclusions import DocumentSet
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.resolution import root_poses_from_graph
 from sdf_pose_bridge.scene import Indices
@@ -27,12 +28,12 @@ _Scalar = TypeVar('_Scalar', bound=np.generic)
 
 
 def scene_from_graph(
-    path: str, table: Elements, graph: FrameGraph, warnings: Sequence[SdfWarning],
+    documents: DocumentSet, table: Elements, graph: FrameGraph, warnings: Sequence[SdfWarning],
 ) -> Scene:
     """
     Resolve the poses and leave out what cannot be placed.
 
-    :param path: the file, as it was opened.
+    :param documents: the file and what it includes.
     :param table: its elements.
     :param graph: their references, checked and without errors.
     :param warnings: what was warned about.
@@ -42,7 +43,8 @@ def scene_from_graph(
     is_kept = np.ones(len(elements), dtype=bool)
     is_kept[list(graph.lost)] = False
     kept: list[int] = np.flatnonzero(is_kept).tolist()
-    renumbered = np.append(np.cumsum(is_kept) - 1, -1)  # the last entry serves index -1
+    # The last entry serves index -1.
+    renumbered = np.append(np.where(is_kept, np.cumsum(is_kept) - 1, -1), -1)
     numbers: list[int] = renumbered.tolist()
 
     def pointers(old: Sequence[int]) -> Indices:
@@ -50,8 +52,8 @@ def scene_from_graph(
 
     facts = [(numbers[index], elements[index].facts) for index in kept]
     return Scene(
-        path=path,
-        files=tuple(table.files),
+        path=documents.document.path,
+        files=tuple(dict.fromkeys([*table.files, *documents.files])),
         names=tuple(graph.names[index] for index in kept),
         kinds=_frozen(np.array([elements[index].kind for index in kept], dtype=np.uint8)),
         parents=pointers([element.parent for element in elements]),
@@ -65,7 +67,7 @@ def scene_from_graph(
         joints=tuple(
             Joint(numbers[joint], fact.type, numbers[parent], numbers[child])
             for joint, parent, child in graph.joints
-            if isinstance(fact := elements[joint].facts, JointFacts)),
+            if is_kept[joint] and isinstance(fact := elements[joint].facts, JointFacts)),
         sensors=MappingProxyType(
             {index: fact for index, fact in facts if isinstance(fact, SensorFacts)}),
         lines=_frozen(np.array([elements[index].line for index in kept], dtype=np.int32)),

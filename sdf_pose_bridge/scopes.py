@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sdf_pose_bridge.elements import Elements
+from sdf_pose_bridge.elements import NOWHERE
 from sdf_pose_bridge.errors import hint_from_names
 from sdf_pose_bridge.names import FRAME_KINDS
 from sdf_pose_bridge.names import Kind
@@ -33,6 +34,7 @@ class Scopes:
 
     def __init__(self, table: Elements) -> None:
         self._elements = table.elements
+        self._missing = table.missing
         self.names: list[str] = []
         self.roots: list[int] = []
         self._frames: dict[int, dict[str, int]] = {}
@@ -75,6 +77,25 @@ class Scopes:
             if found is not None and self._elements[found].kind is not Kind.MODEL:
                 return None
         return found
+
+    def missing_uri(self, scope: int, reference: str) -> str:
+        """
+        Tell whether a reference means something that could not be included.
+
+        :param scope: index of the model, world or root in which it is written.
+        :param reference: the name as written.
+        :return: the URI of the include; empty if it is none of those.
+        """
+        if not self._missing:
+            return ''
+        steps = reference.split(SEPARATOR)
+        for count in range(len(steps)):
+            outer = self.frame(scope, SEPARATOR.join(steps[:count])) if count else scope
+            names = self._missing.get(NOWHERE if outer is None else outer, {})
+            uri = names.get(steps[count]) or names.get('')
+            if uri:
+                return uri
+        return ''
 
     def described(self, scope: int) -> str:
         """

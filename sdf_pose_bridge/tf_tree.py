@@ -122,7 +122,7 @@ class _Builder:
         self._options = options
         self._naming = FrameNaming(
             options.frame_names, options.frame_separator, options.frame_prefix)
-        self._problems = Problems()
+        self._problems = Problems(scene.files)
         self._kinds: list[int] = scene.kinds.tolist()
         self._holders: list[int] = scene.parents.tolist()
         self._roots: list[int] = scene.roots.tolist()
@@ -153,7 +153,7 @@ class _Builder:
             name = self._scene.world_names.get(index)
             what = 'the model beside the worlds' if name is None else f'world "{name}"'
             msg = f'{what} is not published; only the first world or model of a file is'
-            self._problems.warning(index, 'WARNING', msg, self._scene.place(index))
+            self._problems.warning('WARNING', msg, self._scene.place(index))
         wanted = [kind in options.kinds for kind in Kind]
         inside = set(roots[:1])
         if options.model:
@@ -210,19 +210,19 @@ class _Builder:
         place = self._scene.place(element)
         if not frame_id:
             msg = f'"{name}" leaves no frame id: TF takes no leading slash and no empty name'
-            self._problems.error(element, ElementInvalidError(msg, place))
+            self._problems.error(ElementInvalidError(msg, place))
         elif frame_id == self._options.root_frame:
             msg = f'"{name}" would have the frame id "{frame_id}", which is that of the root frame'
-            self._problems.error(element, DuplicateNameError(msg, place))
+            self._problems.error(DuplicateNameError(msg, place))
         elif frame_id in self._row_of_id:
             other = self._rows[self._row_of_id[frame_id]].element
             msg = (f'{self._described(element)} and {self._described(other)} (line '
                    f'{self._scene.lines[other]}) would share the frame id "{frame_id}"; '
                    'frame_names "scoped", or another frame_separator, can tell them apart')
-            self._problems.error(element, DuplicateNameError(msg, place))
+            self._problems.error(DuplicateNameError(msg, place))
         elif any(character.isspace() for character in frame_id):
             msg = f'the frame id "{frame_id}" holds white space, which some tools cannot take'
-            self._problems.warning(element, 'WARNING', msg, place)
+            self._problems.warning('WARNING', msg, place)
         self._row_of_id.setdefault(frame_id, row)
         self._rows.append(_Frame(frame_id, element, pose, _NO_PARENT))
         return row
@@ -275,8 +275,7 @@ class _Builder:
         names = self._scene.names
         msg = (f'joint "{names[joint.element]}" closes a loop between "{names[joint.parent]}" and '
                f'"{names[joint.child]}"; TF is a tree, so it moves nothing there')
-        self._problems.warning(
-            joint.element, 'WARNING', msg, self._scene.place(joint.element))
+        self._problems.warning('WARNING', msg, self._scene.place(joint.element))
 
     def _laid_out(self) -> TfTree:
         poses = np.array([frame.pose for frame in self._rows], dtype=np.float64).reshape(-1, 7)

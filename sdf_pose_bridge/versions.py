@@ -1,48 +1,127 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Bring a document of an older version of SDFormat to the newest grammar."""
+"""
+Bring a document of an older version of SDFormat to the newest grammar.
+
+The declared version switches nothing off: what newer versions brought works in every file. It
+tells what names and attributes of its time mean now. Steps of libsdformat's conversion that touch
+neither poses nor frames are left out.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from lxml import etree
+
+from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import Document
+from sdf_pose_bridge.document import is_data
+from sdf_pose_bridge.document import text_of
+from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.errors import ConversionError
 from sdf_pose_bridge.errors import Place
-
-OLDEST = (1, 2)
-NEWEST = (1, 12)
-_OLDEST_READ = (1, 7)
+from sdf_pose_bridge.names import MODEL_FRAME
+from sdf_pose_bridge.unflattening import unflatten_model
 
 
-def document_in_newest_version(document: Document) -> Document:
+class Version(NamedTuple):
+    """A version of SDFormat."""
+
+    major: int
+    minor: int
+
+
+OLDEST = Version(1, 2)
+NEWEST = Version(1, 12)
+
+_FRAME_ATTRIBUTE_ENDS = Version(1, 7)
+_FLAT_NAMES_END = Version(1, 8)
+_JOINTS_TURN_WITH_LINKS = Version(1, 5)
+
+
+def version_of(document: Document) -> Version:
     """
-    Convert a document by the rules of the version that it declares.
+    Read the version that a document declares.
 
     :param document: a file as it was read.
-    :return: the same content in the grammar of version 1.12.
-    :raises ConversionError: if the version is unknown, or one that cannot be converted.
+    :return: its version.
+    :raises ConversionError: if SDFormat has no such version, or it is older than 1.2.
     """
-    place = Place(document.path, document.root.sourceline or 0, '/sdf')
-    version = version_from_text(document.version)
-    if version is None:
-        msg = f'version="{document.version}" is unknown; SDFormat 1.2 to 1.12 can be read'
-        raise ConversionError(msg, place)
-    if version < _OLDEST_READ:
-        msg = (f'version="{document.version}" is older than 1.7 and cannot be read yet; '
-               '"gz sdf -p" prints the file in a newer version')
-        raise ConversionError(msg, place)
-    return document
-
-
-def version_from_text(text: str) -> tuple[int, int] | None:
-    """
-    Read the value of a ``version`` attribute.
-
-    :param text: such as ``1.10``.
-    :return: such as ``(1, 10)``, or None if SDFormat has no such version.
-    """
+    text = document.version
     major, _, minor = text.partition('.')
-    if not (major.isascii() and major.isdigit() and minor.isascii() and minor.isdigit()):
-        return None
-    version = (int(major), int(minor))
-    is_spelled_so = text == f'{version[0]}.{version[1]}'
-    return version if is_spelled_so and OLDEST <= version <= NEWEST else None
+    if text.isascii() and major.isdigit() and minor.isdigit() and len(text) < 10:
+        version = Version(int(major), int(minor))
+        if OLDEST <= version <= NEWEST and text == f'{version.major}.{version.minor}':
+            return version
+    msg = f'version="{text}" is none that can be read; 1.2 to 1.12 can'
+    raise ConversionError(msg, Place(document.path, document.root.sourceline or 0, '/sdf'))
+
+
+def upgrade(document: Document) -> None:
+    """
+    Convert a document in place, by the rules of the version that it declares.
+
+    :param document: a file as it was read; afterwards it has the meaning of version 1.12.
+    :raises ConversionError: if its version is unknown, or names in it cannot be converted.
+    """
+    version = version_of(document)
+    if version < _JOINTS_TURN_WITH_LINKS:
+        _turn_axes_with_model(document.root)
+    if version < _FRAME_ATTRIBUTE_ENDS:
+        _rename_frame_attributes(document.root)
+        _express_axes_in_model(document.root)
+    if version < _FLAT_NAMES_END:
+        for model in document.root.iterfind('world/model'):
+            unflatten_model(model, document.path)
+
+
+def may_hold_flat_names(version: Version) -> bool:
+    """
+    Tell whether names in a file may hold ``::``.
+
+    :param version: the version that the file declares.
+    :return: true below 1.8, where old libraries wrote such names.
+    """
+    return version < _FLAT_NAMES_END
+
+
+def renames_clashes(version: Version) -> bool:
+    """
+    Tell whether elements of different kinds may share a name, so that one has to be renamed.
+
+    :param version: the version that the file declares.
+    :return: true below 1.7.
+    """
+    return version < _FRAME_ATTRIBUTE_ENDS
+
+
+def _turn_axes_with_model(root: XmlElement) -> None:
+    for path in ('model/joint', 'world/model/joint'):
+        for joint in root.iterfind(path):
+            for axis in joint.iterchildren('axis', 'axis2'):
+                if axis.find('use_parent_model_frame') is None:
+                    etree.SubElement(axis, 'use_parent_model_frame').text = 'true'
+
+
+def _rename_frame_attributes(root: XmlElement) -> None:
+    for pose in _data_elements(root, 'pose'):
+        frame = pose.attrib.pop('frame', None)
+        if frame is not None:
+            pose.set('relative_to', frame)
+
+
+def _express_axes_in_model(root: XmlElement) -> None:
+    for flag in list(_data_elements(root, 'use_parent_model_frame')):
+        axis = flag.getparent()
+        if axis is None:
+            continue
+        xyz = axis.find('xyz')
+        if boolean_from_text(text_of(flag)) and xyz is not None:
+            xyz.set('expressed_in', MODEL_FRAME)
+        axis.remove(flag)
+
+
+def _data_elements(root: XmlElement, tag: str) -> Iterator[XmlElement]:
+    return (element for element in root.iter(tag) if is_data(element))

@@ -1,0 +1,177 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Refuse values that libsdformat refuses, wherever in a file they stand.
+
+No pose depends on a friction coefficient. But a file that Gazebo does not load should not be
+published as if it did; so numbers have to be numbers, and materials whole.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+
+from lxml import etree
+
+from sdf_pose_bridge.document import boolean_from_text
+from sdf_pose_bridge.document import Document
+from sdf_pose_bridge.document import is_data
+from sdf_pose_bridge.document import text_of
+from sdf_pose_bridge.document import value_of
+from sdf_pose_bridge.document import XmlElement
+from sdf_pose_bridge.elements import step
+from sdf_pose_bridge.errors import AttributeMissingError
+from sdf_pose_bridge.errors import ElementInvalidError
+from sdf_pose_bridge.errors import ElementMissingError
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.grammar import LARGEST_VALUES
+from sdf_pose_bridge.grammar import REQUIRED_ATTRIBUTES
+from sdf_pose_bridge.grammar import SMALLEST_VALUES
+from sdf_pose_bridge.grammar import VALUE_TYPES
+from sdf_pose_bridge.grammar import ValueType
+from sdf_pose_bridge.pose_text import pose_from_text
+from sdf_pose_bridge.pose_text import PoseText
+from sdf_pose_bridge.pose_text import PoseTextError
+from sdf_pose_bridge.problems import Problems
+
+_LEAVES = etree.XPath('//*[not(*) and not(ancestor-or-self::plugin)]')
+_OTHER_POSES = etree.XPath(
+    '//pose[preceding-sibling::pose or parent::waypoint or parent::camera or parent::audio_source '
+    'or parent::population or ancestor::state]')
+_MATERIALS = etree.XPath('//visual/material[script or shader]')
+_AXES = etree.XPath('//joint/axis/xyz | //joint/axis2/xyz')
+_HOLDERS_OF_ATTRIBUTES = etree.XPath('|'.join(f'//{tag}' for tag in REQUIRED_ATTRIBUTES))
+
+# What C's strtod takes: a number, and then whatever follows it.
+_NUMBER = r'[+-]?(?:[0-9]|\.[0-9]|inf|nan)'
+_PATTERNS = {
+    ValueType.INTEGER: re.compile(r'[+-]?[0-9]|true|false', re.IGNORECASE),
+    ValueType.NUMBER: re.compile(f'{_NUMBER}|true|false', re.IGNORECASE),
+    ValueType.TWO_NUMBERS: re.compile(rf'{_NUMBER}\S*\s+{_NUMBER}', re.IGNORECASE),
+    ValueType.THREE_NUMBERS: re.compile(rf'(?:{_NUMBER}\S*\s+){{2}}{_NUMBER}', re.IGNORECASE),
+}
+_LEADING_NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?')
+_SMALLEST_AXIS = 1e-6
+_SHADERS = frozenset({'pixel', 'vertex', 'normal_map_object_space', 'normal_map_tangent_space'})
+
+
+def check_values(document: Document, problems: Problems) -> None:
+    """
+    Check what no other stage reads.
+
+    :param document: a file in the newest grammar; what it includes is not looked at.
+    :param problems: takes what is wrong.
+    """
+    check = _Check(document, problems)
+    check.leaves()
+    check.other_poses()
+    check.attributes()
+    check.materials()
+    check.axes()
+
+
+class _Check:
+
+    def __init__(self, document: Document, problems: Problems) -> None:
+        self._document = document
+        self._problems = problems
+
+    def leaves(self) -> None:
+        leaves: list[XmlElement] = _LEAVES(self._document.root)
+        for xml in leaves:
+            holder = xml.getparent()
+            if holder is None:
+                continue
+            types = VALUE_TYPES.get(str(holder.tag))
+            value_type = None if types is None else types.get(str(xml.tag))
+            if value_type is None:
+                continue
+            text = text_of(xml).strip()
+            if text and not _is_of_type(text, value_type):
+                msg = f'"{text[:80]}" is not {value_type.value}'
+                self._error(ElementInvalidError, xml, msg)
+            elif text:
+                self._check_range(xml, text, (str(holder.tag), str(xml.tag)))
+
+    def _check_range(self, xml: XmlElement, text: str, key: tuple[str, str]) -> None:
+        if key not in SMALLEST_VALUES:
+            return
+        number = _LEADING_NUMBER.match(text)
+        smallest, largest = SMALLEST_VALUES[key], LARGEST_VALUES.get(key, math.inf)
+        if number and not smallest <= float(number.group()) <= largest:
+            rule = f'at least {smallest:g}' if largest == math.inf else (
+                f'from {smallest:g} to {largest:g}')
+            self._error(ElementInvalidError, xml, f'"{text}" must be {rule}')
+
+    def other_poses(self) -> None:
+        poses: list[XmlElement] = _OTHER_POSES(self._document.root)
+        for xml in poses:
+            is_quaternion = xml.get('rotation_format', '').strip() == 'quat_xyzw'
+            if is_data(xml):
+                try:
+                    pose_from_text(PoseText(text_of(xml), is_quaternion, False))
+                except PoseTextError as error:
+                    self._error(ElementInvalidError, xml, str(error))
+
+    def attributes(self) -> None:
+        holders: list[XmlElement] = _HOLDERS_OF_ATTRIBUTES(self._document.root)
+        for xml in holders:
+            attribute = REQUIRED_ATTRIBUTES[str(xml.tag)]
+            if xml.get(attribute) is None and (
+                    is_data(xml) or (xml.tag == 'plugin' and _is_outermost(xml))):
+                tag = str(xml.tag)
+                self._error(AttributeMissingError, xml, f'<{tag}> has no {attribute}')
+
+    def materials(self) -> None:
+        materials: list[XmlElement] = _MATERIALS(self._document.root)
+        for material in materials:
+            for script in material.iterchildren('script'):
+                for part, error in (('uri', ElementInvalidError), ('name', ElementMissingError)):
+                    values = [value_of(xml) for xml in script.iterchildren(part)]
+                    if (not values or values[0] in ('', '__default__')) and is_data(script):
+                        msg = f'the <script> of a material has no <{part}>, or an empty one'
+                        self._error(error, script, msg)
+            for shader in material.iterchildren('shader'):
+                self._check_shader(shader)
+
+    def _check_shader(self, shader: XmlElement) -> None:
+        kind = shader.get('type', '').strip()
+        if kind not in _SHADERS:
+            msg = f'type="{kind}" of a shader must be one of {", ".join(sorted(_SHADERS))}'
+            self._error(ElementInvalidError, shader, msg)
+        elif kind.startswith('normal_map') and shader.find('normal_map') is None:
+            msg = f'a shader of type="{kind}" needs a <normal_map>'
+            self._error(ElementMissingError, shader, msg)
+
+    def axes(self) -> None:
+        axes: list[XmlElement] = _AXES(self._document.root)
+        for xyz in axes:
+            numbers = [_LEADING_NUMBER.match(word) for word in text_of(xyz).split()]
+            values = [float(number.group()) for number in numbers if number]
+            if values and math.hypot(*values) <= _SMALLEST_AXIS and is_data(xyz):
+                msg = f'"{value_of(xyz)}" is no axis: its length is zero'
+                self._error(ElementInvalidError, xyz, msg)
+
+    def _error(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
+        steps = [step(str(e.tag), name) if (name := e.get('name')) else str(e.tag)
+                 for e in (xml, *xml.iterancestors())]
+        place = Place(self._document.path, xml.sourceline or 0, '/' + '/'.join(reversed(steps)))
+        self._problems.error(error_class(message, place))
+
+
+def _is_of_type(text: str, value_type: ValueType) -> bool:
+    if value_type is ValueType.BOOLEAN:
+        return boolean_from_text(text) is not None
+    if value_type is ValueType.COLOR:
+        numbers = [_LEADING_NUMBER.match(word) for word in text.split()]
+        values = [float(number.group()) for number in numbers if number]
+        return (len(values) == len(numbers) and len(values) in (3, 4)
+                and all(0.0 <= value <= 1.0 for value in values))
+    return _PATTERNS[value_type].match(text) is not None
+
+
+def _is_outermost(plugin: XmlElement) -> bool:
+    holder = plugin.getparent()
+    return holder is None or is_data(holder)
