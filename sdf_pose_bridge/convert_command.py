@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterable
 from collections.abc import Iterator
+import io
 from itertools import islice
 import re
 import sys
@@ -99,8 +100,12 @@ def run(args: argparse.Namespace) -> int:
         line = _parsed_line(0, ' '.join(args.numbers), source)
         return _printed([line], source, targets, labelled=labelled)
     exit_code = 0
+    if isinstance(sys.stdin, io.TextIOWrapper):
+        # Bytes that are no text make a bad line; they should not end the program.
+        sys.stdin.reconfigure(errors='backslashreplace')
     lines = _parsed_lines(sys.stdin, source)
-    while batch := list(islice(lines, LINES_AT_A_TIME)):
+    at_a_time = 1 if sys.stdin.isatty() else LINES_AT_A_TIME
+    while batch := list(islice(lines, at_a_time)):
         exit_code |= _printed(batch, source, targets, labelled=labelled)
     return exit_code
 

@@ -39,8 +39,10 @@ from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.pose_text import pose_from_text
 from sdf_pose_bridge.pose_text import poses_from_texts
 from sdf_pose_bridge.pose_text import PoseText
+from sdf_pose_bridge.pose_text import PoseTextError
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.versions import may_hold_flat_names
 from sdf_pose_bridge.versions import renames_clashes
@@ -96,7 +98,8 @@ class ElementBuilder:
         :return: its index.
         """
         index = len(self._elements)
-        pose = next(xml.iterchildren('pose'), None) if kind > Kind.WORLD else None
+        poses = xml.iterchildren('pose') if kind > Kind.WORLD else iter(())
+        pose = next(poses, None)
         line = xml.sourceline or 0
         if pose is None:
             self._elements.append(Element(kind, name, parent, scope, self._file, line))
@@ -105,6 +108,8 @@ class ElementBuilder:
         pose_line = pose.sourceline or 0
         self._elements.append(
             Element(kind, name, parent, scope, self._file, line, '', pose_line))
+        for further in poses:
+            self._check_ignored_pose(further, index)
         if len(pose.attrib):
             self._texts.append(self._pose_with_attributes(pose, index))
         else:
@@ -400,6 +405,15 @@ class ElementBuilder:
             self.error(ElementInvalidError, xml, msg, index, 'pose')
             return _NO_POSE
         return PoseText(text_of(xml), is_quaternion, bool(is_degrees))
+
+    def _check_ignored_pose(self, xml: XmlElement, index: int) -> None:
+        """Judge a second pose, which counts for nothing but has to be one."""
+        is_quaternion = xml.get('rotation_format', '').strip(WHITE_SPACE) == 'quat_xyzw'
+        try:
+            pose_from_text(PoseText(text_of(xml), is_quaternion, False))
+        except PoseTextError as error:
+            self._problems.error(
+                ElementInvalidError(str(error), self._place(xml, index, 'pose')))
 
     def _read_relative_to(self, xml: XmlElement, index: int) -> None:
         element = self._elements[index]

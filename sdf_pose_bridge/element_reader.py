@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+import itertools
 from typing import NamedTuple
 
 from lxml import etree
@@ -375,7 +376,8 @@ class _ElementReader:
         sensor = self._leaf(Kind.SENSOR, xml, parent, scope)
         if sensor is None:
             return
-        frame_ids = xml.iterchildren('gz_frame_id', 'ignition_frame_id')
+        frame_ids = itertools.chain(
+            xml.iterchildren('gz_frame_id'), xml.iterchildren('ignition_frame_id'))
         camera = next(xml.iterchildren('camera'), None)
         optical = None if camera is None else next(camera.iterchildren('optical_frame_id'), None)
         self._table.set_facts(sensor, SensorFacts(

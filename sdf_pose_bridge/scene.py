@@ -99,6 +99,10 @@ class Scene:
         if not relative_to:
             return self.pose_of(index)
         reference = self.index(relative_to, world=world or self.world_of(index))
+        if self.roots[reference] != self.roots[index]:
+            msg = (f'"{frame}" and "{relative_to}" have nothing in common: one is in a world, the '
+                   'other is the model beside it')
+            raise UnknownFrameError(msg, Place(self.path))
         return self.relative_pose_of(index, reference)
 
     def pose_of(self, index: int) -> Pose:

@@ -12,8 +12,6 @@ from __future__ import annotations
 import math
 import re
 
-from lxml import etree
-
 from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import is_data
@@ -36,14 +34,6 @@ from sdf_pose_bridge.pose_text import PoseText
 from sdf_pose_bridge.pose_text import PoseTextError
 from sdf_pose_bridge.problems import Problems
 
-_LEAVES = etree.XPath('//*[not(*) and not(ancestor-or-self::plugin)]')
-_OTHER_POSES = etree.XPath(
-    '//pose[preceding-sibling::pose or parent::waypoint or parent::camera or parent::audio_source '
-    'or parent::population or ancestor::state]')
-_MATERIALS = etree.XPath('//visual/material[script or shader]')
-_AXES = etree.XPath('//joint/axis/xyz | //joint/axis2/xyz')
-_HOLDERS_OF_ATTRIBUTES = etree.XPath('|'.join(f'//{tag}' for tag in REQUIRED_ATTRIBUTES))
-
 # What C's strtod takes: a number, and then whatever follows it.
 _NUMBER = r'[+-]?(?:[0-9]|\.[0-9]|inf|nan)'
 _PATTERNS = {
@@ -53,7 +43,12 @@ _PATTERNS = {
     ValueType.THREE_NUMBERS: re.compile(rf'(?:{_NUMBER}\S*\s+){{2}}{_NUMBER}', re.IGNORECASE),
 }
 _LEADING_NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?')
+_AXES = frozenset({('axis', 'xyz'), ('axis2', 'xyz')})
 _SMALLEST_AXIS = 1e-6
+_CHECKED_TAGS = (
+    *sorted({tag for types in VALUE_TYPES.values() for tag in types}),
+    *sorted(REQUIRED_ATTRIBUTES), 'script')
+_HOLDERS_OF_POSES = frozenset({'waypoint', 'camera', 'audio_source', 'population'})
 _SHADERS = frozenset({'pixel', 'vertex', 'normal_map_object_space', 'normal_map_tangent_space'})
 
 
@@ -65,11 +60,15 @@ def check_values(document: Document, problems: Problems) -> None:
     :param problems: takes what is wrong.
     """
     check = _Check(document, problems)
-    check.leaves()
-    check.other_poses()
-    check.attributes()
-    check.materials()
-    check.axes()
+    for xml in document.root.iter(*_CHECKED_TAGS):
+        check.value(xml)
+        if xml.tag in REQUIRED_ATTRIBUTES:
+            check.attribute(xml)
+        if xml.tag in ('script', 'shader'):
+            check.material(xml)
+    for xml in document.root.iter(*_HOLDERS_OF_POSES, 'state'):
+        for pose in xml.iter('pose') if xml.tag == 'state' else xml.iterchildren('pose'):
+            check.pose(pose)
 
 
 class _Check:
@@ -78,26 +77,26 @@ class _Check:
         self._document = document
         self._problems = problems
 
-    def leaves(self) -> None:
-        leaves: list[XmlElement] = _LEAVES(self._document.root)
-        for xml in leaves:
-            holder = xml.getparent()
-            if holder is None:
-                continue
-            types = VALUE_TYPES.get(str(holder.tag))
-            value_type = None if types is None else types.get(str(xml.tag))
-            if value_type is None:
-                continue
-            text = text_of(xml).strip()
-            if text and not _is_of_type(text, value_type):
-                msg = f'"{text[:80]}" is not {value_type.value}'
-                self._error(ElementInvalidError, xml, msg)
-            elif text:
-                self._check_range(xml, text, (str(holder.tag), str(xml.tag)))
+    def value(self, xml: XmlElement) -> None:
+        holder = xml.getparent()
+        types = None if holder is None else VALUE_TYPES.get(str(holder.tag))
+        value_type = None if types is None else types.get(str(xml.tag))
+        if holder is None or value_type is None:
+            return
+        text = text_of(xml).strip()
+        if not text:
+            return
+        if not _is_of_type(text, value_type):
+            msg = f'"{text[:80]}" is not {value_type.value}'
+            self._error(ElementInvalidError, xml, msg)
+            return
+        key = (str(holder.tag), str(xml.tag))
+        if key in SMALLEST_VALUES:
+            self._check_range(xml, text, key)
+        if key in _AXES:
+            self._check_axis(xml, text)
 
     def _check_range(self, xml: XmlElement, text: str, key: tuple[str, str]) -> None:
-        if key not in SMALLEST_VALUES:
-            return
         number = _LEADING_NUMBER.match(text)
         smallest, largest = SMALLEST_VALUES[key], LARGEST_VALUES.get(key, math.inf)
         if number and not smallest <= float(number.group()) <= largest:
@@ -105,36 +104,33 @@ class _Check:
                 f'from {smallest:g} to {largest:g}')
             self._error(ElementInvalidError, xml, f'"{text}" must be {rule}')
 
-    def other_poses(self) -> None:
-        poses: list[XmlElement] = _OTHER_POSES(self._document.root)
-        for xml in poses:
-            is_quaternion = xml.get('rotation_format', '').strip() == 'quat_xyzw'
-            if is_data(xml):
-                try:
-                    pose_from_text(PoseText(text_of(xml), is_quaternion, False))
-                except PoseTextError as error:
-                    self._error(ElementInvalidError, xml, str(error))
+    def pose(self, xml: XmlElement) -> None:
+        is_quaternion = xml.get('rotation_format', '').strip() == 'quat_xyzw'
+        try:
+            pose_from_text(PoseText(text_of(xml), is_quaternion, False))
+        except PoseTextError as error:
+            self._error(ElementInvalidError, xml, str(error))
 
-    def attributes(self) -> None:
-        holders: list[XmlElement] = _HOLDERS_OF_ATTRIBUTES(self._document.root)
-        for xml in holders:
-            attribute = REQUIRED_ATTRIBUTES[str(xml.tag)]
-            if xml.get(attribute) is None and (
-                    is_data(xml) or (xml.tag == 'plugin' and _is_outermost(xml))):
-                tag = str(xml.tag)
-                self._error(AttributeMissingError, xml, f'<{tag}> has no {attribute}')
+    def attribute(self, xml: XmlElement) -> None:
+        attribute = REQUIRED_ATTRIBUTES[str(xml.tag)]
+        if xml.get(attribute) is None:
+            tag = str(xml.tag)
+            self._error(AttributeMissingError, xml, f'<{tag}> has no {attribute}')
 
-    def materials(self) -> None:
-        materials: list[XmlElement] = _MATERIALS(self._document.root)
-        for material in materials:
-            for script in material.iterchildren('script'):
-                for part, error in (('uri', ElementInvalidError), ('name', ElementMissingError)):
-                    values = [value_of(xml) for xml in script.iterchildren(part)]
-                    if (not values or values[0] in ('', '__default__')) and is_data(script):
-                        msg = f'the <script> of a material has no <{part}>, or an empty one'
-                        self._error(error, script, msg)
-            for shader in material.iterchildren('shader'):
-                self._check_shader(shader)
+    def material(self, xml: XmlElement) -> None:
+        material = xml.getparent()
+        visual = None if material is None else material.getparent()
+        if material is None or material.tag != 'material' or visual is None or (
+                visual.tag != 'visual'):
+            return
+        if xml.tag == 'shader':
+            self._check_shader(xml)
+            return
+        for part, error in (('uri', ElementInvalidError), ('name', ElementMissingError)):
+            values = [value_of(child) for child in xml.iterchildren(part)]
+            if not values or values[0] in ('', '__default__'):
+                msg = f'the <script> of a material has no <{part}>, or an empty one'
+                self._error(error, xml, msg)
 
     def _check_shader(self, shader: XmlElement) -> None:
         kind = shader.get('type', '').strip()
@@ -145,16 +141,15 @@ class _Check:
             msg = f'a shader of type="{kind}" needs a <normal_map>'
             self._error(ElementMissingError, shader, msg)
 
-    def axes(self) -> None:
-        axes: list[XmlElement] = _AXES(self._document.root)
-        for xyz in axes:
-            numbers = [_LEADING_NUMBER.match(word) for word in text_of(xyz).split()]
-            values = [float(number.group()) for number in numbers if number]
-            if values and math.hypot(*values) <= _SMALLEST_AXIS and is_data(xyz):
-                msg = f'"{value_of(xyz)}" is no axis: its length is zero'
-                self._error(ElementInvalidError, xyz, msg)
+    def _check_axis(self, xml: XmlElement, text: str) -> None:
+        numbers = [_LEADING_NUMBER.match(word) for word in text.split()]
+        if math.hypot(*(float(number.group()) for number in numbers if number)) <= _SMALLEST_AXIS:
+            self._error(ElementInvalidError, xml, f'"{text}" is no axis: its length is zero')
 
     def _error(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
+        data = xml.getparent() if xml.tag == 'plugin' else xml
+        if data is not None and not is_data(data):
+            return
         steps = [step(str(e.tag), name) if (name := e.get('name')) else str(e.tag)
                  for e in (xml, *xml.iterancestors())]
         place = Place(self._document.path, xml.sourceline or 0, '/' + '/'.join(reversed(steps)))
@@ -171,7 +166,3 @@ def _is_of_type(text: str, value_type: ValueType) -> bool:
                 and all(0.0 <= value <= 1.0 for value in values))
     return _PATTERNS[value_type].match(text) is not None
 
-
-def _is_outermost(plugin: XmlElement) -> bool:
-    holder = plugin.getparent()
-    return holder is None or is_data(holder)

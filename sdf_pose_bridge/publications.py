@@ -1,0 +1,105 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The topics that say where frames are, latched for listeners that come later."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import TransformStamped
+from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.logging import LoggingSeverity
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import DurabilityPolicy
+from rclpy.qos import HistoryPolicy
+from rclpy.qos import QoSProfile
+from rclpy.qos import ReliabilityPolicy
+from tf2_msgs.msg import TFMessage
+
+from sdf_pose_bridge.messages import poses_from_tree
+from sdf_pose_bridge.messages import tf_message_from_transforms
+from sdf_pose_bridge.messages import transforms_from_tree
+from sdf_pose_bridge.tf_tree import TfTree
+from sdf_pose_bridge.topic_names import LONGEST_NAME
+from sdf_pose_bridge.topic_names import topic_names_from_frame_ids
+
+LONGEST_FULL_NAME = 246
+"""Most characters that the middleware takes in the full name of a topic."""
+
+
+class Publications:
+    """
+    Publishers of one node for the frames of a tree.
+
+    :param node: the node that they belong to.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._tf_static = self._publisher(TFMessage, '/tf_static', depth=1)
+        self._transforms: Publisher | None = None
+        self._poses: dict[str, Publisher] = {}
+
+    def publish(self, tree: TfTree, patterns: Sequence[str]) -> int:
+        """
+        Publish a tree, in the place of the one before.
+
+        :param tree: the tree.
+        :param patterns: glob patterns for the frame ids that get a topic of their own.
+        :return: how many transforms were published.
+        """
+        stamp = self._node.get_clock().now().to_msg()
+        transforms = transforms_from_tree(tree, stamp)
+        self._tf_static.publish(tf_message_from_transforms(transforms))
+        self._publish_transforms(transforms)
+        topics = self._topics_from_tree(tree, patterns)
+        self._replace_pose_publishers(topics)
+        rows = [row for row, frame_id in enumerate(tree.frame_ids) if frame_id in topics]
+        for row, message in zip(rows, poses_from_tree(tree, rows, stamp), strict=True):
+            self._poses[topics[tree.frame_ids[row]]].publish(message)
+        return len(transforms)
+
+    def _publish_transforms(self, transforms: Sequence[TransformStamped]) -> None:
+        # A new publisher each time: what the old one keeps for late joiners is true no longer.
+        if self._transforms is not None:
+            self._node.destroy_publisher(self._transforms)
+        self._transforms = self._publisher(
+            TransformStamped, '~/transforms', depth=max(1, len(transforms)))
+        for transform in transforms:
+            self._transforms.publish(transform)
+
+    def _topics_from_tree(self, tree: TfTree, patterns: Sequence[str]) -> dict[str, str]:
+        room = LONGEST_FULL_NAME - len(f'{self._node.get_fully_qualified_name()}/poses/')
+        try:
+            return topic_names_from_frame_ids(
+                tree.frame_ids, patterns, min(room, LONGEST_NAME))
+        except ValueError:
+            self._node.get_logger().warning(
+                'no ~/poses/... topics: the name of the node and its namespace are so long that '
+                'the names of topics would be longer than the middleware allows')
+            return {}
+
+    def _replace_pose_publishers(self, topics: dict[str, str]) -> None:
+        wanted = set(topics.values())
+        for name in [name for name in self._poses if name not in wanted]:
+            self._node.destroy_publisher(self._poses.pop(name))
+        logger = self._node.get_logger()
+        is_debugged = logger.is_enabled_for(LoggingSeverity.DEBUG)
+        for frame_id, name in topics.items():
+            if name not in self._poses:
+                self._poses[name] = self._publisher(PoseStamped, f'~/poses/{name}', depth=1)
+            if is_debugged:
+                logger.debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
+
+    def _publisher(self, message_type: type, name: str, *, depth: int) -> Publisher:
+        quality = QoSProfile(
+            history=HistoryPolicy.KEEP_LAST, depth=depth,
+            reliability=ReliabilityPolicy.RELIABLE,
+            durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        # The default callbacks only report listeners that ask for more than is offered, and there
+        # is no more to offer; but each would be waited on, a thousand of them for a large scene.
+        return self._node.create_publisher(
+            message_type, name, quality,
+            event_callbacks=PublisherEventCallbacks(use_default_callbacks=False))
