@@ -1,0 +1,94 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The benchmarks' harness: who is timed, what is skipped and why, and what the table says."""
+
+import pytest
+
+from benchmarks import harness
+from benchmarks.harness import AtMostTimes
+from benchmarks.harness import benchmark
+from benchmarks.harness import Medians
+from benchmarks.harness import PerSecond
+from benchmarks.harness import result_of
+from benchmarks.harness import table
+from benchmarks.harness import TimesAsFast
+from benchmarks.harness import Unavailable
+
+
+@pytest.fixture(autouse=True)
+def short_runs(monkeypatch):
+    monkeypatch.setattr(harness, 'SHORTEST_RUN_S', 0.0)
+
+
+def test_what_is_not_installed_is_skipped_and_named():
+    @benchmark('ours', counterpart='theirs', goal=AtMostTimes(2.0))
+    def missing():
+        import no_such_library
+        yield no_such_library.ours, no_such_library.theirs
+
+    result = result_of(missing)
+    assert result.reached == 'skipped'
+    assert result.ratio == 'skipped: no_such_library is not installed'
+
+
+def test_a_benchmark_may_say_why_it_cannot_run():
+    @benchmark('ours', counterpart='theirs', goal=AtMostTimes(2.0))
+    def without_server():
+        reason = 'there is no server'
+        raise Unavailable(reason)
+        yield
+
+    assert result_of(without_server).ratio == 'skipped: there is no server'
+
+
+def test_other_errors_are_not_hidden():
+    @benchmark('ours', counterpart='theirs', goal=AtMostTimes(2.0))
+    def broken():
+        yield lambda: 1 / 0, lambda: None
+
+    with pytest.raises(ZeroDivisionError):
+        result_of(broken)
+
+
+def test_both_are_timed_in_turns_and_what_was_prepared_is_cleaned_up():
+    calls = []
+
+    @benchmark('ours', counterpart='theirs', goal=AtMostTimes(1e9))
+    def recorded():
+        calls.append('prepared')
+        yield lambda: calls.append('ours'), lambda: calls.append('theirs')
+        calls.append('cleaned up')
+
+    assert result_of(recorded).reached == 'yes'
+    assert calls[0] == 'prepared'
+    assert calls[-1] == 'cleaned up'
+    assert calls[-1 - 2 * harness.RUNS:-1] == ['ours', 'theirs'] * harness.RUNS
+    assert harness.RUNS >= 7
+
+
+@pytest.mark.parametrize(('goal', 'ours', 'theirs', 'reached', 'ratio'), [
+    (AtMostTimes(2.0), 2e-3, 1e-3, True, '2.00 times the time'),
+    (AtMostTimes(2.0), 2.01e-3, 1e-3, False, '2.01 times the time'),
+    (TimesAsFast(3.0), 1e-3, 3e-3, True, '3.0 times as fast'),
+    (TimesAsFast(3.0), 1e-3, 2.9e-3, False, '2.9 times as fast'),
+    (TimesAsFast(3.0, 3e-6), 4e-6, 1.0, False, '250000.0 times as fast'),
+    (TimesAsFast(), 1.0, 1.0, None, '1.0 times as fast'),
+    (PerSecond(300.0, 100, 'poses'), 0.25, None, True, '400 poses per second'),
+    (PerSecond(300.0, 100, 'poses'), 0.5, 0.1, False,
+     '200 poses per second, 5.00 times the time'),
+])
+def test_goals_judge_the_medians(goal, ours, theirs, reached, ratio):
+    medians = Medians(ours, theirs)
+    assert goal.is_reached(medians) is reached
+    assert goal.ratio(medians) == ratio
+
+
+def test_the_table_has_a_line_for_each_result_under_its_columns():
+    @benchmark('nothing', counterpart='nothing else', goal=TimesAsFast())
+    def nothing():
+        yield lambda: None, lambda: None
+
+    header, rule, line = table([result_of(nothing)]).splitlines()
+    assert header.split() == ['what', 'ours', 'counterpart', 'ratio', 'goal', 'reached']
+    assert set(rule) == {'-', ' '}
+    assert line.startswith('nothing  ')
