@@ -110,7 +110,10 @@ def main(args: Sequence[str] | None = None) -> int:
     except ImportError as error:
         print(f'sdf_pose_bridge: {sentence_from_import_error(error)}', file=sys.stderr)
         return 1
-    return run(list(sys.argv if args is None else args), stop)
+    try:
+        return run(list(sys.argv if args is None else args), stop)
+    finally:
+        stop.ignore_further()
 
 
 def sentence_from_import_error(error: ImportError) -> str:

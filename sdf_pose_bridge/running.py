@@ -4,14 +4,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from collections.abc import Sequence
+from contextlib import contextmanager
+import os
+import signal
 import sys
+import threading
 
 import rclpy
-from rclpy.executors import ExternalShutdownException
+from rclpy.executors import Executor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.signals import SignalHandlerOptions
-from rclpy.signals import uninstall_signal_handlers
 from rclpy.utilities import remove_ros_args
 
 from sdf_pose_bridge.bridge import StopRequest
@@ -35,33 +40,28 @@ def run(args: Sequence[str], stop: StopRequest) -> int:
     :param stop: takes note of signals.
     :return: exit code: 0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
-    node: SdfPoseBridge | None = None
     try:
-        rclpy.init(args=list(args), signal_handler_options=SignalHandlerOptions.ALL)
+        # Signals are left to StopRequest: the handlers of rclpy would shut ROS down under whatever
+        # is being done with it, which then fails in many ways.
+        rclpy.init(args=list(args), signal_handler_options=SignalHandlerOptions.NO)
         stop.defer()
-        exit_code = _exit_code_from_words(remove_ros_args(args)[1:])
-        if exit_code is None:
-            node = SdfPoseBridge()
-            exit_code = _exit_code_from_node(node, stop)
-    except (ExternalShutdownException, KeyboardInterrupt):
+        words = remove_ros_args(args)[1:]
+        if words:
+            return _exit_code_from_words(words)
+        node = SdfPoseBridge()
+    except RuntimeError as error:
+        _complain(_sentence_from_ros_error(error))
+        return 1
+    try:
+        exit_code = _exit_code_from_node(node, stop)
+    except KeyboardInterrupt:
         exit_code = 0
-    except Exception as error:
-        # A signal shuts ROS down under whatever is being done with it.
-        if stop.is_made():
-            exit_code = 0
-        elif node is None and isinstance(error, RuntimeError):
-            _complain(_sentence_from_ros_error(error))
-            exit_code = 1
-        else:
-            raise
-    finally:
-        _shut_down(node, stop)
+    node.destroy_node()
+    rclpy.try_shutdown()
     return exit_code
 
 
-def _exit_code_from_words(words: Sequence[str]) -> int | None:
-    if not words:
-        return None
+def _exit_code_from_words(words: Sequence[str]) -> int:
     if words[0] in ('-h', '--help'):
         print(USAGE)
         return 0
@@ -82,22 +82,44 @@ def _exit_code_from_node(node: SdfPoseBridge, stop: StopRequest) -> int:
             logger.fatal(line)
         return 1
     node.serve(settings, content)
-    rclpy.spin(node)
+    _spin(node, stop)
     return 0
 
 
-def _shut_down(node: SdfPoseBridge | None, stop: StopRequest) -> None:
+def _spin(node: SdfPoseBridge, stop: StopRequest) -> None:
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    with _woken_by_signals(executor):
+        while not stop.is_made():
+            executor.spin_once()
+    executor.shutdown()
+
+
+@contextmanager
+def _woken_by_signals(executor: Executor) -> Iterator[None]:
+    # A thread that waits in the middleware runs no handler of Python's before it has something to
+    # do; but the byte that Python writes for each signal reaches another thread at once.
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+
+    def wake() -> None:
+        while os.read(reader, 1):
+            executor.create_task(_do_nothing)
+
+    thread = threading.Thread(target=wake, name='signals', daemon=True)
+    thread.start()
+    signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
     try:
-        if node is not None:
-            node.destroy_node()
-        rclpy.try_shutdown()
-    except RuntimeError:
-        # The signal handler's thread may be shutting the same things down.
-        if not stop.is_made():
-            raise
+        yield
     finally:
-        uninstall_signal_handlers()
-        stop.ignore_further()
+        signal.set_wakeup_fd(-1)
+        os.close(writer)
+        thread.join()
+        os.close(reader)
+
+
+def _do_nothing() -> None:
+    pass
 
 
 def _sentence_from_ros_error(error: RuntimeError) -> str:

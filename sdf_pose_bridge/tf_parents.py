@@ -152,8 +152,18 @@ class _Builder:
         yield from rest
 
     def _fallback(self, body: int) -> int:
-        """Return what a body hangs on that no joint holds: the canonical link around it."""
-        holder = self._holders[body]
+        """
+        Return what a body hangs on that no joint holds: the canonical link of a model around it.
+
+        The canonical link of a model, which may lie in a nested one, stands for all of that model;
+        so it is the models around that one which count.
+        """
+        holder = start = self._holders[body]
+        while holder != self._roots[body]:
+            if self._canonical[holder] == body:
+                start = self._holders[holder]
+            holder = self._holders[holder]
+        holder = start
         while holder != self._roots[body]:
             canonical = self._canonical[holder]
             if canonical >= 0 and canonical != body:

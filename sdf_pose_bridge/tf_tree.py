@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sdf_pose_bridge.elements import SensorFacts
 from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import hint_from_names
@@ -184,7 +185,7 @@ class _Builder:
             frame_id = ids[index]
             if self._kinds[index] == Kind.SENSOR and self._scene.sensors[index].frame_id:
                 frame_id = self._naming.frame_id_from_name(self._scene.sensors[index].frame_id)
-                if frame_id in existing:
+                if frame_id in existing or frame_id == self._options.root_frame:
                     continue
                 row = self._row_of_id.get(frame_id)
                 if row is not None and self._is_same_place(self._rows[row], index):
@@ -196,7 +197,7 @@ class _Builder:
             if index not in self._row_of_element:
                 # The frame that the sensor's messages are stamped with exists by itself.
                 frame_id = self._naming.frame_id_from_name(self._scene.sensors[index].frame_id)
-                self._row_of_element[index] = self._row_of_id[frame_id]
+                self._row_of_element[index] = self._row_of_id.get(frame_id, _ROOT_PARENT)
 
     def _is_same_place(self, frame: _Frame, index: int) -> bool:
         """Tell whether a sensor can share the frame of another one that sets the same id."""
@@ -237,14 +238,22 @@ class _Builder:
         camera = self._row_of_element[index]
         if facts.optical_frame_id:
             frame_id = self._naming.frame_id_from_name(facts.optical_frame_id)
+        elif camera == _ROOT_PARENT:
+            frame_id = self._options.root_frame + OPTICAL_SUFFIX
         else:
             frame_id = self._rows[camera].frame_id + OPTICAL_SUFFIX
         pose = pose_product(Pose(*self._scene.poses[index].tolist()), OPTICAL_POSE)
         row = self._row_of_id.get(frame_id)
-        if row is not None and (facts.optical_frame_id or self._rows[row].pose == pose):
+        if row is not None and self._serves_as_optical_frame(row, pose, facts):
             return
         row = self._add(frame_id, index, pose)
         self._rows[row] = self._rows[row]._replace(parent=camera)
+
+    def _serves_as_optical_frame(self, row: int, pose: Pose, facts: SensorFacts) -> bool:
+        """Tell whether a frame is there already that a camera's optical frame id means."""
+        frame = self._rows[row]
+        is_of_sensor = self._kinds[frame.element] == Kind.SENSOR
+        return frame.pose == pose or (bool(facts.optical_frame_id) and not is_of_sensor)
 
     # What hangs on what
 

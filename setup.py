@@ -1,0 +1,63 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Build and install the Python package; with ROS and without it."""
+
+import os
+from pathlib import Path
+
+from setuptools import find_packages
+from setuptools import setup
+
+PACKAGE = 'sdf_pose_bridge'
+SHARE = f'share/{PACKAGE}'
+SHARED_FOLDERS = ('launch', 'config', 'examples')
+NOT_INSTALLED = ('__pycache__', '.pytest_cache', '.mypy_cache', '.ruff_cache')
+
+
+def data_files_of(folder: str) -> list[tuple[str, list[str]]]:
+    """
+    Return the files below a folder as setuptools wants them.
+
+    :param folder: name of a folder in the root, also one that does not exist.
+    :return: a list of (target folder, files) pairs that keeps the subfolders.
+    """
+    found = []
+    for path, folders, files in os.walk(folder):
+        folders[:] = sorted(name for name in folders if name not in NOT_INSTALLED)
+        if files:
+            sources = [str(Path(path, name)) for name in sorted(files)]
+            found.append((f'{SHARE}/{Path(path).as_posix()}', sources))
+    return found
+
+
+setup(
+    name=PACKAGE,
+    version='0.1.0',
+    description='Every frame of an SDFormat file on TF, resolved as libsdformat resolves it',
+    long_description=(
+        'Reads SDFormat files, resolves every pose as libsdformat would, and publishes the '
+        'frames on TF and on pose topics of ROS 2. The reader and the command line work '
+        'without ROS.'
+    ),
+    maintainer='sdf_pose_bridge maintainers',
+    maintainer_email='maintainers@sdf-pose-bridge.example.org',
+    license='Apache-2.0',
+    python_requires='>=3.10',
+    install_requires=['numpy', 'lxml'],
+    # By this colcon knows that it is pytest that runs the tests.
+    extras_require={'test': ['pytest', 'hypothesis']},
+    packages=find_packages(include=[PACKAGE, f'{PACKAGE}.*']),
+    package_data={PACKAGE: ['py.typed']},
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
+        (SHARE, ['package.xml']),
+        *(pair for folder in SHARED_FOLDERS for pair in data_files_of(folder)),
+    ],
+    entry_points={
+        'console_scripts': [
+            'bridge = sdf_pose_bridge.bridge:main',
+            'sdf_pose = sdf_pose_bridge.command_line:main',
+        ],
+    },
+    zip_safe=True,
+)

@@ -1,0 +1,181 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Draw scenes in batches, have both sides resolve them, and collect what differs."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from dataclasses import field
+from pathlib import Path
+import shutil
+import subprocess
+import tempfile
+
+from hypothesis import given
+from hypothesis import HealthCheck
+from hypothesis import Phase
+from hypothesis import seed
+from hypothesis import settings
+
+from differential.comparison import Difference
+from differential.comparison import difference_between
+from differential.comparison import own_answer
+from differential.reference import Answer
+from differential.reference import Reference
+from differential.scene_parts import Feature
+from differential.scene_parts import SCENE
+from differential.scene_parts import SceneFiles
+from differential.scene_strategy import scenes
+
+BATCH = 200
+
+
+@dataclass
+class Tally:
+    """What a run found."""
+
+    scenes: int = 0
+    distinct: set[int] = field(default_factory=set)
+    poses: int = 0
+    refused: int = 0
+    same_first_code: int = 0
+    traits: Counter[str] = field(default_factory=Counter)
+    first_codes: Counter[tuple[str, str, str]] = field(default_factory=Counter)
+    """Defect, first code here and first code of libsdformat, where these two are not the same."""
+    differences: list[tuple[str, SceneFiles, Difference]] = field(default_factory=list)
+    """Name of the scene, the scene and what differs."""
+
+
+@dataclass
+class Batch:
+    """Scenes that are being resolved."""
+
+    names: list[str]
+    scenes: list[SceneFiles]
+    paths: list[Path]
+    folder: Path
+    process: subprocess.Popen[str]
+    own: list[Answer | None]
+
+
+def drawn_scenes(count: int, number: int, features: frozenset[Feature]) -> list[SceneFiles]:
+    """
+    Draw scenes.
+
+    :param count: how many.
+    :param number: seed; the same one gives the same scenes.
+    :param features: what they may hold.
+    :return: the scenes.
+    """
+    drawn: list[SceneFiles] = []
+
+    @seed(number)
+    @settings(max_examples=count, database=None, deadline=None, phases=[Phase.generate],
+              suppress_health_check=list(HealthCheck))
+    @given(scenes(features))
+    def collect(scene: SceneFiles) -> None:
+        drawn.append(scene)
+
+    collect()
+    return drawn[:count]
+
+
+def write_scene(files: dict[str, str], folder: Path, name: str) -> Path:
+    """
+    Write a scene's files.
+
+    :param files: texts by path.
+    :param folder: folder of the batch.
+    :param name: name of the scene's own folder in it.
+    :return: path of the scene itself.
+    """
+    for path, text in files.items():
+        target = folder / name / path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        # Line ends stay as they were drawn.
+        target.write_bytes(text.replace(SCENE, name).encode())
+    return folder / name / 'scene.sdf'
+
+
+def compare_scenes(reference: Reference, count: int, first_seed: int,
+                   features: frozenset[Feature], *,
+                   reference_only: bool = False) -> Iterator[Tally]:
+    """
+    Compare the package with libsdformat on random scenes.
+
+    :param reference: libsdformat.
+    :param count: how many scenes.
+    :param first_seed: seed of the run.
+    :param features: what the scenes may hold.
+    :param reference_only: only check that libsdformat accepts what is meant to be valid, and
+        refuses the rest.
+    :return: the same tally after each batch, updated.
+    """
+    tally = Tally()
+    pending: Batch | None = None
+    try:
+        for start in range(0, count, BATCH):
+            number = first_seed * 1_000_003 + start // BATCH
+            drawn = drawn_scenes(min(BATCH, count - start), number, features)
+            # libsdformat was busy with the batch before while this one was drawn.
+            if pending:
+                add_batch(tally, pending, reference)
+                yield tally
+            pending = start_batch(reference, drawn, number, reference_only=reference_only)
+        if pending:
+            add_batch(tally, pending, reference)
+            pending = None
+            yield tally
+    finally:
+        if pending:
+            pending.process.kill()
+            pending.process.wait()
+            shutil.rmtree(pending.folder)
+
+
+def start_batch(reference: Reference, drawn: list[SceneFiles], number: int, *,
+                reference_only: bool) -> Batch:
+    """Write a batch, start libsdformat on it and resolve it with the package meanwhile."""
+    folder = Path(tempfile.mkdtemp(prefix='differential-'))
+    names = [f'seed_{number}_scene_{position}' for position in range(len(drawn))]
+    paths = [write_scene(scene.files, folder, name)
+             for scene, name in zip(drawn, names, strict=True)]
+    process = reference.start(paths, folder)
+    own = [None if reference_only else own_answer(path, folder) for path in paths]
+    return Batch(names, drawn, paths, folder, process, own)
+
+
+def add_batch(tally: Tally, batch: Batch, reference: Reference) -> None:
+    """Wait for libsdformat's answers on a batch, compare, and add to the tally."""
+    answers = reference.finish(batch.process, batch.paths, batch.folder)
+    shutil.rmtree(batch.folder)
+    for name, scene, own, answer in zip(batch.names, batch.scenes, batch.own, answers,
+                                        strict=True):
+        tally.scenes += 1
+        tally.distinct.add(hash(tuple(scene.files.values())))
+        tally.poses += len(answer.poses)
+        tally.refused += not answer.accepted
+        tally.traits.update(scene.traits)
+        difference = difference_from_intent(scene, answer)
+        if own is not None:
+            difference = difference_between(
+                own, answer, reference.version, scene.traits) or difference
+            if not own.accepted and not answer.accepted:
+                if own.codes[0] == answer.codes[0]:
+                    tally.same_first_code += 1
+                else:
+                    tally.first_codes[(scene.defect, own.codes[0], answer.codes[0])] += 1
+        if difference:
+            tally.differences.append((name, scene, difference))
+
+
+def difference_from_intent(scene: SceneFiles, answer: Answer) -> Difference | None:
+    """Check libsdformat's verdict against what the scene was meant to be."""
+    if scene.defect and answer.accepted:
+        return Difference('intent', f'meant to be invalid by {scene.defect}, but accepted')
+    if not scene.defect and not answer.accepted:
+        said = f'{answer.codes[0]}: {answer.message}'
+        return Difference('intent', f'meant to be valid, but libsdformat says {said}')
+    return None

@@ -1,0 +1,125 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Compare what the package and libsdformat make of one file, allowing for known defects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+import math
+from pathlib import Path
+
+from differential.known_defects import JOINT_SENSOR
+from differential.known_defects import MERGED_PLACEMENT
+from differential.known_defects import PROJECTOR
+from differential.reference import Answer
+from differential.reference import CRASH
+from differential.reference import PoseValues
+import sdf_pose_bridge
+from sdf_pose_bridge.names import Kind
+
+TOLERANCE = 1e-9
+"""Metres, relative to the distance from the root where that is more than one; and radians."""
+
+ROUNDED_TOLERANCE = 1e-3
+"""The same for a scene in which the reference rounds poses to six digits: MERGED_PLACEMENT."""
+
+NOT_RESOLVED = {'sensor of a joint': JOINT_SENSOR, 'projector': PROJECTOR}
+"""Elements that some release cannot resolve."""
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One thing on which the two sides disagree."""
+
+    kind: str
+    """``accepted``, ``refused``, ``missing``, ``extra``, ``pose`` or ``crash``."""
+    text: str
+    """What differs, in words."""
+
+
+def own_answer(file: Path, resource_path: Path) -> Answer:
+    """
+    Resolve a file with the package.
+
+    :param file: the file.
+    :param resource_path: folder in which it looks for what the file includes.
+    :return: the answer, in the terms of the reference.
+    """
+    try:
+        scene = sdf_pose_bridge.load(str(file), resource_paths=[str(resource_path)])
+    except sdf_pose_bridge.SdfError as error:
+        codes = tuple(one.code for one in error.errors)
+        return Answer(False, codes, str(error.errors[0]), {})
+    except Exception as error:  # noqa: BLE001  whatever it is, it must not end the comparison
+        return Answer(False, (CRASH,), f'{type(error).__name__}: {error}', {})
+    poses = {}
+    for index, name in enumerate(scene.names):
+        kind = Kind(scene.kinds[index])
+        if kind in (Kind.WORLD, Kind.ROOT):
+            continue
+        world = scene.world_names.get(int(scene.roots[index]), '')
+        poses[(world, kind.label, name)] = tuple(scene.poses[index].tolist())
+    return Answer(True, (), '', poses)
+
+
+def difference_between(own: Answer, reference: Answer, version: str,
+                       traits: frozenset[str] = frozenset()) -> Difference | None:
+    """
+    Find the first thing on which the two sides disagree.
+
+    :param own: what the package says.
+    :param reference: what libsdformat says.
+    :param version: of libsdformat, such as ``12.3.0``.
+    :param traits: what is known of the scene.
+    :return: the difference, or None.
+    """
+    if CRASH in reference.codes:
+        return Difference('crash', f'libsdformat ends: {reference.message}')
+    if CRASH in own.codes:
+        return Difference('crash', f'the package raises what is no SdfError: {own.message}')
+    if own.accepted and not reference.accepted:
+        said = f'{reference.codes[0]}: {reference.message}'
+        return Difference('accepted', f'accepted here, refused by libsdformat: {said}')
+    if reference.accepted and not own.accepted:
+        return Difference('refused', f'accepted by libsdformat, refused here: {own.message}')
+    is_rounded = 'merge-placement' in traits and is_before(version, MERGED_PLACEMENT.fixed_in)
+    tolerance = ROUNDED_TOLERANCE if is_rounded else TOLERANCE
+    for key, expected in reference.poses.items():
+        got = own.poses.get(key)
+        if got is None:
+            return Difference('missing', f'{key[1]} "{key[2]}" is not in the scene')
+        if not is_same_pose(expected, got, tolerance):
+            text = f'{key[1]} "{key[2]}": {list(got)} here, {list(expected)} by libsdformat'
+            return Difference('pose', text)
+    joints = {(world, name) for world, kind, name in own.poses if kind == 'joint'}
+    for world, kind, name in own.poses.keys() - reference.poses.keys():
+        of_joint = (world, name.rpartition('::')[0]) in joints
+        known = NOT_RESOLVED.get(f'{kind} of a joint' if of_joint else kind)
+        if not known or not is_before(version, known.fixed_in):
+            return Difference('extra', f'{kind} "{name}" is not resolved by libsdformat')
+    return None
+
+
+def is_before(version: str, other: str) -> bool:
+    """Tell whether a version such as ``12.3.0`` came before another one."""
+    first, second = ([int(part) for part in text.split('.')] for text in (version, other))
+    return first < second
+
+
+def is_same_pose(expected: PoseValues, got: PoseValues, tolerance: float) -> bool:
+    """Compare positions by distance, and orientations by the angle between them."""
+    scale = max(1.0, math.hypot(*expected[:3]))
+    if math.dist(expected[:3], got[:3]) > tolerance * scale:
+        return False
+    return angle_between(expected[3:], got[3:]) <= tolerance
+
+
+def angle_between(first: PoseValues, second: PoseValues) -> float:
+    """Return the angle in radians between two rotations given by quaternions of any length."""
+    lengths = math.hypot(*first), math.hypot(*second)
+    if not all(lengths):
+        return math.pi
+    sign = 1 if sum(a * b for a, b in zip(first, second, strict=True)) >= 0 else -1
+    # From the chord: the arc cosine of nearly one has only half the digits.
+    chord = math.dist([a / lengths[0] for a in first], [sign * b / lengths[1] for b in second])
+    return 4 * math.asin(min(1.0, chord / 2))

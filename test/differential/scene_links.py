@@ -1,0 +1,112 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Draws what hangs on links and joints: visuals, sensors, axes, and what must not matter."""
+
+from __future__ import annotations
+
+from typing import Any
+from xml.etree import ElementTree
+
+from hypothesis import strategies as st
+
+from differential.scene_text import Draw
+from differential.scene_text import NAMES
+from differential.scene_text import new_pose
+
+AXES = {
+    'fixed': 0, 'ball': 0, 'revolute': 1, 'continuous': 1, 'prismatic': 1, 'screw': 1,
+    'revolute2': 2, 'universal': 2, 'gearbox': 2,
+}
+"""Types of joints with the number of their axes."""
+
+SENSORS = ('imu', 'contact', 'magnetometer', 'altimeter', 'air_pressure', 'force_torque',
+           'navsat', 'logical_camera', 'camera', 'gpu_lidar')
+LINK_CHILDREN = ('visual', 'visual', 'collision', 'sensor', 'light', 'particle_emitter')
+UNKNOWN_FRAME = 'no such frame'
+
+
+def joint_body(draw: Draw, name: str, parent: str, child: str) -> ElementTree.Element:
+    """Draw a joint with its type and axes, but without its pose."""
+    kind: Any = draw(st.sampled_from(sorted(AXES)))
+    element = ElementTree.Element('joint', name=name, type=kind)
+    ElementTree.SubElement(element, 'parent').text = parent
+    ElementTree.SubElement(element, 'child').text = child
+    if kind == 'gearbox':
+        ElementTree.SubElement(element, 'gearbox_reference_body').text = parent
+    for number in range(AXES[kind]):
+        axis = ElementTree.SubElement(element, 'axis2' if number else 'axis')
+        vector = draw(st.sampled_from(('0 0 1', '0 1 0', '1 0 0', '-1 0 0', '0.6 0 0.8')))
+        ElementTree.SubElement(axis, 'xyz').text = vector
+    return element
+
+
+class LinkBuilder:
+    """Draws the children of links and joints; none of them can make a scene invalid."""
+
+    def __init__(self, draw: Draw) -> None:
+        self.draw: Any = draw
+
+    def fill(self, element: ElementTree.Element, references: list[str]) -> None:
+        """
+        Draw the children of a link or joint.
+
+        :param element: the link or joint.
+        :param references: names of all frames of its scope.
+        """
+        if element.tag == 'joint':
+            for vector in element.iter('xyz'):
+                if self.draw(st.integers(0, 2)) == 0:
+                    vector.set('expressed_in', self.draw(st.sampled_from(references)))
+            if self.draw(st.integers(0, 5)) == 0:
+                self.posed(element, 'sensor', 'wrench', references).set('type', 'force_torque')
+            return
+        if self.draw(st.integers(0, 3)) == 0:
+            inertial = ElementTree.SubElement(element, 'inertial')
+            pose = new_pose(self.draw)
+            if pose is not None:
+                inertial.append(pose)
+        kinds = self.draw(st.lists(st.sampled_from(LINK_CHILDREN), max_size=3))
+        for number, kind in enumerate(kinds):
+            stem = self.draw(st.sampled_from(NAMES))
+            name = f'{stem}_{number}' if kind in kinds[:number] else stem
+            child = self.posed(element, kind, name, references)
+            if kind == 'sensor':
+                sensor_type = self.draw(st.sampled_from(SENSORS))
+                child.set('type', sensor_type)
+                if sensor_type == 'camera':
+                    # The optics' own offset is no frame.
+                    camera = ElementTree.SubElement(child, 'camera')
+                    ElementTree.SubElement(camera, 'pose').text = '1 2 3 0 0 0'
+            elif kind == 'light':
+                child.set('type', 'point')
+            elif kind == 'particle_emitter':
+                child.set('type', 'box')
+            else:
+                geometry = ElementTree.SubElement(child, 'geometry')
+                sphere = ElementTree.SubElement(geometry, 'sphere')
+                ElementTree.SubElement(sphere, 'radius').text = '0.1'
+        if self.draw(st.integers(0, 15)) == 0:
+            self.add_foreign(element)
+
+    def posed(self, element: ElementTree.Element, kind: str, name: str,
+              references: list[str]) -> ElementTree.Element:
+        """Add a child whose pose may name any frame, or one that does not exist."""
+        child = ElementTree.SubElement(element, kind, name=name)
+        reference = ''
+        choice = self.draw(st.integers(0, 20))
+        if choice == 0:
+            reference = UNKNOWN_FRAME
+        elif choice > 10:
+            reference = self.draw(st.sampled_from(references))
+        pose = new_pose(self.draw, reference)
+        if pose is not None:
+            child.append(pose)
+        return child
+
+    def add_foreign(self, element: ElementTree.Element) -> None:
+        """Add what SDFormat has to pass over unread."""
+        plugin = ElementTree.SubElement(element, 'plugin', name='p', filename='libp.so')
+        ElementTree.SubElement(plugin, 'pose', relative_to='nothing').text = 'not a pose'
+        vendor = ElementTree.SubElement(element, 'vendor:thing', name='a::b')
+        ElementTree.SubElement(vendor, 'pose').text = '1 2'
+        ElementTree.SubElement(element, 'misspelt').text = 'unknown'

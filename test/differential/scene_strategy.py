@@ -1,0 +1,385 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+A strategy for whole scenes: an SDFormat file, with the files that it includes, valid by design.
+
+What keeps a scene valid is an order: the children of one scope are placed one after the other, and
+each may be given only from those placed before it. Where they stand in the document is drawn apart
+from that, so most references point forward as often as backward.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+from xml.etree import ElementTree
+
+from hypothesis import strategies as st
+
+from differential.scene_defects import add_defect
+from differential.scene_links import joint_body
+from differential.scene_links import LinkBuilder
+from differential.scene_parts import Built
+from differential.scene_parts import Feature
+from differential.scene_parts import first_canonical_body
+from differential.scene_parts import MODEL
+from differential.scene_parts import OWN
+from differential.scene_parts import SCENE
+from differential.scene_parts import SceneFiles
+from differential.scene_parts import Visible
+from differential.scene_parts import WORLD
+from differential.scene_text import BOOLEANS
+from differential.scene_text import Draw
+from differential.scene_text import new_name
+from differential.scene_text import new_pose
+
+
+class SceneBuilder:
+    """Draws one scene; holds what its models share."""
+
+    def __init__(self, draw: Draw, features: frozenset[Feature]) -> None:
+        self.draw: Any = draw
+        self.features = features
+        self.files: dict[str, str] = {}
+        self.traits: set[str] = set()
+        self.last_body = WORLD
+        self.links = LinkBuilder(draw)
+
+    def new_body(self) -> int:
+        """Count one more body."""
+        self.last_body += 1
+        return self.last_body
+
+    def chance(self, one_in: int) -> bool:
+        """Draw whether something happens."""
+        return self.draw(st.integers(1, one_in)) == one_in
+
+    def count(self, most: int) -> int:
+        """Draw how many of something there are."""
+        return self.draw(st.integers(0, most))
+
+    def shuffled(self, values: list) -> list:
+        """Draw an order."""
+        return self.draw(st.permutations(values)) if len(values) > 1 else list(values)
+
+    def reference(self, visible: list[Visible]) -> str:
+        """Draw what a pose is relative to: often the default."""
+        if not visible or self.chance(3):
+            return ''
+        return self.draw(st.sampled_from(visible)).reference
+
+    # Files ----------------------------------------------------------------------------------
+
+    def file_text(self, content: list[ElementTree.Element]) -> str:
+        """Write elements as a file, with a version drawn for it."""
+        versions = ['1.7', '1.8', '1.9', '1.9', '1.10', '1.11', '1.12']
+        if Feature.OLD_VERSIONS in self.features:
+            versions += ['1.2', '1.3', '1.4', '1.5', '1.6', '1.6']
+        version = self.draw(st.sampled_from(versions))
+        root = ElementTree.Element('sdf', version=version)
+        root.extend(content)
+        if version in ('1.5', '1.6') and self.chance(2):
+            for pose in root.iter('pose'):
+                if 'relative_to' in pose.attrib:
+                    pose.set('frame', pose.attrib.pop('relative_to'))
+        ElementTree.indent(root)
+        return ElementTree.tostring(root, encoding='unicode', xml_declaration=False)
+
+    def included_path(self, content: ElementTree.Element) -> str:
+        """Write a file, or a folder with a manifest, to be included; return its URI."""
+        path = f'part_{len(self.files)}'
+        if self.chance(2):
+            path += '.sdf'
+            self.files[path] = ''  # keeps the number taken while the version is drawn
+            self.files[path] = self.file_text([content])
+        else:
+            self.files[f'{path}/model.config'] = (
+                '<model><name>part</name><version>1.0</version>\n'
+                '<sdf version="1.2">older.sdf</sdf>\n<sdf version="1.9">part.sdf</sdf>\n'
+                '<sdf version="1.7">older.sdf</sdf></model>\n')
+            self.files[f'{path}/older.sdf'] = '<sdf version="1.7"><model name="older"/></sdf>'
+            self.files[f'{path}/part.sdf'] = self.file_text([content])
+        scheme = self.draw(st.sampled_from(('model://', 'model://', 'file://', '')))
+        return f'{scheme}{SCENE}/{path}'
+
+    # Models ---------------------------------------------------------------------------------
+
+    def include(self, taken: set[str], depth: int, *, merge: bool) -> Built:
+        """Draw a file and the element that includes it; the pose is added later."""
+        built = self.model(taken, depth + 1, top=True, merged=merge)
+        element = ElementTree.Element('include')
+        uri = ElementTree.SubElement(element, 'uri')
+        uri.text = self.included_path(built.element)
+        if merge:
+            element.set('merge', self.draw(st.sampled_from(BOOLEANS[True])))
+            self.traits.add('merge')
+        elif self.chance(6):
+            element.set('merge', self.draw(st.sampled_from(BOOLEANS[False])))
+        if self.chance(2):
+            built.name = new_name(self.draw, taken)
+            ElementTree.SubElement(element, 'name').text = built.name
+        if not merge and built.links and self.chance(4):
+            # Never from true to false: frames that were apart could then be on one link.
+            static = built.static or self.chance(2)
+            built.static = static
+            text = self.draw(st.sampled_from(BOOLEANS[static]))
+            ElementTree.SubElement(element, 'static').text = text
+        self.traits.add('include')
+        return Built(element, built.name, built.static, built.canonical_body, built.static_body,
+                     built.inner, built.links)
+
+    def place(self, built: Built, available: list[Visible], *, merge: bool = False) -> None:
+        """Draw the pose of a nested, included or merged model."""
+        element = built.element
+        pose = new_pose(self.draw, self.reference(available), short=merge)
+        if pose is None:
+            return
+        element.insert(self.draw(st.integers(0, len(element))), pose)
+        if element.tag == 'include' and self.chance(6 if merge else 3):
+            if merge:
+                self.traits.add('merge-placement')
+            frame = self.draw(st.sampled_from(built.inner)).reference
+            ElementTree.SubElement(element, 'placement_frame').text = frame
+
+    def model(self, taken: set[str], depth: int, *, top: bool = False,
+              merged: bool = False) -> Built:
+        """
+        Draw a model.
+
+        :param taken: names that it must not have; its own is added.
+        :param top: whether it is the top of a file; it gets a pose without ``relative_to`` then,
+            and none otherwise.
+        :param merged: whether its content goes into the scope whose names are ``taken``.
+        """
+        draw = self.draw
+        static = not merged and self.chance(5)
+        names = taken if merged else set()
+        name = new_name(draw, taken)
+
+        kinds = ['link'] * self.count(3 if depth < 2 else 2)
+        if depth < 3:
+            kinds += ['model'] * (self.count(2) if self.chance(depth + 2) else 0)
+            if Feature.INCLUDES in self.features and self.chance(12):
+                kinds += ['include'] * draw(st.integers(1, 2))
+            if Feature.MERGES in self.features and self.chance(20):
+                kinds.append('merge')
+        if merged and 'link' not in kinds:
+            kinds.append('link')
+        units: list[tuple[str, Any]] = []
+        visible_bodies: list[Visible] = []
+        links: list[Visible] = []
+        for kind in self.shuffled(kinds):
+            if kind == 'link':
+                link = Visible(new_name(draw, names), self.new_body())
+                units.append((kind, link))
+                visible_bodies.append(link)
+                links.append(link)
+                continue
+            built = (self.model(names, depth + 1) if kind == 'model'
+                     else self.include(names, depth, merge=kind == 'merge'))
+            units.append((kind, built))
+            if kind == 'merge':
+                visible_bodies += built.seen_merged()
+                links += built.links
+            else:
+                visible_bodies += built.seen_outside()
+                links += [Visible(f'{built.name}::{link}', body) for link, body, _ in built.links]
+        canonical = first_canonical_body(units)
+        if canonical is None and not static:
+            link = Visible(new_name(draw, names), self.new_body())
+            units.insert(0, ('link', link))
+            visible_bodies.append(link)
+            links.append(link)
+            canonical = link.body
+
+        element = ElementTree.Element('model', name=name)
+        if links and self.chance(4):
+            chosen = draw(st.sampled_from(links))
+            element.set('canonical_link', chosen.reference)
+            canonical = chosen.body
+        built = Built(element, name, static, canonical, self.new_body(), links=links)
+        children = self.content(built, units, visible_bodies, names)
+
+        if static or self.chance(8):
+            text = draw(st.sampled_from(BOOLEANS[static]))
+            ElementTree.SubElement(element, 'static').text = text
+        element.extend(children)
+        if self.chance(8 if merged else 4):
+            if merged:
+                self.traits.add('merge-placement')
+            element.set('placement_frame', draw(st.sampled_from(built.inner)).reference)
+        if top:
+            pose = new_pose(draw, short=merged)
+            if pose is not None:
+                # libsdformat 12 takes a blank for a name here, and here alone.
+                pose.attrib.pop('relative_to', None)
+                element.insert(draw(st.integers(0, len(element))), pose)
+        return built
+
+    def content(self, built: Built, units: list[tuple[str, Any]], bodies: list[Visible],
+                names: set[str]) -> list[ElementTree.Element]:
+        """Draw poses for a model's parts, its frames, joints and the links' children."""
+        own = Visible(MODEL, OWN)
+        placed = [own]
+        elements: list[ElementTree.Element | None] = [None] * len(units)
+        extra = ['frame'] * self.count(4) + ['joint'] * self.count(3)
+        steps: list[Any] = self.shuffled([*range(len(units)), *extra])
+        added: list[ElementTree.Element] = []
+        filled: list[ElementTree.Element] = []
+        for step in steps:
+            if step == 'frame':
+                frame, seen = self.frame(placed, bodies, names, OWN)
+                added.append(frame)
+                placed.append(seen)
+            elif step == 'joint':
+                joint, joint_seen = self.joint(built, placed, bodies, names)
+                if joint is not None and joint_seen is not None:
+                    added.append(joint)
+                    filled.append(joint)
+                    placed.append(joint_seen)
+            elif units[step][0] == 'link':
+                visible = units[step][1]
+                link = ElementTree.Element('link', name=visible.reference)
+                pose = new_pose(self.draw, self.reference(placed))
+                if pose is not None:
+                    link.append(pose)
+                elements[step] = link
+                filled.append(link)
+                placed.append(visible)
+            else:
+                kind, part = units[step]
+                self.place(part, placed, merge=kind == 'merge')
+                if kind == 'model':
+                    built_placement = part.element.get('placement_frame')
+                    if built_placement is None and self.chance(5):
+                        frame_name = self.draw(st.sampled_from(part.inner)).reference
+                        part.element.set('placement_frame', frame_name)
+                elements[step] = part.element
+                placed += part.seen_merged() if kind == 'merge' else part.seen_outside()
+        built.inner = placed
+        references = [visible.reference for visible in placed]
+        for element in filled:
+            self.links.fill(element, references)
+        ordered = [element for element in elements if element is not None]
+        for element in added:
+            ordered.insert(self.draw(st.integers(0, len(ordered))), element)
+        return ordered
+
+    def frame(self, placed: list[Visible], bodies: list[Visible], names: set[str],
+              default_body: int) -> tuple[ElementTree.Element, Visible]:
+        """Draw an explicit frame; with a ``relative_to`` it may hang on what is placed later."""
+        name = new_name(self.draw, names)
+        element = ElementTree.Element('frame', name=name)
+        reference = self.reference(placed)
+        body = default_body
+        if not self.chance(3):
+            attached = self.draw(st.sampled_from(placed + bodies if reference else placed))
+            element.set('attached_to', attached.reference)
+            body = attached.body
+        pose = new_pose(self.draw, reference)
+        if pose is not None:
+            element.append(pose)
+        return element, Visible(name, body)
+
+    def joint(self, built: Built, placed: list[Visible], bodies: list[Visible],
+              names: set[str]) -> tuple[ElementTree.Element | None, Visible | None]:
+        """Draw a joint, or nothing where no pair of bodies can be joined."""
+        draw = self.draw
+
+        def carrier(visible: Visible) -> int:
+            return built.body if visible.body == OWN else visible.body
+
+        def is_joinable(visible: Visible) -> bool:
+            return not visible.reference.endswith(MODEL)
+
+        reference = self.reference(placed)
+        children = [v for v in (placed + bodies if reference else placed) if is_joinable(v)]
+        if not children:
+            return None, None
+        child = draw(st.sampled_from(children))
+        parents = [v for v in placed + bodies
+                   if is_joinable(v) and not v.is_model and carrier(v) != carrier(child)]
+        parent = 'world'
+        if parents and not self.chance(6):
+            parent = draw(st.sampled_from(parents)).reference
+        name = new_name(draw, names)
+        element = joint_body(draw, name, parent, child.reference)
+        pose = new_pose(draw, reference)
+        if pose is not None:
+            element.insert(0, pose)
+        return element, Visible(name, child.body)
+
+    # Worlds ---------------------------------------------------------------------------------
+
+    def world(self, name: str) -> ElementTree.Element:
+        """Draw a world with models, frames and lights."""
+        draw = self.draw
+        names: set[str] = set()
+        kinds = ['model'] * draw(st.integers(1, 3))
+        if Feature.INCLUDES in self.features and self.chance(6):
+            kinds += ['include'] * draw(st.integers(1, 2))
+        models = [self.model(names, 1) if kind == 'model' else self.include(names, 1, merge=False)
+                  for kind in kinds]
+        bodies = [visible for built in models for visible in built.seen_outside()]
+        placed = [Visible('world', WORLD)]
+        elements: list[ElementTree.Element] = []
+        for step in self.shuffled([*models, *['frame'] * self.count(4)]):
+            if step == 'frame':
+                element, seen = self.frame(placed, bodies, names, WORLD)
+                elements.append(element)
+                placed.append(seen)
+            else:
+                self.place(step, placed)
+                elements.append(step.element)
+                placed += step.seen_outside()
+        lights: set[str] = set()
+        for _ in range(self.count(2)):
+            kind = draw(st.sampled_from(('point', 'spot', 'directional')))
+            light = ElementTree.Element('light', name=new_name(draw, lights), type=kind)
+            pose = new_pose(draw, self.reference(placed))
+            if pose is not None:
+                light.append(pose)
+            elements.append(light)
+        if Feature.INCLUDES in self.features and self.chance(10):
+            elements.append(self.included_light(lights, placed))
+        world = ElementTree.Element('world', name=name)
+        world.extend(self.shuffled(elements))
+        return world
+
+    def included_light(self, names: set[str], placed: list[Visible]) -> ElementTree.Element:
+        """Draw a light in a file of its own, and the element that includes it."""
+        light = ElementTree.Element('light', name=new_name(self.draw, names), type='point')
+        pose = new_pose(self.draw)
+        if pose is not None:
+            light.append(pose)
+        include = ElementTree.Element('include')
+        ElementTree.SubElement(include, 'uri').text = self.included_path(light)
+        if self.chance(2):
+            ElementTree.SubElement(include, 'name').text = new_name(self.draw, names)
+        pose = new_pose(self.draw, self.reference(placed))
+        if pose is not None:
+            include.append(pose)
+        return include
+
+    def scene(self) -> ElementTree.Element:
+        """Draw the top of the scene's own file."""
+        if self.chance(3):
+            return self.model(set(), 0, top=True).element
+        return self.world(new_name(self.draw, set()))
+
+
+@st.composite
+def scenes(draw: Draw, features: frozenset[Feature] = frozenset(Feature)) -> SceneFiles:
+    """
+    Draw a scene with every file that it needs.
+
+    :param features: what it may hold. With DEFECTS, one scene in five at most is broken.
+    """
+    builder = SceneBuilder(draw, features)
+    content = [builder.scene()]
+    if Feature.WORLDS in features and content[0].tag == 'world' and builder.chance(8):
+        content.append(builder.world(content[0].get('name', '') + ' too'))
+    defect = ''
+    if Feature.DEFECTS in features:
+        defect = add_defect(draw, content)
+    builder.files['scene.sdf'] = builder.file_text(content)
+    return SceneFiles(builder.files, frozenset(builder.traits), defect)

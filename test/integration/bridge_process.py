@@ -1,0 +1,95 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The installed executable in a process of its own, as ``ros2 run`` would start it."""
+
+from pathlib import Path
+import signal
+import subprocess
+import threading
+import time
+
+SECONDS = 20.0
+"""Deadline for anything that a test waits for, far beyond what it takes on a busy machine."""
+
+STARTED = ': publishing '
+"""In the line that the node logs when it has published and offers its services."""
+
+
+class BridgeProcess:
+    """
+    A running bridge; what it writes is kept line by line.
+
+    :param arguments: what follows the executable on the command line.
+    """
+
+    def __init__(self, *arguments):
+        from ament_index_python.packages import get_package_prefix
+        executable = Path(get_package_prefix('sdf_pose_bridge'), 'lib/sdf_pose_bridge/bridge')
+        self._process = subprocess.Popen(
+            [str(executable), *map(str, arguments)], stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.pid = self._process.pid
+        self.lines = []
+        self._has_changed = threading.Condition()
+        self._has_ended = False
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self):
+        for line in self._process.stdout:
+            with self._has_changed:
+                self.lines.append(line.rstrip('\n'))
+                self._has_changed.notify_all()
+        with self._has_changed:
+            self._has_ended = True
+            self._has_changed.notify_all()
+
+    def wait_for_line(self, text):
+        """Wait until a line with a text is written, and return it."""
+        def found():
+            return next((line for line in self.lines if text in line), None)
+
+        with self._has_changed:
+            self._has_changed.wait_for(lambda: found() or self._has_ended, SECONDS)
+            line = found()
+        assert line is not None, f'no line with "{text}" but:\n' + '\n'.join(self.lines)
+        return line
+
+    def wait_until_started(self):
+        self.wait_for_line(STARTED)
+        return self
+
+    def wait_until_handling(self, number):
+        """Wait until the process has a handler of its own for a signal."""
+        deadline = time.monotonic() + SECONDS
+        tick = threading.Event()
+        while not self._caught_signals() >> (number - 1) & 1:
+            assert self._process.poll() is None, '\n'.join(self.lines)
+            assert time.monotonic() < deadline, f'signal {number} is never handled'
+            tick.wait(0.001)
+
+    def _caught_signals(self):
+        status = Path(f'/proc/{self.pid}/status').read_text(encoding='ascii')
+        return int(next(
+            line.split()[1] for line in status.splitlines() if line.startswith('SigCgt')), 16)
+
+    def send(self, number):
+        self._process.send_signal(number)
+
+    def wait_for_end(self):
+        """Wait until the process has ended, and return its exit code."""
+        code = self._process.wait(SECONDS)
+        self._reader.join(SECONDS)
+        return code
+
+    def end(self):
+        """Make sure that it has ended."""
+        if self._process.poll() is None:
+            self.send(signal.SIGINT)
+            try:
+                self._process.wait(SECONDS)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
+        self._reader.join(SECONDS)
+        self._process.stdout.close()

@@ -1,0 +1,79 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""A listener with a ROS context of its own, in another process than the bridge."""
+
+import time
+
+from bridge_process import SECONDS
+from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import TransformStamped
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import DurabilityPolicy
+from rclpy.qos import QoSProfile
+from rclpy.qos import ReliabilityPolicy
+from tf2_msgs.msg import TFMessage
+
+
+def latched(depth):
+    return QoSProfile(
+        depth=depth, reliability=ReliabilityPolicy.RELIABLE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Listener:
+    """Collects what arrives; everything is keyed by frame id or topic."""
+
+    def __init__(self, domain):
+        self._context = Context()
+        rclpy.init(args=[], context=self._context, domain_id=domain)
+        self.node = rclpy.create_node('test_listener', context=self._context)
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+        self.tf_messages = []
+        self.transforms = {}
+        self.poses = {}
+
+    def listen_to_frames(self, bridge='/sdf_pose_bridge'):
+        self.node.create_subscription(
+            TFMessage, '/tf_static', self.tf_messages.append, latched(100))
+        self.node.create_subscription(
+            TransformStamped, f'{bridge}/transforms', self._take_transform, latched(1000))
+
+    def listen_to_poses(self, topics):
+        for topic in topics:
+            self.node.create_subscription(
+                PoseStamped, topic, lambda pose, topic=topic: self.poses.update({topic: pose}),
+                latched(1))
+
+    def _take_transform(self, message):
+        assert message.child_frame_id not in self.transforms, 'sent twice'
+        self.transforms[message.child_frame_id] = message
+
+    def wait(self, condition, what):
+        """Handle messages until a condition is true."""
+        deadline = time.monotonic() + SECONDS
+        while not condition():
+            assert time.monotonic() < deadline, f'waited in vain for {what()}'
+            self._executor.spin_once(timeout_sec=0.1)
+
+    def wait_for_keys(self, collection, keys):
+        self.wait(
+            lambda: collection.keys() >= set(keys), lambda: sorted(set(keys) - set(collection)))
+
+    def call(self, service_type, name, request):
+        client = self.node.create_client(service_type, name)
+        try:
+            self.wait(client.service_is_ready, lambda: name)
+            future = client.call_async(request)
+            self.wait(future.done, lambda: f'an answer from {name}')
+            return future.result()
+        finally:
+            self.node.destroy_client(client)
+
+    def end(self):
+        self._executor.shutdown()
+        self.node.destroy_node()
+        self._context.shutdown()
+        self._context.destroy()

@@ -1,0 +1,130 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""How the process starts, fails and ends, seen from outside."""
+
+import os
+import signal
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
+BAD = """\
+<sdf version="1.10">
+  <model name="m">
+    <link name="a"><pose relative_to="nowhere"/></link>
+    <link name="b"/>
+    <link name="b"/>
+  </model>
+</sdf>
+"""
+STOP_SIGNALS = pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+
+
+@pytest.fixture
+def write_file(tmp_path):
+    def write(text):
+        path = tmp_path / 'scene.sdf'
+        path.write_text(text, encoding='utf-8')
+        return path
+    return write
+
+
+def fatal_lines(bridge):
+    return [line for line in bridge.lines if line.startswith('[FATAL]')]
+
+
+def assert_ended_well(bridge):
+    assert bridge.wait_for_end() == 0, '\n'.join(bridge.lines)
+    assert not [line for line in bridge.lines if 'Traceback' in line or 'Error' in line]
+
+
+def test_a_bad_file_has_a_line_for_each_error(start_bridge, write_file):
+    path = write_file(BAD)
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={path}')
+    assert bridge.wait_for_end() == 1
+    lines = fatal_lines(bridge)
+    assert len(lines) == len(bridge.lines) == 2
+    assert any(f'{path}:3: POSE_RELATIVE_TO_INVALID: ' in line for line in lines)
+    assert any(f'{path}:5: DUPLICATE_NAME: ' in line for line in lines)
+
+
+@pytest.mark.parametrize(('arguments', 'text'), [
+    (['-p', 'sdf_file:=missing.sdf'], 'missing.sdf: FILE_READ: '),
+    ([], 'parameter sdf_file is not set'),
+    (['-p', 'sdf_file:=42'], 'parameter sdf_file is 42, which is an integer'),
+    (['-p', 'sdf_file:=a.sdf', '-p', 'anchor_models:=many'],
+     'parameter anchor_models is "many"; it must be one of all, static, none'),
+    (['-p', 'sdf_file:=package://no_such_package/a.sdf'], 'the package "no_such_package"'),
+])
+def test_what_prevents_the_start_is_one_line(start_bridge, arguments, text):
+    bridge = start_bridge('--ros-args', *arguments)
+    assert bridge.wait_for_end() == 1
+    (line,) = bridge.lines
+    assert line.startswith('[FATAL]')
+    assert text in line
+
+
+@pytest.mark.parametrize(('arguments', 'text'), [
+    (['cell.sdf'], 'the argument "cell.sdf" is not understood'),
+    (['--ros-args', '--no-such-flag'], '--no-such-flag'),
+    (['--ros-args', '--params-file', 'missing.yaml'], 'missing.yaml'),
+])
+def test_a_wrong_command_line_is_explained(start_bridge, arguments, text):
+    bridge = start_bridge(*arguments)
+    assert bridge.wait_for_end() == 1
+    assert any(text in line for line in bridge.lines)
+    assert not any('Traceback' in line for line in bridge.lines)
+
+
+def test_help_shows_how_to_start_it(start_bridge):
+    bridge = start_bridge('--help')
+    assert bridge.wait_for_end() == 0
+    bridge.wait_for_line('--ros-args -p sdf_file:=cell.sdf')
+
+
+def test_the_first_line_tells_what_is_published(start_bridge, write_file):
+    path = write_file(GOOD)
+    line = start_bridge('--ros-args', '-p', f'sdf_file:={path}').wait_for_line('publishing')
+    assert '[INFO]' in line
+    assert f'2 frames of {path} with 2 transforms, root frame "world"' in line
+
+
+@STOP_SIGNALS
+def test_a_signal_ends_it_well(start_bridge, write_file, number):
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={write_file(GOOD)}')
+    bridge.wait_until_started()
+    bridge.send(number)
+    assert_ended_well(bridge)
+
+
+@STOP_SIGNALS
+def test_signals_in_a_row_end_it_well(start_bridge, write_file, number):
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={write_file(GOOD)}')
+    bridge.wait_until_started()
+    for _ in range(3):
+        bridge.send(number)
+    assert_ended_well(bridge)
+
+
+@STOP_SIGNALS
+def test_a_signal_ends_it_well_before_anything_is_loaded(start_bridge, write_file, number):
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={write_file(GOOD)}')
+    # Python itself handles SIGINT; with SIGTERM the bridge has taken over both.
+    bridge.wait_until_handling(signal.SIGTERM)
+    bridge.send(number)
+    assert_ended_well(bridge)
+
+
+@STOP_SIGNALS
+def test_a_signal_ends_it_well_while_it_reads(start_bridge, tmp_path, number):
+    pipe = tmp_path / 'endless.sdf'
+    os.mkfifo(pipe)
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={pipe}')
+    # Opens when the other side has, and while it is open the other side waits for the end.
+    with pipe.open('w', encoding='utf-8') as writer:
+        writer.write('<sdf version="1.10">')
+        writer.flush()
+        bridge.send(number)
+        assert_ended_well(bridge)

@@ -1,0 +1,74 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Short SDF texts for tests, and what is wrong with them."""
+
+import numpy as np
+import pytest
+
+import sdf_pose_bridge
+
+TYPES = {'sensor': 'camera', 'light': 'point', 'particle_emitter': 'point'}
+TWO_LINKS = '<link name="a"/><link name="b"/>'
+
+
+def model_file(content, *, attributes='', version='1.9'):
+    """Put content into the one model, ``m``, of a model file."""
+    return f'<sdf version="{version}"><model name="m" {attributes}>{content}</model></sdf>'
+
+
+def world_file(content, *, version='1.10'):
+    """Put content into the one world, ``w``, of a file."""
+    return f'<sdf version="{version}"><world name="w">{content}</world></sdf>'
+
+
+def joint(content, name='j', kind='fixed'):
+    return f'<joint name="{name}" type="{kind}">{content}</joint>'
+
+
+def fixed_joint(name, parent, child, pose=''):
+    return joint(f'<parent>{parent}</parent><child>{child}</child>{pose}', name)
+
+
+def element(tag, name, content=''):
+    """Return an element, with the type that some must have."""
+    kind = f' type="{TYPES[tag]}"' if tag in TYPES else ''
+    return f'<{tag} name="{name}"{kind}>{content}</{tag}>'
+
+
+def posed(tag, name, pose, relative_to=''):
+    """Return an element with a pose."""
+    reference = f' relative_to="{relative_to}"' if relative_to else ''
+    return element(tag, name, f'<pose{reference}>{pose}</pose>')
+
+
+def errors_of(text):
+    """Load a text that must be refused; return all its errors."""
+    with pytest.raises(sdf_pose_bridge.SdfError) as caught:
+        sdf_pose_bridge.load_text(text, 'file.sdf')
+    return caught.value.errors
+
+
+def codes_of(text):
+    return [error.code for error in errors_of(text)]
+
+
+def only_error(text):
+    errors = errors_of(text)
+    assert len(errors) == 1, [str(error) for error in errors]
+    return errors[0]
+
+
+def names_of(scene):
+    """Return the names of all elements but worlds and implicit roots."""
+    return [
+        name for name, holder in zip(scene.names, scene.parents.tolist(), strict=True)
+        if holder >= 0]
+
+
+def warning_codes(scene):
+    return [warning.code for warning in scene.warnings]
+
+
+def assert_at(scene, name, expected):
+    """Check the pose of an element: as many of x y z, qx qy qz qw as are given."""
+    np.testing.assert_allclose(scene.pose(name)[:len(expected)], expected, atol=1e-12)

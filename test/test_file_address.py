@@ -1,0 +1,51 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Addresses of files: wrong ones are refused with the reason, others become absolute paths."""
+
+from pathlib import Path
+
+import pytest
+
+from sdf_pose_bridge.file_address import AddressError
+from sdf_pose_bridge.file_address import path_from_address
+
+INSTALLED = {'cell_description': '/opt/cell/share/cell_description'}
+
+
+@pytest.mark.parametrize(('address', 'reason'), [
+    ('package://nowhere/cell.sdf', 'names the package "nowhere", which is not installed'),
+    ('package:///cell.sdf', 'names the package ""'),
+    ('model://table', 'is a model:// URI'),
+    ('http://example.org/cell.sdf', 'is a http:// URI'),
+    ('file://cells/cell.sdf', 'names the host "cells"'),
+    ('file:///cell.sdf?x=1', r'write %3F or %23'),
+    ('file:///cell#2.sdf', r'write %3F or %23'),
+    ('file://[cell.sdf', 'is no URI'),
+])
+def test_what_names_no_file_is_refused(address, reason):
+    with pytest.raises(AddressError, match=reason) as refusal:
+        path_from_address(address, INSTALLED.__getitem__)
+    assert f'"{address}"' in str(refusal.value)
+
+
+@pytest.mark.parametrize(('address', 'path'), [
+    ('/cells/cell.sdf', '/cells/cell.sdf'),
+    ('/cells/50%25 #2?.sdf', '/cells/50%25 #2?.sdf'),
+    ('file:///cells/cell.sdf', '/cells/cell.sdf'),
+    ('file://localhost/cells/cell.sdf', '/cells/cell.sdf'),
+    ('file:///cells/left%20cell%23.sdf', '/cells/left cell#.sdf'),
+    ('package://cell_description/worlds/cell.sdf',
+     '/opt/cell/share/cell_description/worlds/cell.sdf'),
+])
+def test_what_names_a_file_becomes_its_path(address, path):
+    assert path_from_address(address, INSTALLED.__getitem__) == Path(path)
+
+
+def test_a_relative_path_starts_at_the_working_directory(monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    assert path_from_address('cell.sdf', INSTALLED.__getitem__) == tmp_path / 'cell.sdf'
+
+
+def test_a_tilde_is_the_home_directory(monkeypatch):
+    monkeypatch.setenv('HOME', '/home/someone')
+    assert path_from_address('~/cell.sdf', INSTALLED.__getitem__) == Path('/home/someone/cell.sdf')

@@ -1,0 +1,321 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The frame graph: unknown names, rings, and what each frame is placed in and fixed to."""
+
+import pytest
+from sdf_texts import assert_at
+from sdf_texts import codes_of
+from sdf_texts import fixed_joint
+from sdf_texts import model_file
+from sdf_texts import names_of
+from sdf_texts import only_error
+from sdf_texts import posed
+from sdf_texts import warning_codes
+from sdf_texts import world_file
+
+import sdf_pose_bridge
+from sdf_pose_bridge import Kind
+
+A = '<link name="a"/>'
+B = posed('link', 'b', '1 0 0 0 0 1.5707963267948966')
+NESTED = '<model name="n"><pose>0 0 1 0 0 0</pose><link name="k"/></model>'
+
+
+def scene_of(text):
+    return sdf_pose_bridge.load_text(text)
+
+
+def name_at(scene, indices, name):
+    """Return the name of what an array of indices tells of an element; None for -1."""
+    index = int(indices[scene.index(name)])
+    return None if index < 0 else scene.names[index]
+
+
+# Unknown names
+
+@pytest.mark.parametrize('text', [
+    model_file(A + posed('link', 'b', '', 'zzz')),
+    model_file(A + posed('frame', 'f', '', 'zzz')),
+    model_file(A + '<model name="n"><pose relative_to="zzz"/><link name="k"/></model>'),
+    model_file(A + B + fixed_joint('j', 'a', 'b', '<pose relative_to="zzz"/>')),
+    world_file('<model name="m"><pose relative_to="zzz"/><link name="k"/></model>'),
+    world_file(posed('frame', 'f', '', 'zzz')),
+    model_file(A, attributes='placement_frame="zzz"'),
+])
+def test_what_a_pose_is_relative_to_is_unknown(text):
+    error = only_error(text)
+    assert error.code == 'POSE_RELATIVE_TO_INVALID'
+    assert '"zzz"' in error.message
+
+
+@pytest.mark.parametrize('text', [
+    model_file(A + '<frame name="f" attached_to="zzz"/>'),
+    model_file(A + '<frame name="f" attached_to="zzz"><pose relative_to="a"/></frame>'),
+    model_file(A + '<frame name="f" attached_to="m"/>'),
+    world_file('<frame name="f" attached_to="zzz"/>'),
+])
+def test_what_a_frame_is_attached_to_is_unknown(text):
+    assert codes_of(text) == ['FRAME_ATTACHED_TO_INVALID']
+
+
+def test_one_unknown_name_gives_one_error():
+    text = model_file(
+        A + '<frame name="f" attached_to="zzz"/><frame name="g" attached_to="f"/>'
+        + posed('link', 'b', '', 'f') + fixed_joint('j', 'a', 'g'))
+    assert codes_of(text)[0] == 'FRAME_ATTACHED_TO_INVALID'
+    assert 'POSE_RELATIVE_TO_INVALID' not in codes_of(text)
+
+
+@pytest.mark.parametrize('tag', [
+    'visual', 'collision', 'sensor', 'light', 'particle_emitter', 'projector'])
+def test_a_child_of_a_link_that_cannot_be_placed_is_left_out(tag):
+    scene = scene_of(model_file(
+        '<link name="a">' + posed(tag, 'ghost', '1 0 0 0 0 0', 'zzz')
+        + posed(tag, 'good', '1 0 0 0 0 0') + '</link>'))
+    assert names_of(scene) == ['m', 'm::a', 'm::a::good']
+    assert warning_codes(scene) == ['POSE_RELATIVE_TO_INVALID']
+    assert '"zzz"' in scene.warnings[0].message
+
+
+def test_a_sensor_of_a_joint_that_cannot_be_placed_is_left_out():
+    scene = scene_of(model_file(
+        A + B + fixed_joint('j', 'a', 'b', posed('sensor', 's', '', 'zzz'))))
+    assert 'm::j::s' not in names_of(scene)
+    assert warning_codes(scene) == ['POSE_RELATIVE_TO_INVALID']
+
+
+def test_a_light_of_a_world_that_cannot_be_placed_is_left_out():
+    scene = scene_of(world_file(posed('light', 'sun', '', 'zzz')))
+    assert names_of(scene) == []
+    assert warning_codes(scene) == ['POSE_RELATIVE_TO_INVALID']
+
+
+def test_indices_fit_where_something_is_left_out():
+    scene = scene_of(world_file(
+        posed('light', 'sun', '', 'zzz')
+        + '<model name="m"><link name="a">' + posed('visual', 'ghost', '', 'zzz')
+        + posed('visual', 'v', '') + '</link>' + B + fixed_joint('j', 'a', 'b') + '</model>'))
+    assert name_at(scene, scene.parents, 'm::a::v') == 'm::a'
+    assert name_at(scene, scene.parents, 'm::b') == 'm'
+    assert name_at(scene, scene.canonical_links, 'm') == 'm::a'
+    assert name_at(scene, scene.bodies, 'm::j') == 'm::b'
+    assert [scene.names[i] for i in (*scene.joints[0][:1], *scene.joints[0][2:])] == [
+        'm::j', 'm::a', 'm::b']
+
+
+# Rings
+
+@pytest.mark.parametrize('text', [
+    model_file(A + posed('frame', 'f', '', 'f')),
+    model_file(A + posed('frame', 'f', '', 'g') + posed('frame', 'g', '', 'f')),
+    model_file(A + posed('link', 'b', '', 'j') + fixed_joint('j', 'a', 'b')),
+    model_file(A + '<model name="n"><pose relative_to="n"/><link name="k"/></model>'),
+    model_file(A + '<model name="n"><pose relative_to="n::k"/><link name="k"/></model>'),
+    model_file(A + '<model name="n"><pose relative_to="n::__model__"/><link name="k"/></model>'),
+    world_file('<model name="n"><pose relative_to="f"/><link name="k"/></model>'
+               + posed('frame', 'f', '', 'n::k')),
+    world_file('<frame name="f"><pose relative_to="f"/></frame>'),
+])
+def test_poses_in_a_ring(text):
+    assert codes_of(text) == ['POSE_RELATIVE_TO_CYCLE']
+
+
+@pytest.mark.parametrize('text', [
+    model_file(A + '<frame name="f" attached_to="f"/>'),
+    model_file(A + '<frame name="f" attached_to="f"><pose relative_to="a"/></frame>'),
+    model_file(A + '<frame name="f" attached_to="g"/><frame name="g" attached_to="f"/>'),
+    world_file('<frame name="f" attached_to="g"/><frame name="g" attached_to="f"/>'),
+    model_file(A + '<frame name="f"/>', attributes='canonical_link="f"'),
+    model_file(A, attributes='canonical_link="__model__"'),
+    model_file(A + '<frame name="f" attached_to="j"/>' + fixed_joint('j', 'a', 'f')),
+    model_file(A + fixed_joint('j', 'a', 'j')),
+])
+def test_attachment_in_a_ring(text):
+    assert codes_of(text)[0] == 'FRAME_ATTACHED_TO_CYCLE'
+
+
+def test_a_ring_is_spelled_out():
+    frames = ''.join(
+        posed('frame', name, '', reference) for name, reference in
+        [('p', 'q'), ('q', 'r'), ('r', 's'), ('s', 'p')])
+    error = only_error(model_file(A + frames))
+    assert '"m::p" -> "m::q" -> "m::r" -> "m::s" -> "m::p"' in error.message
+
+
+def test_a_ring_is_told_once_at_its_first_element():
+    frames = '\n'.join(
+        posed('frame', name, '', reference) for name, reference in
+        [('tail', 'p'), ('p', 'q'), ('q', 'p'), ('tail2', 'tail')])
+    error = only_error(model_file(A + '\n' + frames))
+    assert error.line == 3
+    assert error.element == '/sdf/model[@name="m"]/frame[@name="p"]'
+
+
+def test_each_ring_is_told():
+    frames = ''.join(
+        posed('frame', name, '', reference) for name, reference in
+        [('p', 'q'), ('q', 'p'), ('r', 'r'), ('s', 't'), ('t', 'u'), ('u', 's')])
+    assert codes_of(model_file(A + frames)) == ['POSE_RELATIVE_TO_CYCLE'] * 3
+
+
+def test_a_ring_of_attachment_is_not_told_again_as_a_ring_of_poses():
+    assert codes_of(model_file(
+        A + '<frame name="f" attached_to="g"/><frame name="g" attached_to="f"/>')) == [
+            'FRAME_ATTACHED_TO_CYCLE']
+
+
+def test_a_long_ring_is_cut_in_the_message():
+    frames = ''.join(posed('frame', f'f{i}', '', f'f{(i + 1) % 500}') for i in range(500))
+    assert len(only_error(model_file(A + frames)).message) < 400
+
+
+def test_a_long_chain_is_no_ring():
+    length = 3000
+    frames = ''.join(
+        posed('frame', f'f{i}', '1 0 0 0 0 0', f'f{i + 1}') for i in range(length))
+    scene = scene_of(model_file(A + frames + posed('frame', f'f{length}', '1 0 0 0 0 0')))
+    assert_at(scene, 'm::f0', (length + 1, 0, 0))
+
+
+def test_the_default_of_a_joint_is_explained_in_a_ring():
+    error = only_error(model_file(A + posed('link', 'b', '', 'j') + fixed_joint('j', 'a', 'b')))
+    assert 'placed in its child' in error.message
+
+
+# Models
+
+@pytest.mark.parametrize('text', [
+    model_file(''), model_file('<frame name="f"/>'), model_file('<static>false</static>'),
+    model_file(A + '<model name="n"/>'), world_file('<model name="m"/>'),
+])
+def test_a_model_has_no_link(text):
+    assert codes_of(text) == ['MODEL_WITHOUT_LINK']
+
+
+def test_a_static_model_needs_no_link():
+    scene = scene_of(world_file(
+        '<model name="m"><static>true</static><pose>1 0 0 0 0 0</pose>'
+        + posed('frame', 'f', '0 1 0 0 0 0') + '</model>'))
+    assert_at(scene, 'm::f', (1, 1, 0))
+    assert name_at(scene, scene.bodies, 'm::f') == 'm'
+    assert name_at(scene, scene.canonical_links, 'm') is None
+
+
+@pytest.mark.parametrize('name', ['zzz', 'm', 'n::zzz', 'world'])
+def test_a_canonical_link_is_unknown(name):
+    error = only_error(model_file(A + NESTED, attributes=f'canonical_link="{name}"'))
+    assert error.code == 'MODEL_CANONICAL_LINK_INVALID'
+    assert f'"{name}"' in error.message
+
+
+def test_the_canonical_link_of_a_static_model_is_not_checked():
+    scene_of(model_file('<static>1</static>' + A, attributes='canonical_link="zzz"'))
+
+
+@pytest.mark.parametrize(('content', 'canonical', 'link'), [
+    (A + B, '', 'm::a'),
+    (A + B, 'b', 'm::b'),
+    (NESTED + A, '', 'm::a'),
+    (NESTED, '', 'm::n::k'),
+    ('<model name="x"><model name="y"><link name="z"/></model></model>' + NESTED, '',
+     'm::x::y::z'),
+    (A + NESTED, 'n::k', 'm::n::k'),
+    (A + NESTED, 'n', 'm::n::k'),
+    (A + B + fixed_joint('j', 'a', 'b'), 'j', 'm::b'),
+    (A + B + '<frame name="f" attached_to="b"/>', 'f', 'm::b'),
+    (A + B, ' b ', 'm::b'),
+    ('<static>true</static>' + A + B, '', 'm::a'),
+    ('<static>true</static>' + A + B, 'b', 'm::b'),
+])
+def test_the_canonical_link(content, canonical, link):
+    scene = scene_of(model_file(content, attributes=f'canonical_link="{canonical}"'))
+    assert name_at(scene, scene.canonical_links, 'm') == link
+
+
+@pytest.mark.parametrize('canonical', ['', 'b', 'f'])
+def test_the_canonical_link_moves_nothing(canonical):
+    scene = scene_of(model_file(
+        '<pose>0 0 1 0 0 0</pose>' + A + B + '<frame name="f" attached_to="b"/>'
+        + posed('frame', 'g', '0 5 0 0 0 0'), attributes=f'canonical_link="{canonical}"'))
+    assert_at(scene, 'm', (0, 0, 1))
+    assert_at(scene, 'm::g', (0, 5, 1))
+
+
+# Where things are placed by default
+
+@pytest.mark.parametrize(('frame', 'position'), [
+    (posed('frame', 'f', '1 0 0 0 0 0'), (1, 0, 0)),
+    ('<frame name="f" attached_to="b"><pose>1 0 0 0 0 0</pose></frame>', (1, 1, 0)),
+    ('<frame name="f" attached_to="b"><pose relative_to="a">1 0 0 0 0 0</pose></frame>',
+     (1, 0, 0)),
+    ('<frame name="f" attached_to="j"><pose>1 0 0 0 0 0</pose></frame>', (1, 2, 0)),
+    ('<frame name="f" attached_to="n"><pose>1 0 0 0 0 0</pose></frame>', (1, 0, 1)),
+    ('<frame name="f" attached_to=""><pose relative_to="">1 0 0 0 0 0</pose></frame>', (1, 0, 0)),
+    ('<frame name="f" attached_to="n::k"/>', (0, 0, 1)),
+    ('<frame name="f" attached_to="b"/>', (1, 0, 0)),
+])
+def test_where_a_frame_is(frame, position):
+    scene = scene_of(model_file(
+        A + B + NESTED + fixed_joint('j', 'a', 'b', '<pose>1 0 0 0 0 0</pose>') + frame))
+    assert_at(scene, 'm::f', position)
+
+
+@pytest.mark.parametrize(('joint', 'position'), [
+    (fixed_joint('j', 'a', 'b', '<pose>1 0 0 0 0 0</pose>'), (1, 1, 0)),
+    (fixed_joint('j', 'b', 'a', '<pose>1 0 0 0 0 0</pose>'), (1, 0, 0)),
+    (fixed_joint('j', 'a', 'f', '<pose>1 0 0 0 0 0</pose>'), (1, 1, 5)),
+    (fixed_joint('j', 'a', 'b', '<pose relative_to="a">1 0 0 0 0 0</pose>'), (1, 0, 0)),
+    (fixed_joint('j', 'a', 'b', '<pose relative_to="__model__">1 0 0 0 0 0</pose>'), (1, 0, 0)),
+    (fixed_joint('j', 'world', 'b'), (1, 0, 0)),
+    (fixed_joint('j', 'a', 'n'), (0, 0, 1)),
+])
+def test_where_a_joint_is(joint, position):
+    frame = '<frame name="f" attached_to="b"><pose>0 0 5 0 0 0</pose></frame>'
+    assert_at(scene_of(model_file(A + B + NESTED + frame + joint)), 'm::j', position)
+
+
+def test_a_sensor_of_a_joint_is_in_the_joint():
+    scene = scene_of(model_file(A + B + fixed_joint(
+        'j', 'a', 'b', '<pose>1 0 0 0 0 0</pose>' + posed('sensor', 's', '1 0 0 0 0 0')
+        + posed('sensor', 't', '1 0 0 0 0 0', 'a'))))
+    assert_at(scene, 'm::j::s', (1, 2, 0))
+    assert_at(scene, 'm::j::t', (1, 0, 0))
+
+
+def test_children_of_a_link_use_the_names_of_its_model():
+    scene = scene_of(model_file(
+        A + '<link name="b"><pose>1 0 0 0 0 0</pose>' + posed('visual', 'v', '1 0 0 0 0 0')
+        + posed('visual', 'u', '1 0 0 0 0 0', '__model__') + posed('light', 'i', '', 'a')
+        + posed('sensor', 's', '1 0 0 0 0 0', 'n::k') + '</link>' + NESTED))
+    assert_at(scene, 'm::b::v', (2, 0, 0))
+    assert_at(scene, 'm::b::u', (1, 0, 0))
+    assert_at(scene, 'm::b::i', (0, 0, 0))
+    assert_at(scene, 'm::b::s', (1, 0, 1))
+
+
+def test_an_inertial_is_in_its_link():
+    scene = scene_of(model_file(
+        '<link name="a"><pose>1 0 0 0 0 0</pose><inertial><pose>0 1 0 0 0 0</pose></inertial>'
+        '</link>'))
+    assert scene.kinds[-1] == Kind.INERTIAL
+    assert scene.poses[-1, :3].tolist() == [1, 1, 0]
+
+
+# What carries what
+
+@pytest.mark.parametrize(('name', 'body'), [
+    ('m::a', 'm::a'), ('m::b', 'm::b'), ('m', 'm::a'), ('m::n', 'm::n::k'), ('m::j', 'm::b'),
+    ('m::f', 'm::a'), ('m::on_b', 'm::b'), ('m::on_j', 'm::b'), ('m::on_n', 'm::n::k'),
+    ('m::on_s', 'm::s'), ('m::s', 'm::s'), ('on_m', 'm::a'), ('fixed', 'world'),
+    ('on_fixed', 'world'),
+])
+def test_what_carries_a_frame(name, body):
+    scene = scene_of(world_file(
+        '<model name="m">' + A + B + NESTED + fixed_joint('j', 'a', 'b')
+        + '<frame name="f"><pose relative_to="b"/></frame>'
+        '<frame name="on_j" attached_to="on_b"/><frame name="on_b" attached_to="j"/>'
+        '<frame name="on_n" attached_to="n"/><frame name="on_s" attached_to="s"/>'
+        '<model name="s"><static>1</static></model></model>'
+        '<frame name="on_m" attached_to="m"/><frame name="fixed"/>'
+        '<frame name="on_fixed" attached_to="fixed"><pose relative_to="m::a"/></frame>'))
+    assert name_at(scene, scene.bodies, name) == body

@@ -1,0 +1,201 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The package files agree with each other, and say what the services and the install must be."""
+
+import ast
+import configparser
+import json
+import os
+from pathlib import Path
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGES = {
+    'sdf_pose_bridge': ROOT,
+    'sdf_pose_bridge_interfaces': ROOT / 'sdf_pose_bridge_interfaces',
+    'tf2_msgs': ROOT / 'underlay/tf2_msgs',
+}
+OURS = ('sdf_pose_bridge', 'sdf_pose_bridge_interfaces')
+COLCON_VERBS = ('build', 'test', 'list', 'info', 'graph')
+SERVICES = {
+    'ConvertRotation': (
+        [
+            'uint8 RPY=0', 'uint8 QUATERNION=1', 'uint8 given', 'geometry_msgs/Vector3 rpy',
+            'geometry_msgs/Quaternion quaternion', 'bool degrees',
+        ],
+        [
+            'bool success', 'string message', 'geometry_msgs/Vector3 rpy',
+            'geometry_msgs/Quaternion quaternion', 'bool gimbal_lock',
+        ],
+    ),
+    'ConvertPoses': (
+        ['string from_format', 'string to_format', 'float64[] values'],
+        ['bool success', 'string message', 'float64[] values'],
+    ),
+    'LookupPose': (
+        ['string frame', 'string relative_to'],
+        ['bool success', 'string message', 'geometry_msgs/PoseStamped pose'],
+    ),
+}
+
+
+def package_xml(package):
+    return ET.parse(PACKAGES[package] / 'package.xml').getroot()
+
+
+def setup_value(*options):
+    result = subprocess.run(
+        [sys.executable, 'setup.py', '--quiet', *options], cwd=ROOT, check=True,
+        capture_output=True, text=True, env={**os.environ, 'PYTHONWARNINGS': 'ignore'})
+    return result.stdout.strip().splitlines()[-1]
+
+
+def service_files():
+    return sorted((PACKAGES['sdf_pose_bridge_interfaces'] / 'srv').glob('*.srv'))
+
+
+def fields_of(text):
+    lines = (line.split('#')[0].strip() for line in text.splitlines())
+    return [line for line in lines if line]
+
+
+def installed_files():
+    """Return where below the install prefix setup.py puts each data file, by the file."""
+    code = (
+        'import json, setuptools; found = {}; '
+        'setuptools.setup = found.update; '
+        'exec(compile(open("setup.py").read(), "setup.py", "exec")); '
+        'print(json.dumps(found["data_files"]))')
+    result = subprocess.run(
+        [sys.executable, '-c', code], cwd=ROOT, check=True, capture_output=True, text=True)
+    return {
+        source: f'{target}/{Path(source).name}'
+        for target, sources in json.loads(result.stdout) for source in sources}
+
+
+@pytest.mark.parametrize('package', PACKAGES)
+def test_package_xml_is_format_3_and_named_as_its_folder_says(package):
+    root = package_xml(package)
+    assert (root.get('format'), root.findtext('name')) == ('3', package)
+
+
+@pytest.mark.parametrize('package', PACKAGES)
+def test_address_of_the_maintainer_is_one_that_colcon_accepts(package):
+    # An invalid address makes colcon take the package for plain Python or CMake, silently.
+    email = package_xml(package).find('maintainer').get('email')
+    assert re.fullmatch(r'[-a-zA-Z0-9_%+]+(\.[-a-zA-Z0-9_%+]+)*@[-a-zA-Z0-9%]+(\.[-a-zA-Z0-9%]+)*'
+                        r'\.[a-zA-Z]{2,}', email)
+
+
+@pytest.mark.parametrize('package', PACKAGES)
+def test_package_xml_is_valid_for_catkin_pkg(package):
+    catkin_pkg = pytest.importorskip('catkin_pkg.package', reason='catkin_pkg is not installed')
+    warnings = []
+    parsed = catkin_pkg.parse_package(str(PACKAGES[package]), warnings=warnings)
+    parsed.validate(warnings=warnings)
+    assert warnings == []
+
+
+def test_package_xml_declares_every_package_that_the_code_imports():
+    imported = set()
+    for file in (ROOT / 'sdf_pose_bridge').rglob('*.py'):
+        for node in ast.walk(ast.parse(file.read_text())):
+            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            names += [node.module] if isinstance(node, ast.ImportFrom) else []
+            imported |= {name.split('.')[0] for name in names}
+    keys = {
+        {'numpy': 'python3-numpy', 'lxml': 'python3-lxml'}.get(name, name)
+        for name in imported - sys.stdlib_module_names - {'sdf_pose_bridge'}}
+    declared = {tag.text for tag in package_xml('sdf_pose_bridge').iter('exec_depend')}
+    assert keys == declared
+
+
+@pytest.mark.parametrize('package', PACKAGES)
+def test_every_license_is_apache(package):
+    assert [tag.text for tag in package_xml(package).iter('license')] == ['Apache-2.0']
+
+
+def test_both_packages_have_one_version():
+    assert len({package_xml(package).findtext('version') for package in OURS}) == 1
+
+
+def test_setup_py_has_the_version_of_package_xml():
+    assert setup_value('--version') == package_xml('sdf_pose_bridge').findtext('version')
+
+
+def test_setup_py_has_the_maintainer_of_package_xml():
+    maintainer = package_xml('sdf_pose_bridge').find('maintainer')
+    assert setup_value('--maintainer', '--maintainer-email') == maintainer.get('email')
+
+
+def test_scripts_go_where_ros2_run_looks():
+    settings = configparser.ConfigParser()
+    settings.read(ROOT / 'setup.cfg')
+    assert {settings['develop']['script_dir'], settings['install']['install_scripts']} == {
+        '$base/lib/sdf_pose_bridge'}
+
+
+@pytest.mark.parametrize('verb', COLCON_VERBS)
+def test_colcon_finds_both_packages_under_every_verb(verb):
+    yaml = pytest.importorskip('yaml', reason='PyYAML is not installed')
+    settings = yaml.safe_load((ROOT / 'colcon_defaults.yaml').read_text())
+    found = {
+        package_xml(name).findtext('name')
+        for name, folder in PACKAGES.items()
+        if folder in {(ROOT / path).resolve() for path in settings[verb]['base-paths']}}
+    assert found == set(OURS)
+
+
+def test_there_are_the_three_services_and_no_other():
+    assert {file.stem for file in service_files()} == set(SERVICES)
+
+
+@pytest.mark.parametrize('service', SERVICES)
+def test_service_has_the_fixed_fields(service):
+    text = (ROOT / f'sdf_pose_bridge_interfaces/srv/{service}.srv').read_text()
+    request, response = text.split('\n---\n')
+    assert (fields_of(request), fields_of(response)) == SERVICES[service]
+
+
+@pytest.mark.parametrize('service', SERVICES)
+def test_every_field_of_a_service_is_commented(service):
+    lines = (ROOT / f'sdf_pose_bridge_interfaces/srv/{service}.srv').read_text().splitlines()
+    uncommented = [
+        line for before, line in zip(['', *lines], lines, strict=False)
+        if fields_of(line) and line != '---' and '=' not in line and not before.startswith('#')]
+    assert uncommented == []
+
+
+def test_cmake_generates_every_service_file():
+    text = (ROOT / 'sdf_pose_bridge_interfaces/CMakeLists.txt').read_text()
+    assert set(re.findall(r'"srv/(\w+)\.srv"', text)) == set(SERVICES)
+
+
+@pytest.mark.parametrize('folder', ['launch', 'config', 'examples'])
+def test_every_file_to_share_is_installed_in_its_place(folder):
+    files = [
+        file.relative_to(ROOT).as_posix() for file in (ROOT / folder).rglob('*')
+        if file.is_file() and '__pycache__' not in file.parts]
+    if not files:
+        pytest.skip(f'there is no {folder} folder yet')
+    places = installed_files()
+    assert {file: places.get(file) for file in files} == {
+        file: f'share/sdf_pose_bridge/{file}' for file in files}
+
+
+def test_package_xml_and_the_index_entry_are_installed():
+    places = installed_files()
+    assert (places['package.xml'], places['resource/sdf_pose_bridge']) == (
+        'share/sdf_pose_bridge/package.xml',
+        'share/ament_index/resource_index/packages/sdf_pose_bridge')
+
+
+def test_license_is_the_whole_apache_license():
+    text = (ROOT / 'LICENSE').read_text()
+    assert 'Version 2.0, January 2004' in text
+    assert 'END OF TERMS AND CONDITIONS' in text

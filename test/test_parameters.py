@@ -1,0 +1,88 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Parameters on a real node: what is given wrong, what is given, and what people can read."""
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from rclpy.parameter import Parameter  # noqa: E402
+
+from sdf_pose_bridge.parameters import PARAMETERS  # noqa: E402
+from sdf_pose_bridge.parameters import settings_from_node  # noqa: E402
+from sdf_pose_bridge.settings import SettingsError  # noqa: E402
+from sdf_pose_bridge.tf_tree import TfOptions  # noqa: E402
+
+FILE = ('-p', 'sdf_file:=cell.sdf')
+
+
+@pytest.mark.parametrize(('name', 'value', 'sentence'), [
+    ('sdf_file', '5', 'parameter sdf_file is 5, which is an integer; it must be a string, so '
+                      'quote it twice: -p "sdf_file:=\'5\'"'),
+    ('model', 'true', 'parameter model is True, which is true or false; it must be a string'),
+    ('optical_frames', 'maybe', 'parameter optical_frames is maybe, which is a string; it must '
+                                'be true or false'),
+    ('kinds', 'link', 'parameter kinds is link, which is a string; it must be a list of strings: '
+                      '-p "kinds:=[\'link\']"'),
+    ('pose_topics', '[1, 2]', 'parameter pose_topics is [1, 2], which is a list of integers; it '
+                              'must be a list of strings'),
+    ('resource_paths', '[0.5]', 'parameter resource_paths is [0.5], which is a list of numbers; '
+                                'it must be a list of strings'),
+    ('anchor_models', 'some', 'parameter anchor_models is "some"; it must be one of'),
+    ('kinds', '[]', 'parameter kinds is []; it must be at least one of'),
+])
+def test_a_wrong_value_is_named_once_with_its_rule(make_node, name, value, sentence):
+    node = make_node('bridge', '-p', 'sdf_file:=cell.sdf', '-p', f'{name}:={value}')
+    with pytest.raises(SettingsError) as refusal:
+        settings_from_node(node)
+    (problem,) = refusal.value.problems
+    assert problem.sentence.startswith(sentence)
+
+
+def test_without_a_file_the_sentence_says_how_to_name_one(make_node):
+    with pytest.raises(SettingsError, match='-p sdf_file:=cell.sdf'):
+        settings_from_node(make_node('bridge'))
+
+
+def test_defaults(make_node):
+    settings = settings_from_node(make_node('bridge', *FILE))
+    assert settings.sdf_file == 'cell.sdf'
+    assert settings.tf_options == TfOptions()
+    assert settings.pose_topics == ('*',)
+    assert settings.resource_paths == ()
+
+
+def test_an_empty_list_can_be_given(make_node):
+    node = make_node('bridge', *FILE, '-p', 'pose_topics:=[]')
+    assert settings_from_node(node).pose_topics == ()
+    parameter = node.get_parameter('pose_topics')
+    assert (parameter.type_, parameter.value) == (Parameter.Type.STRING_ARRAY, [])
+
+
+def test_values_come_from_the_command_line(make_node):
+    settings = settings_from_node(make_node(
+        'bridge', *FILE, '-p', 'pose_topics:=[robot/*]', '-p', 'optical_frames:=false',
+        '-p', 'root_frame:=map'))
+    assert settings.pose_topics == ('robot/*',)
+    assert settings.tf_options == TfOptions(root_frame='map', optical_frames=False)
+
+
+def test_every_parameter_explains_itself(make_node):
+    node = make_node('bridge', *FILE)
+    settings_from_node(node)
+    for declaration in PARAMETERS:
+        descriptor = node.describe_parameter(declaration.name)
+        assert descriptor.description.endswith('.')
+        assert descriptor.additional_constraints
+        assert descriptor.read_only
+        typical = [''] if declaration.default == [] else declaration.default
+        assert Parameter.Type(descriptor.type) is Parameter.Type.from_parameter_value(typical)
+
+
+def test_a_change_is_refused_and_leaves_the_value(make_node):
+    node = make_node('bridge', *FILE)
+    settings_from_node(node)
+    (result,) = node.set_parameters([Parameter('root_frame', value='map')])
+    assert not result.successful
+    assert 'read-only' in result.reason
+    assert node.get_parameter('root_frame').value == 'world'

@@ -1,0 +1,115 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Composing and inverting poses: the laws of a group, and one equals many."""
+
+from hypothesis import given
+from hypothesis import settings
+from hypothesis import strategies as st
+from matrices import matrix_from_pose
+import numpy as np
+import pytest
+
+from sdf_pose_bridge import Pose
+from sdf_pose_bridge.poses import pose_inverse
+from sdf_pose_bridge.poses import pose_inverses
+from sdf_pose_bridge.poses import pose_product
+from sdf_pose_bridge.poses import pose_products
+
+NUMBERS = st.floats(-100.0, 100.0, allow_subnormal=False)
+QUATERNIONS = st.tuples(*[st.floats(-1.0, 1.0)] * 4).filter(
+    lambda q: sum(value * value for value in q) > 1e-4)
+ROW_COUNTS = st.integers(0, 12)
+
+
+def unit(quaternion):
+    norm = np.linalg.norm(quaternion)
+    return tuple(float(value / norm) for value in quaternion)
+
+
+POSES = st.builds(
+    lambda origin, quaternion: Pose(*origin, *unit(quaternion)),
+    st.tuples(NUMBERS, NUMBERS, NUMBERS), QUATERNIONS)
+
+
+def assert_near(a, b, tolerance=1e-10):
+    np.testing.assert_allclose(a, b, rtol=0.0, atol=tolerance)
+
+
+def rows(poses):
+    return np.array(poses, dtype=float).reshape(-1, 7)
+
+
+def test_a_quarter_turn_carries_x_to_y():
+    quarter = Pose(1.0, 0.0, 0.0, 0.0, 0.0, 0.5 ** 0.5, 0.5 ** 0.5)
+    assert_near(pose_product(quarter, Pose(1.0, 0.0, 0.0))[:3], (1, 1, 0))
+
+
+def test_the_inverse_of_a_turned_pose():
+    quarter = Pose(1.0, 2.0, 3.0, 0.0, 0.0, 0.5 ** 0.5, 0.5 ** 0.5)
+    assert_near(pose_inverse(quarter), (-2, 1, -3, 0, 0, -(0.5 ** 0.5), 0.5 ** 0.5))
+
+
+@given(POSES, POSES)
+def test_the_product_is_that_of_matrices(a, b):
+    assert_near(matrix_from_pose(pose_product(a, b)), matrix_from_pose(a) @ matrix_from_pose(b))
+
+
+@given(POSES)
+def test_the_inverse_is_that_of_the_matrix(a):
+    assert_near(matrix_from_pose(pose_inverse(a)), np.linalg.inv(matrix_from_pose(a)))
+
+
+@given(POSES, POSES, POSES)
+def test_products_associate(a, b, c):
+    assert_near(pose_product(pose_product(a, b), c), pose_product(a, pose_product(b, c)))
+
+
+@given(POSES)
+def test_a_pose_and_its_inverse_cancel(a):
+    assert_near(pose_product(a, pose_inverse(a)), Pose())
+    assert_near(pose_product(pose_inverse(a), a), Pose())
+
+
+@given(POSES)
+def test_the_identity_changes_nothing(a):
+    assert pose_product(a, Pose()) == a
+    assert_near(pose_product(Pose(), a), a)
+
+
+@given(POSES)
+def test_the_inverse_of_the_inverse(a):
+    assert_near(pose_inverse(pose_inverse(a)), a)
+
+
+@given(POSES, POSES)
+def test_the_inverse_of_a_product(a, b):
+    assert_near(
+        pose_inverse(pose_product(a, b)), pose_product(pose_inverse(b), pose_inverse(a)))
+
+
+@settings(max_examples=30)
+@given(st.lists(st.tuples(POSES, POSES), max_size=12))
+def test_many_products_are_as_one_by_one(pairs):
+    products = pose_products(rows([a for a, _ in pairs]), rows([b for _, b in pairs]))
+    np.testing.assert_array_equal(products, rows([pose_product(a, b) for a, b in pairs]))
+
+
+@settings(max_examples=30)
+@given(POSES, st.lists(POSES, min_size=1, max_size=12))
+def test_one_pose_before_many(a, poses):
+    np.testing.assert_array_equal(
+        pose_products(rows([a]), rows(poses)), rows([pose_product(a, b) for b in poses]))
+
+
+@settings(max_examples=30)
+@given(st.lists(POSES, max_size=12))
+def test_many_inverses_are_as_one_by_one(poses):
+    assert_near(pose_inverses(rows(poses)), rows([pose_inverse(a) for a in poses]), 1e-12)
+
+
+@pytest.mark.parametrize('count', [1, 5])
+def test_arguments_are_left_alone(count):
+    a = rows([Pose(1.0, 2.0, 3.0, 0.0, 0.0, 0.6, 0.8)] * count)
+    a.setflags(write=False)
+    pose_products(a, a)
+    pose_inverses(a)

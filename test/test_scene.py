@@ -1,0 +1,218 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The scene: questions with a wrong name, poses of anything in anything, nothing to change."""
+
+import dataclasses
+
+from matrices import assert_same_pose
+from matrices import matrix_from_degrees
+from matrices import matrix_from_rpy
+import numpy as np
+import pytest
+from sdf_texts import element
+from sdf_texts import fixed_joint
+from sdf_texts import model_file
+from sdf_texts import names_of
+from sdf_texts import posed
+from sdf_texts import world_file
+
+import sdf_pose_bridge
+from sdf_pose_bridge import SdfError
+from sdf_pose_bridge import UnknownFrameError
+
+TABLE = ('<model name="{}"><pose>1 2 0 0 0 {}</pose><link name="top"><pose>0 0 1 0 0 0</pose>'
+         '</link></model>')
+TWO_WORLDS = (
+    '<sdf version="1.10"><world name="day">' + TABLE.format('table', 0)
+    + posed('frame', 'noon', '0 0 9 0 0 0') + '</world><world name="night">'
+    + TABLE.format('table', 0).replace('1 2 0', '5 5 0') + '</world></sdf>')
+WORLD_AND_MODEL = (
+    '<sdf version="1.10"><world name="w">' + TABLE.format('table', 0) + '</world>'
+    + TABLE.format('chair', 0) + '</sdf>')
+
+
+@pytest.fixture
+def scene():
+    return sdf_pose_bridge.load_text(world_file(
+        TABLE.format('table', 0.7) + TABLE.format('chair', -0.2)
+        + element('light', 'sun') + element('light', 'chair')))
+
+
+@pytest.fixture
+def worlds():
+    return sdf_pose_bridge.load_text(TWO_WORLDS)
+
+
+# Wrong names
+
+@pytest.mark.parametrize('name', ['', 'tabel', 'table::', 'table::to', 'w', 'w::table', '::table'])
+def test_a_name_is_unknown(scene, name):
+    with pytest.raises(UnknownFrameError) as caught:
+        scene.pose(name)
+    assert f'"{name}"' in caught.value.message
+    assert caught.value.code == 'POSE_RELATIVE_TO_INVALID'
+
+
+def test_the_reference_is_unknown(scene):
+    with pytest.raises(UnknownFrameError, match=r'"tabel".*did you mean "table"'):
+        scene.pose('chair', 'tabel')
+
+
+def test_an_unknown_name_can_be_caught_in_two_ways(scene):
+    with pytest.raises(LookupError):
+        scene.pose('tabel')
+    with pytest.raises(SdfError):
+        scene.pose('tabel')
+
+
+def test_the_file_is_named(scene):
+    with pytest.raises(UnknownFrameError, match=r'^<text>: '):
+        scene.pose('tabel')
+
+
+def test_a_name_in_two_worlds(worlds):
+    with pytest.raises(UnknownFrameError, match=r'"table".*more than one.*day.*night'):
+        worlds.pose('table')
+
+
+def test_a_name_in_another_world(worlds):
+    with pytest.raises(UnknownFrameError, match='"noon" names nothing in world "night"'):
+        worlds.pose('noon', world='night')
+
+
+def test_an_unknown_world(worlds):
+    with pytest.raises(UnknownFrameError, match='"noon" names nothing in world "dusk"'):
+        worlds.pose('noon', world='dusk')
+
+
+def test_two_worlds_have_nothing_in_common():
+    text = TWO_WORLDS.replace('night"><model name="table"', 'night"><model name="bed"')
+    scene = sdf_pose_bridge.load_text(text)
+    with pytest.raises(UnknownFrameError):
+        scene.pose('noon', 'bed')
+
+
+def test_a_world_and_the_model_beside_it_have_nothing_in_common():
+    scene = sdf_pose_bridge.load_text(WORLD_AND_MODEL)
+    with pytest.raises(UnknownFrameError):
+        scene.pose('table', 'chair')
+    with pytest.raises(UnknownFrameError):
+        scene.pose('chair', 'table')
+
+
+def test_two_children_of_a_link_share_a_name():
+    scene = sdf_pose_bridge.load_text(model_file(
+        '<link name="l"><visual name="x"/><collision name="x"/></link>'))
+    with pytest.raises(UnknownFrameError, match=r'more than one.*visual.*collision'):
+        scene.pose('m::l::x')
+
+
+# Poses
+
+def test_a_pose_in_the_root(scene):
+    assert_same_pose(scene.pose('table::top'), matrix_from_rpy(1, 2, 1, 0, 0, 0.7))
+
+
+def test_a_pose_in_another_frame(scene):
+    table = matrix_from_rpy(1, 2, 0, 0, 0, 0.7)
+    top = matrix_from_rpy(1, 2, 1, 0, 0, -0.2)
+    assert_same_pose(scene.pose('chair::top', 'table'), np.linalg.inv(table) @ top)
+
+
+def test_a_pose_in_itself(scene):
+    np.testing.assert_allclose(
+        scene.pose('table', 'table'), (0, 0, 0, 0, 0, 0, 1), rtol=0.0, atol=1e-15)
+
+
+@pytest.mark.parametrize('root', ['', 'world'])
+def test_the_root_may_be_named(scene, root):
+    assert scene.pose('table', root) == scene.pose('table')
+
+
+def test_the_root_in_a_frame(scene):
+    assert_same_pose(
+        scene.pose('world', 'table'), np.linalg.inv(matrix_from_rpy(1, 2, 0, 0, 0, 0.7)))
+
+
+def test_a_frame_goes_before_a_light_of_its_name(scene):
+    assert scene.pose('chair')[:3] == (1, 2, 0)
+
+
+@pytest.mark.parametrize('yaw', [0, 90, 170, 180, -170, 359])
+def test_w_is_never_negative(yaw):
+    text = model_file(
+        f'<link name="a"><pose degrees="true">0 0 0 0 0 {yaw}</pose></link>'
+        f'<link name="b"><pose degrees="true">0 0 0 10 20 {-yaw}</pose></link>')
+    scene = sdf_pose_bridge.load_text(text)
+    a, b = matrix_from_degrees(0, 0, 0, 0, 0, yaw), matrix_from_degrees(0, 0, 0, 10, 20, -yaw)
+    assert_same_pose(scene.pose('m::a'), a)
+    assert_same_pose(scene.pose('m::a', 'm::b'), np.linalg.inv(b) @ a)
+
+
+def test_there_are_no_negative_zeros(scene):
+    poses = np.array([scene.pose('table', name) for name in names_of(scene)])
+    assert not (np.signbit(poses) & (poses == 0.0)).any()
+
+
+def test_worlds_are_told_apart(worlds):
+    assert worlds.pose('table', world='day')[:3] == (1, 2, 0)
+    assert worlds.pose('table', world='night')[:3] == (5, 5, 0)
+
+
+def test_a_name_that_one_world_has_needs_no_world(worlds):
+    assert worlds.pose('noon')[:3] == (0, 0, 9)
+
+
+def test_the_reference_is_looked_for_in_the_same_world(worlds):
+    assert worlds.pose('noon', 'table')[:3] == (-1, -2, 9)
+
+
+def test_the_pose_of_the_top_model_counts():
+    scene = sdf_pose_bridge.load_text(model_file('<pose>1 0 0 0 0 0</pose><link name="l"/>'))
+    assert scene.pose('m::l')[:3] == (1, 0, 0)
+
+
+# Structure
+
+def test_every_element_stands_after_the_one_that_holds_it(scene):
+    assert all(holder < index for index, holder in enumerate(scene.parents.tolist()))
+
+
+def test_roots(worlds):
+    assert worlds.world_names == {0: 'day', 4: 'night'}
+    assert worlds.roots.tolist() == [0, 0, 0, 0, 4, 4, 4]
+
+
+def test_joints_know_their_ends():
+    scene = sdf_pose_bridge.load_text(world_file(
+        TABLE.format('table', 0) + fixed_joint('j', 'world', 'table::top')))
+    assert [(scene.names[joint.parent], scene.names[joint.child]) for joint in scene.joints] == [
+        ('world', 'table::top')]
+
+
+def test_files(scene):
+    assert scene.files == ('<text>',)
+    assert not scene.file_indices.any()
+
+
+# Nothing to change
+
+@pytest.mark.parametrize('name', [
+    'poses', 'kinds', 'parents', 'roots', 'attachments', 'bodies', 'canonical_links', 'lines',
+    'file_indices',
+])
+def test_arrays_cannot_be_written(scene, name):
+    with pytest.raises(ValueError, match='read-only'):
+        getattr(scene, name)[0] = 1
+
+
+@pytest.mark.parametrize('name', ['poses', 'names', 'warnings', 'anything'])
+def test_fields_cannot_be_set(scene, name):
+    with pytest.raises((dataclasses.FrozenInstanceError, TypeError, AttributeError)):
+        setattr(scene, name, ())
+
+
+@pytest.mark.parametrize('name', ['sensors', 'world_names'])
+def test_mappings_cannot_be_written(scene, name):
+    with pytest.raises(TypeError):
+        getattr(scene, name)[0] = 'x'

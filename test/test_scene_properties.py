@@ -1,0 +1,101 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Properties of scenes: composition, and what changes nothing."""
+
+from hypothesis import given
+from hypothesis import HealthCheck
+from hypothesis import settings
+from hypothesis import strategies as st
+from matrices import assert_same_pose
+from matrices import matrix_from_degrees
+from matrices import matrix_from_pose
+import numpy as np
+from random_scenes import random_scenes
+from sdf_texts import names_of
+
+import sdf_pose_bridge
+
+SOME = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+ORDERS = st.randoms(use_true_random=False).map(
+    lambda random: lambda item, keys={}: keys.setdefault(id(item), random.random()))
+
+
+def loaded(text):
+    return sdf_pose_bridge.load_text(text)
+
+
+def assert_same_scene(first, second, tolerance=1e-9):
+    """Check that two scenes have the same names and poses, in whatever order."""
+    assert sorted(first.names) == sorted(second.names)
+    for name in names_of(first):
+        assert_same_pose(
+            second.pose(name), matrix_from_pose(first.pose(name)), tolerance, name=name)
+
+
+@SOME
+@given(random_scenes())
+def test_poses_are_those_calculated_apart(drawn):
+    scene = loaded(drawn.text())
+    matrices = drawn.matrices()
+    assert names_of(scene) == list(dict.fromkeys(names_of(scene)))
+    assert set(names_of(scene)) == set(matrices)
+    for name, matrix in matrices.items():
+        assert_same_pose(scene.pose(name), matrix, name=name)
+
+
+@SOME
+@given(random_scenes(), st.data())
+def test_a_pose_in_another_frame_is_composed(drawn, data):
+    scene = loaded(drawn.text())
+    names = st.sampled_from(names_of(scene))
+    first, second, third = data.draw(names), data.draw(names), data.draw(names)
+    in_second = matrix_from_pose(scene.pose(first, second))
+    np.testing.assert_allclose(
+        matrix_from_pose(scene.pose(second)) @ in_second, matrix_from_pose(scene.pose(first)),
+        rtol=0.0, atol=1e-9)
+    assert_same_pose(
+        scene.pose(first, third), matrix_from_pose(scene.pose(second, third)) @ in_second)
+
+
+@SOME
+@given(random_scenes(), ORDERS)
+def test_the_order_of_siblings_changes_nothing(drawn, order):
+    assert_same_scene(loaded(drawn.text()), loaded(drawn.text(order)))
+
+
+@SOME
+@given(random_scenes(is_world=False))
+def test_a_model_in_a_world_is_only_placed(drawn):
+    place = (1.5, -2.0, 0.25, 30, -45, 60)
+    alone = loaded(drawn.text())
+    placed = loaded(drawn.text(wrapped_at=place))
+    matrix = matrix_from_degrees(*place)
+    for name in names_of(alone):
+        assert_same_pose(placed.pose(name), matrix @ matrix_from_pose(alone.pose(name)), name=name)
+        assert_same_pose(
+            placed.pose(name, drawn.root.children[0].name),
+            matrix_from_pose(alone.pose(name, drawn.root.children[0].name)), name=name)
+
+
+@SOME
+@given(random_scenes(), st.data())
+def test_a_pose_written_relative_to_another_frame_changes_nothing(drawn, data):
+    item = data.draw(st.sampled_from([item for item in drawn.items if item.holder.kind]))
+    earlier = drawn.items[:drawn.items.index(item)]
+    reference = data.draw(st.sampled_from([
+        other for other in earlier
+        if item.scope in other.chain() and other.kind in {'model', 'link', 'frame', 'joint'}]))
+    item.placement = None
+    before = loaded(drawn.text())
+    relative = before.pose(item.scoped_name, reference.scoped_name)
+    item.pose = tuple(relative)
+    item.reference = reference
+    assert_same_scene(before, loaded(drawn.text()))
+
+
+@SOME
+@given(random_scenes())
+def test_loading_twice_gives_the_same_bits(drawn):
+    first, second = loaded(drawn.text()), loaded(drawn.text())
+    assert first.names == second.names
+    np.testing.assert_array_equal(first.poses, second.poses)

@@ -1,0 +1,148 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Which names mean what: siblings and downwards, never upwards."""
+
+import pytest
+from sdf_texts import element
+from sdf_texts import errors_of
+from sdf_texts import fixed_joint
+from sdf_texts import model_file
+from sdf_texts import only_error
+from sdf_texts import posed
+from sdf_texts import world_file
+
+import sdf_pose_bridge
+
+NEST = (
+    posed('link', 'l', '1 0 0 0 0 0')
+    + '<model name="n"><pose>0 1 0 0 0 0</pose>'
+    + posed('link', 'k', '0 1 0 0 0 0') + posed('frame', 'f', '0 2 0 0 0 0')
+    + '<model name="n2"><pose>0 0 1 0 0 0</pose>' + posed('link', 'deep', '0 0 1 0 0 0')
+    + '{inner}</model></model>{outer}')
+
+
+def in_model(reference):
+    """Refer to a name from the outer model of a nest."""
+    probe = posed('frame', 'probe', '', reference)
+    return model_file(NEST.format(inner='', outer=probe))
+
+
+def in_nested(reference):
+    """Refer to a name from the innermost model of a nest."""
+    return model_file(NEST.format(inner=posed('frame', 'probe', '', reference), outer=''))
+
+
+def in_world(reference):
+    model = '<model name="m"><pose>0 0 5 0 0 0</pose>' + NEST.format(inner='', outer='')
+    return world_file(
+        model + '</model>' + posed('frame', 'r', '7 0 0 0 0 0')
+        + '<light name="sun" type="point"/><actor name="man"/>'
+        + posed('frame', 'probe', '', reference))
+
+
+@pytest.mark.parametrize(('reference', 'position'), [
+    ('l', (1, 0, 0)), ('n', (0, 1, 0)), ('__model__', (0, 0, 0)), ('n::k', (0, 2, 0)),
+    ('n::f', (0, 3, 0)), ('n::__model__', (0, 1, 0)), ('n::n2', (0, 1, 1)),
+    ('n::n2::deep', (0, 1, 2)), ('n::n2::__model__', (0, 1, 1)), (' n::k ', (0, 2, 0)),
+])
+def test_names_in_a_model(reference, position):
+    scene = sdf_pose_bridge.load_text(in_model(reference))
+    assert scene.pose('m::probe')[:3] == position
+
+
+@pytest.mark.parametrize('reference', [
+    'm', 'm::l', 'm::__model__', 'k', 'deep', 'n2', 'world', 'L', 'l::', '::l', 'n:k', 'n::',
+    'n::k::__model__', 'l::__model__', '__model__::l', 'n::__model__::k', 'n::world', 'n::n', 'w',
+    '__model__::__model__', 'n::n2::deep::', 'n ::k',
+])
+def test_names_that_mean_nothing_in_a_model(reference):
+    error = only_error(in_model(reference))
+    assert error.code == 'POSE_RELATIVE_TO_INVALID'
+    assert f'relative_to="{reference}"' in error.message
+
+
+@pytest.mark.parametrize('reference', ['l', 'k', 'f', 'n', 'n2', 'n2::deep', 'n::k', 'm', 'world'])
+def test_names_of_scopes_around_mean_nothing(reference):
+    assert only_error(in_nested(reference)).code == 'POSE_RELATIVE_TO_INVALID'
+
+
+@pytest.mark.parametrize(('reference', 'position'), [
+    ('world', (0, 0, 0)), ('m', (0, 0, 5)), ('m::__model__', (0, 0, 5)), ('r', (7, 0, 0)),
+    ('m::l', (1, 0, 5)), ('m::n::n2::deep', (0, 1, 7)), ('m::n::__model__', (0, 1, 5)),
+])
+def test_names_in_a_world(reference, position):
+    assert sdf_pose_bridge.load_text(in_world(reference)).pose('probe')[:3] == position
+
+
+@pytest.mark.parametrize('reference', [
+    '__model__', 'w', 'w::m', 'world::m', 'world::r', 'l', 'sun', 'man', 'r::__model__',
+])
+def test_names_that_mean_nothing_in_a_world(reference):
+    assert only_error(in_world(reference)).code == 'POSE_RELATIVE_TO_INVALID'
+
+
+@pytest.mark.parametrize('tag', ['visual', 'collision', 'sensor', 'light'])
+def test_children_of_a_link_cannot_be_referred_to(tag):
+    link = f'<link name="l">{element(tag, "v")}</link>'
+    text = model_file(link + posed('frame', 'f', '', 'l::v'))
+    assert only_error(text).code == 'POSE_RELATIVE_TO_INVALID'
+
+
+def test_a_joint_can_be_referred_to():
+    scene = sdf_pose_bridge.load_text(model_file(
+        '<link name="a"/>' + posed('link', 'b', '1 0 0 0 0 0') + fixed_joint('j', 'a', 'b')
+        + posed('frame', 'f', '1 0 0 0 0 0', 'j')))
+    assert scene.pose('m::f')[:3] == (2, 0, 0)
+
+
+def test_worlds_do_not_see_one_another():
+    text = ('<sdf version="1.10"><world name="a"><frame name="f"/></world>'
+            '<world name="b">' + posed('frame', 'g', '', 'f') + '</world></sdf>')
+    assert only_error(text).code == 'POSE_RELATIVE_TO_INVALID'
+
+
+def test_names_of_other_worlds_are_their_own():
+    text = ('<sdf version="1.10"><world name="a">' + posed('frame', 'f', '1 0 0 0 0 0')
+            + '</world><world name="b">' + posed('frame', 'f', '2 0 0 0 0 0')
+            + posed('frame', 'g', '', 'f') + '</world></sdf>')
+    assert sdf_pose_bridge.load_text(text).pose('g')[:3] == (2, 0, 0)
+
+
+# What the message suggests
+
+def test_the_nearest_name_is_suggested():
+    text = model_file('<link name="shoulder"/>' + posed('frame', 'f', '', 'sholder'))
+    assert 'did you mean "shoulder"?' in only_error(text).message
+
+
+def test_the_nearest_name_below_is_suggested():
+    assert 'did you mean "n::n2::deep"?' in only_error(in_model('n::n2::dep')).message
+
+
+def test_a_name_like_none_gets_no_suggestion():
+    assert 'did you mean' not in only_error(in_model('zzzzzz')).message
+
+
+def test_the_own_name_of_a_model_is_explained():
+    message = only_error(in_model('m::l')).message
+    assert 'its own name is not visible' in message
+    assert '"l"' in message
+
+
+def test_the_own_name_alone_is_explained():
+    assert '"__model__"' in only_error(in_model('m')).message
+
+
+def test_a_name_of_an_enclosing_scope_is_explained():
+    assert 'enclosing scopes' in only_error(in_nested('l')).message
+
+
+def test_the_scope_is_named():
+    assert 'model "m::n::n2"' in only_error(in_nested('zzz')).message
+    assert 'world "w"' in only_error(in_world('zzz')).message
+
+
+def test_many_names_do_not_make_a_mistake_slow_to_tell():
+    links = ''.join(f'<link name="l{i}"/>' for i in range(3000))
+    wrong = ''.join(posed('frame', f'f{i}', '', f'wrong{i}') for i in range(30))
+    assert len(errors_of(model_file(links + wrong))) == 30

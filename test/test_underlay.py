@@ -1,0 +1,212 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The environment's script refuses in one sentence; setup.bash behaves well in any shell."""
+
+import os
+from pathlib import Path
+import platform
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+TF_MESSAGE_HASH = 'RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087'
+SHELL_TOOLS = ('bash', 'dirname', 'env', 'head')
+# The interpreter beneath this virtual environment, as the script would be given it.
+PYTHON = Path(sys.base_prefix, f'bin/python3.{sys.version_info.minor}')
+
+needs_x86 = pytest.mark.skipif(
+    platform.machine() != 'x86_64', reason='any other processor is refused before')
+pytestmark = pytest.mark.skipif(
+    sys.platform != 'linux' or not shutil.which('bash'), reason='needs bash on Linux')
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """Return a folder that has the environment's scripts but no environment."""
+    folder = tmp_path / 'checkout'
+    shutil.copytree(ROOT / 'underlay', folder / 'underlay')
+    return folder
+
+
+@pytest.fixture
+def tools(tmp_path):
+    """Return a folder with the few commands that a shell script needs, to be a whole PATH."""
+    folder = tmp_path / 'tools'
+    folder.mkdir()
+    for name in SHELL_TOOLS:
+        (folder / name).symlink_to(shutil.which(name))
+    return folder
+
+
+def command(folder, name, text):
+    file = folder / name
+    file.write_text(f'#!{shutil.which("bash")}\n{text}\n')
+    file.chmod(0o755)
+    return file
+
+
+def make_underlay(checkout, **environment):
+    environment = {
+        'PATH': os.environ['PATH'], 'SDF_POSE_BRIDGE_ROS_PREFIX': '', **environment}
+    return subprocess.run(
+        ['bash', str(checkout / 'underlay/make_underlay')], env=environment, text=True,
+        capture_output=True, stdin=subprocess.DEVNULL, timeout=60, check=False)
+
+
+def assert_refused_with(result, *words):
+    sentence = result.stderr.rstrip('\n')
+    assert result.returncode == 1, sentence
+    assert '\n' not in sentence
+    assert sentence.endswith('.') or 'PYTHON=python3.12' in sentence
+    for word in words:
+        assert word in sentence
+
+
+def shell(script, **environment):
+    return subprocess.run(
+        ['bash', '-c', script], env={**os.environ, **environment}, text=True,
+        capture_output=True, stdin=subprocess.DEVNULL, timeout=60, check=False)
+
+
+def test_python_that_does_not_exist_is_refused(checkout):
+    assert_refused_with(make_underlay(checkout, PYTHON='python3.99'), "'python3.99'", 'no such')
+
+
+def test_python_that_does_not_run_is_refused_with_its_own_words(checkout, tools):
+    broken = command(tools, 'broken-python', 'echo "not here" >&2; exit 127')
+    result = make_underlay(checkout, PYTHON=str(broken))
+    assert_refused_with(result, 'does not run as a Python', 'not here')
+
+
+@pytest.mark.parametrize('version', ['2.7.18', '3.9.25', '3.14.0', '4.0.0'])
+def test_python_of_another_version_is_refused_with_its_version(checkout, tools, version):
+    old = command(tools, 'old-python', f'printf {version}')
+    assert_refused_with(make_underlay(checkout, PYTHON=str(old)), f'Python {version} ', 'PYTHON=')
+
+
+def test_only_unusable_pythons_on_the_machine_are_refused_with_the_version(checkout, tools):
+    command(tools, 'python3', 'printf 3.9.25')
+    assert_refused_with(make_underlay(checkout, PATH=str(tools)), 'Python 3.9.25 ')
+
+
+def test_machine_without_python_is_refused(checkout, tools):
+    assert_refused_with(make_underlay(checkout, PATH=str(tools)), 'no Python 3', 'python3-venv')
+
+
+@needs_x86
+def test_machine_without_compiler_is_refused(checkout, tools):
+    result = make_underlay(checkout, PATH=str(tools), PYTHON=str(PYTHON))
+    assert_refused_with(result, 'no C compiler', 'build-essential')
+
+
+@needs_x86
+def test_compiler_that_does_not_exist_is_refused_with_its_name(checkout):
+    result = make_underlay(checkout, PYTHON=str(PYTHON), CXX='c++-99')
+    assert_refused_with(result, "CXX names 'c++-99'")
+
+
+@needs_x86
+def test_compiler_that_cannot_compile_is_refused_with_its_reason(checkout, tools):
+    broken = command(tools, 'broken-cc', 'echo "cannot find crt1.o" >&2; exit 1')
+    result = make_underlay(checkout, PYTHON=str(PYTHON), CC=str(broken))
+    assert_refused_with(result, 'cannot find crt1.o')
+
+
+def test_checkout_in_a_path_with_a_space_is_refused(checkout):
+    moved = checkout.rename(checkout.with_name('check out'))
+    assert_refused_with(make_underlay(moved, PYTHON=str(PYTHON)), "' '", 'move it')
+
+
+def test_ros_installation_that_lacks_packages_is_refused_with_their_names(checkout, tmp_path):
+    (tmp_path / 'jazzy').mkdir()
+    (tmp_path / 'jazzy/setup.bash').touch()
+    result = make_underlay(
+        checkout, PYTHON=str(PYTHON), SDF_POSE_BRIDGE_ROS_PREFIX=str(tmp_path / 'jazzy'))
+    assert_refused_with(result, 'tf2_msgs', 'ros-jazzy-tf2-msgs')
+
+
+def test_processor_without_wheels_is_refused(monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / 'underlay'))
+    import machine
+    from steps import RefusalError
+    monkeypatch.setattr(machine.platform, 'machine', lambda: 'aarch64')
+    with pytest.raises(RefusalError, match=r'this is aarch64 on .*; install ROS 2 Jazzy in /opt'):
+        machine.check_pypi_platform()
+
+
+def test_python_without_venv_is_refused(monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / 'underlay'))
+    import machine
+    from steps import RefusalError
+    monkeypatch.setattr(
+        machine.importlib.util, 'find_spec', lambda name: None if name == 'ensurepip' else name)
+    with pytest.raises(RefusalError, match=r'without venv; install it .*-venv'):
+        machine.check_python()
+
+
+def test_setup_bash_without_environment_says_so(checkout):
+    result = shell(f'. {checkout}/underlay/setup.bash')
+    assert (result.returncode, result.stderr.count('\n')) == (1, 1)
+    assert 'make setup' in result.stderr
+
+
+def test_lock_files_name_no_index():
+    locks = sorted((ROOT / 'underlay').glob('*.txt'))
+    assert locks
+    assert [lock.name for lock in locks if re.search('://|--index-url', lock.read_text())] == []
+
+
+@pytest.mark.parametrize('name', ['build', 'requirements', 'tools', 'unresolved'])
+def test_every_locked_package_is_pinned_with_hashes(name):
+    text = (ROOT / f'underlay/{name}.txt').read_text().replace('\\\n', ' ')
+    packages = [line for line in text.splitlines() if line and not line.startswith('#')]
+    assert packages
+    assert [line for line in packages if '==' not in line or '--hash=sha256:' not in line] == []
+
+
+@pytest.fixture
+def built():
+    if not (ROOT / 'install/local_setup.bash').exists() or not (ROOT / '.underlay/root').exists():
+        pytest.skip('the environment is not made here')
+    return f'. {ROOT}/underlay/setup.bash'
+
+
+def test_setup_bash_is_silent_also_where_unset_variables_are_errors(built):
+    result = shell(f'set -u; {built}')
+    assert (result.returncode, result.stdout, result.stderr) == (0, '', '')
+
+
+def test_setup_bash_adds_nothing_the_second_time(built):
+    paths = '$PATH $PYTHONPATH $LD_LIBRARY_PATH $AMENT_PREFIX_PATH $CMAKE_PREFIX_PATH'
+    result = shell(f'{built}; first="{paths}"; {built}; [[ $first == "{paths}" ]]')
+    assert result.returncode == 0, result.stderr
+
+
+def test_setup_bash_puts_the_environment_first_from_any_folder(built):
+    result = shell(f'cd /; PATH=/usr/bin:$PATH; {built}; type -P python')
+    assert result.stdout.strip() == str(ROOT / '.underlay/bin/python')
+
+
+def test_setup_bash_refuses_a_shell_with_another_ros(built):
+    result = shell(built, ROS_DISTRO='humble')
+    assert result.returncode == 1
+    assert 'humble' in result.stderr
+
+
+def test_tf_message_on_the_wire_has_the_type_hash_of_jazzy():
+    rclpy = pytest.importorskip('rclpy', reason='ROS 2 is not in this environment')
+    from rclpy.context import Context
+    from tf2_msgs.msg import TFMessage
+    context = Context()
+    rclpy.init(args=[], context=context)
+    try:
+        node = rclpy.create_node('type_hash', context=context, namespace='/test_type_hash')
+        publisher = node.create_publisher(TFMessage, 'tf', 1)
+        (info,) = node.get_publishers_info_by_topic(publisher.topic_name)
+        assert str(info.topic_type_hash) == TF_MESSAGE_HASH
+    finally:
+        rclpy.shutdown(context=context)
