@@ -3,7 +3,7 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test run lint bench clean
+.PHONY: help setup demo test run lint bench differential clean
 
 # Another ROS in the caller's shell would be found before the one that is meant.
 ifneq ($(filter-out jazzy,$(ROS_DISTRO)),)
@@ -25,6 +25,7 @@ help:
 	@echo 'make run FILE=...   the node on an SDFormat file; ARGS="-p name:=value" sets parameters'
 	@echo 'make lint           ruff and mypy'
 	@echo 'make bench          benchmarks; ARGS="..." hands arguments to them'
+	@echo 'make differential   random scenes against libsdformat; ARGS="--scenes 100" for fewer'
 	@echo 'make setup          only the environment in .underlay, which all of these share'
 	@echo 'make clean          remove the environment and everything that was built'
 	@echo ''
@@ -52,6 +53,9 @@ lint: setup
 bench: setup
 	@[[ -d benchmarks ]] || { echo 'There are no benchmarks yet.' >&2; exit 1; }
 	@$(in_shell) python -m benchmarks $(ARGS)
+
+differential: setup
+	@. underlay/setup.bash && PYTHONPATH=test:$$PYTHONPATH exec python -m differential $(ARGS)
 
 clean:
 	@rm -rf .underlay build install log

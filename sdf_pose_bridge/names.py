@@ -38,6 +38,9 @@ class Kind(enum.IntEnum):
     PROJECTOR = 12
     ACTOR = 13
 
+    # An Enum's own hash is a function in Python, and kinds are keys wherever elements are read.
+    __hash__ = int.__hash__
+
     @property
     def label(self) -> str:
         """Name of the kind as SDFormat spells the element: ``particle_emitter``."""

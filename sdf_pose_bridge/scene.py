@@ -134,6 +134,15 @@ class Scene:
         """
         return self.world_names.get(int(self.roots[index]), '')
 
+    def has(self, name: str) -> bool:
+        """
+        Tell whether a name is that of an element, in whichever world.
+
+        :param name: absolute name such as ``robot::arm::hand``.
+        :return: whether there is such an element.
+        """
+        return name in self._indices
+
     def index(self, name: str, *, world: str = '') -> int:
         """
         Find an element by its name.

@@ -26,6 +26,7 @@ from sdf_pose_bridge.poses import pose_products
 from sdf_pose_bridge.poses import PoseArray
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.rotation import canonical_quaternion
+from sdf_pose_bridge.scene import Indices
 from sdf_pose_bridge.scene import Joint
 from sdf_pose_bridge.scene import Scene
 from sdf_pose_bridge.tf_names import FrameNames
@@ -90,6 +91,10 @@ class TfTree:
     """The frame that each hangs on; empty for one that has no transform."""
     transforms: PoseArray
     """Shape (n, 7): pose of each in its parent; the identity where it has none."""
+    elements: Indices
+    """The element of the scene that each stands for; -1 for optical frames."""
+    world: str
+    """The name of the world that they belong to; empty for a model file."""
     warnings: tuple[SdfWarning, ...]
 
 
@@ -131,6 +136,7 @@ class _Builder:
         self._rows: list[_Frame] = []
         self._row_of_id: dict[str, int] = {}
         self._row_of_element: dict[int, int] = {}
+        self._optical_rows: set[int] = set()
 
     def tree(self) -> TfTree:
         published = self._published()
@@ -248,6 +254,7 @@ class _Builder:
             return
         row = self._add(frame_id, index, pose)
         self._rows[row] = self._rows[row]._replace(parent=camera)
+        self._optical_rows.add(row)
 
     def _serves_as_optical_frame(self, row: int, pose: Pose, facts: SensorFacts) -> bool:
         """Tell whether a frame is there already that a camera's optical frame id means."""
@@ -280,6 +287,9 @@ class _Builder:
             element = self._holders[element]
         return element in self._scene.static_models
 
+    def _is_world(self) -> bool:
+        return bool(self._kinds) and self._kinds[0] == Kind.WORLD
+
     def _warn_loop(self, joint: Joint) -> None:
         names = self._scene.names
         msg = (f'joint "{names[joint.element]}" closes a loop between "{names[joint.parent]}" and '
@@ -295,6 +305,10 @@ class _Builder:
         transforms[parents == _NO_PARENT] = Pose()
         transforms[:, 3:] = canonical_quaternion(transforms[:, 3:])
         transforms[:, :3] += 0.0  # no negative zeros
+        elements = np.array(
+            [-1 if row in self._optical_rows else frame.element
+             for row, frame in enumerate(self._rows)], dtype=np.int32)
+        elements.setflags(write=False)
         ids = (*(frame.frame_id for frame in self._rows), self._options.root_frame, '')
         poses.setflags(write=False)
         transforms.setflags(write=False)
@@ -304,5 +318,7 @@ class _Builder:
             poses=poses,
             parent_ids=tuple(ids[parent] for parent in parents.tolist()),
             transforms=transforms,
+            elements=elements,
+            world=next(iter(self._scene.world_names.values()), '') if self._is_world() else '',
             warnings=self._problems.warnings,
         )

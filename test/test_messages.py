@@ -7,15 +7,15 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from builtin_interfaces.msg import Time  # noqa: E402
-from rclpy.serialization import deserialize_message  # noqa: E402
-from rclpy.serialization import serialize_message  # noqa: E402
-from tf2_msgs.msg import TFMessage  # noqa: E402
+from builtin_interfaces.msg import Time
+from rclpy.serialization import deserialize_message
+from rclpy.serialization import serialize_message
+from tf2_msgs.msg import TFMessage
 
-from sdf_pose_bridge.messages import poses_from_tree  # noqa: E402
-from sdf_pose_bridge.messages import tf_message_from_transforms  # noqa: E402
-from sdf_pose_bridge.messages import transforms_from_tree  # noqa: E402
-from sdf_pose_bridge.tf_tree import TfTree  # noqa: E402
+from sdf_pose_bridge.messages import poses_from_tree
+from sdf_pose_bridge.messages import tf_message_from_transforms
+from sdf_pose_bridge.messages import transforms_from_tree
+from sdf_pose_bridge.tf_tree import TfTree
 
 STAMP = Time(sec=12, nanosec=34)
 POSES = np.array([
@@ -26,7 +26,8 @@ POSES = np.array([
 TRANSFORMS = POSES[::-1].copy()
 TREE = TfTree(
     root_frame='map', frame_ids=('base', 'größe 1', 'adrift'), poses=POSES,
-    parent_ids=('map', 'base', ''), transforms=TRANSFORMS, warnings=())
+    parent_ids=('map', 'base', ''), transforms=TRANSFORMS,
+    elements=np.arange(3, dtype=np.int32), world='', warnings=())
 
 
 def numbers_of_transform(message):

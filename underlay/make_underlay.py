@@ -169,8 +169,6 @@ class Underlay:
         if not due:
             return
         self._check_machine(all_steps=due is plan)
-        if due is plan:
-            _remove(UNDERLAY)
         self._steps = Steps(len(due), LOG, self._lock)
         for step in due:
             step.stamp_file.unlink(missing_ok=True)
@@ -193,6 +191,8 @@ class Underlay:
             machine.check_disk(ROOT)
 
     def _make_environment(self) -> None:
+        # Also of one that was made in part: nobody knows which part. Can take a while by itself.
+        _remove(UNDERLAY)
         arguments = [sys.executable, '-m', 'venv', str(UNDERLAY)]
         if not self._from_pypi:
             arguments.insert(3, '--system-site-packages')

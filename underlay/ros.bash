@@ -4,7 +4,7 @@
 # To be sourced in bash: ROS 2 Jazzy and the tools, without this repository's packages.
 
 _spb_underlay=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.underlay" 2> /dev/null && pwd -P)
-if [[ ! -r $_spb_underlay/ros_prefix ]]; then
+if [[ ! -r $_spb_underlay/stamps/packages ]]; then
   echo 'The environment was not made yet; run `make setup` in the repository first.' >&2
   unset _spb_underlay
   return 1

@@ -3,7 +3,7 @@
 #
 # To be sourced in bash: ROS 2 Jazzy, the tools, and this repository's packages as last built.
 
-if [[ -z ${BASH_VERSION-} ]]; then
+if [ -z "${BASH_VERSION-}" ]; then
   echo 'This is for bash; start bash and source it there.' >&2
   return 1
 fi
