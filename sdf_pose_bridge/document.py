@@ -9,9 +9,11 @@ and the sizes that libxml2 allows without its "huge" option.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 import os
 from pathlib import Path
 import re
+from types import MappingProxyType
 from typing import NamedTuple
 from typing import TypeAlias
 
@@ -53,6 +55,21 @@ class Document(NamedTuple):
     """Value of its ``version`` attribute, as written."""
     warnings: tuple[SdfWarning, ...] = ()
     """What is wrong with its XML, but does not stand in the way."""
+    origins: Mapping[XmlElement, Document] = MappingProxyType({})
+    """For what was put into its tree from elsewhere: the file that it stands in."""
+
+    def origin(self, element: XmlElement) -> Document:
+        """
+        Tell which file an element stands in.
+
+        :param element: any element of the tree.
+        :return: this file, or the one that the element was put in from.
+        """
+        if self.origins:
+            for holder in (element, *element.iterancestors()):
+                if holder in self.origins:
+                    return self.origins[holder]
+        return self
 
 
 def document_from_file(path: str | os.PathLike[str]) -> Document:
@@ -225,6 +242,17 @@ def boolean_from_text(text: str) -> bool | None:
     if value in ('false', '0'):
         return False
     return None
+
+
+def set_line(element: XmlElement, line: int | None) -> None:
+    """
+    Say that an element stands in another line.
+
+    :param element: an element of a tree.
+    :param line: the line; None leaves it.
+    """
+    if line is not None:
+        element.sourceline = line  # type: ignore[misc]  # which lxml's stubs take for read-only
 
 
 def _line(element: XmlElement) -> int:

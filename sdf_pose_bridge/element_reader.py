@@ -35,8 +35,8 @@ from sdf_pose_bridge.errors import MergeIncludeError
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.include_reader import Include
 from sdf_pose_bridge.include_reader import include_from_xml
+from sdf_pose_bridge.inclusion import Inclusion
 from sdf_pose_bridge.inclusions import DocumentSet
-from sdf_pose_bridge.inclusions import Inclusion
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import ROOT_FRAME
@@ -160,7 +160,7 @@ class _ElementReader:
         elif kind is Kind.MODEL:
             self._included_model(include, scope)
         elif self._table.element(scope.holder).kind is not Kind.MODEL:
-            name = self._table.claimed_name(kind, xml, scope.holder, include.name)
+            name = self._table.names.claim(kind, xml, scope.holder, include.name)
             if name is not None and include.has_pose:
                 self._table.add(kind, xml, name, scope.holder, scope.holder)
             elif name is not None:
@@ -171,7 +171,7 @@ class _ElementReader:
             self._table.warning(xml, msg, scope.holder, 'include')
 
     def _included_model(self, include: Include, scope: _Scope) -> None:
-        name = self._table.claimed_name(Kind.MODEL, include.xml, scope.holder, include.name)
+        name = self._table.names.claim(Kind.MODEL, include.xml, scope.holder, include.name)
         if name is None:
             return
         model = NOWHERE
@@ -191,7 +191,7 @@ class _ElementReader:
             return
         proxy = f'_merged__{include.name}__model__'
         if (include.document.path in self._broken
-                or self._table.claimed_name(
+                or self._table.names.claim(
                     Kind.FRAME, include.xml, scope.holder, proxy) is None):
             return
         frame = NOWHERE
@@ -217,7 +217,7 @@ class _ElementReader:
     # World and model
 
     def _world(self, xml: XmlElement) -> None:
-        name = self._table.claimed_name(Kind.WORLD, xml, NOWHERE)
+        name = self._table.names.claim(Kind.WORLD, xml, NOWHERE)
         if name is None:
             return
         scope = _Scope(self._table.add(Kind.WORLD, xml, name, NOWHERE, NOWHERE))
@@ -237,7 +237,7 @@ class _ElementReader:
                 self._include(child, scope)
 
     def _model(self, xml: XmlElement, scope: _Scope) -> None:
-        name = self._table.claimed_name(Kind.MODEL, xml, scope.holder)
+        name = self._table.names.claim(Kind.MODEL, xml, scope.holder)
         if name is None:
             return
         model = self._table.add(Kind.MODEL, xml, name, scope.holder, scope.holder)
@@ -297,7 +297,7 @@ class _ElementReader:
     # What a model and a world hold
 
     def _link(self, xml: XmlElement, scope: _Scope) -> None:
-        name = self._table.claimed_name(Kind.LINK, xml, scope.holder)
+        name = self._table.names.claim(Kind.LINK, xml, scope.holder)
         if name is None:
             return
         link = self._table.add(Kind.LINK, xml, name, scope.holder, scope.holder)
@@ -312,7 +312,7 @@ class _ElementReader:
                 self._leaf(kind, child, link, scope)
 
     def _frame(self, xml: XmlElement, scope: _Scope) -> None:
-        name = self._table.claimed_name(Kind.FRAME, xml, scope.holder)
+        name = self._table.names.claim(Kind.FRAME, xml, scope.holder)
         if name is None:
             return
         frame = self._table.add(Kind.FRAME, xml, name, scope.holder, scope.holder)
@@ -321,7 +321,7 @@ class _ElementReader:
         self._table.set_facts(frame, FrameFacts(scope.name(attached_to) or scope.proxy))
 
     def _joint(self, xml: XmlElement, scope: _Scope) -> None:
-        name = self._table.claimed_name(Kind.JOINT, xml, scope.holder)
+        name = self._table.names.claim(Kind.JOINT, xml, scope.holder)
         if name is None:
             return
         joint = self._table.add(Kind.JOINT, xml, name, scope.holder, scope.holder)
@@ -387,7 +387,7 @@ class _ElementReader:
             '' if optical is None else value_of(optical)))
 
     def _leaf(self, kind: Kind, xml: XmlElement, parent: int, scope: _Scope) -> int | None:
-        name = self._table.claimed_name(kind, xml, parent)
+        name = self._table.names.claim(kind, xml, parent)
         if name is None:
             return None
         leaf = self._table.add(kind, xml, name, parent, scope.holder)

@@ -17,17 +17,23 @@ class AddressError(ValueError):
     """An address that names no file."""
 
 
-def path_from_address(address: str, share_directory: Callable[[str], str]) -> Path:
+def path_from_address(
+    address: str,
+    share_directory: Callable[[str], str],
+    resource_path: Callable[[str], str | None],
+) -> Path:
     """
-    Return the path that an address stands for; whether a file is there is not looked at.
+    Return the path that an address stands for.
 
     :param address: an absolute path, a path relative to the working directory (``~`` is the home
-        directory), ``file:///absolute/path``, or ``package://name/path`` relative to a package's
-        share directory. Per cent escapes are undone in URIs.
+        directory), ``file:///absolute/path``, ``package://name/path`` relative to a package's
+        share directory, or ``model://name/path`` relative to a directory that is searched for
+        models. Per cent escapes are undone in the first two kinds of URI.
     :param share_directory: gives a package's share directory by its name, and raises LookupError
         for one that is not installed.
-    :return: an absolute path.
-    :raises AddressError: for other URIs, and for packages that are not installed.
+    :param resource_path: finds what a ``model://`` URI names, or returns None.
+    :return: an absolute path; whether a file is there is not looked at.
+    :raises AddressError: for other URIs, and for packages and models that are not there.
     """
     scheme = _SCHEME.match(address)
     if scheme is None:
@@ -54,6 +60,13 @@ def path_from_address(address: str, share_directory: Callable[[str], str]) -> Pa
         except (LookupError, ValueError) as error:
             msg = f'"{address}" names the package "{parts.netloc}", which is not installed here'
             raise AddressError(msg) from error
-    msg = (f'"{address}" is a {parts.scheme}:// URI; it must be a path, or a file:// or '
-           f'package:// URI')
+    if parts.scheme == 'model':
+        found = resource_path(address)
+        if found is None:
+            msg = (f'"{address}" is found neither in resource_paths nor in the directories of '
+                   f'GZ_SIM_RESOURCE_PATH and SDF_PATH')
+            raise AddressError(msg)
+        return Path(found).absolute()
+    msg = (f'"{address}" is a {parts.scheme}:// URI; it must be a path, or a file://, package:// '
+           f'or model:// URI')
     raise AddressError(msg)

@@ -6,8 +6,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from lxml import etree
-
 from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import value_of
@@ -22,13 +20,10 @@ from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import PlacementFrameError
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.errors import UriLookupError
-from sdf_pose_bridge.inclusions import Inclusion
+from sdf_pose_bridge.inclusion import Inclusion
+from sdf_pose_bridge.inclusion import TOP_TAGS
+from sdf_pose_bridge.inclusion import tops_of
 from sdf_pose_bridge.names import ROOT_FRAME
-
-_TOP_TAGS = ('model', 'actor', 'light')
-"""What a file can be included for, in the order in which libsdformat looks."""
-
-_PARAMS = 'experimental:params'
 
 
 class Include(NamedTuple):
@@ -87,6 +82,8 @@ class _IncludeReader:
             return None
         for warning in self._inclusion.warnings:
             self._table.note_warning(warning)
+        for error in self._inclusion.errors:
+            self._table.note_error(error)
         document = self._inclusion.document
         if self._inclusion.error is not None:
             self._table.note_error(self._inclusion.error)
@@ -108,9 +105,6 @@ class _IncludeReader:
             msg = f'"{placement}" is reserved; it cannot be a placement frame'
             self._table.error(ReservedNameError, self._xml, msg, self._parent, 'include')
             placement = ''
-        if next(self._xml.iterchildren(_PARAMS), None) is not None:
-            msg = f'<{_PARAMS}> is not understood; the file is included as it is'
-            self._table.warning(self._xml, msg, self._parent, 'include')
         return Include(
             xml=self._xml,
             document=document,
@@ -149,7 +143,7 @@ class _IncludeReader:
         return self._table.leave_out(self._parent, name, uri)
 
     def _top(self, document: Document) -> XmlElement | None:
-        tops = [xml for xml in document.root.iterchildren(etree.Element) if xml.tag in _TOP_TAGS]
+        tops = tops_of(document)
         if not tops:
             msg = f'{document.path} cannot be included: no model, light or actor is at its top'
             self._table.error(ElementMissingError, self._xml, msg, self._parent, 'include/uri')
@@ -159,9 +153,10 @@ class _IncludeReader:
             msg = f'{document.path} has more than one element at its top: {names}'
             self._table.error(
                 ElementIncorrectTypeError, self._xml, msg, self._parent, 'include/uri')
-        top = min(tops, key=lambda xml: _TOP_TAGS.index(str(xml.tag)))
-        with self._table.reading(document):
-            self._table.check_top_pose(top, self._parent)
+        top = min(tops, key=lambda xml: TOP_TAGS.index(str(xml.tag)))
+        if top not in document.origins:  # what is included there is placed where this is included
+            with self._table.reading(document):
+                self._table.check_top_pose(top, self._parent)
         return top
 
     def _value(self, tag: str) -> str:

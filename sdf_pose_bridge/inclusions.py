@@ -12,14 +12,20 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import document_from_file
 from sdf_pose_bridge.document import is_data
 from sdf_pose_bridge.document import value_of
 from sdf_pose_bridge.document import XmlElement
+from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.errors import UriLookupError
+from sdf_pose_bridge.expansion import expanded
+from sdf_pose_bridge.include_params import apply_params
+from sdf_pose_bridge.include_params import params_of
+from sdf_pose_bridge.inclusion import Inclusion
+from sdf_pose_bridge.inclusion import is_merge
 from sdf_pose_bridge.manifest import model_file_from_directory
 from sdf_pose_bridge.resources import ResourceFinder
 from sdf_pose_bridge.versions import upgrade
@@ -29,18 +35,6 @@ DEEPEST = 64
 
 _INCLUDES = etree.XPath('//include')
 _HOLDERS = frozenset({'sdf', 'world', 'model'})
-
-
-class Inclusion(NamedTuple):
-    """What an ``<include>`` stands for."""
-
-    document: Document | None
-    """The file that was read; None if there is none."""
-    reason: str = ''
-    """Why nothing could be found; empty if something was."""
-    error: SdfError | None = None
-    """What is wrong with the file that was found, or None."""
-    warnings: tuple[SdfWarning, ...] = ()
 
 
 class DocumentSet(NamedTuple):
@@ -56,12 +50,12 @@ class DocumentSet(NamedTuple):
         """
         Return all documents that were read.
 
-        :return: each once, the first one first.
+        :return: each once, the first one first; one that parameters change, in each form.
         """
-        found = {self.document.path: self.document}
+        found = {self.document.root: self.document}
         for inclusion in self.inclusions.values():
             if inclusion.document is not None:
-                found.setdefault(inclusion.document.path, inclusion.document)
+                found.setdefault(inclusion.document.root, inclusion.document)
         return list(found.values())
 
     def merged(self) -> list[Document]:
@@ -70,10 +64,10 @@ class DocumentSet(NamedTuple):
 
         :return: each once, those that are merged into another before that one.
         """
-        found: dict[str, Document] = {}
+        found: dict[XmlElement, Document] = {}
         for include, inclusion in self.inclusions.items():
-            if inclusion.document is not None and boolean_from_text(include.get('merge', '')):
-                found[inclusion.document.path] = inclusion.document
+            if inclusion.document is not None and is_merge(include):
+                found[inclusion.document.root] = inclusion.document
         return list(found.values())
 
 
@@ -88,7 +82,33 @@ def document_set(document: Document, finder: ResourceFinder) -> DocumentSet:
     """
     reader = _Reader(finder)
     reader.read_includes_of(document, (os.path.realpath(document.path),))
-    return DocumentSet(document, reader.inclusions, [document.path, *reader.files])
+    inclusions = reader.inclusions
+    if reader.has_copies:
+        inclusions = _reachable(document, inclusions, {})
+    return DocumentSet(document, inclusions, [document.path, *reader.files])
+
+
+def _reachable(
+    document: Document,
+    inclusions: Mapping[XmlElement, Inclusion],
+    found: dict[XmlElement, Inclusion],
+) -> dict[XmlElement, Inclusion]:
+    """Leave out what only stands in files of which a changed copy is used."""
+    for include in _includes_of(document):
+        if include in inclusions and include not in found:
+            inner = inclusions[include].document
+            if inner is not None:
+                _reachable(inner, inclusions, found)
+            found[include] = inclusions[include]
+    return found
+
+
+def _includes_of(document: Document) -> list[XmlElement]:
+    found: list[XmlElement] = _INCLUDES(document.root)
+    return [
+        include for include in found
+        if (holder := include.getparent()) is not None and holder.tag in _HOLDERS
+        and is_data(include)]
 
 
 class _Reader:
@@ -96,17 +116,21 @@ class _Reader:
     def __init__(self, finder: ResourceFinder) -> None:
         self.inclusions: dict[XmlElement, Inclusion] = {}
         self.files: dict[str, None] = {}
+        self.has_copies = False
         self._finder = finder
         self._known: dict[str, Inclusion] = {}
 
     def read_includes_of(self, document: Document, chain: tuple[str, ...]) -> None:
         upgrade(document)
-        found: list[XmlElement] = _INCLUDES(document.root)
-        for include in found:
-            holder = include.getparent()
-            if holder is not None and holder.tag in _HOLDERS and is_data(include):
+        self._read_new_includes(document, document, chain)
+
+    def _read_new_includes(
+        self, document: Document, source: Document, chain: tuple[str, ...],
+    ) -> None:
+        for include in _includes_of(document):
+            if include not in self.inclusions:
                 # What is included inside comes first in the mapping, for it is read first.
-                self.inclusions[include] = self._inclusion(include, document, chain)
+                self.inclusions[include] = self._inclusion(include, source, chain)
 
     def _inclusion(
         self, include: XmlElement, document: Document, chain: tuple[str, ...],
@@ -132,13 +156,60 @@ class _Reader:
             return Inclusion(None, f'files include one another more than {DEEPEST} levels deep')
         if real not in self._known:
             self._known[real] = self._read(path, (*chain, real))
-        return self._known[real]._replace(warnings=warnings)
+        known = self._known[real]
+        inclusion = known._replace(warnings=(*known.warnings, *warnings))
+        params = params_of(include)
+        if params is None or inclusion.document is None:
+            return inclusion
+        return self._changed(inclusion, inclusion.document, params, document, chain)
+
+    def _changed(
+        self,
+        inclusion: Inclusion,
+        document: Document,
+        params: XmlElement,
+        source: Document,
+        chain: tuple[str, ...],
+    ) -> Inclusion:
+        """Let the parameters of an include, which stand in another file, change a document."""
+        expansion = expanded(document, self.inclusions)
+        self._take_over(expansion.inclusions)
+        changes = apply_params(params, expansion, source)
+        merged = [inner.document for inner in expansion.inclusions.values()
+                  if inner.document is not None and inner.document.origins is expansion.origins]
+        for changed in (expansion.document, *merged):
+            self._read_new_includes(changed, source, chain)
+        return inclusion._replace(
+            document=expansion.document,
+            errors=(*inclusion.errors, *expansion.errors, *changes.errors),
+            warnings=(*inclusion.warnings, *expansion.warnings, *changes.warnings))
+
+    def _take_over(self, inclusions: Mapping[XmlElement, Inclusion]) -> None:
+        self.has_copies = True
+        self.inclusions.update(inclusions)
 
     def _read(self, path: str, chain: tuple[str, ...]) -> Inclusion:
         self.files[path] = None
         try:
             document = document_from_file(path)
             self.read_includes_of(document, chain)
-        except SdfError as error:
-            return Inclusion(None, error=error)
-        return Inclusion(document)
+        except SdfError as failure:
+            return Inclusion(None, error=failure)
+        if next(document.root.iterchildren('include'), None) is None:
+            return Inclusion(document)
+        # Only what stands at the top can be included, so what is included there has to be there.
+        expansion = expanded(document, self.inclusions)
+        self._take_over(expansion.inclusions)
+        errors = [
+            error for include, left in expansion.inclusions.items()
+            if include.getparent() is expansion.document.root
+            and (error := _error_of(include, left, path)) is not None]
+        return Inclusion(
+            expansion.document, errors=(*expansion.errors, *errors), warnings=expansion.warnings)
+
+
+def _error_of(include: XmlElement, inclusion: Inclusion, path: str) -> SdfError | None:
+    if inclusion.document is not None or inclusion.error is not None:
+        return inclusion.error
+    msg = f'the file cannot be included: {inclusion.reason}'
+    return UriLookupError(msg, Place(path, include.sourceline or 0, '/sdf/include/uri'))

@@ -33,7 +33,8 @@ PARAMETERS = (
     _Declaration(
         'sdf_file', '',
         'The SDFormat file to publish.',
-        'required: a path, a file:// URI, or a package:// URI as in package://name/worlds/cell.sdf',
+        'required: the path of a file or of a model directory, or a file://, package:// or '
+        'model:// URI, such as package://name/worlds/cell.sdf',
     ),
     _Declaration(
         'root_frame', 'world',
@@ -90,6 +91,12 @@ PARAMETERS = (
         'Directories searched for model:// and relative URIs before those that '
         'GZ_SIM_RESOURCE_PATH and SDF_PATH name.',
         'paths of directories; empty ones are passed over',
+    ),
+    _Declaration(
+        'on_missing_include', 'error',
+        'What to do about an include that cannot be found: "error" refuses the file, "skip" '
+        'leaves the include out with a warning.',
+        'one of error, skip',
     ),
 )
 """All parameters, in the order in which they are explained to people."""

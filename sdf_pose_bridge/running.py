@@ -21,11 +21,11 @@ from rclpy.utilities import remove_ros_args
 
 from sdf_pose_bridge.bridge import StopRequest
 from sdf_pose_bridge.bridge import USAGE
+from sdf_pose_bridge.content import content_from_settings
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.file_address import AddressError
 from sdf_pose_bridge.log_lines import lines_from_error
 from sdf_pose_bridge.log_lines import lines_from_warnings
-from sdf_pose_bridge.node import content_from_settings
 from sdf_pose_bridge.node import NODE_NAME
 from sdf_pose_bridge.node import SdfPoseBridge
 from sdf_pose_bridge.parameters import settings_from_node

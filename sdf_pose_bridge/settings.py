@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 from typing import TypeVar
 
+from sdf_pose_bridge.loading import MissingInclude
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.tf_names import FrameNames
 from sdf_pose_bridge.tf_tree import AnchorModels
@@ -55,6 +56,8 @@ class Settings:
     """Path or URI of the file."""
     resource_paths: tuple[Path, ...]
     """Directories in which included models are looked for first."""
+    on_missing_include: MissingInclude
+    """What to do about an include that cannot be found."""
     tf_options: TfOptions
     """What becomes a frame, and what it is called."""
     pose_topics: tuple[str, ...]
@@ -75,6 +78,7 @@ def settings_from_values(values: Mapping[str, object]) -> Settings:
         sdf_file=judge.sdf_file(),
         resource_paths=tuple(
             Path(folder).expanduser() for folder in judge.texts('resource_paths') if folder),
+        on_missing_include=judge.choice('on_missing_include', MissingInclude),
         tf_options=TfOptions(
             root_frame=judge.root_frame(),
             anchor_models=judge.choice('anchor_models', AnchorModels),

@@ -152,7 +152,8 @@ class _Check:
             return
         steps = [step(str(e.tag), name) if (name := e.get('name')) else str(e.tag)
                  for e in (xml, *xml.iterancestors())]
-        place = Place(self._document.path, xml.sourceline or 0, '/' + '/'.join(reversed(steps)))
+        file = self._document.origin(xml).path
+        place = Place(file, xml.sourceline or 0, '/' + '/'.join(reversed(steps)))
         self._problems.error(error_class(message, place))
 
 

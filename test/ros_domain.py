@@ -12,14 +12,16 @@ def claimed_domain():
     """
     Claim a ROS domain until the context ends.
 
-    Domain d has the 250 UDP ports from 7400 + 250 d; the middleware leaves the sixth of them alone,
-    so that holding it keeps other tests out, in this process and in others.
+    Domain d has the 250 UDP ports from 7400 + 250 d; the middleware leaves the sixth of them
+    alone, so that holding it keeps other tests out, in this process and in others.
     """
     for domain in random.sample(range(1, 101), 100):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as claim:
-            with contextlib.suppress(OSError):
+            try:
                 claim.bind(('127.0.0.1', 7405 + 250 * domain))
-                yield domain
-                return
+            except OSError:
+                continue
+            yield domain
+            return
     msg = 'all ROS domains from 1 to 100 are taken'
     raise RuntimeError(msg)

@@ -9,13 +9,13 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from rclpy.logging import get_logger  # noqa: E402
+from rclpy.logging import get_logger
 
-from sdf_pose_bridge.conversion_services import answer_to_convert_poses  # noqa: E402
-from sdf_pose_bridge.conversion_services import answer_to_convert_rotation  # noqa: E402
-from sdf_pose_bridge.conversion_services import never_raising  # noqa: E402
-from sdf_pose_bridge_interfaces.srv import ConvertPoses  # noqa: E402
-from sdf_pose_bridge_interfaces.srv import ConvertRotation  # noqa: E402
+from sdf_pose_bridge.conversion_services import answer_to_convert_poses
+from sdf_pose_bridge.conversion_services import answer_to_convert_rotation
+from sdf_pose_bridge.conversion_services import never_raising
+from sdf_pose_bridge_interfaces.srv import ConvertPoses
+from sdf_pose_bridge_interfaces.srv import ConvertRotation
 
 
 def convert_rotation(given=0, rpy=(0.0, 0.0, 0.0), quat_xyzw=(0.0, 0.0, 0.0, 1.0), degrees=False):
@@ -64,7 +64,8 @@ def test_both_representations_are_answered():
     response = convert_rotation(rpy=(0.0, 0.0, 90.0), degrees=True)
     assert (response.success, response.message) == (True, '')
     turn = response.quaternion
-    assert (turn.x, turn.y, turn.z, turn.w) == pytest.approx((0, 0, math.sqrt(0.5), math.sqrt(0.5)))
+    half = math.sqrt(0.5)
+    assert (turn.x, turn.y, turn.z, turn.w) == pytest.approx((0.0, 0.0, half, half))
     assert (response.rpy.x, response.rpy.y, response.rpy.z) == (0.0, 0.0, 90.0)
     assert not response.gimbal_lock
 

@@ -97,6 +97,13 @@ def test_the_text_of_another_file_is_not_taken(tmp_path):
         '<link name="l"><pose>&e;</pose></link>')
 
 
+def test_what_an_entity_names_is_not_even_opened(tmp_path):
+    # If it were, the file that is missing would be what the message tells of.
+    text = f'<!DOCTYPE sdf [<!ENTITY e SYSTEM "{(tmp_path / "none").as_uri()}">]>' + model_file(
+        '<link name="l"><pose>&e;</pose></link>')
+    assert 'declares entities' in only_error(text).message
+
+
 def test_an_entity_in_a_pose_is_not_passed_over():
     assert refused_with_entity(
         '<!ENTITY e "1 2 3 0 0 0">', '<link name="l"><pose>&e;</pose></link>')
@@ -129,7 +136,7 @@ def test_nothing_is_asked_for_over_the_network():
 
 
 def test_bottomless_files_are_refused():
-    text = '<sdf version="1.9">' + '<model name="m">' * 50_000
+    text = '<sdf version="1.9">' + '<model name="m">' * 1000 + '</model>' * 1000 + '</sdf>'
     assert codes_of(text) == ['FILE_READ']
 
 
@@ -226,6 +233,7 @@ def test_text_that_is_decoded_already_is_not_decoded_again(encoding):
     ('1 <x/>2', '1 '),
     ('<x/>1 2', ''),
     ('<!-- c --><x/>1 2', ''),
+    ('<x/><!-- c -->1 2', ''),
     ('<![CDATA[1 2]]>', '1 2'),
     ('1&#32;2', '1 2'),
     ('', ''),

@@ -104,6 +104,15 @@ def test_a_name_holds_the_separator(text):
     assert codes_of(text)[0] == 'RESERVED_NAME'
 
 
+def test_the_name_of_an_include_holds_the_separator(tmp_path):
+    (tmp_path / 'n.sdf').write_text(model_file(LINK))
+    include = '<include><uri>n.sdf</uri><name>a::b</name></include>'
+    (tmp_path / 'w.sdf').write_text(world_file(include))
+    with pytest.raises(sdf_pose_bridge.SdfError) as caught:
+        sdf_pose_bridge.load(tmp_path / 'w.sdf')
+    assert caught.value.code == 'RESERVED_NAME'
+
+
 def test_what_is_in_a_plugin_is_not_looked_at():
     scene = scene_of(model_file(
         LINK + '<plugin name="p" filename="f"><link name="a::b"><pose>no</pose></link>'

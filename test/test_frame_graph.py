@@ -145,7 +145,7 @@ def test_a_ring_is_spelled_out():
 def test_a_ring_is_told_once_at_its_first_element():
     frames = '\n'.join(
         posed('frame', name, '', reference) for name, reference in
-        [('tail', 'p'), ('p', 'q'), ('q', 'p'), ('tail2', 'tail')])
+        [('tail', 'q'), ('p', 'q'), ('q', 'p'), ('tail2', 'tail')])
     error = only_error(model_file(A + '\n' + frames))
     assert error.line == 3
     assert error.element == '/sdf/model[@name="m"]/frame[@name="p"]'
@@ -230,6 +230,15 @@ def test_the_canonical_link_of_a_static_model_is_not_checked():
 def test_the_canonical_link(content, canonical, link):
     scene = scene_of(model_file(content, attributes=f'canonical_link="{canonical}"'))
     assert name_at(scene, scene.canonical_links, 'm') == link
+
+
+def test_the_canonical_link_may_be_in_a_static_model():
+    scene = scene_of(model_file(
+        '<model name="n"><static>1</static><link name="l"/><frame name="f"/></model>'
+        '<frame name="a" attached_to="n::f"/><frame name="b"/>' + fixed_joint('j', 'a', 'b')))
+    assert name_at(scene, scene.canonical_links, 'm') == 'm::n::l'
+    assert name_at(scene, scene.bodies, 'm::b') == 'm::n::l'
+    assert name_at(scene, scene.bodies, 'm::a') == 'm::n'
 
 
 @pytest.mark.parametrize('canonical', ['', 'b', 'f'])

@@ -53,7 +53,9 @@ def test_the_child_is_unknown(place):
 
 @everywhere
 def test_the_child_is_the_world(place):
-    assert codes_of(place(fixed_joint('j', 'a', 'world'))) == ['JOINT_CHILD_LINK_INVALID']
+    error = only_error(place(fixed_joint('j', 'a', 'world')))
+    assert error.code == 'JOINT_CHILD_LINK_INVALID'
+    assert 'only its parent' in error.message
 
 
 @everywhere
@@ -91,7 +93,8 @@ def test_an_axis_is_expressed_in_an_unknown_frame(place):
 
 
 def test_the_second_axis_is_checked_too():
-    axis = '<axis2><xyz expressed_in="zzz">1 0 0</xyz></axis2>'
+    axis = ('<axis><xyz expressed_in="a">1 0 0</xyz></axis>'
+            '<axis2><xyz expressed_in="zzz">1 0 0</xyz></axis2>')
     assert codes_of(in_top_model(fixed_joint('j', 'a', 'b', axis))) == [
         'JOINT_AXIS_EXPRESSED_IN_INVALID']
 

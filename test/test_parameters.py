@@ -6,41 +6,36 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from rclpy.parameter import Parameter  # noqa: E402
+from rclpy.parameter import Parameter
 
-from sdf_pose_bridge.parameters import PARAMETERS  # noqa: E402
-from sdf_pose_bridge.parameters import settings_from_node  # noqa: E402
-from sdf_pose_bridge.settings import SettingsError  # noqa: E402
-from sdf_pose_bridge.tf_tree import TfOptions  # noqa: E402
+from sdf_pose_bridge.parameters import PARAMETERS
+from sdf_pose_bridge.parameters import settings_from_node
+from sdf_pose_bridge.settings import SettingsError
+from sdf_pose_bridge.tf_tree import TfOptions
 
 FILE = ('-p', 'sdf_file:=cell.sdf')
 
 
 @pytest.mark.parametrize(('name', 'value', 'sentence'), [
-    ('sdf_file', '5', 'parameter sdf_file is 5, which is an integer; it must be a string, so '
-                      'quote it twice: -p "sdf_file:=\'5\'"'),
-    ('model', 'true', 'parameter model is True, which is true or false; it must be a string'),
-    ('optical_frames', 'maybe', 'parameter optical_frames is maybe, which is a string; it must '
-                                'be true or false'),
-    ('kinds', 'link', 'parameter kinds is link, which is a string; it must be a list of strings: '
-                      '-p "kinds:=[\'link\']"'),
-    ('pose_topics', '[1, 2]', 'parameter pose_topics is [1, 2], which is a list of integers; it '
-                              'must be a list of strings'),
-    ('resource_paths', '[0.5]', 'parameter resource_paths is [0.5], which is a list of numbers; '
-                                'it must be a list of strings'),
-    ('anchor_models', 'some', 'parameter anchor_models is "some"; it must be one of'),
-    ('kinds', '[]', 'parameter kinds is []; it must be at least one of'),
+    ('sdf_file', '5', 'is 5, which is an integer; it must be a string, so quote it twice: '),
+    ('model', 'true', 'is True, which is true or false; it must be a string, so quote it twice'),
+    ('optical_frames', 'maybe', 'is maybe, which is a string; it must be true or false'),
+    ('kinds', 'link', 'is link, which is a string; it must be a list of strings: -p "kinds:=['),
+    ('pose_topics', '[1, 2]', 'is [1, 2], which is a list of integers; it must be a list of '),
+    ('resource_paths', '[0.5]', 'is [0.5], which is a list of numbers; it must be a list of '),
+    ('anchor_models', 'some', 'is "some"; it must be one of all, static, none'),
+    ('kinds', '[]', 'is []; it must be at least one of'),
 ])
 def test_a_wrong_value_is_named_once_with_its_rule(make_node, name, value, sentence):
     node = make_node('bridge', '-p', 'sdf_file:=cell.sdf', '-p', f'{name}:={value}')
     with pytest.raises(SettingsError) as refusal:
         settings_from_node(node)
     (problem,) = refusal.value.problems
-    assert problem.sentence.startswith(sentence)
+    assert problem.sentence.startswith(f'parameter {name} {sentence}')
 
 
 def test_without_a_file_the_sentence_says_how_to_name_one(make_node):
-    with pytest.raises(SettingsError, match='-p sdf_file:=cell.sdf'):
+    with pytest.raises(SettingsError, match=r'-p sdf_file:=cell\.sdf'):
         settings_from_node(make_node('bridge'))
 
 

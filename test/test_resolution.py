@@ -24,7 +24,8 @@ def degrees(values):
     return f'<pose degrees="true">{" ".join(map(str, values))}</pose>'
 
 
-STEP = (0.5, -0.25, 1.0, 20, -35, 50)
+def step(i, j):
+    return (0.5, -0.25 * j, 1.0, 20 * i, -35 + j, 50)
 
 
 @pytest.mark.parametrize('breadth', [1, 10, 40])
@@ -33,17 +34,20 @@ def test_chains_of_any_depth_and_breadth(breadth):
     depth = 12
     frames = ''.join(
         f'<frame name="f{i}_{j}" attached_to="{"l" if i == 0 else f"f{i - 1}_{j}"}">'
-        f'{degrees(STEP)}</frame>'
+        f'{degrees(step(i, j))}</frame>'
         for j in range(breadth) for i in range(depth))
     scene = scene_of(model_file('<link name="l"/>' + frames))
-    matrix = np.linalg.matrix_power(matrix_from_degrees(*STEP), depth)
     for j in range(breadth):
-        assert_same_pose(scene.pose(f'm::f{depth - 1}_{j}'), matrix)
+        matrix = np.eye(4)
+        for i in range(depth):
+            matrix = matrix @ matrix_from_degrees(*step(i, j))
+            assert_same_pose(scene.pose(f'm::f{i}_{j}'), matrix)
 
 
 def test_orientations_stay_unit_over_long_chains():
     frames = ''.join(
-        f'<frame name="f{i}" attached_to="{f"f{i - 1}" if i else "l"}">{degrees(STEP)}</frame>'
+        f'<frame name="f{i}" attached_to="{f"f{i - 1}" if i else "l"}">'
+        f'{degrees(step(i, 1))}</frame>'
         for i in range(2000))
     scene = scene_of(model_file('<link name="l"/>' + frames))
     norms = np.linalg.norm(scene.poses[:, 3:], axis=1)

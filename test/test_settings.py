@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from sdf_pose_bridge.loading import MissingInclude
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.settings import settings_from_values
 from sdf_pose_bridge.settings import SettingsError
@@ -17,7 +18,7 @@ VALUES = {
     'sdf_file': 'cell.sdf', 'root_frame': 'world', 'anchor_models': 'all', 'model': '',
     'frame_names': 'auto', 'frame_separator': '/', 'frame_prefix': '',
     'kinds': ['model', 'link', 'frame', 'sensor'], 'pose_topics': ['*'], 'optical_frames': True,
-    'resource_paths': [],
+    'resource_paths': [], 'on_missing_include': 'error',
 }
 
 
@@ -28,6 +29,7 @@ VALUES = {
     ('root_frame', 'a\nb', r'parameter root_frame is "a\nb"; it must be without control'),
     ('anchor_models', 'some',
      'parameter anchor_models is "some"; it must be one of all, static, none'),
+    ('on_missing_include', 'ignore', 'it must be one of error, skip'),
     ('frame_names', 'Auto', 'it must be one of auto, scoped, relative'),
     ('frame_separator', '', 'parameter frame_separator is ""; it must be at least one'),
     ('frame_prefix', '/robot/', 'parameter frame_prefix is "/robot/"; it must be without a'),
@@ -59,10 +61,12 @@ def test_values_reach_the_settings():
         'frame_names': 'scoped', 'frame_separator': '.', 'frame_prefix': 'left_',
         'kinds': ['joint', 'joint', 'light'], 'pose_topics': ['r/*', 'tool'],
         'optical_frames': False, 'resource_paths': ['/models', '', '/more'],
+        'on_missing_include': 'skip',
     })
     assert settings.sdf_file == 'a.sdf'
     assert settings.pose_topics == ('r/*', 'tool')
     assert settings.resource_paths == (Path('/models'), Path('/more'))
+    assert settings.on_missing_include is MissingInclude.SKIP
     assert settings.tf_options == TfOptions(
         root_frame='map', anchor_models=AnchorModels.STATIC, model='r::arm',
         frame_names=FrameNames.SCOPED, frame_separator='.', frame_prefix='left_',

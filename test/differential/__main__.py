@@ -40,8 +40,8 @@ def main() -> int:
     parser.add_argument('--reference-only', action='store_true',
                         help='only check the scenes themselves: libsdformat has to accept the '
                         'valid ones and to refuse the broken ones')
-    parser.add_argument('--show', type=int, default=10,
-                        help='how many differences to cut down and write (default: 10)')
+    parser.add_argument('--show', type=int, default=5,
+                        help='how many differences to cut down and write (default: 5)')
     parser.add_argument('--folder', type=Path, default=FOLDER,
                         help='for the compiled program and for scenes that differ')
     arguments = parser.parse_args()

@@ -123,7 +123,7 @@ def built_reference(folder: Path) -> Reference:
         msg = f'libsdformat 12 or later is not installed; {advice}'
         raise ReferenceMissingError(msg)
     version = found.stdout.strip()
-    program = folder / f'print_poses-{version}'
+    program = folder.resolve() / f'print_poses-{version}'
     if not program.exists() or program.stat().st_mtime < SOURCE.stat().st_mtime:
         folder.mkdir(parents=True, exist_ok=True)
         flags = subprocess.run([pkg_config, '--cflags', '--libs', release], capture_output=True,

@@ -61,17 +61,27 @@ class BridgeProcess:
 
     def wait_until_handling(self, number):
         """Wait until the process has a handler of its own for a signal."""
+        self._wait_for_status(
+            lambda status: int(status['SigCgt'], 16) >> (number - 1) & 1,
+            f'a handler of signal {number}')
+
+    def wait_until_sleeping(self):
+        """Wait until the process waits for something itself."""
+        self._wait_for_status(lambda status: status['State'] == 'S', 'sleep')
+
+    def _wait_for_status(self, condition, what):
         deadline = time.monotonic() + SECONDS
         tick = threading.Event()
-        while not self._caught_signals() >> (number - 1) & 1:
+        while not condition(self._status()):
             assert self._process.poll() is None, '\n'.join(self.lines)
-            assert time.monotonic() < deadline, f'signal {number} is never handled'
+            assert time.monotonic() < deadline, f'waited in vain for {what}'
             tick.wait(0.001)
 
-    def _caught_signals(self):
-        status = Path(f'/proc/{self.pid}/status').read_text(encoding='ascii')
-        return int(next(
-            line.split()[1] for line in status.splitlines() if line.startswith('SigCgt')), 16)
+    def _status(self):
+        text = Path(f'/proc/{self.pid}/status').read_text(encoding='ascii')
+        return {
+            key: value.split()[0] for key, _, value in (
+                line.partition(':') for line in text.splitlines()) if value.strip()}
 
     def send(self, number):
         self._process.send_signal(number)

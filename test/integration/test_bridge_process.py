@@ -122,9 +122,8 @@ def test_a_signal_ends_it_well_while_it_reads(start_bridge, tmp_path, number):
     pipe = tmp_path / 'endless.sdf'
     os.mkfifo(pipe)
     bridge = start_bridge('--ros-args', '-p', f'sdf_file:={pipe}')
-    # Opens when the other side has, and while it is open the other side waits for the end.
-    with pipe.open('w', encoding='utf-8') as writer:
-        writer.write('<sdf version="1.10">')
-        writer.flush()
+    # Opens when the other side has; that one then reads, and nothing ever comes.
+    with pipe.open('wb'):
+        bridge.wait_until_sleeping()
         bridge.send(number)
         assert_ended_well(bridge)

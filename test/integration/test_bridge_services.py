@@ -10,8 +10,8 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from sdf_pose_bridge_interfaces.srv import ConvertPoses  # noqa: E402
-from sdf_pose_bridge_interfaces.srv import ConvertRotation  # noqa: E402
+from sdf_pose_bridge_interfaces.srv import ConvertPoses
+from sdf_pose_bridge_interfaces.srv import ConvertRotation
 
 ROTATION = '/sdf_pose_bridge/convert_rotation'
 POSES = '/sdf_pose_bridge/convert_poses'

@@ -1,0 +1,128 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The core needs no ROS: neither in its sources, nor in a process where there is none."""
+
+import ast
+import importlib.util
+import json
+from pathlib import Path
+import re
+import subprocess
+import sys
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = ROOT / 'sdf_pose_bridge'
+ROS_HALF = {
+    'bridge', 'content', 'conversion_services', 'messages', 'node', 'parameters', 'publications',
+    'running',
+}
+"""The modules of the node; all others are the core and the command line."""
+
+CORE = sorted(
+    path.stem for path in PACKAGE.glob('*.py')
+    if path.stem not in ROS_HALF and not path.stem.startswith('__'))
+ROS_NAME = re.compile(
+    r'(rclpy|rcl|rosidl|rpyutils|ament|launch|tf2|builtin_interfaces|action_msgs)(_\w+)?'
+    r'|\w+_(msgs|srvs|interfaces)')
+FOUND_ROS = """
+import importlib.util, sys
+found = [name for name in sys.modules if re.fullmatch(pattern, name.partition('.')[0])]
+found += [name for name in ('rclpy', 'tf2_msgs', 'ament_index_python')
+          if importlib.util.find_spec(name)]
+"""
+
+
+def imported_names(module):
+    """Return the absolute names that a module imports anywhere in its source."""
+    tree = ast.parse((PACKAGE / f'{module}.py').read_text())
+    names = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            names |= {f'{node.module}.{alias.name}' for alias in node.names}
+    return names
+
+
+@pytest.fixture(scope='module')
+def bare_folders(tmp_path_factory):
+    """Folders to import from that hold the package, numpy and lxml, and nothing else."""
+    folder = tmp_path_factory.mktemp('bare')
+    (folder / 'sdf_pose_bridge').symlink_to(PACKAGE)
+    for name in ('numpy', 'lxml'):
+        package = Path(importlib.util.find_spec(name).origin).parent
+        for path in (package, package.with_name(f'{name}.libs')):
+            if path.is_dir():
+                (folder / path.name).symlink_to(path)
+    return [str(folder)]
+
+
+def run_bare(folders, program):
+    """Run a program in an interpreter that finds the standard library and some folders only."""
+    start = f'import re, sys\nsys.path[:0] = {folders!r}\npattern = {ROS_NAME.pattern!r}\n'
+    done = subprocess.run(
+        [sys.executable, '-I', '-S', '-B', '-c', start + program],
+        capture_output=True, text=True, env={}, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize('module', CORE)
+def test_the_core_imports_nothing_of_ros(module):
+    ros = {name for name in imported_names(module) if ROS_NAME.fullmatch(name.partition('.')[0])}
+    assert ros - {'sdf_pose_bridge'} == set()
+
+
+@pytest.mark.parametrize('module', [*CORE, '__init__', '__main__'])
+def test_the_core_imports_nothing_of_the_node(module):
+    own = {
+        name.split('.')[1] for name in imported_names(module)
+        if name.startswith('sdf_pose_bridge.')}
+    assert own & ROS_HALF == set()
+
+
+def test_the_list_of_the_node_is_up_to_date():
+    assert {module for module in ROS_HALF if not (PACKAGE / f'{module}.py').is_file()} == set()
+
+
+def test_a_file_is_loaded_without_ros(bare_folders):
+    out = run_bare(bare_folders, f"""
+import sdf_pose_bridge
+scene = sdf_pose_bridge.load({str(ROOT / 'examples' / 'work_cell.sdf')!r})
+{FOUND_ROS}
+import json
+print(json.dumps([len(scene.names), scene.pose('robot::tool0', 'table'), found]))
+""")
+    count, pose, found = json.loads(out)
+    assert found == []
+    assert count > 50
+    assert len(pose) == 7
+
+
+def test_every_module_of_the_core_is_imported_without_ros(bare_folders):
+    out = run_bare(bare_folders, f"""
+import importlib
+for module in {CORE!r}:
+    importlib.import_module('sdf_pose_bridge.' + module)
+{FOUND_ROS}
+print(found)
+""")
+    assert out.strip() == '[]'
+
+
+def test_the_command_line_runs_without_ros(bare_folders):
+    out = run_bare(bare_folders, f"""
+import runpy
+sys.argv = ['sdf_pose', 'poses', '--json', {str(ROOT / 'examples' / 'mobile_robot.sdf')!r}]
+try:
+    runpy.run_module('sdf_pose_bridge', run_name='__main__')
+except SystemExit as end:
+    assert not end.code, end.code
+{FOUND_ROS}
+assert not found, found
+""")
+    answer = json.loads(out)
+    assert answer['ok']
+    assert any(element['name'] == 'mobile_robot::chassis' for element in answer['elements'])
