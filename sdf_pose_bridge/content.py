@@ -16,6 +16,7 @@ from sdf_pose_bridge.file_address import path_from_address
 from sdf_pose_bridge.loading import load
 from sdf_pose_bridge.manifest import model_file_from_directory
 from sdf_pose_bridge.resources import resource_finder
+from sdf_pose_bridge.scene import Scene
 from sdf_pose_bridge.settings import Settings
 from sdf_pose_bridge.tf_tree import tf_tree_from_scene
 from sdf_pose_bridge.tf_tree import TfTree
@@ -25,10 +26,16 @@ class Content(NamedTuple):
     """What a file holds, as far as it is to be published."""
 
     path: Path
+    scene: Scene
     tree: TfTree
     warnings: tuple[SdfWarning, ...]
     seconds: float
     """How long it took to get here from the file."""
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """All files that were read, which tell when to read again."""
+        return self.scene.files
 
 
 def content_from_settings(settings: Settings) -> Content:
@@ -47,7 +54,8 @@ def content_from_settings(settings: Settings) -> Content:
         on_missing_include=settings.on_missing_include)
     tree = tf_tree_from_scene(scene, settings.tf_options)
     return Content(
-        path, tree, (*warnings, *scene.warnings, *tree.warnings), time.perf_counter() - begin)
+        path, scene, tree, (*warnings, *scene.warnings, *tree.warnings),
+        time.perf_counter() - begin)
 
 
 def _file_from_settings(settings: Settings) -> tuple[Path, tuple[SdfWarning, ...]]:

@@ -45,6 +45,18 @@ def lines_from_warnings(warnings: Sequence[object]) -> list[str]:
     return lines
 
 
+def names_in_line(names: Sequence[str]) -> str:
+    """
+    Return names for the end of a line.
+
+    :param names: at least one name.
+    :return: the first few of them, and how many more there are.
+    """
+    shown = ', '.join(f'"{name}"' for name in names[:MOST_WARNINGS])
+    rest = len(names) - MOST_WARNINGS
+    return _line(f'{shown} and {rest} more' if rest > 0 else shown)
+
+
 def _line(text: str) -> str:
     # A name in a file may hold a line break, and must not be able to write log lines of its own.
     return _CONTROL.sub(lambda match: match[0].encode('unicode_escape').decode(), text)

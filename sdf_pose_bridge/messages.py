@@ -18,6 +18,7 @@ from geometry_msgs.msg import Vector3
 from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
+from sdf_pose_bridge import poses
 from sdf_pose_bridge.poses import PoseArray
 from sdf_pose_bridge.tf_tree import TfTree
 
@@ -51,6 +52,21 @@ def tf_message_from_transforms(transforms: Sequence[TransformStamped]) -> TFMess
     :return: one message with all of them.
     """
     return TFMessage(transforms=transforms)
+
+
+def pose_stamped(pose: poses.Pose, frame_id: str, stamp: Time) -> PoseStamped:
+    """
+    Return a message with one pose.
+
+    :param pose: pose of something in a frame, in metres, quaternion x y z w.
+    :param frame_id: that frame.
+    :param stamp: the time that it gets.
+    :return: the message.
+    """
+    x, y, z, qx, qy, qz, qw = pose
+    return PoseStamped(
+        header=Header(stamp=stamp, frame_id=frame_id),
+        pose=Pose(position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw)))
 
 
 def poses_from_tree(tree: TfTree, indices: Iterable[int], stamp: Time) -> list[PoseStamped]:

@@ -5,13 +5,20 @@
 from __future__ import annotations
 
 import array
+from collections.abc import Iterable
+from typing import Any
 from typing import NamedTuple
 
+from rcl_interfaces.msg import FloatingPointRange
 from rcl_interfaces.msg import ParameterDescriptor
+from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.exceptions import InvalidParameterTypeException
+from rclpy.exceptions import InvalidParameterValueException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.parameter_service import ParameterService
 
+from sdf_pose_bridge.settings import FASTEST_RATE
 from sdf_pose_bridge.settings import Problem
 from sdf_pose_bridge.settings import PUBLISHED_KINDS
 from sdf_pose_bridge.settings import Settings
@@ -19,7 +26,7 @@ from sdf_pose_bridge.settings import settings_from_values
 from sdf_pose_bridge.settings import SettingsError
 from sdf_pose_bridge.tf_tree import DEFAULT_KINDS
 
-Value = str | bool | list[str]
+Value = str | bool | float | list[str]
 
 
 class _Declaration(NamedTuple):
@@ -93,6 +100,17 @@ PARAMETERS = (
         'paths of directories; empty ones are passed over',
     ),
     _Declaration(
+        'publish_rate', 0.0,
+        'How often everything is published again, in Hz, for listeners that cannot be latched; '
+        '0.0 for once, which is enough for all others.',
+        '0.0 for never, else up to 100.0',
+    ),
+    _Declaration(
+        'watch', True,
+        'Reads the file again when it, or a file that it includes, has changed.',
+        'true or false',
+    ),
+    _Declaration(
         'on_missing_include', 'error',
         'What to do about an include that cannot be found: "error" refuses the file, "skip" '
         'leaves the include out with a warning.',
@@ -102,7 +120,9 @@ PARAMETERS = (
 """All parameters, in the order in which they are explained to people."""
 
 _TYPES = {
-    str: Parameter.Type.STRING, bool: Parameter.Type.BOOL, list: Parameter.Type.STRING_ARRAY}
+    str: Parameter.Type.STRING, bool: Parameter.Type.BOOL, float: Parameter.Type.DOUBLE,
+    list: Parameter.Type.STRING_ARRAY}
+_RATES = FloatingPointRange(from_value=0.0, to_value=FASTEST_RATE)
 _TYPE_WORDS = {
     Parameter.Type.STRING: 'a string', Parameter.Type.BOOL: 'true or false',
     Parameter.Type.INTEGER: 'an integer', Parameter.Type.DOUBLE: 'a number',
@@ -131,6 +151,10 @@ def settings_from_node(node: Node) -> Settings:
         except InvalidParameterTypeException:
             wrong_types[name] = Problem(name, _sentence_on_type(node, declaration))
             values[name] = declaration.default
+        except InvalidParameterValueException as error:
+            sentence = f'parameter {name} must be {declaration.constraint}: {error}'
+            wrong_types[name] = Problem(name, sentence)
+            values[name] = declaration.default
     problems = list(wrong_types.values())
     try:
         settings = settings_from_values(values)
@@ -141,26 +165,61 @@ def settings_from_node(node: Node) -> Settings:
     return settings
 
 
+def changed_settings(node: Node, parameters: Iterable[Parameter]) -> Settings:
+    """
+    Judge what the settings of a node would be after a change.
+
+    :param node: the node, whose parameters are declared.
+    :param parameters: the new values; those of other parameters stay.
+    :return: the settings.
+    :raises SettingsError: if any value breaks its rule, or is no value at all.
+    """
+    names = [declaration.name for declaration in PARAMETERS]
+    values = {name: node.get_parameter(name).value for name in names}
+    values.update({each.name: each.value for each in parameters if each.name in names})
+    missing = [
+        Problem(name, f'parameter {name} cannot be without a value')
+        for name, value in values.items() if value is None]
+    if missing:
+        raise SettingsError(missing)
+    return settings_from_values(values)
+
+
+class SettingTogether(ParameterService):
+    """
+    The parameter services of a node, of which a call takes effect as a whole or not at all.
+
+    rclpy's own set one parameter after the other: a file of parameters would be judged once for
+    each, and the scene be read anew, in states between that nobody asked for.
+    """
+
+    def _set_parameters_callback(self, request: Any, response: Any) -> Any:
+        together = SetParametersAtomically.Response()
+        self._set_parameters_atomically_callback(request, together)
+        response.results = [together.result] * len(request.parameters)
+        return response
+
+
 def _declared(node: Node, declaration: _Declaration) -> object:
     name, default = declaration.name, declaration.default
     type_ = _TYPES[type(default)]
     # rclpy cannot tell the type of an empty list, and takes one from the command line for no value
-    # at all. Such a parameter has to be set once more, so none is read-only from the beginning.
+    # at all. Such a parameter has to be set once more.
     value = node.declare_parameter(
         name, type_ if default == [] else default, _descriptor(declaration)).value
     if value is None:
         value = [] if type_ is Parameter.Type.STRING_ARRAY else default
         node.set_parameters([Parameter(name, type_, value)])
-    node.set_descriptor(name, _descriptor(declaration, read_only=True))
     return value
 
 
-def _descriptor(declaration: _Declaration, *, read_only: bool = False) -> ParameterDescriptor:
+def _descriptor(declaration: _Declaration) -> ParameterDescriptor:
+    is_number = isinstance(declaration.default, float)
     return ParameterDescriptor(
         type=_TYPES[type(declaration.default)].value,
         description=declaration.description,
         additional_constraints=declaration.constraint,
-        read_only=read_only,
+        floating_point_range=[_RATES] if is_number else [],
     )
 
 
@@ -176,4 +235,6 @@ def _sentence_on_type(node: Node, declaration: _Declaration) -> str:
         sentence += f', so quote it twice: -p "{name}:=\'{value}\'"'
     elif given.type_ is Parameter.Type.STRING and wanted is Parameter.Type.STRING_ARRAY:
         sentence += f': -p "{name}:=[\'{value}\']"'
+    elif given.type_ is Parameter.Type.INTEGER and wanted is Parameter.Type.DOUBLE:
+        sentence += f', with a decimal point: -p {name}:={value}.0'
     return sentence

@@ -41,6 +41,7 @@ class Publications:
         self._tf_static = self._publisher(TFMessage, '/tf_static', depth=1)
         self._transforms: Publisher | None = None
         self._poses: dict[str, Publisher] = {}
+        self._last: tuple[TfTree, Sequence[str]] | None = None
 
     def publish(self, tree: TfTree, patterns: Sequence[str]) -> int:
         """
@@ -50,6 +51,7 @@ class Publications:
         :param patterns: glob patterns for the frame ids that get a topic of their own.
         :return: how many transforms were published.
         """
+        self._last = tree, patterns
         stamp = self._node.get_clock().now().to_msg()
         transforms = transforms_from_tree(tree, stamp)
         self._tf_static.publish(tf_message_from_transforms(transforms))
@@ -60,6 +62,11 @@ class Publications:
         for row, message in zip(rows, poses_from_tree(tree, rows, stamp), strict=True):
             self._poses[topics[tree.frame_ids[row]]].publish(message)
         return len(transforms)
+
+    def publish_again(self) -> None:
+        """Publish what was published last once more, with new stamps."""
+        if self._last is not None:
+            self.publish(*self._last)
 
     def _publish_transforms(self, transforms: Sequence[TransformStamped]) -> None:
         # A new publisher each time: what the old one keeps for late joiners is true no longer.

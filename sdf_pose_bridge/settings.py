@@ -20,6 +20,9 @@ from sdf_pose_bridge.tf_tree import TfOptions
 
 Choice = TypeVar('Choice', bound=enum.Enum)
 
+FASTEST_RATE = 100.0
+"""The most often that everything can be published again, in Hz."""
+
 PUBLISHED_KINDS = {
     kind.label: kind for kind in Kind
     if kind not in (Kind.ROOT, Kind.WORLD, Kind.ACTOR)
@@ -62,6 +65,15 @@ class Settings:
     """What becomes a frame, and what it is called."""
     pose_topics: tuple[str, ...]
     """Glob patterns for the frame ids that get a topic of their own."""
+    publish_rate: float
+    """How often everything is published again, in Hz; 0 for once."""
+    watch: bool
+    """Whether the file and what it includes are watched for changes."""
+
+    @property
+    def file_settings(self) -> tuple[object, ...]:
+        """Those that decide what is read and laid out; the rest decides how it is published."""
+        return self.sdf_file, self.resource_paths, self.on_missing_include, self.tf_options
 
 
 def settings_from_values(values: Mapping[str, object]) -> Settings:
@@ -90,6 +102,8 @@ def settings_from_values(values: Mapping[str, object]) -> Settings:
             optical_frames=values['optical_frames'] is True,
         ),
         pose_topics=judge.texts('pose_topics'),
+        publish_rate=judge.publish_rate(),
+        watch=values['watch'] is True,
     )
     if judge.problems:
         raise SettingsError(judge.problems)
@@ -126,6 +140,13 @@ class _Judge:
             return choices(value)
         self._refuse(name, value, f'one of {", ".join(known)}')
         return choices(known[0])
+
+    def publish_rate(self) -> float:
+        rate = self._values['publish_rate']
+        if isinstance(rate, float) and 0.0 <= rate <= FASTEST_RATE:
+            return rate
+        self._refuse('publish_rate', rate, f'from 0.0 to {FASTEST_RATE} Hz')
+        return 0.0
 
     def root_frame(self) -> str:
         name = self.text('root_frame')
