@@ -10,15 +10,21 @@ Usage, with numpy and lxml installed and without ROS::
     scene.pose('robot::arm::tool', relative_to='table')
 """
 
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.errors import UnknownFrameError
-from sdf_pose_bridge.loading import load
-from sdf_pose_bridge.loading import load_text
-from sdf_pose_bridge.names import Kind
-from sdf_pose_bridge.poses import Pose
-from sdf_pose_bridge.scene import Scene
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sdf_pose_bridge.errors import Place
+    from sdf_pose_bridge.errors import SdfError
+    from sdf_pose_bridge.errors import SdfWarning
+    from sdf_pose_bridge.errors import UnknownFrameError
+    from sdf_pose_bridge.loading import load
+    from sdf_pose_bridge.loading import load_text
+    from sdf_pose_bridge.names import Kind
+    from sdf_pose_bridge.poses import Pose
+    from sdf_pose_bridge.scene import Scene
 
 __all__ = [
     'Kind',
@@ -31,3 +37,30 @@ __all__ = [
     'load',
     'load_text',
 ]
+
+_HOMES = {
+    'Kind': 'names',
+    'Place': 'errors',
+    'Pose': 'poses',
+    'Scene': 'scene',
+    'SdfError': 'errors',
+    'SdfWarning': 'errors',
+    'UnknownFrameError': 'errors',
+    'load': 'loading',
+    'load_text': 'loading',
+}
+
+
+def __getattr__(name: str) -> object:
+    # Looked up when they are used: the executable of the node takes signals before anything slow,
+    # such as numpy, is imported.
+    if name not in _HOMES:
+        msg = f'module {__name__!r} has no attribute {name!r}'
+        raise AttributeError(msg)
+    value = getattr(importlib.import_module(f'{__name__}.{_HOMES[name]}'), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

@@ -19,8 +19,6 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
-from sdf_pose_bridge.bridge import StopRequest
-from sdf_pose_bridge.bridge import USAGE
 from sdf_pose_bridge.content import content_from_settings
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.file_address import AddressError
@@ -30,6 +28,14 @@ from sdf_pose_bridge.node import NODE_NAME
 from sdf_pose_bridge.node import SdfPoseBridge
 from sdf_pose_bridge.parameters import settings_from_node
 from sdf_pose_bridge.settings import SettingsError
+from sdf_pose_bridge.stop_request import StopRequest
+
+USAGE = """\
+Publish every frame of an SDFormat file on TF and on topics.
+
+usage: ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=cell.sdf [-p name:=value ...]
+
+"ros2 param describe /sdf_pose_bridge <name>" explains each parameter of the running node."""
 
 
 def run(args: Sequence[str], stop: StopRequest) -> int:
