@@ -21,6 +21,8 @@ from sdf_pose_bridge.poses import Pose
 from sdf_pose_bridge.scene import Scene
 
 _SHOWN_KINDS = tuple(kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD))
+_SHOWN_BY_NAME = {kind.label: kind for kind in _SHOWN_KINDS}
+_KIND_NAMES = ', '.join(_SHOWN_BY_NAME)
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -41,8 +43,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         '--relative-to', metavar='FRAME', default='',
         help='print poses relative to this frame, such as robot::arm::hand')
     parser.add_argument(
-        '--kinds', metavar='KIND', nargs='+', choices=[kind.label for kind in _SHOWN_KINDS],
-        help='print only these kinds: %(choices)s')
+        '--kinds', metavar='KIND[,KIND...]', type=_kinds_from_text, default=_SHOWN_KINDS,
+        help=f'print only these kinds: {_KIND_NAMES}')
     parser.set_defaults(run=run)
 
 
@@ -80,15 +82,24 @@ def run(options: argparse.Namespace) -> int:
     return 0 if is_valid else 1
 
 
+def _kinds_from_text(text: str) -> tuple[Kind, ...]:
+    kinds = []
+    for name in text.split(','):
+        if name not in _SHOWN_BY_NAME:
+            msg = f'"{name}" is no kind of element; known are {_KIND_NAMES}'
+            raise argparse.ArgumentTypeError(msg)
+        kinds.append(_SHOWN_BY_NAME[name])
+    return tuple(kinds)
+
+
 def _rows(scene: Scene, options: argparse.Namespace) -> list[dict[str, Any]]:
-    kinds = options.kinds or [kind.label for kind in _SHOWN_KINDS]
     rows = []
     for index, name in enumerate(scene.names):
-        kind = Kind(scene.kinds[index]).label
-        if kind in kinds:
+        kind = Kind(scene.kinds[index])
+        if kind in options.kinds:
             root = int(scene.roots[index])
             rows.append({
-                'kind': kind,
+                'kind': kind.label,
                 'name': name,
                 'world': scene.world_names.get(root, ''),
                 'pose': list(_pose(scene, index, options.relative_to)),
