@@ -16,6 +16,7 @@ from sdf_pose_bridge.document import value_of
 from sdf_pose_bridge.document import WHITE_SPACE
 from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.element_builder import ElementBuilder
+from sdf_pose_bridge.elements import CAMERA_TYPES
 from sdf_pose_bridge.elements import Elements
 from sdf_pose_bridge.elements import FrameFacts
 from sdf_pose_bridge.elements import JointFacts
@@ -380,10 +381,11 @@ class _ElementReader:
             xml.iterchildren('gz_frame_id'), xml.iterchildren('ignition_frame_id'))
         camera = next(xml.iterchildren('camera'), None)
         optical = None if camera is None else next(camera.iterchildren('optical_frame_id'), None)
+        sensor_type = xml.get('type', '').strip(WHITE_SPACE)
         self._table.set_facts(sensor, SensorFacts(
-            xml.get('type', '').strip(WHITE_SPACE),
+            sensor_type,
             next(filter(None, map(value_of, frame_ids)), ''),
-            camera is not None,
+            camera is not None or sensor_type in CAMERA_TYPES,
             '' if optical is None else value_of(optical)))
 
     def _leaf(self, kind: Kind, xml: XmlElement, parent: int, scope: _Scope) -> int | None:

@@ -19,6 +19,14 @@ NOWHERE = -1
 """Stands for an index where there is none."""
 
 
+CAMERA_TYPES = frozenset({
+    'boundingbox', 'boundingbox_camera', 'camera', 'depth', 'depth_camera', 'multicamera', 'rgbd',
+    'rgbd_camera', 'segmentation', 'segmentation_camera', 'thermal', 'thermal_camera',
+    'wideanglecamera',
+})
+"""Types of sensors that take images."""
+
+
 class Reference(NamedTuple):
     """A name that an element uses, as written, and where."""
 
@@ -64,7 +72,7 @@ class SensorFacts(NamedTuple):
     frame_id: str
     """The frame id that Gazebo stamps on its messages, where the file sets one; else empty."""
     is_camera: bool
-    """True if it has a ``<camera>``, so that an optical frame belongs to it."""
+    """True if its type is a camera's or it has a ``<camera>``: an optical frame belongs to it."""
     optical_frame_id: str
     """Name of the optical frame, where the file sets one; else empty."""
 
