@@ -5,7 +5,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
+from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PoseStamped
 from geometry_msgs.msg import TransformStamped
 from rclpy.event_handler import PublisherEventCallbacks
@@ -41,7 +43,8 @@ class Publications:
         self._tf_static = self._publisher(TFMessage, '/tf_static', depth=1)
         self._transforms: Publisher | None = None
         self._poses: dict[str, Publisher] = {}
-        self._last: tuple[TfTree, Sequence[str]] | None = None
+        self._stamp = Time()
+        self._sent: list[tuple[Publisher, Any]] = []
 
     def publish(self, tree: TfTree, patterns: Sequence[str]) -> int:
         """
@@ -51,31 +54,39 @@ class Publications:
         :param patterns: glob patterns for the frame ids that get a topic of their own.
         :return: how many transforms were published.
         """
-        self._last = tree, patterns
-        stamp = self._node.get_clock().now().to_msg()
-        transforms = transforms_from_tree(tree, stamp)
-        self._tf_static.publish(tf_message_from_transforms(transforms))
-        self._publish_transforms(transforms)
+        self._stamp = self._node.get_clock().now().to_msg()
+        transforms = transforms_from_tree(tree, self._stamp)
+        self._replace_transforms_publisher(len(transforms))
+        self._sent = [
+            (self._tf_static, tf_message_from_transforms(transforms)),
+            *((self._transforms, transform) for transform in transforms)]
         topics = self._topics_from_tree(tree, patterns)
         self._replace_pose_publishers(topics)
         rows = [row for row, frame_id in enumerate(tree.frame_ids) if frame_id in topics]
-        for row, message in zip(rows, poses_from_tree(tree, rows, stamp), strict=True):
-            self._poses[topics[tree.frame_ids[row]]].publish(message)
+        messages = poses_from_tree(tree, rows, self._stamp)
+        self._sent += [
+            (self._poses[topics[tree.frame_ids[row]]], message)
+            for row, message in zip(rows, messages, strict=True)]
+        self._send()
         return len(transforms)
 
     def publish_again(self) -> None:
         """Publish what was published last once more, with new stamps."""
-        if self._last is not None:
-            self.publish(*self._last)
+        now = self._node.get_clock().now().to_msg()
+        # All messages hold this one stamp.
+        self._stamp.sec, self._stamp.nanosec = now.sec, now.nanosec
+        self._send()
 
-    def _publish_transforms(self, transforms: Sequence[TransformStamped]) -> None:
+    def _send(self) -> None:
+        for publisher, message in self._sent:
+            publisher.publish(message)
+
+    def _replace_transforms_publisher(self, count: int) -> None:
         # A new publisher each time: what the old one keeps for late joiners is true no longer.
         if self._transforms is not None:
             self._node.destroy_publisher(self._transforms)
         self._transforms = self._publisher(
-            TransformStamped, '~/transforms', depth=max(1, len(transforms)))
-        for transform in transforms:
-            self._transforms.publish(transform)
+            TransformStamped, '~/transforms', depth=max(1, count))
 
     def _topics_from_tree(self, tree: TfTree, patterns: Sequence[str]) -> dict[str, str]:
         room = LONGEST_FULL_NAME - len(f'{self._node.get_fully_qualified_name()}/poses/')

@@ -8,6 +8,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from rclpy.parameter import Parameter
 
+from sdf_pose_bridge.parameters import changed_settings
 from sdf_pose_bridge.parameters import PARAMETERS
 from sdf_pose_bridge.parameters import settings_from_node
 from sdf_pose_bridge.settings import SettingsError
@@ -69,15 +70,31 @@ def test_every_parameter_explains_itself(make_node):
         descriptor = node.describe_parameter(declaration.name)
         assert descriptor.description.endswith('.')
         assert descriptor.additional_constraints
-        assert descriptor.read_only
         typical = [''] if declaration.default == [] else declaration.default
         assert Parameter.Type(descriptor.type) is Parameter.Type.from_parameter_value(typical)
 
 
-def test_a_change_is_refused_and_leaves_the_value(make_node):
+def test_a_rate_out_of_range_is_refused(make_node):
+    node = make_node('bridge', *FILE, '-p', 'publish_rate:=500.0')
+    with pytest.raises(SettingsError, match=r'parameter publish_rate must be 0\.0 for never'):
+        settings_from_node(node)
+
+
+def test_a_whole_number_for_a_rate_says_how_to_write_it(make_node):
+    node = make_node('bridge', *FILE, '-p', 'publish_rate:=5')
+    with pytest.raises(SettingsError, match=r'-p publish_rate:=5\.0'):
+        settings_from_node(node)
+
+
+def test_a_change_is_judged_together_with_what_stays(make_node):
+    node = make_node('bridge', *FILE, '-p', 'root_frame:=map')
+    settings_from_node(node)
+    settings = changed_settings(node, [Parameter('frame_prefix', value='a/')])
+    assert settings.tf_options == TfOptions(root_frame='map', frame_prefix='a/')
+
+
+def test_a_change_to_no_value_is_refused(make_node):
     node = make_node('bridge', *FILE)
     settings_from_node(node)
-    (result,) = node.set_parameters([Parameter('root_frame', value='map')])
-    assert not result.successful
-    assert 'read-only' in result.reason
-    assert node.get_parameter('root_frame').value == 'world'
+    with pytest.raises(SettingsError, match='parameter root_frame cannot be without a value'):
+        changed_settings(node, [Parameter('root_frame', Parameter.Type.NOT_SET)])

@@ -18,7 +18,7 @@ VALUES = {
     'sdf_file': 'cell.sdf', 'root_frame': 'world', 'anchor_models': 'all', 'model': '',
     'frame_names': 'auto', 'frame_separator': '/', 'frame_prefix': '',
     'kinds': ['model', 'link', 'frame', 'sensor'], 'pose_topics': ['*'], 'optical_frames': True,
-    'resource_paths': [], 'on_missing_include': 'error',
+    'resource_paths': [], 'on_missing_include': 'error', 'publish_rate': 0.0, 'watch': True,
 }
 
 
@@ -34,6 +34,8 @@ VALUES = {
     ('frame_separator', '', 'parameter frame_separator is ""; it must be at least one'),
     ('frame_prefix', '/robot/', 'parameter frame_prefix is "/robot/"; it must be without a'),
     ('kinds', [], 'parameter kinds is []; it must be at least one of model, link, joint'),
+    ('publish_rate', -1.0, 'parameter publish_rate is -1.0; it must be from 0.0 to 100.0 Hz'),
+    ('publish_rate', float('nan'), 'parameter publish_rate is nan; it must be from 0.0 to'),
     ('kinds', ['link', 'world'], 'parameter kinds is "world"; it must be made of model, link'),
 ])
 def test_a_wrong_value_is_named_with_its_rule(name, value, sentence):
@@ -61,12 +63,13 @@ def test_values_reach_the_settings():
         'frame_names': 'scoped', 'frame_separator': '.', 'frame_prefix': 'left_',
         'kinds': ['joint', 'joint', 'light'], 'pose_topics': ['r/*', 'tool'],
         'optical_frames': False, 'resource_paths': ['/models', '', '/more'],
-        'on_missing_include': 'skip',
+        'on_missing_include': 'skip', 'publish_rate': 2.5, 'watch': False,
     })
     assert settings.sdf_file == 'a.sdf'
     assert settings.pose_topics == ('r/*', 'tool')
     assert settings.resource_paths == (Path('/models'), Path('/more'))
     assert settings.on_missing_include is MissingInclude.SKIP
+    assert (settings.publish_rate, settings.watch) == (2.5, False)
     assert settings.tf_options == TfOptions(
         root_frame='map', anchor_models=AnchorModels.STATIC, model='r::arm',
         frame_names=FrameNames.SCOPED, frame_separator='.', frame_prefix='left_',

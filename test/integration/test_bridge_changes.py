@@ -1,0 +1,310 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""A running bridge whose file or parameters change, seen by listeners in another process."""
+
+from pathlib import Path
+import signal
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticStatus
+from listener import latched
+from rcl_interfaces.srv import GetParameters
+from rcl_interfaces.srv import SetParameters
+from rclpy.parameter import Parameter
+from std_srvs.srv import Trigger
+from tf2_msgs.msg import TFMessage
+
+from sdf_pose_bridge_interfaces.srv import LookupPose
+
+
+def world(x, name='crate', extra=''):
+    return f"""<sdf version="1.10">
+  <world name="w">
+    <model name="{name}"><pose>{x} 0 0 0 0 0</pose><link name="body"/></model>{extra}
+  </world>
+</sdf>
+"""
+
+
+@pytest.fixture(name='file')
+def write_file(tmp_path):
+    path = tmp_path / 'cell.sdf'
+    path.write_text(world(1))
+    return path
+
+
+@pytest.fixture(name='bridge')
+def start(start_bridge, file):
+    return start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
+
+
+def replace(path, text):
+    """Write a file as editors do: beside it, and then in its place."""
+    new = path.with_suffix('.new')
+    new.write_text(text)
+    new.replace(path)
+
+
+def listen_to_tf(listener):
+    listener.node.create_subscription(
+        TFMessage, '/tf_static', listener.tf_messages.append, latched(100))
+
+
+def last_x(listener, frame='crate/body'):
+    found = [each.transform.translation.x for message in listener.tf_messages[-1:]
+             for each in message.transforms if each.child_frame_id == frame]
+    return found[0] if found else None
+
+
+def wait_for_x(listener, x):
+    listener.wait(lambda: last_x(listener) == x, lambda: f'x = {x}')
+
+
+def set_parameters(listener, **values):
+    request = SetParameters.Request(parameters=[
+        Parameter(name, value=value).to_parameter_msg() for name, value in values.items()])
+    return listener.call(SetParameters, '/sdf_pose_bridge/set_parameters', request).results
+
+
+def value_of(listener, name):
+    request = GetParameters.Request(names=[name])
+    (value,) = listener.call(GetParameters, '/sdf_pose_bridge/get_parameters', request).values
+    return value.string_value
+
+
+class Monitor:
+    """Keeps the last diagnostic status."""
+
+    def __init__(self, listener):
+        self._listener = listener
+        self.status = DiagnosticStatus()
+        listener.node.create_subscription(DiagnosticArray, '/diagnostics', self._take, 10)
+
+    def _take(self, message):
+        (self.status,) = message.status
+
+    def wait_for(self, level):
+        self._listener.wait(lambda: self.status.level == level and self.status.name,
+                            lambda: f'level {level}, last was {self.status}')
+
+
+def test_a_bad_file_is_refused_with_the_reason_and_changes_nothing(
+        bridge, file, start_listener, tmp_path):
+    bad = tmp_path / 'bad.sdf'
+    bad.write_text(world(2).replace('<pose>', '<pose relative_to="floor">'))
+    listener = start_listener()
+    listen_to_tf(listener)
+    wait_for_x(listener, 1.0)
+    (result,) = set_parameters(listener, sdf_file=str(bad))
+    assert not result.successful
+    assert f'{bad}:3: POSE_RELATIVE_TO_INVALID: relative_to="floor"' in result.reason
+    assert value_of(listener, 'sdf_file') == str(file)
+    assert len(listener.tf_messages) == 1
+
+
+def test_another_file_reaches_an_early_and_a_late_listener(bridge, start_listener, tmp_path):
+    other = tmp_path / 'other.sdf'
+    other.write_text(world(5))
+    early = start_listener()
+    listen_to_tf(early)
+    wait_for_x(early, 1.0)
+    (result,) = set_parameters(early, sdf_file=str(other))
+    assert result.successful, result.reason
+    wait_for_x(early, 5.0)
+    late = start_listener()
+    late.listen_to_frames()
+    late.listen_to_poses(['/sdf_pose_bridge/poses/crate/body'])
+    wait_for_x(late, 5.0)
+    late.wait_for_keys(late.transforms, ['crate', 'crate/body'])
+    assert late.transforms['crate/body'].transform.translation.x == 5.0
+    late.wait_for_keys(late.poses, ['/sdf_pose_bridge/poses/crate/body'])
+    assert late.poses['/sdf_pose_bridge/poses/crate/body'].pose.position.x == 5.0
+
+
+def test_parameters_set_in_one_call_take_effect_together(bridge, start_listener):
+    listener = start_listener()
+    listen_to_tf(listener)
+    wait_for_x(listener, 1.0)
+    results = set_parameters(listener, frame_prefix='a/', root_frame='map')
+    assert [result.successful for result in results] == [True, True]
+    listener.wait(lambda: len(listener.tf_messages) == 2, lambda: 'the new frames')
+    ids = {(each.header.frame_id, each.child_frame_id)
+           for each in listener.tf_messages[1].transforms}
+    assert ids == {('map', 'a/crate/body'), ('a/crate/body', 'a/crate')}
+
+
+def test_of_parameters_set_in_one_call_none_is_taken_if_one_is_wrong(bridge, start_listener):
+    listener = start_listener()
+    results = set_parameters(listener, frame_prefix='a/', root_frame='')
+    assert [result.successful for result in results] == [False, False]
+    assert 'parameter root_frame is ""' in results[0].reason
+    assert value_of(listener, 'frame_prefix') == ''
+
+
+def test_a_replaced_file_is_read_again(bridge, file, start_listener):
+    listener = start_listener()
+    listen_to_tf(listener)
+    wait_for_x(listener, 1.0)
+    replace(file, world(7))
+    wait_for_x(listener, 7.0)
+
+
+def test_a_broken_file_is_reported_and_its_repair_is_noticed(bridge, file, start_listener):
+    listener = start_listener()
+    listen_to_tf(listener)
+    monitor = Monitor(listener)
+    monitor.wait_for(DiagnosticStatus.OK)
+    file.write_text('<sdf version="1.10"><world name="w">')
+    monitor.wait_for(DiagnosticStatus.ERROR)
+    assert f'{file}:1: FILE_READ' in monitor.status.message
+    bridge.wait_for_line('what was published before stays')
+    assert len(listener.tf_messages) == 1
+    file.write_text(world(3))
+    wait_for_x(listener, 3.0)
+    monitor.wait_for(DiagnosticStatus.OK)
+
+
+def test_a_deleted_file_is_reported_and_its_return_is_noticed(bridge, file, start_listener):
+    listener = start_listener()
+    listen_to_tf(listener)
+    wait_for_x(listener, 1.0)
+    file.unlink()
+    bridge.wait_for_line('the file cannot be read: No such file or directory')
+    replace(file, world(4))
+    wait_for_x(listener, 4.0)
+
+
+def test_an_included_model_is_watched_too(start_bridge, start_listener, tmp_path):
+    (tmp_path / 'box').mkdir()
+    (tmp_path / 'box' / 'model.config').write_text(
+        '<model><name>box</name><sdf version="1.10">box.sdf</sdf></model>')
+    model = """<sdf version="1.10"><model name="box">
+      <link name="l"><pose>{} 0 0 0 0 0</pose></link></model></sdf>"""
+    (tmp_path / 'box' / 'box.sdf').write_text(model.format(1))
+    (tmp_path / 'w.sdf').write_text('<sdf version="1.10"><world name="w"><include>'
+                                    '<uri>model://box</uri></include></world></sdf>')
+    start_bridge('--ros-args', '-p', f'sdf_file:={tmp_path / "w.sdf"}',
+                 '-p', f'resource_paths:=[{tmp_path}]').wait_until_started()
+    listener = start_listener()
+    listen_to_tf(listener)
+    listener.wait(lambda: last_x(listener, 'box/l') == 1.0, lambda: 'the box')
+    replace(tmp_path / 'box' / 'box.sdf', model.format(2))
+    listener.wait(lambda: last_x(listener, 'box/l') == 2.0, lambda: 'the moved box')
+
+
+def test_unwatched_files_are_read_again_only_when_asked(start_bridge, file, start_listener):
+    start_bridge('--ros-args', '-p', f'sdf_file:={file}', '-p', 'watch:=false'
+                 ).wait_until_started()
+    listener = start_listener()
+    listen_to_tf(listener)
+    wait_for_x(listener, 1.0)
+    replace(file, world(6))
+    monitor = Monitor(listener)
+    monitor.wait_for(DiagnosticStatus.OK)
+    assert last_x(listener) == 1.0
+    answer = listener.call(Trigger, '/sdf_pose_bridge/reload', Trigger.Request())
+    assert answer.success, answer.message
+    wait_for_x(listener, 6.0)
+
+
+def test_reloading_a_bad_file_answers_with_the_reason(bridge, file, start_listener):
+    file.write_text('not XML')
+    answer = start_listener().call(Trigger, '/sdf_pose_bridge/reload', Trigger.Request())
+    assert not answer.success
+    assert f'{file}:1: FILE_READ' in answer.message
+
+
+def test_frames_that_are_gone_are_named(bridge, file):
+    replace(file, world(1, name='box'))
+    line = bridge.wait_for_line('no longer published')
+    assert '"crate", "crate/body"' in line
+
+
+def test_warnings_are_told_by_the_diagnostics(start_bridge, start_listener, file):
+    light = """<model name="k"><link name="l">
+      <light name="i" type="point"><pose relative_to="x"/></light></link></model>"""
+    file.write_text(world(1, extra=light))
+    start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
+    monitor = Monitor(start_listener())
+    monitor.wait_for(DiagnosticStatus.WARN)
+
+
+@pytest.mark.parametrize(('frame', 'relative_to', 'x', 'frame_id'), [
+    ('crate::body', '', 1.0, 'world'),
+    ('crate/body', 'world', 1.0, 'world'),
+    ('world', 'crate::body', -1.0, 'crate/body'),
+])
+def test_poses_are_looked_up_by_either_name(
+        bridge, start_listener, frame, relative_to, x, frame_id):
+    request = LookupPose.Request(frame=frame, relative_to=relative_to)
+    answer = start_listener().call(LookupPose, '/sdf_pose_bridge/lookup_pose', request)
+    assert answer.success, answer.message
+    assert (answer.pose.pose.position.x, answer.pose.header.frame_id) == (x, frame_id)
+
+
+def test_a_name_that_means_nothing_is_answered(bridge, start_listener):
+    request = LookupPose.Request(frame='crate::bodi')
+    answer = start_listener().call(LookupPose, '/sdf_pose_bridge/lookup_pose', request)
+    assert not answer.success
+    assert answer.message == '"crate::bodi" is the name of nothing; did you mean "crate::body"?'
+
+
+def test_everything_is_published_again_at_a_rate(start_bridge, start_listener, file):
+    start_bridge('--ros-args', '-p', f'sdf_file:={file}', '-p', 'publish_rate:=20.0'
+                 ).wait_until_started()
+    listener = start_listener()
+    listener.node.create_subscription(
+        TFMessage, '/tf_static', listener.tf_messages.append, 10)
+    listener.wait(lambda: len(listener.tf_messages) > 2, lambda: 'messages without latching')
+    stamps = [(each.transforms[0].header.stamp.sec, each.transforms[0].header.stamp.nanosec)
+              for each in listener.tf_messages[:3]]
+    assert stamps == sorted(set(stamps))
+
+
+def test_two_bridges_share_a_domain_by_prefixes(start_bridge, start_listener, file):
+    for name in ('left', 'right'):
+        start_bridge('--ros-args', '-r', f'__ns:=/{name}', '-p', f'sdf_file:={file}',
+                     '-p', f'frame_prefix:={name}/').wait_until_started()
+    listener = start_listener()
+    listen_to_tf(listener)
+
+    def children():
+        return {each.child_frame_id for message in listener.tf_messages
+                for each in message.transforms}
+    listener.wait(lambda: len(children()) == 4, children)
+    assert children() == {'left/crate', 'left/crate/body', 'right/crate', 'right/crate/body'}
+
+
+def test_many_reloads_leave_nothing_behind(bridge, file, start_listener):
+    listener = start_listener()
+
+    def reload(times):
+        for _ in range(times):
+            answer = listener.call(Trigger, '/sdf_pose_bridge/reload', Trigger.Request())
+            assert answer.success, answer.message
+
+    def used():
+        process = Path('/proc', str(bridge.pid))
+        status = dict(line.split(':', 1) for line in (process / 'status').read_text().splitlines())
+        return (int(status['VmRSS'].split()[0]), int(status['Threads']),
+                len(list((process / 'fd').iterdir())))
+
+    reload(10)
+    memory, threads, files = used()
+    reload(50)
+    memory_after, threads_after, files_after = used()
+    assert memory_after - memory < 4096, 'kB more'
+    assert (threads_after, files_after) == (threads, files)
+
+
+def test_a_signal_during_a_reload_ends_it_well(bridge, file):
+    models = ''.join(f'<model name="m{i}"><link name="l"/></model>' for i in range(30000))
+    replace(file, world(1, extra=models))
+    bridge.wait_until_handling(signal.SIGTERM)
+    bridge.send(signal.SIGTERM)
+    assert bridge.wait_for_end() == 0
+    assert not any('Traceback' in line for line in bridge.lines)

@@ -1,0 +1,125 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Frames of a running bridge, looked up with the listener and the buffer that ROS programs use.
+
+tf2 composes the transforms; what it finds is compared with the poses that the core resolves.
+"""
+
+from pathlib import Path
+
+from matrices import assert_same_pose
+from matrices import matrix_from_pose
+import numpy as np
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+pytest.importorskip('tf2_ros', reason='needs tf2_ros, which is not installed')
+
+from rclpy.time import Time
+from tf2_ros import Buffer
+from tf2_ros import ConnectivityException
+from tf2_ros import TransformListener
+
+import sdf_pose_bridge
+from sdf_pose_bridge.tf_tree import tf_tree_from_scene
+
+EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
+OPTICAL = np.array([[0.0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+"""Pose in its camera (x forward) of a frame by REP 103 (z forward, x right, y down)."""
+
+
+class Expected:
+    """Poses of the frames of a file as the core resolves them, by frame id."""
+
+    def __init__(self, path):
+        self._scene = sdf_pose_bridge.load(path)
+        tree = tf_tree_from_scene(self._scene)
+        self.root_frame = tree.root_frame
+        parents = dict(zip(tree.frame_ids, tree.parent_ids, strict=True))
+        names = {
+            frame_id: self._scene.names[element]
+            for frame_id, element in zip(tree.frame_ids, tree.elements.tolist(), strict=True)
+            if element >= 0}
+        # An optical frame is no element of the file; its parent is its camera.
+        self._names_and_turns = {tree.root_frame: ('', np.eye(4))} | {
+            frame_id: (names[frame_id], np.eye(4)) if frame_id in names
+            else (names[parents[frame_id]], OPTICAL)
+            for frame_id in tree.frame_ids}
+        self.frame_ids = list(self._names_and_turns)
+
+    def pose(self, frame_id, relative_to):
+        name, turn = self._names_and_turns[frame_id]
+        reference, reference_turn = self._names_and_turns[relative_to]
+        if name:
+            pose = matrix_from_pose(self._scene.pose(name, relative_to=reference))
+        elif reference:
+            pose = np.linalg.inv(matrix_from_pose(self._scene.pose(reference)))
+        else:
+            pose = np.eye(4)
+        return np.linalg.inv(reference_turn) @ pose @ turn
+
+
+@pytest.fixture
+def start_buffer(start_listener):
+    """Starts to listen with tf2; ``start_buffer()`` gives a buffer and what to wait with."""
+    listeners = []
+
+    def start():
+        listener = start_listener()
+        buffer = Buffer()
+        listeners.append(TransformListener(buffer, listener.node))
+        return buffer, listener
+
+    yield start
+    for each in listeners:
+        each.unregister()
+
+
+def found_pose(buffer, frame_id, relative_to):
+    """Return x y z and a quaternion x y z w with w >= 0, which tf2 does not care for."""
+    transform = buffer.lookup_transform(relative_to, frame_id, Time()).transform
+    place, turn = transform.translation, transform.rotation
+    sign = -1.0 if turn.w < 0.0 else 1.0
+    return (
+        place.x, place.y, place.z, sign * turn.x, sign * turn.y, sign * turn.z, sign * turn.w)
+
+
+def wait_for_frames(buffer, listener, frame_ids, root_frame):
+    def missing():
+        return [each for each in frame_ids if not buffer.can_transform(root_frame, each, Time())]
+    listener.wait(lambda: not missing(), missing)
+
+
+@pytest.mark.parametrize('name', ['work_cell.sdf', 'mobile_robot.sdf'])
+def test_every_frame_can_be_looked_up_from_every_other(start_bridge, start_buffer, name):
+    path = EXAMPLES / name
+    expected = Expected(path)
+    start_bridge('--ros-args', '-p', f'sdf_file:={path}')
+    buffer, listener = start_buffer()
+    wait_for_frames(buffer, listener, expected.frame_ids, expected.root_frame)
+    for frame_id in expected.frame_ids:
+        for reference in expected.frame_ids:
+            assert_same_pose(
+                found_pose(buffer, frame_id, reference), expected.pose(frame_id, reference),
+                name=f'{frame_id} in {reference}')
+
+
+def test_a_late_tf2_listener_gets_every_frame(start_bridge, start_buffer):
+    path = EXAMPLES / 'work_cell.sdf'
+    expected = Expected(path)
+    start_bridge('--ros-args', '-p', f'sdf_file:={path}').wait_until_started()
+    buffer, listener = start_buffer()
+    wait_for_frames(buffer, listener, expected.frame_ids, expected.root_frame)
+    assert set(buffer.all_frames_as_string().split()) >= set(expected.frame_ids)
+
+
+def test_models_that_are_not_anchored_are_trees_of_their_own(start_bridge, start_buffer):
+    start_bridge(
+        '--ros-args', '-p', f'sdf_file:={EXAMPLES / "mobile_robot.sdf"}',
+        '-p', 'anchor_models:=none')
+    buffer, listener = start_buffer()
+    wait_for_frames(buffer, listener, ['base_link', 'left_wheel'], 'chassis')
+    with pytest.raises(Exception) as caught:
+        buffer.lookup_transform('world', 'base_link', Time())
+    print(caught.value, ConnectivityException)
