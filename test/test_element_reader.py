@@ -33,7 +33,7 @@ def scene_of(text):
 
 
 def sensor_facts(content):
-    scene = scene_of(link_with(f'<sensor name="s" type="camera">{content}</sensor>'))
+    scene = scene_of(link_with(f'<sensor name="s" type="custom">{content}</sensor>'))
     return scene.sensors[scene.index('m::l::s')]
 
 
