@@ -85,7 +85,7 @@ PARAMETERS = (
         'pose_topics', ['*'],
         'Which frames get a topic ~/poses/<frame> with their pose in root_frame.',
         'glob patterns for frame ids, such as robot/* (which matches robot/arm/tool too); '
-        'none if empty',
+        'none if empty; * alone means none where there are more than 1000 frames, ?* means all',
     ),
     _Declaration(
         'optical_frames', True,

@@ -24,7 +24,9 @@ from sdf_pose_bridge.messages import poses_from_tree
 from sdf_pose_bridge.messages import tf_message_from_transforms
 from sdf_pose_bridge.messages import transforms_from_tree
 from sdf_pose_bridge.tf_tree import TfTree
+from sdf_pose_bridge.topic_names import is_everything_too_much
 from sdf_pose_bridge.topic_names import LONGEST_NAME
+from sdf_pose_bridge.topic_names import MOST_BY_DEFAULT
 from sdf_pose_bridge.topic_names import topic_names_from_frame_ids
 
 LONGEST_FULL_NAME = 246
@@ -89,6 +91,12 @@ class Publications:
             TransformStamped, '~/transforms', depth=max(1, count))
 
     def _topics_from_tree(self, tree: TfTree, patterns: Sequence[str]) -> dict[str, str]:
+        if is_everything_too_much(tree.frame_ids, patterns):
+            self._node.get_logger().warning(
+                f'no ~/poses/... topics: {len(tree.frame_ids)} frames are more than '
+                f'{MOST_BY_DEFAULT}; name those that you want in pose_topics, such as "robot/*", '
+                'or ask for all with "?*"')
+            return {}
         room = LONGEST_FULL_NAME - len(f'{self._node.get_fully_qualified_name()}/poses/')
         try:
             return topic_names_from_frame_ids(

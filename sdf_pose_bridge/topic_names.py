@@ -53,6 +53,10 @@ _CUT = re.compile(r'_xh[0-9a-f]{32}_$')
 _CUT_LENGTH = len('_xh_') + 32
 
 
+MOST_BY_DEFAULT = 1000
+"""So many topics are made without being asked for; each takes time to start, and memory."""
+
+
 def topic_name_from_frame_id(frame_id: str, limit: int = LONGEST_NAME) -> str:
     """
     Return the name of a frame's topic, as this module's description lays down.
@@ -70,6 +74,17 @@ def topic_name_from_frame_id(frame_id: str, limit: int = LONGEST_NAME) -> str:
         return name
     digest = hashlib.sha256(_bytes_from_text(frame_id)).hexdigest()[:32]
     return f'{name[:limit - _CUT_LENGTH].rstrip("_/")}_xh{digest}_'
+
+
+def is_everything_too_much(frame_ids: Sequence[str], patterns: Sequence[str]) -> bool:
+    """
+    Tell whether a topic for each frame would be more than was meant by the default pattern.
+
+    :param frame_ids: all frame ids.
+    :param patterns: glob patterns.
+    :return: true if they are just ``*`` and there are more frames than ``MOST_BY_DEFAULT``.
+    """
+    return list(patterns) == ['*'] and len(frame_ids) > MOST_BY_DEFAULT
 
 
 def topic_names_from_frame_ids(

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 import pytest
 
+from sdf_pose_bridge.topic_names import is_everything_too_much
 from sdf_pose_bridge.topic_names import LONGEST_NAME
 from sdf_pose_bridge.topic_names import SHORTEST_LIMIT
 from sdf_pose_bridge.topic_names import topic_name_from_frame_id
@@ -120,3 +121,15 @@ def test_long_names_are_cut_and_stay_legal(frame_id, limit):
 def test_a_frame_id_that_reads_as_a_cut_name_does_not_take_its_place():
     cut = topic_name_from_frame_id('a' * 500)
     assert topic_name_from_frame_id(cut) != cut
+
+
+@pytest.mark.parametrize(('count', 'patterns', 'is_too_much'), [
+    (1000, ['*'], False),
+    (1001, ['*'], True),
+    (1001, ['?*'], False),
+    (1001, ['a/*', '*'], False),
+    (1001, [], False),
+])
+def test_the_default_pattern_does_not_mean_thousands_of_topics(count, patterns, is_too_much):
+    frame_ids = [f'f{number}' for number in range(count)]
+    assert is_everything_too_much(frame_ids, patterns) is is_too_much

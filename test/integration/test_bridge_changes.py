@@ -11,6 +11,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from diagnostic_msgs.msg import DiagnosticArray
 from diagnostic_msgs.msg import DiagnosticStatus
+from geometry_msgs.msg import TransformStamped
 from listener import latched
 from rcl_interfaces.srv import GetParameters
 from rcl_interfaces.srv import SetParameters
@@ -308,3 +309,19 @@ def test_a_signal_during_a_reload_ends_it_well(bridge, file):
     bridge.send(signal.SIGTERM)
     assert bridge.wait_for_end() == 0
     assert not any('Traceback' in line for line in bridge.lines)
+
+
+def test_thousands_of_frames_have_no_topics_unless_asked_for(
+        start_bridge, start_listener, tmp_path):
+    path = tmp_path / 'large.sdf'
+    path.write_text(world(1, extra=''.join(
+        f'<frame name="f{number}"/>' for number in range(1200))))
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={path}')
+    line = bridge.wait_for_line('no ~/poses/... topics')
+    assert '1202 frames are more than 1000' in line
+    listener = start_listener()
+    listener.node.create_subscription(
+        TransformStamped, '/sdf_pose_bridge/transforms',
+        lambda message: listener.transforms.update({message.child_frame_id: message}),
+        latched(2000))
+    listener.wait(lambda: len(listener.transforms) == 1202, lambda: len(listener.transforms))

@@ -1,0 +1,54 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Start two robots of one file, side by side in one world.
+
+    ros2 launch sdf_pose_bridge two_robots.launch.py
+
+Each robot has a node of its own. The namespace keeps their topics and services apart
+(``/left/sdf_pose_bridge/...``), the prefix their frames (``left/chassis``). A model file does not
+say where in the world the robot stands, so each hangs on a root frame of its own, ``left_start``
+and ``right_start``; a third node publishes where these are in ``world``, from
+``examples/starting_places.sdf``. On robots that drive, leave that third node out and let
+odometry or localization say where ``left_start`` and ``right_start`` are.
+"""
+
+from __future__ import annotations
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.actions import IncludeLaunchDescription
+from launch.substitutions import LaunchConfiguration
+from launch.substitutions import PathJoinSubstitution
+from launch.substitutions import ThisLaunchFileDir
+
+EXAMPLES = 'package://sdf_pose_bridge/examples'
+
+
+def generate_launch_description() -> LaunchDescription:
+    """
+    Describe what to start.
+
+    :return: the arguments and three nodes.
+    """
+    return LaunchDescription([
+        DeclareLaunchArgument(
+            'sdf_file', default_value=f'{EXAMPLES}/mobile_robot.sdf',
+            description='Model file of both robots.'),
+        DeclareLaunchArgument(
+            'places_file', default_value=f'{EXAMPLES}/starting_places.sdf',
+            description='World file with the frames left_start and right_start.'),
+        _bridge(
+            sdf_file=LaunchConfiguration('places_file'), namespace='places', root_frame='world',
+            frame_prefix=''),
+        *(_bridge(
+            sdf_file=LaunchConfiguration('sdf_file'), namespace=robot,
+            root_frame=f'{robot}_start', frame_prefix=f'{robot}/')
+          for robot in ('left', 'right')),
+    ])
+
+
+def _bridge(**arguments: str | LaunchConfiguration) -> IncludeLaunchDescription:
+    return IncludeLaunchDescription(
+        PathJoinSubstitution([ThisLaunchFileDir(), 'bridge.launch.py']),
+        launch_arguments=arguments.items())
