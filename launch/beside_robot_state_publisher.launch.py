@@ -9,12 +9,12 @@ Start the bridge beside robot_state_publisher, each with frames of its own.
 robot_state_publisher publishes the robot: every link of the URDF but its root gets its parent from
 there, on /tf or /tf_static. The bridge publishes what stands around the robot: every frame of the
 SDFormat file gets its parent from here, and its id begins with ``cell/``, which no link of the
-URDF does. The two meet in ``root_frame``, a link of the URDF to which the bridge gives children but
-never a parent. So no frame has two parents, and all are in one tree.
+URDF does. The two meet in ``root_frame``, a link of the URDF that gets children from the bridge,
+but never a parent. So no frame has two parents, and all are in one tree.
 
 ``root_frame`` is ``world``, for a URDF whose root link is called so. For another one, name the
-link that the SDFormat world is measured from, such as ``root_frame:=base_link``; or any other link,
-for example to hang a tool's file on ``tool0``.
+link that the SDFormat world is measured from, such as ``root_frame:=base_link``; or any other
+link, for example to hang a tool's file on ``tool0``.
 
 Do not give both the same robot: under the prefix it would be a second one that stands still. If
 the file holds the robot too, choose the part to publish with ``model:=table``. Mind that a link's

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
+from launch.actions import GroupAction
 from launch.actions import IncludeLaunchDescription
 from launch.substitutions import LaunchConfiguration
 from launch.substitutions import PathJoinSubstitution
@@ -48,7 +49,8 @@ def generate_launch_description() -> LaunchDescription:
     ])
 
 
-def _bridge(**arguments: str | LaunchConfiguration) -> IncludeLaunchDescription:
-    return IncludeLaunchDescription(
+def _bridge(**arguments: str | LaunchConfiguration) -> GroupAction:
+    # In a group, since the arguments of an included file would hold for what follows it too.
+    return GroupAction([IncludeLaunchDescription(
         PathJoinSubstitution([ThisLaunchFileDir(), 'bridge.launch.py']),
-        launch_arguments=arguments.items())
+        launch_arguments=arguments.items())])

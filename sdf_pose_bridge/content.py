@@ -11,7 +11,10 @@ from typing import NamedTuple
 
 from ament_index_python.packages import get_package_share_directory
 
+from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.errors import UriLookupError
+from sdf_pose_bridge.file_address import AddressError
 from sdf_pose_bridge.file_address import path_from_address
 from sdf_pose_bridge.loading import load
 from sdf_pose_bridge.manifest import model_file_from_directory
@@ -29,13 +32,12 @@ class Content(NamedTuple):
     scene: Scene
     tree: TfTree
     warnings: tuple[SdfWarning, ...]
+    files: tuple[str, ...]
+    """All files that were read, which tell when to read again."""
+    read_since_ns: int
+    """When the first of them began to be read, in nanoseconds since 1970."""
     seconds: float
-    """How long it took to get here from the file."""
-
-    @property
-    def files(self) -> tuple[str, ...]:
-        """All files that were read, which tell when to read again."""
-        return self.scene.files
+    """How long it took to get here from there."""
 
 
 def content_from_settings(settings: Settings) -> Content:
@@ -47,23 +49,46 @@ def content_from_settings(settings: Settings) -> Content:
     :raises AddressError: if ``sdf_file`` is a URI that leads nowhere.
     :raises SdfError: if the file is not valid, or cannot be published as the settings say.
     """
+    read_since_ns = time.time_ns()
     begin = time.perf_counter()
-    path, warnings = _file_from_settings(settings)
+    path, manifests, warnings = _file_from_settings(settings)
     scene = load(
         path, resource_paths=settings.resource_paths,
         on_missing_include=settings.on_missing_include)
     tree = tf_tree_from_scene(scene, settings.tf_options)
     return Content(
         path, scene, tree, (*warnings, *scene.warnings, *tree.warnings),
-        time.perf_counter() - begin)
+        (*manifests, *scene.files), read_since_ns, time.perf_counter() - begin)
 
 
-def _file_from_settings(settings: Settings) -> tuple[Path, tuple[SdfWarning, ...]]:
+def files_behind_error(error: SdfError | AddressError, settings: Settings) -> list[str]:
+    """
+    Tell where to look in order to notice that the cause of an error is mended.
+
+    :param error: what :func:`content_from_settings` raised.
+    :param settings: what it was called with.
+    :return: paths of the files that are wrong; where something is missing, also of the directories
+        in which it may appear.
+    """
+    errors = error.errors if isinstance(error, SdfError) else ()
+    files = dict.fromkeys(each.place.file for each in errors)
+    missing = [each for each in errors if isinstance(each, UriLookupError)]
+    if missing or isinstance(error, AddressError):
+        finder = resource_finder(settings.resource_paths, os.environ)
+        files |= dict.fromkeys([
+            *(str(Path(each.place.file).parent) for each in missing),
+            *finder.search_paths, *finder.environment_paths])
+    return list(files)
+
+
+def _file_from_settings(
+    settings: Settings,
+) -> tuple[Path, tuple[str, ...], tuple[SdfWarning, ...]]:
     finder = resource_finder(settings.resource_paths, os.environ)
     path = path_from_address(
         settings.sdf_file, get_package_share_directory,
         lambda uri: finder.path_from_uri(uri, including_file=''))
     if not path.is_dir():
-        return path, ()
+        return path, (), ()
     chosen = model_file_from_directory(str(path))
-    return Path(chosen.path), chosen.warnings
+    return Path(chosen.path), (chosen.manifest,), chosen.warnings

@@ -82,7 +82,8 @@ def status_from_state(state: State, name: str) -> DiagnosticStatus:
         text = f'the last load failed, what was loaded before is served: {state.failure[0]}'
     elif content.warnings:
         level = DiagnosticStatus.WARN
-        text = f'serving {content.path.name} with {len(content.warnings)} warnings'
+        number = len(content.warnings)
+        text = f'serving {content.path.name} with {number} warning{"s" if number > 1 else ""}'
     else:
         level = DiagnosticStatus.OK
         text = f'serving {content.path.name}'

@@ -8,8 +8,14 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TypeAlias
 
-Signature: TypeAlias = tuple[int, int, int, int] | None
-"""Device, inode, size and time of change of a file; None for one that is not there."""
+Signature: TypeAlias = tuple[int, int, int, int, int] | None
+"""Device, inode, size and both times of change of a file; None for one that is not there."""
+
+_UNKNOWN: Signature = (-1, -1, -1, -1, -1)
+"""Of a file that changed while it was read, so that nobody knows what was read of it."""
+
+_TICK_NS = 20_000_000
+"""A file's time of change is that of the kernel's last tick, at most so long ago."""
 
 
 class FileWatch:
@@ -22,14 +28,37 @@ class FileWatch:
 
     def __init__(self) -> None:
         self._signatures: dict[str, Signature] = {}
+        self._doubtful: dict[str, Signature] = {}
 
-    def watch(self, paths: Iterable[str]) -> None:
+    def watch(self, paths: Iterable[str], read_since_ns: int) -> None:
         """
         Watch these files from now on, and no others.
 
+        A file that has changed since the reading began counts as changed, once.
+
         :param paths: paths of files, which need not exist.
+        :param read_since_ns: when the first of them began to be read, in nanoseconds since 1970.
         """
-        self._signatures = {path: _signature(path) for path in paths}
+        signatures = {path: _signature(path) for path in paths}
+        doubtful: dict[str, Signature] = {
+            path: signature for path, signature in signatures.items()
+            if signature is not None and signature[-1] >= read_since_ns - _TICK_NS}
+        # Once is enough, or a file with a time that lies ahead would be read for ever.
+        unknown = {
+            path: _UNKNOWN for path, signature in doubtful.items()
+            if self._doubtful.get(path) != signature}
+        self._signatures = {**signatures, **unknown}
+        self._doubtful = doubtful
+
+    def watch_also(self, paths: Iterable[str]) -> None:
+        """
+        Watch more files and directories, until the next :meth:`watch`.
+
+        :param paths: their paths; a directory changes when something in it appears or vanishes.
+        """
+        for path in paths:
+            if path not in self._signatures:
+                self._signatures[path] = _signature(path)
 
     def has_changed(self) -> bool:
         """
@@ -49,4 +78,7 @@ def _signature(path: str) -> Signature:
         status = Path(path).stat()
     except (OSError, ValueError):
         return None
-    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
+    # The second time cannot be set, and so tells of files that were given their old time back, and
+    # of changed permissions.
+    return (
+        status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)

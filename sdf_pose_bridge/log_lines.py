@@ -13,6 +13,9 @@ from sdf_pose_bridge.settings import SettingsError
 MOST_WARNINGS = 20
 """How many warnings of one load are written out."""
 
+MOST_ERRORS = 20
+"""How many errors of one load are written out; a broken generated file may have thousands."""
+
 # C0 and C1 control characters and the two separators that also end a line.
 _CONTROL = re.compile('[\x00-\x1f\x7f-\x9f\u2028\u2029]')
 
@@ -22,10 +25,16 @@ def lines_from_error(error: Exception) -> list[str]:
     Return what is wrong, a line for each thing.
 
     :param error: an error of this package; one of a file starts its lines with file and line.
-    :return: at least one line.
+    :return: at least one line; at most ``MOST_ERRORS``, and one more if a file has more errors.
     """
     if isinstance(error, SdfError):
-        return [_line(str(each)) for each in error.errors]
+        lines = [_line(str(each)) for each in error.errors[:MOST_ERRORS]]
+        rest = len(error.errors) - len(lines)
+        if rest:
+            lines.append(
+                f'{rest} more {"error is" if rest == 1 else "errors are"} not shown; '
+                '"sdf_pose check" shows all of them')
+        return lines
     if isinstance(error, SettingsError):
         return [_line(problem.sentence) for problem in error.problems]
     return [_line(str(error))]

@@ -74,4 +74,10 @@ class PoseLookup:
             msg = f'"{name}" is the name of nothing{hint_from_names(name, names)}'
             raise UnknownFrameError(msg, Place(self._scene.path))
         index = self._scene.index(name, world=self._tree.world)
+        # The first root of a file is the one that is published.
+        if self._scene.roots[index]:
+            msg = f'"{name}" is in world "{self._scene.world_of(index)}", which is not published'
+            raise UnknownFrameError(msg, Place(self._scene.path))
+        if not index:
+            return Pose(), self._tree.root_frame
         return self._scene.pose_of(index), self._ids.get(index, name)

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from rcl_interfaces.msg import FloatingPointRange
 from rcl_interfaces.msg import ParameterDescriptor
+from rcl_interfaces.msg import SetParametersResult
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.exceptions import InvalidParameterTypeException
 from rclpy.exceptions import InvalidParameterValueException
@@ -18,6 +19,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.parameter_service import ParameterService
 
+from sdf_pose_bridge.errors import hint_from_names
 from sdf_pose_bridge.settings import FASTEST_RATE
 from sdf_pose_bridge.settings import Problem
 from sdf_pose_bridge.settings import PUBLISHED_KINDS
@@ -194,10 +196,25 @@ class SettingTogether(ParameterService):
     """
 
     def _set_parameters_callback(self, request: Any, response: Any) -> Any:
-        together = SetParametersAtomically.Response()
-        self._set_parameters_atomically_callback(request, together)
+        together = self._set_parameters_atomically_callback(
+            request, SetParametersAtomically.Response())
         response.results = [together.result] * len(request.parameters)
         return response
+
+    def _set_parameters_atomically_callback(self, request: Any, response: Any) -> Any:
+        node = self._get_node()
+        for parameter in request.parameters:
+            if not node.has_parameter(parameter.name):
+                known = [declaration.name for declaration in PARAMETERS]
+                reason = (f'there is no parameter "{parameter.name}"'
+                          f'{hint_from_names(parameter.name, known)}')
+                response.result = SetParametersResult(successful=False, reason=reason)
+                return response
+        try:
+            return super()._set_parameters_atomically_callback(request, response)
+        except (ValueError, TypeError) as error:  # a value of a type that does not exist
+            response.result = SetParametersResult(successful=False, reason=str(error))
+            return response
 
 
 def _declared(node: Node, declaration: _Declaration) -> object:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
+from typing import NamedTuple
 
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PoseStamped
@@ -27,10 +28,20 @@ from sdf_pose_bridge.tf_tree import TfTree
 from sdf_pose_bridge.topic_names import is_everything_too_much
 from sdf_pose_bridge.topic_names import LONGEST_NAME
 from sdf_pose_bridge.topic_names import MOST_BY_DEFAULT
+from sdf_pose_bridge.topic_names import patterns_of_nothing
 from sdf_pose_bridge.topic_names import topic_names_from_frame_ids
 
 LONGEST_FULL_NAME = 246
 """Most characters that the middleware takes in the full name of a topic."""
+
+
+class Outcome(NamedTuple):
+    """What there is to know of a tree that was published."""
+
+    transforms: int
+    """How many transforms it has."""
+    vanished: list[str]
+    """The frames that had a transform before and have none now, sorted."""
 
 
 class Publications:
@@ -44,21 +55,22 @@ class Publications:
         self._node = node
         self._tf_static = self._publisher(TFMessage, '/tf_static', depth=1)
         self._transforms: Publisher | None = None
+        self._children: frozenset[str] = frozenset()
         self._poses: dict[str, Publisher] = {}
         self._stamp = Time()
         self._sent: list[tuple[Publisher, Any]] = []
 
-    def publish(self, tree: TfTree, patterns: Sequence[str]) -> int:
+    def publish(self, tree: TfTree, patterns: Sequence[str]) -> Outcome:
         """
         Publish a tree, in the place of the one before.
 
         :param tree: the tree.
         :param patterns: glob patterns for the frame ids that get a topic of their own.
-        :return: how many transforms were published.
+        :return: what there is to know of it.
         """
         self._stamp = self._node.get_clock().now().to_msg()
         transforms = transforms_from_tree(tree, self._stamp)
-        self._replace_transforms_publisher(len(transforms))
+        self._prepare_transforms_publisher(len(transforms))
         self._sent = [
             (self._tf_static, tf_message_from_transforms(transforms)),
             *((self._transforms, transform) for transform in transforms)]
@@ -70,7 +82,10 @@ class Publications:
             (self._poses[topics[tree.frame_ids[row]]], message)
             for row, message in zip(rows, messages, strict=True)]
         self._send()
-        return len(transforms)
+        children = frozenset(each.child_frame_id for each in transforms)
+        vanished = sorted(self._children - children)
+        self._children = children
+        return Outcome(len(transforms), vanished)
 
     def publish_again(self) -> None:
         """Publish what was published last once more, with new stamps."""
@@ -83,12 +98,14 @@ class Publications:
         for publisher, message in self._sent:
             publisher.publish(message)
 
-    def _replace_transforms_publisher(self, count: int) -> None:
-        # A new publisher each time: what the old one keeps for late joiners is true no longer.
+    def _prepare_transforms_publisher(self, count: int) -> None:
+        # It keeps as many messages as there are transforms, so that the new ones push all the old
+        # ones out. Another number needs another publisher, which knows nothing of the old ones.
+        if count and count == len(self._children):
+            return
         if self._transforms is not None:
             self._node.destroy_publisher(self._transforms)
-        self._transforms = self._publisher(
-            TransformStamped, '~/transforms', depth=max(1, count))
+        self._transforms = self._publisher(TransformStamped, '~/transforms', depth=max(1, count))
 
     def _topics_from_tree(self, tree: TfTree, patterns: Sequence[str]) -> dict[str, str]:
         if is_everything_too_much(tree.frame_ids, patterns):
@@ -98,6 +115,9 @@ class Publications:
                 'or ask for all with "?*"')
             return {}
         room = LONGEST_FULL_NAME - len(f'{self._node.get_fully_qualified_name()}/poses/')
+        for pattern in patterns_of_nothing(tree.frame_ids, patterns):
+            self._node.get_logger().warning(
+                f'no ~/poses/... topics for "{pattern}" in pose_topics: no frame id matches it')
         try:
             return topic_names_from_frame_ids(
                 tree.frame_ids, patterns, min(room, LONGEST_NAME))

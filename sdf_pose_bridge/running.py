@@ -19,6 +19,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
+from sdf_pose_bridge.content import Content
 from sdf_pose_bridge.content import content_from_settings
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.file_address import AddressError
@@ -27,6 +28,7 @@ from sdf_pose_bridge.log_lines import lines_from_warnings
 from sdf_pose_bridge.node import NODE_NAME
 from sdf_pose_bridge.node import SdfPoseBridge
 from sdf_pose_bridge.parameters import settings_from_node
+from sdf_pose_bridge.settings import Settings
 from sdf_pose_bridge.settings import SettingsError
 from sdf_pose_bridge.stop_request import StopRequest
 
@@ -77,17 +79,21 @@ def _exit_code_from_words(words: Sequence[str]) -> int:
 
 def _exit_code_from_node(node: SdfPoseBridge, stop: StopRequest) -> int:
     logger = node.get_logger()
+
+    def load(settings: Settings) -> Content:
+        with stop.interrupting():
+            return content_from_settings(settings)
+
     try:
         settings = settings_from_node(node)
-        with stop.interrupting():
-            content = content_from_settings(settings)
+        content = load(settings)
     except (SdfError, SettingsError, AddressError) as error:
         for line in lines_from_warnings(error.warnings if isinstance(error, SdfError) else ()):
             logger.warning(line)
         for line in lines_from_error(error):
             logger.fatal(line)
         return 1
-    node.serve(settings, content)
+    node.serve(settings, content, load)
     _spin(node, stop)
     return 0
 
@@ -95,10 +101,12 @@ def _exit_code_from_node(node: SdfPoseBridge, stop: StopRequest) -> int:
 def _spin(node: SdfPoseBridge, stop: StopRequest) -> None:
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    with _woken_by_signals(executor):
-        while not stop.is_made():
-            executor.spin_once()
-    executor.shutdown()
+    try:
+        with _woken_by_signals(executor):
+            while not stop.is_made():
+                executor.spin_once()
+    finally:
+        executor.shutdown()
 
 
 @contextmanager

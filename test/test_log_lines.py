@@ -9,6 +9,7 @@ from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.log_lines import lines_from_error
 from sdf_pose_bridge.log_lines import lines_from_warnings
+from sdf_pose_bridge.log_lines import MOST_ERRORS
 from sdf_pose_bridge.log_lines import MOST_WARNINGS
 from sdf_pose_bridge.settings import Problem
 from sdf_pose_bridge.settings import SettingsError
@@ -18,6 +19,13 @@ def test_each_error_of_a_file_has_its_line_with_its_place():
     errors = [ParsingError(f'fact {line}', Place('a.sdf', line)) for line in (3, 7)]
     assert lines_from_error(LoadError(errors)) == [
         'a.sdf:3: PARSING_ERROR: fact 3', 'a.sdf:7: PARSING_ERROR: fact 7']
+
+
+def test_a_flood_of_errors_ends_with_its_size():
+    errors = [ParsingError('fact', Place('a.sdf', line)) for line in range(MOST_ERRORS + 1)]
+    lines = lines_from_error(LoadError(errors))
+    assert len(lines) == MOST_ERRORS + 1
+    assert lines[-1] == '1 more error is not shown; "sdf_pose check" shows all of them'
 
 
 def test_each_problem_of_the_settings_has_its_line():

@@ -102,8 +102,10 @@ def test_package_xml_is_valid_for_catkin_pkg(package):
 
 
 def test_package_xml_declares_every_package_that_the_code_imports():
-    imported = set()
-    for file in (ROOT / 'sdf_pose_bridge').rglob('*.py'):
+    files = [*(ROOT / 'sdf_pose_bridge').rglob('*.py'), *(ROOT / 'launch').glob('*.py')]
+    # A launch file in XML imports nothing, but is read by a package of its own.
+    imported = {'launch_xml'} if list((ROOT / 'launch').glob('*.xml')) else set()
+    for file in files:
         for node in ast.walk(ast.parse(file.read_text())):
             names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
             names += [node.module] if isinstance(node, ast.ImportFrom) else []

@@ -10,6 +10,7 @@ import pytest
 
 from sdf_pose_bridge.topic_names import is_everything_too_much
 from sdf_pose_bridge.topic_names import LONGEST_NAME
+from sdf_pose_bridge.topic_names import patterns_of_nothing
 from sdf_pose_bridge.topic_names import SHORTEST_LIMIT
 from sdf_pose_bridge.topic_names import topic_name_from_frame_id
 
@@ -133,3 +134,7 @@ def test_a_frame_id_that_reads_as_a_cut_name_does_not_take_its_place():
 def test_the_default_pattern_does_not_mean_thousands_of_topics(count, patterns, is_too_much):
     frame_ids = [f'f{number}' for number in range(count)]
     assert is_everything_too_much(frame_ids, patterns) is is_too_much
+
+
+def test_patterns_that_match_nothing_are_found():
+    assert patterns_of_nothing(['a/b', 'c'], ['a::*', 'a/*', '*', 'C']) == ['a::*', 'C']

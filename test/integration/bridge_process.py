@@ -15,18 +15,16 @@ STARTED = ': publishing '
 """In the line that the node logs when it has published and offers its services."""
 
 
-class BridgeProcess:
+class LoggedProcess:
     """
-    A running bridge; what it writes is kept line by line.
+    A running process; what it writes is kept line by line.
 
-    :param arguments: what follows the executable on the command line.
+    :param command: the executable and what follows it on the command line.
     """
 
-    def __init__(self, *arguments):
-        from ament_index_python.packages import get_package_prefix
-        executable = Path(get_package_prefix('sdf_pose_bridge'), 'lib/sdf_pose_bridge/bridge')
+    def __init__(self, command):
         self._process = subprocess.Popen(
-            [str(executable), *map(str, arguments)], stdin=subprocess.DEVNULL,
+            list(map(str, command)), stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.pid = self._process.pid
         self.lines = []
@@ -54,10 +52,6 @@ class BridgeProcess:
             line = found()
         assert line is not None, f'no line with "{text}" but:\n' + '\n'.join(self.lines)
         return line
-
-    def wait_until_started(self):
-        self.wait_for_line(STARTED)
-        return self
 
     def wait_until_handling(self, number):
         """Wait until the process has a handler of its own for a signal."""
@@ -103,3 +97,20 @@ class BridgeProcess:
                 self._process.wait()
         self._reader.join(SECONDS)
         self._process.stdout.close()
+
+
+class BridgeProcess(LoggedProcess):
+    """
+    A running bridge.
+
+    :param arguments: what follows the executable on the command line.
+    """
+
+    def __init__(self, *arguments):
+        from ament_index_python.packages import get_package_prefix
+        executable = Path(get_package_prefix('sdf_pose_bridge'), 'lib/sdf_pose_bridge/bridge')
+        super().__init__([executable, *arguments])
+
+    def wait_until_started(self):
+        self.wait_for_line(STARTED)
+        return self

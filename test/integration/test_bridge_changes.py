@@ -9,26 +9,21 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from diagnostic_msgs.msg import DiagnosticArray
+from changes import last_x
+from changes import listen_to_tf
+from changes import Monitor
+from changes import reload
+from changes import replace
+from changes import set_parameters
+from changes import wait_for_x
+from changes import world
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import TransformStamped
 from listener import latched
 from rcl_interfaces.srv import GetParameters
-from rcl_interfaces.srv import SetParameters
-from rclpy.parameter import Parameter
-from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge_interfaces.srv import LookupPose
-
-
-def world(x, name='crate', extra=''):
-    return f"""<sdf version="1.10">
-  <world name="w">
-    <model name="{name}"><pose>{x} 0 0 0 0 0</pose><link name="body"/></model>{extra}
-  </world>
-</sdf>
-"""
 
 
 @pytest.fixture(name='file')
@@ -43,54 +38,10 @@ def start(start_bridge, file):
     return start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
 
 
-def replace(path, text):
-    """Write a file as editors do: beside it, and then in its place."""
-    new = path.with_suffix('.new')
-    new.write_text(text)
-    new.replace(path)
-
-
-def listen_to_tf(listener):
-    listener.node.create_subscription(
-        TFMessage, '/tf_static', listener.tf_messages.append, latched(100))
-
-
-def last_x(listener, frame='crate/body'):
-    found = [each.transform.translation.x for message in listener.tf_messages[-1:]
-             for each in message.transforms if each.child_frame_id == frame]
-    return found[0] if found else None
-
-
-def wait_for_x(listener, x):
-    listener.wait(lambda: last_x(listener) == x, lambda: f'x = {x}')
-
-
-def set_parameters(listener, **values):
-    request = SetParameters.Request(parameters=[
-        Parameter(name, value=value).to_parameter_msg() for name, value in values.items()])
-    return listener.call(SetParameters, '/sdf_pose_bridge/set_parameters', request).results
-
-
 def value_of(listener, name):
     request = GetParameters.Request(names=[name])
     (value,) = listener.call(GetParameters, '/sdf_pose_bridge/get_parameters', request).values
     return value.string_value
-
-
-class Monitor:
-    """Keeps the last diagnostic status."""
-
-    def __init__(self, listener):
-        self._listener = listener
-        self.status = DiagnosticStatus()
-        listener.node.create_subscription(DiagnosticArray, '/diagnostics', self._take, 10)
-
-    def _take(self, message):
-        (self.status,) = message.status
-
-    def wait_for(self, level):
-        self._listener.wait(lambda: self.status.level == level and self.status.name,
-                            lambda: f'level {level}, last was {self.status}')
 
 
 def test_a_bad_file_is_refused_with_the_reason_and_changes_nothing(
@@ -192,9 +143,9 @@ def test_an_included_model_is_watched_too(start_bridge, start_listener, tmp_path
                  '-p', f'resource_paths:=[{tmp_path}]').wait_until_started()
     listener = start_listener()
     listen_to_tf(listener)
-    listener.wait(lambda: last_x(listener, 'box/l') == 1.0, lambda: 'the box')
+    wait_for_x(listener, 1.0, 'box/l')
     replace(tmp_path / 'box' / 'box.sdf', model.format(2))
-    listener.wait(lambda: last_x(listener, 'box/l') == 2.0, lambda: 'the moved box')
+    wait_for_x(listener, 2.0, 'box/l')
 
 
 def test_unwatched_files_are_read_again_only_when_asked(start_bridge, file, start_listener):
@@ -207,14 +158,14 @@ def test_unwatched_files_are_read_again_only_when_asked(start_bridge, file, star
     monitor = Monitor(listener)
     monitor.wait_for(DiagnosticStatus.OK)
     assert last_x(listener) == 1.0
-    answer = listener.call(Trigger, '/sdf_pose_bridge/reload', Trigger.Request())
+    answer = reload(listener)
     assert answer.success, answer.message
     wait_for_x(listener, 6.0)
 
 
 def test_reloading_a_bad_file_answers_with_the_reason(bridge, file, start_listener):
     file.write_text('not XML')
-    answer = start_listener().call(Trigger, '/sdf_pose_bridge/reload', Trigger.Request())
+    answer = reload(start_listener())
     assert not answer.success
     assert f'{file}:1: FILE_READ' in answer.message
 
@@ -283,9 +234,9 @@ def test_two_bridges_share_a_domain_by_prefixes(start_bridge, start_listener, fi
 def test_many_reloads_leave_nothing_behind(bridge, file, start_listener):
     listener = start_listener()
 
-    def reload(times):
+    def reload_often(times):
         for _ in range(times):
-            answer = listener.call(Trigger, '/sdf_pose_bridge/reload', Trigger.Request())
+            answer = reload(listener)
             assert answer.success, answer.message
 
     def used():
@@ -294,9 +245,9 @@ def test_many_reloads_leave_nothing_behind(bridge, file, start_listener):
         return (int(status['VmRSS'].split()[0]), int(status['Threads']),
                 len(list((process / 'fd').iterdir())))
 
-    reload(10)
+    reload_often(10)
     memory, threads, files = used()
-    reload(50)
+    reload_often(50)
     memory_after, threads_after, files_after = used()
     assert memory_after - memory < 4096, 'kB more'
     assert (threads_after, files_after) == (threads, files)

@@ -1,0 +1,79 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What tests do to a running bridge, and what they see of it."""
+
+from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticStatus
+from listener import latched
+from rcl_interfaces.srv import SetParameters
+from rclpy.parameter import Parameter
+from std_srvs.srv import Trigger
+from tf2_msgs.msg import TFMessage
+
+BRIDGE = '/sdf_pose_bridge'
+
+
+def world(x, name='crate', extra=''):
+    """Return a file with a model that has one link at x."""
+    return f"""<sdf version="1.10">
+  <world name="w">
+    <model name="{name}"><pose>{x} 0 0 0 0 0</pose><link name="body"/></model>{extra}
+  </world>
+</sdf>
+"""
+
+
+def replace(path, text):
+    """Write a file as editors do: beside it, and then in its place."""
+    new = path.with_suffix('.new')
+    new.write_text(text, encoding='utf-8')
+    new.replace(path)
+
+
+def listen_to_tf(listener):
+    listener.node.create_subscription(
+        TFMessage, '/tf_static', listener.tf_messages.append, latched(100))
+
+
+def last_x(listener, frame='crate/body'):
+    found = [each.transform.translation.x for message in listener.tf_messages[-1:]
+             for each in message.transforms if each.child_frame_id == frame]
+    return found[0] if found else None
+
+
+def wait_for_x(listener, x, frame='crate/body'):
+    listener.wait(lambda: last_x(listener, frame) == x, lambda: f'x = {x}')
+
+
+def set_parameters(listener, **values):
+    request = SetParameters.Request(parameters=[
+        Parameter(name, value=value).to_parameter_msg() for name, value in values.items()])
+    return listener.call(SetParameters, f'{BRIDGE}/set_parameters', request).results
+
+
+def reload(listener):
+    return listener.call(Trigger, f'{BRIDGE}/reload', Trigger.Request())
+
+
+class Monitor:
+    """Keeps the last diagnostic status."""
+
+    def __init__(self, listener):
+        self._listener = listener
+        self.status = DiagnosticStatus()
+        self.count = 0
+        listener.node.create_subscription(DiagnosticArray, '/diagnostics', self._take, 10)
+
+    def _take(self, message):
+        (self.status,) = message.status
+        self.count += 1
+
+    def wait_for(self, level):
+        self._listener.wait(lambda: self.status.level == level and self.status.name,
+                            lambda: f'level {level}, last was {self.status}')
+
+    def wait_for_more(self):
+        """Wait for a status that is sent after this call."""
+        count = self.count
+        self._listener.wait(lambda: self.count > count + 1, lambda: 'diagnostics')
+        return self.status

@@ -1,0 +1,27 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Run a launch file until told to stop, as ``ros2 launch`` would: FILE [NAME:=VALUE ...].
+
+Run as a program, since the service of launch wants the main thread and its signals.
+"""
+
+import sys
+
+from launch import LaunchDescription
+from launch import LaunchService
+from launch.actions import IncludeLaunchDescription
+from launch.launch_description_sources import AnyLaunchDescriptionSource
+
+
+def main():
+    file, *words = sys.argv[1:]
+    service = LaunchService()
+    service.include_launch_description(LaunchDescription([IncludeLaunchDescription(
+        AnyLaunchDescriptionSource(file),
+        launch_arguments=[tuple(word.split(':=', 1)) for word in words])]))
+    return service.run()
+
+
+if __name__ == '__main__':
+    sys.exit(main())

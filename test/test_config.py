@@ -1,0 +1,61 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The params file that is handed out has every parameter of the node, and its default."""
+
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+pytest.importorskip('yaml', reason='PyYAML is not installed')
+
+import yaml
+
+from sdf_pose_bridge.parameters import PARAMETERS
+from sdf_pose_bridge.parameters import settings_from_node
+
+FILE = Path(__file__).resolve().parents[1] / 'config/bridge.yaml'
+DEFAULTS = {parameter.name: parameter.default for parameter in PARAMETERS}
+
+
+def values_in_file():
+    (node, content), = yaml.safe_load(FILE.read_text(encoding='utf-8')).items()
+    assert node == '/**'
+    assert content.keys() == {'ros__parameters'}
+    return content['ros__parameters']
+
+
+def without_empty_texts(value):
+    # A list in a params file must not be empty, so that ROS can tell what it is a list of.
+    return [each for each in value if each] if isinstance(value, list) else value
+
+
+def test_there_is_every_parameter_and_no_other():
+    assert values_in_file().keys() == DEFAULTS.keys()
+
+
+@pytest.mark.parametrize('name', values_in_file())
+def test_a_value_is_the_default(name):
+    value = values_in_file()[name]
+    assert without_empty_texts(value) == DEFAULTS[name]
+    assert type(value) is type(DEFAULTS[name])
+
+
+def test_no_list_is_empty():
+    assert [] not in values_in_file().values()
+
+
+@pytest.mark.parametrize('name', values_in_file())
+def test_a_parameter_is_explained_above_it(name):
+    lines = FILE.read_text(encoding='utf-8').splitlines()
+    place = next(i for i, line in enumerate(lines) if line.startswith(f'    {name}:'))
+    assert lines[place - 1].startswith('    # ')
+
+
+def test_a_node_takes_it(make_node, tmp_path):
+    copy = tmp_path / 'bridge.yaml'
+    text = FILE.read_text(encoding='utf-8')
+    copy.write_text(text.replace("sdf_file: ''", 'sdf_file: cell.sdf'), encoding='utf-8')
+    with_file = make_node('with_file', '--params-file', str(copy))
+    without = make_node('without', '-p', 'sdf_file:=cell.sdf')
+    assert settings_from_node(with_file) == settings_from_node(without)
