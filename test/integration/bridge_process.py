@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The installed executable in a process of its own, as ``ros2 run`` would start it."""
 
+import os
 from pathlib import Path
 import signal
 import subprocess
@@ -20,12 +21,16 @@ class LoggedProcess:
     A running process; what it writes is kept line by line.
 
     :param command: the executable and what follows it on the command line.
+    :param with_children: whether signals go to the processes that it starts too, as those do that
+        come from a terminal.
     """
 
-    def __init__(self, command):
+    def __init__(self, command, *, with_children=False):
+        self._with_children = with_children
         self._process = subprocess.Popen(
             list(map(str, command)), stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+            start_new_session=with_children)
         self.pid = self._process.pid
         self.lines = []
         self._has_changed = threading.Condition()
@@ -78,7 +83,10 @@ class LoggedProcess:
                 line.partition(':') for line in text.splitlines()) if value.strip()}
 
     def send(self, number):
-        self._process.send_signal(number)
+        if self._with_children and self._process.poll() is None:
+            os.killpg(self.pid, number)
+        else:
+            self._process.send_signal(number)
 
     def wait_for_end(self):
         """Wait until the process has ended, and return its exit code."""

@@ -3,9 +3,11 @@
 """Launch files start real nodes, whose frames arrive in another process."""
 
 from pathlib import Path
+import signal
 import sys
 
 from bridge_process import LoggedProcess
+from bridge_process import STARTED
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -55,7 +57,7 @@ def launch(ros_domain, installed):
         words = [f'{key}:={value}' for key, value in arguments.items()]
         processes.append(LoggedProcess([
             sys.executable, Path(__file__).with_name('launch_process.py'),
-            installed / 'launch' / name, *words]))
+            installed / 'launch' / name, *words], with_children=True))
         return processes[-1]
 
     yield start
@@ -111,6 +113,13 @@ def test_a_file_that_is_not_valid_is_told(launch, tmp_path):
     launched = launch('bridge.launch.py', sdf_file=tmp_path / 'missing.sdf')
     launched.wait_for_line('missing.sdf: FILE_READ: ')
     launched.wait_for_line('exit code 1')
+
+
+def test_ctrl_c_ends_the_node_well(launch, sdf_file):
+    launched = launch('bridge.launch.py', sdf_file=sdf_file)
+    launched.wait_for_line(STARTED)
+    launched.send(signal.SIGINT)
+    launched.wait_for_line('process has finished cleanly')
 
 
 def test_two_robots_have_frames_of_their_own_in_one_tree(launch, listener):
