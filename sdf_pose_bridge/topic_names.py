@@ -111,13 +111,15 @@ def patterns_of_nothing(frame_ids: Iterable[str], patterns: Sequence[str]) -> li
     Find the patterns that choose no frame, which are mostly mistakes.
 
     :param frame_ids: all frame ids.
-    :param patterns: as for :func:`topic_names_from_frame_ids`; ``*`` is no mistake.
+    :param patterns: as for :func:`topic_names_from_frame_ids`; ``*`` is no mistake,
+        and neither is an empty one, which stands for no topics.
     :return: those that match none of the frame ids.
     """
     ids = list(frame_ids)
     return [
         pattern for pattern in patterns
-        if pattern != '*' and not any(fnmatchcase(frame_id, pattern) for frame_id in ids)]
+        if pattern not in ('', '*')
+        and not any(fnmatchcase(frame_id, pattern) for frame_id in ids)]
 
 
 def _level_from_text(text: str) -> str:

@@ -138,3 +138,7 @@ def test_the_default_pattern_does_not_mean_thousands_of_topics(count, patterns, 
 
 def test_patterns_that_match_nothing_are_found():
     assert patterns_of_nothing(['a/b', 'c'], ['a::*', 'a/*', '*', 'C']) == ['a::*', 'C']
+
+
+def test_an_empty_pattern_is_no_mistake():
+    assert patterns_of_nothing(['a'], ['', 'b']) == ['b']
