@@ -24,6 +24,7 @@ from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.names import SEPARATOR
 
 XmlElement: TypeAlias = etree._Element  # noqa: SLF001  # lxml has no public name for it
 
@@ -41,6 +42,11 @@ _FORGIVEN_ERRORS = frozenset({'ERR_HYPHEN_IN_COMMENT', 'ERR_DOCUMENT_END'})
 _DECLARATION_ERROR = 'ERR_RESERVED_XML_NAME'
 """A declaration that is not at the start; only white space before it is forgiven."""
 
+_UTF_8 = frozenset({None, 'UTF-8', 'utf-8', 'ASCII', 'US-ASCII'})
+
+_SEPARATOR = re.compile(SEPARATOR.encode())
+_LONGEST_SURE_NAME = 500
+
 _WHITE_SPACE_RUN = re.compile(r'[ \t\n\r\f\v]+')
 
 
@@ -57,6 +63,11 @@ class Document(NamedTuple):
     """What is wrong with its XML, but does not stand in the way."""
     origins: Mapping[XmlElement, Document] = MappingProxyType({})
     """For what was put into its tree from elsewhere: the file that it stands in."""
+    text: bytes | None = None
+    """What the tree was made from, in UTF-8; None if it has another encoding, or the tree has
+    changed since then."""
+    may_hold_separators: bool = True
+    """False if it is certain that no name in it holds ``::``."""
 
     def origin(self, element: XmlElement) -> Document:
         """
@@ -105,7 +116,9 @@ def document_from_text(text: bytes | str, path: str) -> Document:
     :return: as for :func:`document_from_file`.
     :raises SdfError: as for :func:`document_from_file`.
     """
-    root, warnings = _root_from_text(text, path)
+    content = text.encode(errors='surrogatepass') if isinstance(text, str) else text
+    # The encoding of text is known; that of bytes is whatever they declare.
+    root, warnings = _root_from_text(content, path, 'utf-8' if isinstance(text, str) else None)
     tag = str(root.tag)
     place = Place(path, _line(root), f'/{tag}')
     if tag == 'robot':
@@ -119,7 +132,10 @@ def document_from_text(text: bytes | str, path: str) -> Document:
     if version is None:
         msg = '<sdf> declares no version, such as version="1.10"'
         raise FileReadError(msg, place)
-    return Document(path, root, version, warnings)
+    is_utf_8 = root.getroottree().docinfo.encoding in _UTF_8 and content[:1] in (b'<', b' ', b'\n')
+    return Document(
+        path, root, version, warnings, text=content if is_utf_8 else None,
+        may_hold_separators=_may_hold_separators(content))
 
 
 def _bytes_from_file(path: str) -> bytes:
@@ -130,13 +146,14 @@ def _bytes_from_file(path: str) -> bytes:
         raise FileReadError(msg, Place(path)) from error
 
 
-def _root_from_text(text: bytes | str, path: str) -> tuple[XmlElement, tuple[SdfWarning, ...]]:
+def _root_from_text(
+    text: bytes, path: str, encoding: str | None = None,
+) -> tuple[XmlElement, tuple[SdfWarning, ...]]:
     warnings = []
-    encoding = 'utf-8' if isinstance(text, str) else None  # whatever the text declares
-    text = text.encode(errors='surrogatepass') if isinstance(text, str) else text
     parser = etree.XMLParser(
         encoding=encoding, recover=True, resolve_entities=False, no_network=True, load_dtd=False,
-        huge_tree=False)
+        huge_tree=False,
+        remove_blank_text=True)
     root: XmlElement | None = None
     failure: SdfError | None = None
     try:
@@ -155,22 +172,41 @@ def _root_from_text(text: bytes | str, path: str) -> tuple[XmlElement, tuple[Sdf
     if root is None:
         msg = 'this is not XML: it has no element'
         raise FileReadError(msg, Place(path))
-    _refuse_what_hides_text(root, path)
+    _refuse_what_hides_text(root, text, path)
     if b'xmlns' in text:
         _forget_default_namespaces(root)
     return root, tuple(warnings)
 
 
-def _refuse_what_hides_text(root: XmlElement, path: str) -> None:
+def _refuse_what_hides_text(root: XmlElement, text: bytes, path: str) -> None:
     """Refuse what an XML parser takes out of the text, or puts into it."""
     definitions = root.getroottree().docinfo.internalDTD
     if definitions is not None and next(definitions.iterentities(), None) is not None:
         msg = 'the file declares entities, which SDFormat does not have'
         raise FileReadError(msg, Place(path, 1))
-    instruction = next(root.iter(etree.PI), None)
+    # Mostly there are no question marks but those of the declaration, and the tree is large.
+    declaration = text.find(b'?>') + 2 if text.startswith(b'<?xml') else 0
+    has_more = text.find(b'?', declaration) >= 0
+    instruction = next(root.iter(etree.PI), None) if has_more else None
     if instruction is not None:
         msg = f'the processing instruction <?{instruction.text}?> can only stand before <sdf>'
         raise FileReadError(msg, Place(path, instruction.sourceline or 0))
+
+
+def _may_hold_separators(text: bytes) -> bool:
+    if b'\0' in text[:4] or (b'&' in text and b'&#' in text):
+        return True  # UTF-16, or a colon that may be written otherwise
+    if b':' not in text:
+        return False
+    # A regular expression looks for two equal characters much faster than bytes.find does.
+    for found in _SEPARATOR.finditer(text):
+        place = found.start()
+        before = text[max(place - _LONGEST_SURE_NAME, 0):place]
+        quotes = [quote for quote in (before.rfind(b'"'), before.rfind(b"'")) if quote >= 0]
+        if not quotes or any(
+                before[:quote].rstrip(b' \t\r\n=').endswith(b'name') for quote in quotes):
+            return True
+    return False
 
 
 def _forget_default_namespaces(root: XmlElement) -> None:

@@ -4,23 +4,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import text_of
 from sdf_pose_bridge.document import WHITE_SPACE
 from sdf_pose_bridge.document import XmlElement
-from sdf_pose_bridge.elements import Element
+from sdf_pose_bridge.element_rows import ElementRows
+from sdf_pose_bridge.element_rows import Run
 from sdf_pose_bridge.elements import Elements
-from sdf_pose_bridge.elements import Facts
-from sdf_pose_bridge.elements import ModelFacts
+from sdf_pose_bridge.elements import NOWHERE
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import ElementInvalidError
-from sdf_pose_bridge.name_claims import NameClaims
+from sdf_pose_bridge.markup_index import MarkupIndex
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.pose_text import pose_from_text
-from sdf_pose_bridge.pose_text import poses_from_texts
 from sdf_pose_bridge.pose_text import PoseText
 from sdf_pose_bridge.pose_text import PoseTextError
 from sdf_pose_bridge.problems import Problems
@@ -34,14 +35,15 @@ class ElementBuilder(Reading):
     The table while it is being filled.
 
     :param document: the file that elements are read from at first.
+    :param indices: the elements of each file, by its root.
     :param problems: takes what is wrong with names, attributes and values.
     """
 
-    def __init__(self, document: Document, problems: Problems) -> None:
-        super().__init__(document, problems)
-        self.names = NameClaims(self)
+    def __init__(
+        self, document: Document, indices: Mapping[XmlElement, MarkupIndex], problems: Problems,
+    ) -> None:
+        super().__init__(document, indices, problems)
         self._missing: dict[int, dict[str, str]] = {}
-        self._texts: list[PoseText] = []
 
     def elements(self) -> Elements:
         """
@@ -49,10 +51,9 @@ class ElementBuilder(Reading):
 
         :return: all elements that were added.
         """
-        poses, failures = poses_from_texts(self._texts)
-        table = Elements(self._elements, poses, self._files, self._missing)
+        table, failures = self.columns.elements(self._files, self._missing)
         for index, reason in failures:
-            place = table.place(index, self._elements[index].pose_line, 'pose')
+            place = table.place(index, int(table.pose_lines[index]), 'pose')
             self._problems.error(ElementInvalidError(reason, place))
         return table
 
@@ -67,43 +68,28 @@ class ElementBuilder(Reading):
         :param scope: index of the model, world or root whose names its references use.
         :return: its index.
         """
-        index = len(self._elements)
-        poses = xml.iterchildren('pose') if kind > Kind.WORLD else iter(())
-        pose = next(poses, None)
-        line = xml.sourceline or 0
+        poses = list(xml.iterchildren('pose')) if kind > Kind.WORLD else []
+        pose_line = poses[0].sourceline or 0 if poses else 0
         file = self._file_of(xml) if self._document.origins else self._file
-        if pose is None:
-            self._elements.append(Element(kind, name, parent, scope, file, line))
-            self._texts.append(_NO_POSE)
-            return index
-        pose_line = pose.sourceline or 0
-        self._elements.append(
-            Element(kind, name, parent, scope, file, line, '', pose_line))
-        for further in poses:
+        index = self.columns.append(
+            kind, name, parent, scope, file, xml.sourceline or 0, pose_line)
+        for further in poses[1:]:
             self._check_ignored_pose(further, index)
-        if len(pose.attrib):
-            self._texts.append(self._pose_with_attributes(pose, index))
-        else:
-            self._texts.append(PoseText(text_of(pose), False, False))
+        if poses:
+            self.columns.set_pose(index, self._pose(poses[0], index))
         return index
 
-    def set_relative_to(self, index: int, name: str) -> None:
+    def add_run(self, rows: ElementRows, run: Run, xml: XmlElement, holder: int) -> None:
         """
-        Place an element in another frame than what was written.
+        Add a run of rows, whose names and attributes are known to be good.
 
-        :param index: its index.
-        :param name: the frame, as a reference in its scope; empty for the default of its kind.
+        :param rows: those of the file that is being read.
+        :param run: the run.
+        :param xml: the model or world that holds the run.
+        :param holder: the element that this is.
         """
-        self._elements[index] = self._elements[index]._replace(relative_to=name)
-
-    def set_facts(self, index: int, facts: Facts) -> None:
-        """
-        Complete an element with what only its kind has.
-
-        :param index: its index.
-        :param facts: the facts of its kind.
-        """
-        self._elements[index] = self._elements[index]._replace(facts=facts)
+        self.columns.append_run(
+            rows.columns, run.start, run.end, rows.row_of(xml), holder, self._file)
 
     def first_link_name(self, start: int, holder: int) -> str:
         """
@@ -113,21 +99,20 @@ class ElementBuilder(Reading):
         :param holder: index of the model that is looked into.
         :return: the first link's name; else that of the first nested model's, scoped; else empty.
         """
-        nested: tuple[int, str] | None = None
-        for index in range(start, len(self._elements)):
-            element = self._elements[index]
-            if element.parent != holder:
+        columns = self.columns
+        nested = NOWHERE
+        for index in range(start, len(columns)):
+            if columns.parent(index) != holder:
                 continue
-            if element.kind is Kind.LINK:
-                return element.name
-            if element.kind is Kind.MODEL and nested is None:
-                nested = (index, element.name)
-        if nested is None:
+            if columns.kind(index) is Kind.LINK:
+                return columns.names[index]
+            if columns.kind(index) is Kind.MODEL and nested == NOWHERE:
+                nested = index
+        if nested == NOWHERE:
             return ''
-        facts = self._elements[nested[0]].facts
-        chosen = facts.canonical_link if isinstance(facts, ModelFacts) else ''
-        inside = chosen or self.first_link_name(nested[0] + 1, nested[0])
-        return scoped_name(nested[1], inside) if inside else nested[1]
+        inside = columns.models[nested].canonical_link or self.first_link_name(nested + 1, nested)
+        name = columns.names[nested]
+        return scoped_name(name, inside) if inside else name
 
     def check_top_pose(self, xml: XmlElement, parent: int) -> None:
         """
@@ -176,7 +161,9 @@ class ElementBuilder(Reading):
             return ''
         return name
 
-    def _pose_with_attributes(self, xml: XmlElement, index: int) -> PoseText:
+    def _pose(self, xml: XmlElement, index: int) -> PoseText:
+        if not xml.keys():
+            return PoseText(text_of(xml), False, False)
         degrees = xml.get('degrees')
         is_degrees = boolean_from_text(degrees) if degrees and degrees.strip() else False
         if is_degrees is None:
@@ -208,19 +195,20 @@ class ElementBuilder(Reading):
                 ElementInvalidError(str(error), self._place(xml, index, 'pose')))
 
     def _read_relative_to(self, xml: XmlElement, index: int) -> None:
-        element = self._elements[index]
         relative_to = self.reference(xml, 'relative_to', index, 'pose')
-        if relative_to and element.kind is Kind.INERTIAL:
+        if not relative_to:
+            return
+        columns = self.columns
+        kind = columns.kind(index)
+        if kind is Kind.INERTIAL:
             msg = f'relative_to="{relative_to}" is ignored; an inertial is placed in its link'
             self.warning(xml, msg, index, 'pose')
-        elif relative_to and element.kind is Kind.ACTOR:
+        elif kind is Kind.ACTOR:
             msg = f'relative_to="{relative_to}" is ignored; an actor is placed in the world'
             self.warning(xml, msg, index, 'pose')
-        elif relative_to and element.kind is Kind.LIGHT and element.parent == element.scope and (
-                self._elements[element.scope].kind is Kind.ROOT):
+        elif kind is Kind.LIGHT and columns.kind(columns.parent(index)) is Kind.ROOT:
             msg = (f'relative_to="{relative_to}" is ignored; a light at the top of a file is '
                    'placed in the implicit root')
             self.warning(xml, msg, index, 'pose')
-        elif relative_to:
-            self._elements[index] = element._replace(relative_to=relative_to)
-
+        else:
+            columns.relative_to[index] = relative_to

@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from collections.abc import Mapping
-import itertools
 from typing import NamedTuple
 
 from lxml import etree
@@ -16,14 +16,14 @@ from sdf_pose_bridge.document import value_of
 from sdf_pose_bridge.document import WHITE_SPACE
 from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.element_builder import ElementBuilder
-from sdf_pose_bridge.elements import CAMERA_TYPES
+from sdf_pose_bridge.element_rows import Run
 from sdf_pose_bridge.elements import Elements
 from sdf_pose_bridge.elements import FrameFacts
+from sdf_pose_bridge.elements import JOINT_TYPES
 from sdf_pose_bridge.elements import JointFacts
 from sdf_pose_bridge.elements import ModelFacts
 from sdf_pose_bridge.elements import NOWHERE
 from sdf_pose_bridge.elements import Reference
-from sdf_pose_bridge.elements import SensorFacts
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import AttributeMissingError
 from sdf_pose_bridge.errors import DuplicateNameError
@@ -38,17 +38,16 @@ from sdf_pose_bridge.include_reader import Include
 from sdf_pose_bridge.include_reader import include_from_xml
 from sdf_pose_bridge.inclusion import Inclusion
 from sdf_pose_bridge.inclusions import DocumentSet
+from sdf_pose_bridge.markup_index import MarkupIndex
+from sdf_pose_bridge.name_claims import NameClaims
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.sensor_facts import sensor_facts_from_xml
 
 _NO_REFERENCE = Reference('', 0)
-_JOINT_TYPES = frozenset({
-    'ball', 'continuous', 'fixed', 'gearbox', 'prismatic', 'revolute', 'revolute2', 'screw',
-    'universal',
-})
 _TOP_KINDS = {'model': Kind.MODEL, 'light': Kind.LIGHT, 'actor': Kind.ACTOR}
 _LINK_CHILD_KINDS = {
     'visual': Kind.VISUAL,
@@ -76,6 +75,7 @@ class _Scope(NamedTuple):
 
 def elements_from_documents(
     documents: DocumentSet,
+    indices: Mapping[XmlElement, MarkupIndex],
     problems: Problems,
     *,
     broken: frozenset[str] = frozenset(),
@@ -85,6 +85,7 @@ def elements_from_documents(
     Read all elements that carry a pose.
 
     :param documents: a file and what it includes, in the newest grammar.
+    :param indices: the elements of each of them, by its root.
     :param problems: takes what is wrong with names, values and structure; references are not
         looked up here.
     :param broken: paths of files that are known not to be valid, which are not merged.
@@ -92,7 +93,7 @@ def elements_from_documents(
     :return: the elements. Where something is wrong the element is kept if it can be, so that
         other errors are found and none follows from the first.
     """
-    table = ElementBuilder(documents.document, problems)
+    table = ElementBuilder(documents.document, indices, problems)
     _ElementReader(table, documents.inclusions, broken, skips_missing).read(documents.document)
     return table.elements()
 
@@ -108,6 +109,7 @@ class _ElementReader:
         skips_missing: bool,  # noqa: FBT001
     ) -> None:
         self._table = table
+        self._names = NameClaims(table)
         self._inclusions = inclusions
         self._broken = broken
         self._skips_missing = skips_missing
@@ -160,8 +162,8 @@ class _ElementReader:
             self._merge(include, scope)
         elif kind is Kind.MODEL:
             self._included_model(include, scope)
-        elif self._table.element(scope.holder).kind is not Kind.MODEL:
-            name = self._table.names.claim(kind, xml, scope.holder, include.name)
+        elif self._table.columns.kind(scope.holder) is not Kind.MODEL:
+            name = self._names.claim(kind, xml, scope.holder, include.name)
             if name is not None and include.has_pose:
                 self._table.add(kind, xml, name, scope.holder, scope.holder)
             elif name is not None:
@@ -172,7 +174,7 @@ class _ElementReader:
             self._table.warning(xml, msg, scope.holder, 'include')
 
     def _included_model(self, include: Include, scope: _Scope) -> None:
-        name = self._table.names.claim(Kind.MODEL, include.xml, scope.holder, include.name)
+        name = self._names.claim(Kind.MODEL, include.xml, scope.holder, include.name)
         if name is None:
             return
         model = NOWHERE
@@ -184,7 +186,7 @@ class _ElementReader:
             self._complete_model(include.top, model, scope, include)
 
     def _merge(self, include: Include, scope: _Scope) -> None:
-        holder = self._table.element(scope.holder).kind
+        holder = self._table.columns.kind(scope.holder)
         if include.top.tag != 'model' or holder not in (Kind.MODEL, Kind.WORLD):
             msg = (f'merge="true" on the include of {self._table.described(include.top)}: only a '
                    'model can be merged, into a model or a world')
@@ -192,7 +194,7 @@ class _ElementReader:
             return
         proxy = f'_merged__{include.name}__model__'
         if (include.document.path in self._broken
-                or self._table.names.claim(
+                or self._names.claim(
                     Kind.FRAME, include.xml, scope.holder, proxy) is None):
             return
         frame = NOWHERE
@@ -204,25 +206,26 @@ class _ElementReader:
                 frame = self._table.add(
                     Kind.FRAME, include.top, proxy, scope.holder, scope.holder)
             own_frame = MODEL_FRAME if holder is Kind.MODEL else WORLD_FRAME
-            relative_to = self._table.element(frame).relative_to or own_frame
-            self._table.set_relative_to(frame, scope.name(relative_to))
+            columns = self._table.columns
+            relative_to = columns.relative_to.get(frame, own_frame)
+            columns.relative_to[frame] = scope.name(relative_to)
             placement = include.placement_frame or self._table.reference(
                 include.top, 'placement_frame', frame)
             merged = _Scope(scope.holder, proxy)
             self._model_children(include.top, merged, is_in_world=holder is Kind.WORLD)
-            self._table.set_facts(frame, FrameFacts(
+            columns.frames[frame] = FrameFacts(
                 self._table.reference(include.top, 'canonical_link', frame)
                 or self._table.first_link_name(frame + 1, scope.holder),
-                merged.name(placement)))
+                merged.name(placement))
 
     # World and model
 
     def _world(self, xml: XmlElement) -> None:
-        name = self._table.names.claim(Kind.WORLD, xml, NOWHERE)
+        name = self._names.claim(Kind.WORLD, xml, NOWHERE)
         if name is None:
             return
         scope = _Scope(self._table.add(Kind.WORLD, xml, name, NOWHERE, NOWHERE))
-        for child in xml.iterchildren(etree.Element):
+        for child in self._children(xml, scope):
             tag = child.tag
             if tag == 'model':
                 self._model(child, scope)
@@ -238,7 +241,7 @@ class _ElementReader:
                 self._include(child, scope)
 
     def _model(self, xml: XmlElement, scope: _Scope) -> None:
-        name = self._table.names.claim(Kind.MODEL, xml, scope.holder)
+        name = self._names.claim(Kind.MODEL, xml, scope.holder)
         if name is None:
             return
         model = self._table.add(Kind.MODEL, xml, name, scope.holder, scope.holder)
@@ -250,16 +253,16 @@ class _ElementReader:
         self._hang_on_proxy(model, scope)
         placement = '' if include is None else include.placement_frame
         is_static = None if include is None else include.is_static
-        self._table.set_facts(model, ModelFacts(
+        self._table.columns.models[model] = ModelFacts(
             self._static(xml, model) if is_static is None else is_static,
             self._table.reference(xml, 'canonical_link', model),
-            placement or self._table.reference(xml, 'placement_frame', model)))
+            placement or self._table.reference(xml, 'placement_frame', model))
         self._model_children(xml, _Scope(model))
 
     def _model_children(
         self, xml: XmlElement, scope: _Scope, *, is_in_world: bool = False,
     ) -> None:
-        for child in xml.iterchildren(etree.Element):
+        for child in self._children(xml, scope):
             tag = child.tag
             if tag == 'link':
                 if is_in_world:
@@ -277,14 +280,29 @@ class _ElementReader:
             elif tag == 'include':
                 self._include(child, scope)
 
+    def _children(self, xml: XmlElement, scope: _Scope) -> Iterator[XmlElement]:
+        """Add what is regular; return the rest, which has to be looked at one by one."""
+        rows = None if scope.proxy else self._table.rows()
+        if rows is None:
+            yield from xml.iterchildren(etree.Element)
+            return
+        for run in rows.runs(xml):
+            if not isinstance(run, Run):
+                yield run
+            elif self._names.claim_run(rows, run, scope.holder):
+                self._table.add_run(rows, run, xml, scope.holder)
+            else:
+                yield from rows.xmls(run.children)
+
     def _hang_on_proxy(self, index: int, scope: _Scope) -> None:
         """Place what a merge brings in the frame that stands for the merged model's own."""
         if not scope.proxy:
             return
-        element = self._table.element(index)
-        has_own_default = element.kind in (Kind.FRAME, Kind.JOINT)
-        if element.relative_to == MODEL_FRAME or not (element.relative_to or has_own_default):
-            self._table.set_relative_to(index, scope.proxy)
+        columns = self._table.columns
+        relative_to = columns.relative_to.get(index)
+        has_own_default = columns.kind(index) in (Kind.FRAME, Kind.JOINT)
+        if relative_to == MODEL_FRAME or not (relative_to or has_own_default):
+            columns.relative_to[index] = scope.proxy
 
     def _static(self, xml: XmlElement, model: int) -> bool:
         static = next(xml.iterchildren('static'), None)
@@ -298,7 +316,7 @@ class _ElementReader:
     # What a model and a world hold
 
     def _link(self, xml: XmlElement, scope: _Scope) -> None:
-        name = self._table.names.claim(Kind.LINK, xml, scope.holder)
+        name = self._names.claim(Kind.LINK, xml, scope.holder)
         if name is None:
             return
         link = self._table.add(Kind.LINK, xml, name, scope.holder, scope.holder)
@@ -313,16 +331,16 @@ class _ElementReader:
                 self._leaf(kind, child, link, scope)
 
     def _frame(self, xml: XmlElement, scope: _Scope) -> None:
-        name = self._table.names.claim(Kind.FRAME, xml, scope.holder)
+        name = self._names.claim(Kind.FRAME, xml, scope.holder)
         if name is None:
             return
         frame = self._table.add(Kind.FRAME, xml, name, scope.holder, scope.holder)
         self._hang_on_proxy(frame, scope)
         attached_to = self._table.reference(xml, 'attached_to', frame)
-        self._table.set_facts(frame, FrameFacts(scope.name(attached_to) or scope.proxy))
+        self._table.columns.frames[frame] = FrameFacts(scope.name(attached_to) or scope.proxy)
 
     def _joint(self, xml: XmlElement, scope: _Scope) -> None:
-        name = self._table.names.claim(Kind.JOINT, xml, scope.holder)
+        name = self._names.claim(Kind.JOINT, xml, scope.holder)
         if name is None:
             return
         joint = self._table.add(Kind.JOINT, xml, name, scope.holder, scope.holder)
@@ -332,11 +350,11 @@ class _ElementReader:
             Reference(scope.name(xyz.get('expressed_in', '').strip(WHITE_SPACE)),
                       xyz.sourceline or 0)
             for axis in xml.iterchildren('axis', 'axis2') for xyz in axis.iterchildren('xyz')]
-        self._table.set_facts(joint, JointFacts(
+        self._table.columns.joints[joint] = JointFacts(
             joint_type,
             self._joint_end(xml, 'parent', joint, joint_type, scope),
             self._joint_end(xml, 'child', joint, joint_type, scope),
-            tuple(reference for reference in expressed_in if reference.name)))
+            tuple(reference for reference in expressed_in if reference.name))
         for child in xml.iterchildren('sensor'):
             self._sensor(child, joint, scope)
 
@@ -346,8 +364,8 @@ class _ElementReader:
             self._table.error(AttributeMissingError, xml, 'the joint has no type', joint, '')
             return ''
         joint_type = written.strip(WHITE_SPACE).lower()
-        if joint_type not in _JOINT_TYPES:
-            known = ', '.join(sorted(_JOINT_TYPES))
+        if joint_type not in JOINT_TYPES:
+            known = ', '.join(sorted(JOINT_TYPES))
             msg = f'"{written}" is no type of joint; known are {known}'
             self._table.error(AttributeInvalidError, xml, msg, joint, '')
         return joint_type
@@ -375,25 +393,15 @@ class _ElementReader:
 
     def _sensor(self, xml: XmlElement, parent: int, scope: _Scope) -> None:
         sensor = self._leaf(Kind.SENSOR, xml, parent, scope)
-        if sensor is None:
-            return
-        frame_ids = itertools.chain(
-            xml.iterchildren('gz_frame_id'), xml.iterchildren('ignition_frame_id'))
-        camera = next(xml.iterchildren('camera'), None)
-        optical = None if camera is None else next(camera.iterchildren('optical_frame_id'), None)
-        sensor_type = xml.get('type', '').strip(WHITE_SPACE)
-        self._table.set_facts(sensor, SensorFacts(
-            sensor_type,
-            next(filter(None, map(value_of, frame_ids)), ''),
-            camera is not None or sensor_type in CAMERA_TYPES,
-            '' if optical is None else value_of(optical)))
+        if sensor is not None:
+            self._table.columns.sensors[sensor] = sensor_facts_from_xml(xml)
 
     def _leaf(self, kind: Kind, xml: XmlElement, parent: int, scope: _Scope) -> int | None:
-        name = self._table.names.claim(kind, xml, parent)
+        name = self._names.claim(kind, xml, parent)
         if name is None:
             return None
         leaf = self._table.add(kind, xml, name, parent, scope.holder)
-        if scope.proxy and self._table.element(leaf).relative_to == MODEL_FRAME:
+        if scope.proxy and self._table.columns.relative_to.get(leaf) == MODEL_FRAME:
             msg = ('relative_to="__model__" means the model that this is merged into, not the one '
                    'that it was written in')
             self._table.warning(xml, msg, leaf, 'pose')

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from collections.abc import Sequence
+from typing import Any
 from typing import NamedTuple
 from typing import TypeAlias
 
@@ -18,6 +19,9 @@ from sdf_pose_bridge.names import Kind
 NOWHERE = -1
 """Stands for an index where there is none."""
 
+Indices: TypeAlias = npt.NDArray[np.int32]
+
+_Integers: TypeAlias = Sequence[int] | npt.NDArray[Any]
 
 CAMERA_TYPES = frozenset({
     'boundingbox', 'boundingbox_camera', 'camera', 'depth', 'depth_camera', 'multicamera', 'rgbd',
@@ -25,6 +29,13 @@ CAMERA_TYPES = frozenset({
     'wideanglecamera',
 })
 """Types of sensors that take images."""
+
+
+JOINT_TYPES = frozenset({
+    'ball', 'continuous', 'fixed', 'gearbox', 'prismatic', 'revolute', 'revolute2', 'screw',
+    'universal',
+})
+"""Types of joints."""
 
 
 class Reference(NamedTuple):
@@ -77,42 +88,48 @@ class SensorFacts(NamedTuple):
     """Name of the optical frame, where the file sets one; else empty."""
 
 
-Facts: TypeAlias = ModelFacts | FrameFacts | JointFacts | SensorFacts
-
-
-class Element(NamedTuple):
-    """One element that carries a pose."""
-
-    kind: Kind
-    name: str
-    """Its own name, without its scope."""
-    parent: int
-    """Index of the element that holds it; -1 for a world and the implicit root."""
-    scope: int
-    """Index of the model, world or root whose names its references use."""
-    file: int
-    """Index of the file that it stands in."""
-    line: int
-    relative_to: str = ''
-    """The frame that its pose is given in, as written; empty for the default of its kind."""
-    pose_line: int = 0
-    facts: Facts | None = None
-
-
 class Elements(NamedTuple):
     """
     All elements of a load, each after the one that holds it, in the order of the file.
 
-    Row i of the poses is that of element i as written: x y z in metres, unit quaternion x y z w,
-    in the frame that it is relative to.
+    Entry i of each sequence and array is about element i.
     """
 
-    elements: Sequence[Element]
+    kinds: npt.NDArray[np.uint8]
+    """Values of :class:`~sdf_pose_bridge.names.Kind`."""
+    names: Sequence[str]
+    """Their own names, without their scopes."""
+    parents: Indices
+    """The element that holds each; -1 for a world and the implicit root."""
+    scopes: Indices
+    """The model, world or root whose names the references of each use."""
+    file_indices: Indices
+    """Which of the files each stands in."""
+    lines: Indices
+    pose_lines: Indices
+    """The line of each one's pose; 0 where none is written."""
     poses: npt.NDArray[np.float64]
+    """Shape (n, 7): the pose of each as written, x y z in metres, unit quaternion x y z w, in the
+    frame that it is relative to; the identity where none is written."""
+    relative_to: Mapping[int, str]
+    """The frame that a pose is given in, as written, where that is not the default of its kind."""
+    models: Mapping[int, ModelFacts]
+    frames: Mapping[int, FrameFacts]
+    joints: Mapping[int, JointFacts]
+    sensors: Mapping[int, SensorFacts]
     files: Sequence[str]
     missing: Mapping[int, Mapping[str, str]]
     """For each element that should hold something that was not found: its name and URI. An empty
     name stands for a merge, which could have brought any name."""
+
+    def kind(self, index: int) -> Kind:
+        """
+        Tell what an element is.
+
+        :param index: its index.
+        :return: its kind.
+        """
+        return Kind(int(self.kinds[index]))
 
     def place(self, index: int, line: int = 0, part: str = '') -> Place:
         """
@@ -123,31 +140,34 @@ class Elements(NamedTuple):
         :param part: what is meant of it, such as ``pose``; empty for the element itself.
         :return: its file, line and path.
         """
-        element = self.elements[index]
-        path = element_path(self.elements, index)
+        path = element_path(self.kinds, self.names, self.parents, index)
         return Place(
-            self.files[element.file],
-            line or element.line,
+            self.files[self.file_indices[index]],
+            line or int(self.lines[index]),
             f'{path}/{part}' if part else path,
         )
 
 
-def element_path(elements: Sequence[Element], index: int) -> str:
+def element_path(
+    kinds: _Integers, names: Sequence[str], parents: _Integers, index: int,
+) -> str:
     """
     Return the path of an element, such as ``/sdf/model[@name="m"]/link[@name="l"]``.
 
-    :param elements: the table.
-    :param index: index of an element in it; -1 for the document itself.
+    :param kinds: the kind of each element.
+    :param names: the name of each.
+    :param parents: the element that holds each; -1 for none.
+    :param index: index of an element; -1 for the document itself.
     :return: its path from the outermost element.
     """
     steps: list[str] = []
     while index >= 0:
-        element = elements[index]
-        if element.kind is Kind.INERTIAL:
-            steps.append(element.kind.label)
-        elif element.kind is not Kind.ROOT:
-            steps.append(step(element.kind.label, element.name))
-        index = element.parent
+        kind = Kind(int(kinds[index]))
+        if kind is Kind.INERTIAL:
+            steps.append(kind.label)
+        elif kind is not Kind.ROOT:
+            steps.append(step(kind.label, names[index]))
+        index = int(parents[index])
     return '/'.join(['/sdf', *reversed(steps)])
 
 

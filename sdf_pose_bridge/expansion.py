@@ -74,7 +74,8 @@ class _Expander:
             for old, new in zip(document.root.iter(), root.iter(), strict=True):
                 if old in document.origins:
                     self.origins[new] = document.origins[old]
-        result = document._replace(root=root, origins=self.origins)
+        result = document._replace(
+            root=root, origins=self.origins, text=None, may_hold_separators=True)
         # Listed first, for the copy changes on the way.
         pairs = list(zip(document.root.iter('include'), root.iter('include'), strict=True))
         for old, new in pairs:

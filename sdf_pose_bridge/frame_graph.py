@@ -8,13 +8,15 @@ Every reference is looked up and checked here; what comes out has no ring and no
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from sdf_pose_bridge.elements import Element
+import numpy as np
+
 from sdf_pose_bridge.elements import Elements
 from sdf_pose_bridge.elements import FrameFacts
-from sdf_pose_bridge.elements import JointFacts
+from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.elements import ModelFacts
 from sdf_pose_bridge.elements import NOWHERE
 from sdf_pose_bridge.errors import AttachedToCycleError
@@ -26,28 +28,31 @@ from sdf_pose_bridge.errors import RelativeToError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.joint_checks import check_joints
 from sdf_pose_bridge.joint_checks import JointEnds
-from sdf_pose_bridge.names import FRAME_KINDS
 from sdf_pose_bridge.names import Kind
+from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.pointer_chains import ends_from_pointers
+from sdf_pose_bridge.pointer_chains import rings_from_pointers
 from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.scopes import IS_FRAME_KIND
 from sdf_pose_bridge.scopes import Scopes
 
 
 class FrameGraph(NamedTuple):
-    """The checked references of all elements; every field has an entry for each of them."""
+    """The checked references of all elements; each column has an entry for each of them."""
 
     names: Sequence[str]
     """Absolute names, such as ``robot::arm::hand``."""
     roots: Sequence[int]
     """The world or implicit root that each element belongs to."""
-    references: Sequence[int]
+    references: Indices
     """The frame that each pose is relative to; -1 for roots and for what cannot be placed."""
-    placements: Sequence[int]
-    """For a model the frame that its pose places; -1 where that is the model frame."""
-    attachments: Sequence[int]
+    placements: Mapping[int, int]
+    """For models the frame that their pose places, where that is not the model frame."""
+    attachments: Indices
     """The frame that each frame is attached to directly; -1 for links, static models, roots."""
-    bodies: Sequence[int]
+    bodies: Indices
     """The link, static model or root that carries each frame in the end; -1 for other kinds."""
-    canonical_links: Sequence[int]
+    canonical_links: Indices
     """For a model its canonical link; -1 for a model without one and for other kinds."""
     joints: Sequence[JointEnds]
     """The ends of every joint, in file order."""
@@ -71,26 +76,21 @@ class _Builder:
 
     def __init__(self, table: Elements, problems: Problems) -> None:
         self._table = table
-        self._elements = table.elements
         self._problems = problems
         self._scopes = Scopes(table)
         self._reported_rings: set[frozenset[int]] = set()
         self._lost: dict[int, str] = {}
+        self._scope_of: list[int] = table.scopes.tolist()
 
     def graph(self) -> FrameGraph:
-        joints = {
-            index: self._joint_ends(index, element.scope, element.facts)
-            for index, element in enumerate(self._elements)
-            if isinstance(element.facts, JointFacts)
-        }
+        table = self._table
+        joints = self._joint_ends()
         canonical = self._canonical_pointers()
         attachments = self._attachments(joints, canonical)
-        bodies = _ends(attachments)
-        for index, element in enumerate(self._elements):
-            if element.kind not in FRAME_KINDS and element.parent >= 0:
-                bodies[index] = NOWHERE
+        bodies = ends_from_pointers(attachments)
+        bodies[(table.parents >= 0) & ~IS_FRAME_KIND[table.kinds]] = NOWHERE
         kept_joints = [ends for ends in joints.values() if ends.joint not in self._lost]
-        check_joints(self._table, self._scopes, kept_joints, bodies, self._problems)
+        check_joints(table, self._scopes, kept_joints, bodies, self._problems)
         references = self._references(joints)
         placements = self._placements()
         self._lose_dependents(references, attachments, joints)
@@ -101,64 +101,71 @@ class _Builder:
 
     # What carries what
 
-    def _joint_ends(self, index: int, scope: int, facts: JointFacts) -> JointEnds:
-        parent: int | None
-        if facts.parent.name == 'world':
-            parent = self._scopes.roots[scope]
-        else:
-            parent = self._scopes.frame(scope, facts.parent.name)
-        child = self._scopes.frame(scope, facts.child.name)
-        for end, name in ((parent, facts.parent.name), (child, facts.child.name)):
-            if end is None and (uri := self._scopes.missing_uri(scope, name)):
-                self._lost[index] = uri
-        return JointEnds(
-            index, NOWHERE if parent is None else parent, NOWHERE if child is None else child)
+    def _joint_ends(self) -> dict[int, JointEnds]:
+        joints = self._table.joints
+        scopes = [self._scope_of[index] for index in joints]
+        names = [facts.parent.name for facts in joints.values()]
+        parents = self._scopes.frames(scopes, names)
+        for place, name in enumerate(names):
+            if name == WORLD_FRAME:
+                parents[place] = self._scopes.roots[scopes[place]]
+        child_names = [facts.child.name for facts in joints.values()]
+        children = self._scopes.frames(scopes, child_names)
+        for ends, end_names in ((parents, names), (children, child_names)):
+            if self._table.missing and None in ends:
+                for index, scope, end, name in zip(joints, scopes, ends, end_names, strict=True):
+                    if end is None and (uri := self._scopes.missing_uri(scope, name)):
+                        self._lost[index] = uri
+        return {
+            index: JointEnds(
+                index, NOWHERE if parent is None else parent, NOWHERE if child is None else child)
+            for index, parent, child in zip(joints, parents, children, strict=True)}
 
-    def _attachments(
-        self, joints: dict[int, JointEnds], canonical: dict[int, int],
-    ) -> list[int]:
-        attachments = [NOWHERE] * len(self._elements)
-        for index, element in enumerate(self._elements):
-            facts = element.facts
-            if isinstance(facts, FrameFacts):
-                attachments[index] = self._attached_to(index, element, facts)
-            elif isinstance(facts, JointFacts):
-                attachments[index] = joints[index].child
-            elif isinstance(facts, ModelFacts) and not facts.is_static:
-                attachments[index] = canonical[index]
+    def _attachments(self, joints: dict[int, JointEnds], canonical: dict[int, int]) -> Indices:
+        table = self._table
+        attached = {index: ends.child for index, ends in joints.items()}
+        attached |= {
+            index: canonical[index] for index, facts in table.models.items()
+            if not facts.is_static}
+        attached |= {index: self._attached_to(index, facts)
+                     for index, facts in table.frames.items()}
+        attachments = np.full(len(table.names), NOWHERE, dtype=np.int32)
+        _put(attachments, attached)
         self._break_rings(attachments, AttachedToCycleError, 'attached to')
         return attachments
 
-    def _attached_to(self, index: int, element: Element, facts: FrameFacts) -> int:
+    def _attached_to(self, index: int, facts: FrameFacts) -> int:
+        scope = self._scope_of[index]
         if not facts.attached_to:
-            return element.scope
-        found = self._scopes.frame(element.scope, facts.attached_to)
+            return scope
+        found = self._scopes.frame(scope, facts.attached_to)
         if found is None:
-            self._unknown(AttachedToError, index, 'attached_to', facts.attached_to, element.scope)
-            return element.scope
+            self._unknown(AttachedToError, index, 'attached_to', facts.attached_to, scope)
+            return scope
         return found
 
     def _canonical_pointers(self) -> dict[int, int]:
         """Find what each model's canonical link is said to be: a link, or what leads to one."""
-        first_links: dict[int, int] = {}
-        first_models: dict[int, int] = {}
-        for index, element in enumerate(self._elements):
-            if element.kind is Kind.LINK:
-                first_links.setdefault(element.parent, index)
-            elif element.kind is Kind.MODEL:
-                first_models.setdefault(element.parent, index)
+        table = self._table
+        is_link: list[bool] = (table.kinds == Kind.LINK).tolist()
+        first_links = self._first_of_kind(Kind.LINK)
+        first_models = self._first_of_kind(Kind.MODEL)
         pointers: dict[int, int] = {}
-        for index in range(len(self._elements) - 1, -1, -1):
-            facts = self._elements[index].facts
-            if isinstance(facts, ModelFacts):
-                first = first_links.get(index, first_models.get(index))
-                # A nested model's own link is meant, even where that model is static and its
-                # frame therefore not attached to the link.
-                inside = NOWHERE if first is None else pointers.get(first, NOWHERE)
-                if inside >= 0 and self._elements[inside].kind is Kind.LINK:
-                    first = inside
-                pointers[index] = self._canonical_pointer(index, facts, first)
+        for index in sorted(table.models, reverse=True):
+            facts = table.models[index]
+            first = first_links.get(index, first_models.get(index))
+            # A nested model's own link is meant, even where that model is static and its frame
+            # therefore not attached to the link.
+            inside = NOWHERE if first is None else pointers.get(first, NOWHERE)
+            if inside >= 0 and is_link[inside]:
+                first = inside
+            pointers[index] = self._canonical_pointer(index, facts, first)
         return pointers
+
+    def _first_of_kind(self, kind: Kind) -> dict[int, int]:
+        """Find the first child of a kind of each element that holds one."""
+        indices = np.flatnonzero(self._table.kinds == kind)[::-1]
+        return dict(zip(self._table.parents[indices].tolist(), indices.tolist(), strict=True))
 
     def _canonical_pointer(self, index: int, facts: ModelFacts, first: int | None) -> int:
         name = facts.canonical_link
@@ -174,66 +181,68 @@ class _Builder:
             self._problems.error(ModelWithoutLinkError(msg, self._table.place(index)))
         return NOWHERE if first is None else first
 
-    def _canonical_links(self, canonical: dict[int, int], bodies: Sequence[int]) -> list[int]:
-        links = [NOWHERE] * len(self._elements)
-        for index in canonical:  # inner models come first
-            target = canonical[index]
-            if target >= 0 and self._elements[target].kind is not Kind.MODEL:
-                target = bodies[target]
+    def _canonical_links(self, canonical: dict[int, int], bodies: Indices) -> Indices:
+        kinds: list[int] = self._table.kinds.tolist()
+        body_of: list[int] = bodies.tolist()
+        links: dict[int, int] = {}
+        for index, target in canonical.items():  # inner models come first
+            if target >= 0 and kinds[target] != Kind.MODEL:
+                target = body_of[target]
             elif target > index:
-                target = links[target]
+                target = links.get(target, NOWHERE)
             else:
                 target = NOWHERE
-            if target >= 0 and self._elements[target].kind is Kind.LINK:
+            if target >= 0 and kinds[target] == Kind.LINK:
                 links[index] = target
-        return links
+        result = np.full(len(kinds), NOWHERE, dtype=np.int32)
+        _put(result, links)
+        return result
 
     # What is placed in what
 
-    def _references(self, joints: dict[int, JointEnds]) -> list[int]:
-        references = [NOWHERE] * len(self._elements)
-        for index, element in enumerate(self._elements):
-            if element.parent < 0:
-                continue
-            if not element.relative_to:
-                references[index] = self._default_reference(index, element, joints)
-                continue
-            found = self._scopes.frame(element.scope, element.relative_to)
-            if found is not None:
-                references[index] = found
-            elif element.kind in FRAME_KINDS:
-                self._unknown(RelativeToError, index, 'relative_to', element.relative_to,
-                              element.scope, element.pose_line, 'pose')
-                references[index] = element.parent
-            else:
-                self._lose(index, element)
+    def _references(self, joints: dict[int, JointEnds]) -> Indices:
+        table = self._table
+        references: Indices = table.parents.copy()
+        _put(references, {
+            index: ends.child for index, ends in joints.items() if ends.child != NOWHERE})
+        _put(references, {
+            index: found for index, facts in table.frames.items() if facts.attached_to
+            and (found := self._scopes.frame(self._scope_of[index], facts.attached_to))
+            is not None})
+        scopes = [self._scope_of[index] for index in table.relative_to]
+        frames = self._scopes.frames(scopes, list(table.relative_to.values()))
+        _put(references, {
+            index: self._without_reference(index, name) if found is None else found
+            for (index, name), found in zip(table.relative_to.items(), frames, strict=True)})
         self._break_rings(references, RelativeToCycleError, 'relative to')
         return references
 
-    def _default_reference(
-        self, index: int, element: Element, joints: dict[int, JointEnds],
-    ) -> int:
-        facts = element.facts
-        if isinstance(facts, JointFacts):
-            child = joints[index].child
-            return element.parent if child == NOWHERE else child
-        if isinstance(facts, FrameFacts) and facts.attached_to:
-            found = self._scopes.frame(element.scope, facts.attached_to)
-            return element.parent if found is None else found
-        return element.parent
+    def _without_reference(self, index: int, name: str) -> int:
+        """Report that the name of a frame means nothing; return what to use instead."""
+        table = self._table
+        scope = self._scope_of[index]
+        if IS_FRAME_KIND[table.kinds[index]]:
+            self._unknown(
+                RelativeToError, index, 'relative_to', name, scope, int(table.pose_lines[index]),
+                'pose')
+            return int(table.parents[index])
+        self._lose(index, name)
+        return NOWHERE
 
-    def _placements(self) -> list[int]:
-        placements = [NOWHERE] * len(self._elements)
-        for index, element in enumerate(self._elements):
-            facts = element.facts
-            if isinstance(facts, ModelFacts | FrameFacts) and facts.placement_frame:
-                scope = index if element.kind is Kind.MODEL else element.scope
-                found = self._scopes.frame(scope, facts.placement_frame)
-                if found is None:
-                    self._unknown(
-                        RelativeToError, index, 'placement_frame', facts.placement_frame, scope)
-                elif found != index:
-                    placements[index] = found
+    def _placements(self) -> dict[int, int]:
+        placements: dict[int, int] = {}
+        table = self._table
+        scoped = [(index, index, facts.placement_frame) for index, facts in table.models.items()]
+        scoped += [(index, self._scope_of[index], facts.placement_frame)
+                   for index, facts in table.frames.items()]
+        for index, scope, name in scoped:
+            if not name:
+                continue
+            found = self._scopes.frame(scope, name)
+            if found is None:
+                self._unknown(RelativeToError, index, 'placement_frame', name, scope)
+            elif found != index:
+                placements[index] = found
         return placements
 
     # Reports
@@ -250,27 +259,29 @@ class _Builder:
                f'{self._scopes.hint(scope, name)}')
         self._problems.error(error_class(msg, self._table.place(index, line, part)))
 
-    def _lose(self, index: int, element: Element) -> None:
-        name = element.relative_to
-        self._lost[index] = self._scopes.missing_uri(element.scope, name)
+    def _lose(self, index: int, name: str) -> None:
+        scope = self._scope_of[index]
+        self._lost[index] = self._scopes.missing_uri(scope, name)
         if self._lost[index]:
             return
-        msg = (f'relative_to="{name}" names no frame in {self._scopes.described(element.scope)}'
-               f'{self._scopes.hint(element.scope, name)}; the {element.kind.label} is left out')
-        self._problems.warning(
-            RelativeToError.code, msg, self._table.place(index, element.pose_line, 'pose'))
+        msg = (f'relative_to="{name}" names no frame in {self._scopes.described(scope)}'
+               f'{self._scopes.hint(scope, name)}; the {self._table.kind(index).label} is left '
+               'out')
+        place = self._table.place(index, int(self._table.pose_lines[index]), 'pose')
+        self._problems.warning(RelativeToError.code, msg, place)
 
     def _lose_dependents(
-        self, references: Sequence[int], attachments: Sequence[int], joints: dict[int, JointEnds],
+        self, references: Indices, attachments: Indices, joints: dict[int, JointEnds],
     ) -> None:
         """Leave out what stands on something that is left out, and say how much that is."""
-        before = -1
+        if not self._lost:
+            return
+        before = 0
+        columns = self._table.parents.tolist(), references.tolist(), attachments.tolist()
         while before != len(self._lost):
             before = len(self._lost)
-            for index, element in enumerate(self._elements):
-                needed = [element.parent, references[index], attachments[index]]
-                if index in joints:
-                    needed.append(joints[index].parent)
+            for index, pointers in enumerate(zip(*columns, strict=True)):
+                needed = [*pointers, joints[index].parent] if index in joints else pointers
                 for other in needed:
                     if other in self._lost:
                         self._lost.setdefault(index, self._lost[other])
@@ -285,10 +296,10 @@ class _Builder:
             self._problems.warning('WARNING', msg, self._table.place(min(lost)))
 
     def _break_rings(
-        self, pointers: list[int], error_class: type[SdfError], verb: str,
+        self, pointers: Indices, error_class: type[SdfError], verb: str,
     ) -> None:
         """Report each ring once, at its first element in the file, and open it there."""
-        for ring in _rings(pointers):
+        for ring in rings_from_pointers(pointers):
             start = ring.index(min(ring))
             pointers[ring[start]] = NOWHERE
             if frozenset(ring) in self._reported_rings:
@@ -302,47 +313,12 @@ class _Builder:
             msg = f'this is {verb} itself: {" -> ".join(shown)}'
             if error_class is RelativeToCycleError and any(map(self._is_placed_in_child, ring)):
                 msg += '; a joint that says nothing else is placed in its child'
-            place = self._table.place(index, self._elements[index].pose_line)
+            place = self._table.place(index, int(self._table.pose_lines[index]))
             self._problems.error(error_class(msg, place))
 
     def _is_placed_in_child(self, index: int) -> bool:
-        element = self._elements[index]
-        return element.kind is Kind.JOINT and not element.relative_to
+        return index in self._table.joints and index not in self._table.relative_to
 
 
-def _rings(pointers: Sequence[int]) -> list[list[int]]:
-    """Find the rings of a graph in which every node points to one other or to none."""
-    rings: list[list[int]] = []
-    walk_of = [0] * len(pointers)
-    for start, seen in enumerate(walk_of):
-        if seen:
-            continue
-        walk = start + 1
-        node = start
-        while node >= 0 and not walk_of[node]:
-            walk_of[node] = walk
-            node = pointers[node]
-        if node >= 0 and walk_of[node] == walk:
-            ring = [node]
-            node = pointers[node]
-            while node != ring[0]:
-                ring.append(node)
-                node = pointers[node]
-            rings.append(ring)
-    return rings
-
-
-def _ends(pointers: Sequence[int]) -> list[int]:
-    """Follow every node to the end of its chain; there must be no rings."""
-    ends = [NOWHERE] * len(pointers)
-    for start in range(len(pointers)):
-        chain: list[int] = []
-        node = start
-        while ends[node] < 0 and pointers[node] >= 0:
-            chain.append(node)
-            node = pointers[node]
-        end = node if ends[node] < 0 else ends[node]
-        ends[node] = end
-        for passed in chain:
-            ends[passed] = end
-    return ends
+def _put(column: Indices, values: dict[int, int]) -> None:
+    column[list(values)] = list(values.values())

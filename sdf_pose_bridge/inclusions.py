@@ -10,8 +10,6 @@ import os
 from pathlib import Path
 from typing import NamedTuple
 
-from lxml import etree
-
 from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import document_from_file
 from sdf_pose_bridge.document import is_data
@@ -33,7 +31,6 @@ from sdf_pose_bridge.versions import upgrade
 DEEPEST = 64
 """Files may include one another to this depth."""
 
-_INCLUDES = etree.XPath('//include')
 _HOLDERS = frozenset({'sdf', 'world', 'model'})
 
 
@@ -45,6 +42,8 @@ class DocumentSet(NamedTuple):
     """What each ``<include>`` of any of the documents stands for."""
     files: Sequence[str]
     """All files that were read, manifests among them."""
+    changed: frozenset[XmlElement] = frozenset()
+    """The roots of documents whose trees differ from their texts."""
 
     def all_documents(self) -> list[Document]:
         """
@@ -85,7 +84,8 @@ def document_set(document: Document, finder: ResourceFinder) -> DocumentSet:
     inclusions = reader.inclusions
     if reader.has_copies:
         inclusions = _reachable(document, inclusions, {})
-    return DocumentSet(document, inclusions, [document.path, *reader.files])
+    return DocumentSet(
+        document, inclusions, [document.path, *reader.files], frozenset(reader.changed))
 
 
 def _reachable(
@@ -104,9 +104,8 @@ def _reachable(
 
 
 def _includes_of(document: Document) -> list[XmlElement]:
-    found: list[XmlElement] = _INCLUDES(document.root)
     return [
-        include for include in found
+        include for include in document.root.iter('include')
         if (holder := include.getparent()) is not None and holder.tag in _HOLDERS
         and is_data(include)]
 
@@ -117,11 +116,13 @@ class _Reader:
         self.inclusions: dict[XmlElement, Inclusion] = {}
         self.files: dict[str, None] = {}
         self.has_copies = False
+        self.changed: set[XmlElement] = set()
         self._finder = finder
         self._known: dict[str, Inclusion] = {}
 
     def read_includes_of(self, document: Document, chain: tuple[str, ...]) -> None:
-        upgrade(document)
+        if upgrade(document):
+            self.changed.add(document.root)
         self._read_new_includes(document, document, chain)
 
     def _read_new_includes(

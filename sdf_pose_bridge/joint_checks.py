@@ -4,12 +4,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from sdf_pose_bridge.elements import Elements
-from sdf_pose_bridge.elements import JointFacts
+from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.errors import ExpressedInError
 from sdf_pose_bridge.errors import JointChildError
 from sdf_pose_bridge.errors import JointParentError
@@ -31,8 +32,8 @@ class JointEnds(NamedTuple):
 def check_joints(
     table: Elements,
     scopes: Scopes,
-    joints: Iterable[JointEnds],
-    bodies: Sequence[int],
+    joints: Sequence[JointEnds],
+    bodies: Indices,
     problems: Problems,
 ) -> None:
     """
@@ -44,8 +45,23 @@ def check_joints(
     :param bodies: for each element the link, static model or root that carries it.
     :param problems: takes what is wrong.
     """
-    for ends in joints:
+    for ends in _doubtful(table, scopes, joints, bodies):
         _JointCheck(table, scopes, ends, bodies, problems).run()
+
+
+def _doubtful(
+    table: Elements, scopes: Scopes, joints: Sequence[JointEnds], bodies: Indices,
+) -> Sequence[JointEnds]:
+    """Leave out joints with which nothing is wrong, all at once."""
+    if not joints:
+        return joints
+    joint, parent, child = np.array(joints).T
+    body = bodies[child]
+    is_doubtful = (
+        (parent < 0) | (child < 0) | (parent == joint) | (child == joint)
+        | (body == bodies[parent]) | (body == np.array(scopes.roots)[child]))
+    is_doubtful |= [bool(table.joints[ends.joint].expressed_in) for ends in joints]
+    return [joints[place] for place in np.flatnonzero(is_doubtful).tolist()]
 
 
 class _JointCheck:
@@ -55,7 +71,7 @@ class _JointCheck:
         table: Elements,
         scopes: Scopes,
         ends: JointEnds,
-        bodies: Sequence[int],
+        bodies: Indices,
         problems: Problems,
     ) -> None:
         self._table = table
@@ -63,11 +79,9 @@ class _JointCheck:
         self._ends = ends
         self._bodies = bodies
         self._problems = problems
-        element = table.elements[ends.joint]
-        assert isinstance(element.facts, JointFacts)
-        self._name = element.name
-        self._scope = element.scope
-        self._facts = element.facts
+        self._name = table.names[ends.joint]
+        self._scope = int(table.scopes[ends.joint])
+        self._facts = table.joints[ends.joint]
 
     def run(self) -> None:
         good = self._check_child() & self._check_parent()

@@ -5,21 +5,32 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from collections.abc import Iterator
+from collections.abc import Mapping
+import contextlib
 import enum
+import gc
 import os
 
 from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import document_from_file
 from sdf_pose_bridge.document import document_from_text
+from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.element_reader import elements_from_documents
 from sdf_pose_bridge.frame_graph import frame_graph_from_elements
 from sdf_pose_bridge.inclusions import document_set
 from sdf_pose_bridge.inclusions import DocumentSet
+from sdf_pose_bridge.markup_index import MarkupIndex
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.resources import resource_finder
+from sdf_pose_bridge.row_extraction import ROW_TAGS
 from sdf_pose_bridge.scene import Scene
 from sdf_pose_bridge.scene_assembly import scene_from_graph
+from sdf_pose_bridge.tag_names import TagNames
 from sdf_pose_bridge.value_checks import check_values
+from sdf_pose_bridge.value_checks import CHECKED_TAGS
+
+_TAGS = TagNames(tuple(dict.fromkeys((*ROW_TAGS, *CHECKED_TAGS))))
 
 
 class MissingInclude(enum.Enum):
@@ -77,29 +88,59 @@ def _scene_from_document(
     resource_paths: Iterable[str | os.PathLike[str]],
     on_missing_include: MissingInclude,
 ) -> Scene:
+    with _collection_paused():
+        return _resolved_scene(document, resource_paths, on_missing_include)
+
+
+@contextlib.contextmanager
+def _collection_paused() -> Iterator[None]:
+    """
+    Keep the garbage collector from looking through the elements of a large file again and again.
+
+    A load makes no cycles of objects that matter.
+    """
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+def _resolved_scene(
+    document: Document,
+    resource_paths: Iterable[str | os.PathLike[str]],
+    on_missing_include: MissingInclude,
+) -> Scene:
     documents = document_set(document, resource_finder(resource_paths, os.environ))
     problems = Problems(documents.files)
+    indices = {
+        each.root: MarkupIndex(
+            each.root, None if each.root in documents.changed else each.text, _TAGS)
+        for each in documents.all_documents()}
     for each in documents.all_documents():
-        check_values(each, problems)
+        check_values(each, indices[each.root], problems)
     skips_missing = on_missing_include is MissingInclude.SKIP
-    broken = _broken_documents(documents, problems, skips_missing=skips_missing)
+    broken = _broken_documents(documents, indices, problems, skips_missing=skips_missing)
     table = elements_from_documents(
-        documents, problems, broken=broken, skips_missing=skips_missing)
+        documents, indices, problems, broken=broken, skips_missing=skips_missing)
     graph = frame_graph_from_elements(table, problems)
     problems.raise_any()
     return scene_from_graph(documents, table, graph, problems.warnings)
 
 
 def _broken_documents(
-    documents: DocumentSet, problems: Problems, *, skips_missing: bool,
+    documents: DocumentSet, indices: Mapping[XmlElement, MarkupIndex], problems: Problems, *,
+    skips_missing: bool,
 ) -> frozenset[str]:
     """Check what is merged on its own, where it cannot use names of what it is merged into."""
     broken: set[str] = set()
     for document in documents.merged():
         own_problems = Problems(documents.files)
         table = elements_from_documents(
-            documents._replace(document=document), own_problems, broken=frozenset(broken),
-            skips_missing=skips_missing)
+            documents._replace(document=document), indices, own_problems,
+            broken=frozenset(broken), skips_missing=skips_missing)
         frame_graph_from_elements(table, own_problems)
         if own_problems.errors:
             broken.add(document.path)

@@ -8,6 +8,8 @@ import itertools
 
 from sdf_pose_bridge.document import WHITE_SPACE
 from sdf_pose_bridge.document import XmlElement
+from sdf_pose_bridge.element_rows import ElementRows
+from sdf_pose_bridge.element_rows import Run
 from sdf_pose_bridge.elements import step
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import AttributeMissingError
@@ -34,7 +36,7 @@ class NameClaims:
 
     def __init__(self, reading: Reading) -> None:
         self._reading = reading
-        self._claims: dict[tuple[int, Kind, str], tuple[Kind, int]] = {}
+        self._claims: dict[tuple[int, int, str], tuple[int, int]] = {}
 
     def claim(
         self, kind: Kind, xml: XmlElement, parent: int, name: str = '',
@@ -57,9 +59,10 @@ class NameClaims:
         space = Kind.FRAME if kind in FRAME_KINDS else kind
         key = (parent, space, judged)
         if key not in self._claims:
-            self._claims[key] = (kind, self._reading.count())
+            self._claims[key] = (kind, len(self._reading.columns))
             return judged
-        other, index = self._claims[key]
+        other_kind, index = self._claims[key]
+        other = Kind(other_kind)
         if other is not kind and self._renames_clashes(kind, parent):
             return self._renamed(kind, xml, parent, judged)
         msg = (f'the name "{judged}" belongs to {_ARTICLE.get(other, "a")} {other.label} of this '
@@ -67,19 +70,38 @@ class NameClaims:
         self._reading.error(DuplicateNameError, xml, msg, parent, step(kind.label, judged))
         return None
 
+    def claim_run(self, rows: ElementRows, run: Run, parent: int) -> bool:
+        """
+        Claim the names of the siblings of a run.
+
+        :param rows: those of the file that is being read.
+        :param run: the run, which is to be added next.
+        :param parent: index of the element that holds the siblings.
+        :return: whether none of the names was taken; if one was, none is claimed.
+        """
+        children: list[int] = run.children.tolist()
+        kinds: list[int] = rows.columns.kinds[run.children].tolist()
+        keys = [(parent, Kind.FRAME if kind in FRAME_KINDS else kind, rows.columns.names[row])
+                for row, kind in zip(children, kinds, strict=True)]
+        if not self._claims.keys().isdisjoint(keys):
+            return False
+        offset = len(self._reading.columns) - run.start
+        indices = [row + offset for row in children]
+        self._claims.update(zip(keys, zip(kinds, indices, strict=True), strict=True))
+        return True
+
     def _renames_clashes(self, kind: Kind, parent: int) -> bool:
         if parent < 0 or kind not in FRAME_KINDS or kind is Kind.MODEL:
             return False
-        holder = self._reading.element(parent)
         return renames_clashes(self._reading.version_of_element(parent)) and (
-            holder.kind is Kind.MODEL or kind is Kind.FRAME)
+            self._reading.columns.kind(parent) is Kind.MODEL or kind is Kind.FRAME)
 
     def _renamed(self, kind: Kind, xml: XmlElement, parent: int, name: str) -> str:
         tries = itertools.chain(
             [f'{name}_{kind.label}'], (f'{name}_{kind.label}{i}' for i in itertools.count()))
         new_name = next(
             new_name for new_name in tries if (parent, Kind.FRAME, new_name) not in self._claims)
-        self._claims[parent, Kind.FRAME, new_name] = (kind, self._reading.count())
+        self._claims[parent, Kind.FRAME, new_name] = (kind, len(self._reading.columns))
         msg = (f'the name "{name}" is that of another kind of element in this scope; this '
                f'{kind.label} is called "{new_name}" instead, and references to "{name}" mean the '
                'other one')
@@ -87,7 +109,7 @@ class NameClaims:
         return new_name
 
     def _place_of_claim(self, index: int) -> str:
-        if index >= self._reading.count():
+        if index >= len(self._reading.columns):
             return 'which is not valid itself'
         return f'see {self._reading.place_of(index)}'
 

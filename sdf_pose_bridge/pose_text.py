@@ -29,9 +29,18 @@ SMALLEST_QUATERNION_NORM = 1e-9
 
 _NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?')
 _NOT_ZERO = re.compile(r'[^eE]*[1-9]')
-_NUMBER_CHARACTERS = b'0123456789+-.eE \t\n\r'
+_MARK = '|'
+_LONGEST_PLAIN = 200
+_TINY = re.compile(r'[eE]-0*[1-9][0-9][0-9]')
+"""A number without this, and of no more than 200 characters, is not too small for a double."""
+_NUMBER_CHARACTERS = b'0123456789+-.eE \t\n\r|'
 _RPY_COUNT = 6
 _QUATERNION_COUNT = 7
+_PLAIN_NUMBER = r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,2})?'
+_PLAIN = {
+    count: re.compile(
+        rf'[ \t\n\r]*(?:{_PLAIN_NUMBER}[ \t\n\r]+){{{count - 1}}}{_PLAIN_NUMBER}[ \t\n\r]*')
+    for count in (_RPY_COUNT, _QUATERNION_COUNT)}
 
 
 class PoseText(NamedTuple):
@@ -50,45 +59,51 @@ class PoseTextError(ValueError):
 
 
 def poses_from_texts(
-    texts: Sequence[PoseText],
+    texts: Sequence[str], *, quaternions: Sequence[int] = (), degrees: Sequence[int] = (),
 ) -> tuple[npt.NDArray[np.float64], list[tuple[int, str]]]:
     """
     Read many poses.
 
-    :param texts: n poses as written.
+    :param texts: n poses as written; blank text is the identity.
+    :param quaternions: indices of those in ``quat_xyzw``; others are in ``euler_rpy``.
+    :param degrees: indices of those whose roll, pitch and yaw are in degrees.
     :return: an array of shape (n, 7): x y z in metres, unit quaternion x y z w; and, for each text
         that is no pose, its index and the reason. The row of such a text is the identity.
     """
     poses = np.zeros((len(texts), 7))
     poses[:, 6] = 1.0
-    if _are_plain(texts):
-        failures: list[tuple[int, str]] = []
-        rows: dict[tuple[bool, bool], list[int]] = {}
-        values: dict[tuple[bool, bool], list[float]] = {}
-        for index, (text, is_quaternion, is_degrees) in enumerate(texts):
-            numbers = text.split()
-            if len(numbers) == (_QUATERNION_COUNT if is_quaternion else _RPY_COUNT):
-                form = (is_quaternion, is_degrees)
-                try:
-                    values.setdefault(form, []).extend(list(map(float, numbers)))
-                except ValueError:
-                    _one_at_a_time(index, texts[index], poses, failures)
-                else:
-                    rows.setdefault(form, []).append(index)
-            elif numbers:
-                _one_at_a_time(index, texts[index], poses, failures)
-        for form, indices in rows.items():
-            table = np.array(values[form]).reshape(len(indices), -1)
-            doubtful = set(_fill(poses, np.array(indices), table, *form).tolist())
-            # A number too small for a double has become zero by now.
-            doubtful.update(index for index in indices if 'e-' in texts[index].text.lower())
-            for index in doubtful:
-                _one_at_a_time(index, texts[index], poses, failures)
-    else:
-        failures = []
-        for index, pose in enumerate(texts):
-            _one_at_a_time(index, pose, poses, failures)
-    return poses, sorted(failures)
+    is_quaternion = _marked(len(texts), quaternions)
+    is_degrees = _marked(len(texts), degrees)
+    doubtful: list[int] = []
+    for form_is_quaternion, form_is_degrees in ((False, False), (False, True), (True, False)):
+        indices = np.flatnonzero(
+            (is_quaternion == form_is_quaternion) & (is_degrees == form_is_degrees))
+        if not len(indices):
+            continue
+        width = _QUATERNION_COUNT if form_is_quaternion else _RPY_COUNT
+        form_texts = texts if len(indices) == len(texts) else [
+            texts[index] for index in indices.tolist()]
+        table = _table_from_texts(form_texts, width)
+        if table is None:
+            is_plain = [
+                len(text) <= _LONGEST_PLAIN and _PLAIN[width].fullmatch(text) is not None
+                for text in form_texts]
+            doubtful += indices[np.logical_not(is_plain)].tolist()
+            indices = indices[is_plain]
+            table = np.array([
+                float(number) for text, plain in zip(form_texts, is_plain, strict=True) if plain
+                for number in text.split()]).reshape(-1, width)
+        doubtful += _fill(poses, indices, table, form_is_quaternion, form_is_degrees).tolist()
+    doubtful += np.flatnonzero(is_quaternion & is_degrees).tolist()
+    failures: list[tuple[int, str]] = []
+    for index in sorted(doubtful):
+        text = PoseText(texts[index], bool(is_quaternion[index]), bool(is_degrees[index]))
+        try:
+            poses[index] = pose_from_text(text)
+        except PoseTextError as error:
+            poses[index] = IDENTITY
+            failures.append((index, str(error)))
+    return poses, failures
 
 
 def pose_from_text(pose: PoseText) -> tuple[float, ...]:
@@ -131,13 +146,35 @@ def pose_from_text(pose: PoseText) -> tuple[float, ...]:
     return (*values[:3], *(value / norm for value in values[3:]))
 
 
-def _are_plain(texts: Sequence[PoseText]) -> bool:
-    """Tell whether the texts hold nothing that Python and SDFormat read differently."""
+def _marked(count: int, indices: Sequence[int]) -> npt.NDArray[np.bool_]:
+    marks = np.zeros(count, dtype=bool)
+    marks[np.array(indices, dtype=np.intp)] = True
+    return marks
+
+
+def _table_from_texts(texts: Sequence[str], width: int) -> npt.NDArray[np.float64] | None:
+    """
+    Read the numbers of many texts at once.
+
+    :param texts: n texts.
+    :param width: how many numbers each should hold.
+    :return: shape (n, width); None where any text holds anything else, or a number that needs a
+        closer look: one that Python and SDFormat may read differently, or so small that it may
+        have become zero.
+    """
+    joined = f' {_MARK} '.join(texts)
+    if (not joined.isascii() or joined.encode().translate(None, _NUMBER_CHARACTERS)
+            or _TINY.search(joined) or len(max(texts, key=len)) > _LONGEST_PLAIN):
+        return None
+    tokens = joined.split()
+    if tokens[width::width + 1] != [_MARK] * (len(texts) - 1):
+        return None
+    del tokens[width::width + 1]
     try:
-        characters = ' '.join([text[0] for text in texts]).encode('ascii')
-    except UnicodeEncodeError:
-        return False
-    return not characters.translate(None, _NUMBER_CHARACTERS)
+        table = np.fromiter(map(float, tokens), np.float64, len(tokens))
+    except ValueError:
+        return None
+    return table.reshape(-1, width) if len(table) == len(texts) * width else None
 
 
 def _is_representable(number: str) -> bool:
@@ -146,19 +183,6 @@ def _is_representable(number: str) -> bool:
     if value == 0.0:
         return not _NOT_ZERO.match(number)
     return sys.float_info.min <= abs(value) <= sys.float_info.max
-
-
-def _one_at_a_time(
-    index: int,
-    text: PoseText,
-    poses: npt.NDArray[np.float64],
-    failures: list[tuple[int, str]],
-) -> None:
-    try:
-        poses[index] = pose_from_text(text)
-    except PoseTextError as error:
-        poses[index] = IDENTITY
-        failures.append((index, str(error)))
 
 
 def _fill(

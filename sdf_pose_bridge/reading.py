@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from collections.abc import Mapping
 import contextlib
 
 from lxml import etree
@@ -13,8 +14,8 @@ from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import is_data
 from sdf_pose_bridge.document import WHITE_SPACE
 from sdf_pose_bridge.document import XmlElement
-from sdf_pose_bridge.elements import Element
-from sdf_pose_bridge.elements import element_path
+from sdf_pose_bridge.element_columns import ElementColumns
+from sdf_pose_bridge.element_rows import ElementRows
 from sdf_pose_bridge.elements import NOWHERE
 from sdf_pose_bridge.elements import step
 from sdf_pose_bridge.errors import ElementInvalidError
@@ -23,8 +24,10 @@ from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.inclusions import DEEPEST
+from sdf_pose_bridge.markup_index import MarkupIndex
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.row_extraction import rows_from_index
 from sdf_pose_bridge.versions import may_hold_flat_names
 from sdf_pose_bridge.versions import Version
 from sdf_pose_bridge.versions import version_of
@@ -37,34 +40,35 @@ class Reading:
     Which file is being read at the moment, and what is wrong with what is read.
 
     :param document: the file that is read at first.
+    :param indices: the elements of each file, by its root.
     :param problems: takes what is wrong.
     """
 
-    def __init__(self, document: Document, problems: Problems) -> None:
+    def __init__(
+        self, document: Document, indices: Mapping[XmlElement, MarkupIndex], problems: Problems,
+    ) -> None:
+        self._indices = indices
         self._problems = problems
         self._files = [document.path]
         self._versions = [version_of(document)]
         self._document = document
         self._file = 0
         self._open_files = [0]
-        self._elements: list[Element] = []
+        self._rows: dict[XmlElement, ElementRows] = {}
+        self.columns = ElementColumns()
 
-    def element(self, index: int) -> Element:
+    def rows(self) -> ElementRows | None:
         """
-        Return an element as it stands now.
+        Take all elements out of the file that is being read.
 
-        :param index: its index.
-        :return: the element.
+        :return: its rows; None if parts of it stand in other files.
         """
-        return self._elements[index]
-
-    def count(self) -> int:
-        """
-        Count the elements.
-
-        :return: how many were added, which is the index of the next one.
-        """
-        return len(self._elements)
+        if self._document.origins:
+            return None
+        root = self._document.root
+        if root not in self._rows:
+            self._rows[root] = rows_from_index(self._indices[root], root)
+        return self._rows[root]
 
     def version_of_element(self, index: int) -> Version:
         """
@@ -73,7 +77,7 @@ class Reading:
         :param index: its index.
         :return: what its file declares.
         """
-        return self._versions[self._elements[index].file]
+        return self._versions[self.columns.file(index)]
 
     def place_of(self, index: int) -> Place:
         """
@@ -82,8 +86,7 @@ class Reading:
         :param index: its index.
         :return: its file and line.
         """
-        element = self._elements[index]
-        return Place(self._files[element.file], element.line)
+        return Place(self._files[self.columns.file(index)], self.columns.line(index))
 
     @contextlib.contextmanager
     def reading(self, document: Document) -> Iterator[None]:
@@ -111,7 +114,7 @@ class Reading:
 
         :param document: the file; an old one is judged by the newest that includes it.
         """
-        if self.allows_flat_names():
+        if not document.may_hold_separators or self.allows_flat_names():
             return
         found: list[XmlElement] = _NAMES_WITH_SEPARATOR(document.root)
         for xml in found:
@@ -191,7 +194,7 @@ class Reading:
         return all(may_hold_flat_names(self._versions[file]) for file in self._open_files)
 
     def _place(self, xml: XmlElement, parent: int, part: str) -> Place:
-        path = element_path(self._elements, parent)
+        path = self.columns.path(parent)
         return Place(
             self._files[self._file_of(xml)], xml.sourceline or 0,
             f'{path}/{part}' if part else path)

@@ -4,11 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-import itertools
-
 import numpy as np
+import numpy.typing as npt
 
+from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.frame_graph import FrameGraph
 from sdf_pose_bridge.poses import Pose
 from sdf_pose_bridge.poses import pose_inverse
@@ -16,9 +15,6 @@ from sdf_pose_bridge.poses import pose_product
 from sdf_pose_bridge.poses import pose_products
 from sdf_pose_bridge.poses import PoseArray
 from sdf_pose_bridge.rotation import canonical_quaternion
-
-_FEW = 16
-"""Up to so many poses at one depth, plain floats are faster than arrays."""
 
 
 def root_poses_from_graph(poses: PoseArray, graph: FrameGraph) -> PoseArray:
@@ -32,22 +28,37 @@ def root_poses_from_graph(poses: PoseArray, graph: FrameGraph) -> PoseArray:
         quaternions with w >= 0.
     """
     edges = _solved_placements(poses, graph)
-    resolved: PoseArray = edges.copy()
-    references = np.array(graph.references, dtype=np.intp)
-    depths = np.array(_depths(graph.references), dtype=np.intp)
-    order = np.argsort(depths, kind='stable')
-    ends = np.cumsum(np.bincount(depths))
-    for start, end in itertools.pairwise(ends.tolist()):
-        indices = order[start:end]
-        if len(indices) > _FEW:
-            resolved[indices] = pose_products(resolved[references[indices]], edges[indices])
-            continue
-        for index in indices.tolist():
-            reference = Pose(*resolved[graph.references[index]].tolist())
-            resolved[index] = pose_product(reference, Pose(*edges[index].tolist()))
+    references = graph.references
+    is_referred_to = np.zeros(len(references), dtype=bool)
+    is_referred_to[references[references >= 0]] = True
+    resolved = _followed(edges, references, np.flatnonzero(is_referred_to))
+    others = np.flatnonzero(~is_referred_to & (references >= 0))
+    resolved[others] = pose_products(resolved[references[others]], edges[others])
     resolved[:, 3:] = canonical_quaternion(resolved[:, 3:])
     resolved[:, :3] += 0.0  # no negative zeros
     return resolved
+
+
+def _followed(edges: PoseArray, references: Indices, indices: npt.NDArray[np.intp]) -> PoseArray:
+    """
+    Follow the chains of some poses to their ends.
+
+    Each round doubles the length of what has been followed, so a chain of a thousand takes ten.
+
+    :param edges: the pose of each element in the one that it is relative to.
+    :param references: the element that each is relative to; -1 at the end of a chain.
+    :param indices: the elements whose chains are followed; chains stay among them.
+    :return: a copy of the poses, in which those of these elements are in the ends of their chains.
+    """
+    followed: PoseArray = edges.copy()
+    targets = references.copy()
+    active = indices[references[indices] >= 0]
+    while len(active):
+        next_targets = targets[targets[active]]
+        active = active[next_targets >= 0]
+        followed[active] = pose_products(followed[targets[active]], followed[active])
+        targets[active] = next_targets[next_targets >= 0]
+    return followed
 
 
 def _solved_placements(poses: PoseArray, graph: FrameGraph) -> PoseArray:
@@ -57,31 +68,14 @@ def _solved_placements(poses: PoseArray, graph: FrameGraph) -> PoseArray:
     With R what the pose is relative to, P the placement frame and M the model frame,
     ``X_RM = X_RP inverse(X_MP)``. The innermost models, which are last, come first.
     """
-    models = [index for index, frame in enumerate(graph.placements) if frame >= 0]
-    if not models:
+    if not graph.placements:
         return poses
     edges: PoseArray = poses.copy()
-    for model in reversed(models):
+    for model in sorted(graph.placements, reverse=True):
         frame = graph.placements[model]
         in_model = Pose()
         while frame != model:
             in_model = pose_product(Pose(*edges[frame].tolist()), in_model)
-            frame = graph.references[frame]
+            frame = int(graph.references[frame])
         edges[model] = pose_product(Pose(*edges[model].tolist()), pose_inverse(in_model))
     return edges
-
-
-def _depths(references: Sequence[int]) -> list[int]:
-    """Count the poses between each element and the end of its chain."""
-    depths = [-1] * len(references)
-    for start in range(len(references)):
-        chain = []
-        node = start
-        while node >= 0 and depths[node] < 0:
-            chain.append(node)
-            node = references[node]
-        depth = -1 if node < 0 else depths[node]
-        for passed in reversed(chain):
-            depth += 1
-            depths[passed] = depth
-    return depths

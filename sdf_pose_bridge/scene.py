@@ -8,11 +8,11 @@ from collections.abc import Mapping
 import dataclasses
 from functools import cached_property
 from typing import NamedTuple
-from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.elements import SensorFacts
 from sdf_pose_bridge.errors import hint_from_names
 from sdf_pose_bridge.errors import Place
@@ -24,8 +24,6 @@ from sdf_pose_bridge.poses import Pose
 from sdf_pose_bridge.poses import pose_inverse
 from sdf_pose_bridge.poses import pose_product
 from sdf_pose_bridge.poses import PoseArray
-
-Indices: TypeAlias = npt.NDArray[np.int32]
 
 
 class Joint(NamedTuple):

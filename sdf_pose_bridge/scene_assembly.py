@@ -12,15 +12,13 @@ import numpy as np
 import numpy.typing as npt
 
 from sdf_pose_bridge.elements import Elements
-from sdf_pose_bridge.elements import JointFacts
-from sdf_pose_bridge.elements import ModelFacts
-from sdf_pose_bridge.elements import SensorFacts
+from sdf_pose_bridge.elements import Indices
+from sdf_pose_bridge.elements import NOWHERE
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.frame_graph import FrameGraph
 from sdf_pose_bridge.inclusions import DocumentSet
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.resolution import root_poses_from_graph
-from sdf_pose_bridge.scene import Indices
 from sdf_pose_bridge.scene import Joint
 from sdf_pose_bridge.scene import Scene
 
@@ -39,42 +37,42 @@ def scene_from_graph(
     :param warnings: what was warned about.
     :return: the scene; its indices differ from the table's where something was left out.
     """
-    elements = table.elements
-    is_kept = np.ones(len(elements), dtype=bool)
+    count = len(table.names)
+    is_kept = np.ones(count, dtype=bool)
     is_kept[list(graph.lost)] = False
-    kept: list[int] = np.flatnonzero(is_kept).tolist()
     # The last entry serves index -1.
-    renumbered = np.append(np.where(is_kept, np.cumsum(is_kept) - 1, -1), -1)
-    numbers: list[int] = renumbered.tolist()
+    numbers = np.append(np.where(is_kept, np.cumsum(is_kept) - 1, NOWHERE), NOWHERE)
+    number_of: list[int] = numbers.tolist()
 
-    def pointers(old: Sequence[int]) -> Indices:
-        return _frozen(renumbered[np.array(old, dtype=np.intp)[kept]].astype(np.int32))
+    def pointers(old: Sequence[int] | Indices) -> Indices:
+        return _frozen(numbers[np.asarray(old, dtype=np.intp)[is_kept]].astype(np.int32))
 
-    facts = [(numbers[index], elements[index].facts) for index in kept]
+    kept = [index for index in range(count) if is_kept[index]] if graph.lost else range(count)
     return Scene(
         path=documents.document.path,
         files=tuple(dict.fromkeys([*table.files, *documents.files])),
-        names=tuple(graph.names[index] for index in kept),
-        kinds=_frozen(np.array([elements[index].kind for index in kept], dtype=np.uint8)),
-        parents=pointers([element.parent for element in elements]),
+        names=tuple(graph.names[index] for index in kept) if graph.lost else tuple(graph.names),
+        kinds=_frozen(table.kinds[is_kept]),
+        parents=pointers(table.parents),
         roots=pointers(graph.roots),
-        poses=_frozen(root_poses_from_graph(table.poses, graph)[kept]),
+        poses=_frozen(root_poses_from_graph(table.poses, graph)[is_kept]),
         attachments=pointers(graph.attachments),
         bodies=pointers(graph.bodies),
         canonical_links=pointers(graph.canonical_links),
         static_models=frozenset(
-            index for index, fact in facts if isinstance(fact, ModelFacts) and fact.is_static),
+            number_of[index] for index, facts in table.models.items()
+            if facts.is_static and is_kept[index]),
         joints=tuple(
-            Joint(numbers[joint], fact.type, numbers[parent], numbers[child])
-            for joint, parent, child in graph.joints
-            if is_kept[joint] and isinstance(fact := elements[joint].facts, JointFacts)),
-        sensors=MappingProxyType(
-            {index: fact for index, fact in facts if isinstance(fact, SensorFacts)}),
-        lines=_frozen(np.array([elements[index].line for index in kept], dtype=np.int32)),
-        file_indices=_frozen(np.array([elements[index].file for index in kept], dtype=np.int32)),
+            Joint(number_of[joint], table.joints[joint].type, number_of[parent], number_of[child])
+            for joint, parent, child in graph.joints if is_kept[joint]),
+        sensors=MappingProxyType({
+            number_of[index]: facts for index, facts in table.sensors.items()
+            if is_kept[index]}),
+        lines=_frozen(table.lines[is_kept]),
+        file_indices=_frozen(table.file_indices[is_kept]),
         world_names=MappingProxyType({
-            numbers[index]: elements[index].name
-            for index in kept if elements[index].kind is Kind.WORLD}),
+            number_of[index]: table.names[index]
+            for index in np.flatnonzero(is_kept & (table.kinds == Kind.WORLD)).tolist()}),
         warnings=tuple(warnings),
     )
 

@@ -5,6 +5,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from collections.abc import Sequence
+
+import numpy as np
 
 from sdf_pose_bridge.elements import Elements
 from sdf_pose_bridge.elements import NOWHERE
@@ -20,6 +23,13 @@ from sdf_pose_bridge.names import WORLD_FRAME
 _OWN_FRAME = SEPARATOR + MODEL_FRAME
 _MOST_NAMES_COMPARED = 2000
 
+IS_FRAME_KIND = np.isin(np.arange(len(Kind)), list(FRAME_KINDS))
+IS_FRAME_KIND.setflags(write=False)
+"""For each kind whether others may refer to elements of it."""
+
+_MAY_HOLD = np.isin(np.arange(len(Kind)), (Kind.MODEL, Kind.LINK, Kind.JOINT))
+_MAY_HOLD.setflags(write=False)
+
 
 class Scopes:
     """
@@ -33,26 +43,19 @@ class Scopes:
     """
 
     def __init__(self, table: Elements) -> None:
-        self._elements = table.elements
+        self._table = table
         self._missing = table.missing
-        self.names: list[str] = []
-        self.roots: list[int] = []
+        self.names = _absolute_names(table)
+        self.roots = _roots(table)
+        self._is_model: list[bool] = (table.kinds == Kind.MODEL).tolist()
         self._frames: dict[int, dict[str, int]] = {}
-        prefixes: list[str] = []
-        for index, (kind, own_name, parent, *_) in enumerate(self._elements):
-            if parent < 0:
-                self.roots.append(index)
-                self.names.append(WORLD_FRAME if kind is Kind.WORLD else ROOT_FRAME)
-                self._frames[index] = {}
-                prefixes.append('')
-                continue
-            root = self.roots[parent]
-            name = prefixes[parent] + own_name
-            self.roots.append(root)
-            self.names.append(name)
-            prefixes.append(name + SEPARATOR)
-            if kind in FRAME_KINDS:
-                self._frames[root].setdefault(name, index)
+        frames = np.flatnonzero(IS_FRAME_KIND[table.kinds])
+        roots = np.array(self.roots, dtype=np.intp)
+        for root in np.flatnonzero(table.parents < 0).tolist():
+            indices = frames[roots[frames] == root][::-1].tolist()
+            # Of equal names, which are errors, the first one counts.
+            names = map(self.names.__getitem__, indices)
+            self._frames[root] = dict(zip(names, indices, strict=True))
 
     def frame(self, scope: int, reference: str) -> int | None:
         """
@@ -62,21 +65,40 @@ class Scopes:
         :param reference: the name as written, not empty.
         :return: index of the frame, or None if there is none of that name.
         """
-        if self._elements[scope].kind is Kind.MODEL:
+        if self._is_model[scope]:
             if reference == MODEL_FRAME:
                 return scope
             name = scoped_name(self.names[scope], reference)
         else:
-            if reference == WORLD_FRAME and self._elements[scope].kind is Kind.WORLD:
+            if reference == WORLD_FRAME and self._table.kinds[scope] == Kind.WORLD:
                 return scope
             name = reference
         frames = self._frames[self.roots[scope]]
         found = frames.get(name)
         if found is None and name.endswith(_OWN_FRAME):
             found = frames.get(name[:-len(_OWN_FRAME)])
-            if found is not None and self._elements[found].kind is not Kind.MODEL:
+            if found is not None and not self._is_model[found]:
                 return None
         return found
+
+    def frames(self, scopes: Sequence[int], references: Sequence[str]) -> list[int | None]:
+        """
+        Find the frames that many references mean.
+
+        :param scopes: for each the model, world or root in which it is written.
+        :param references: the names as written, not empty.
+        :return: as :meth:`frame` does for each.
+        """
+        is_model, names, roots = self._is_model, self.names, self.roots
+        frames = [
+            self._frames[roots[scope]].get(
+                f'{names[scope]}{SEPARATOR}{reference}' if is_model[scope] else reference)
+            for scope, reference in zip(scopes, references, strict=True)]
+        if None in frames:  # the few names that mean a scope itself, and those that mean nothing
+            for place, found in enumerate(frames):
+                if found is None:
+                    frames[place] = self.frame(scopes[place], references[place])
+        return frames
 
     def missing_uri(self, scope: int, reference: str) -> str:
         """
@@ -104,11 +126,11 @@ class Scopes:
         :param scope: index of a model, world or root.
         :return: such as ``model "robot::arm"``.
         """
-        element = self._elements[scope]
-        if element.kind is Kind.ROOT:
+        kind = self._table.kind(scope)
+        if kind is Kind.ROOT:
             return 'the top of the file'
-        name = element.name if element.kind is Kind.WORLD else self.names[scope]
-        return f'{element.kind.label} "{name}"'
+        name = self._table.names[scope] if kind is Kind.WORLD else self.names[scope]
+        return f'{kind.label} "{name}"'
 
     def hint(self, scope: int, reference: str) -> str:
         """
@@ -118,23 +140,22 @@ class Scopes:
         :param reference: the name as written.
         :return: the reason or the nearest name there is, or an empty string.
         """
-        own = self._elements[scope]
         first = reference.split(SEPARATOR)[0]
-        if own.kind is Kind.MODEL:
-            if first == own.name:
+        if self._is_model[scope]:
+            if first == self._table.names[scope]:
                 rest = reference[len(first) + len(SEPARATOR):]
                 return (f'; inside a model its own name is not visible, write '
                         f'"{rest or MODEL_FRAME}"')
-            outer = own.parent
+            outer = int(self._table.parents[scope])
             while outer >= 0:
                 if self.frame(outer, reference) is not None:
                     return (f'; {self.described(outer)} has a frame of that name, but names of '
                             'enclosing scopes cannot be used')
-                outer = self._elements[outer].parent
+                outer = int(self._table.parents[outer])
         return hint_from_names(reference, self._visible_names(scope))
 
     def _visible_names(self, scope: int) -> Iterator[str]:
-        is_model = self._elements[scope].kind is Kind.MODEL
+        is_model = self._is_model[scope]
         prefix = self.names[scope] + SEPARATOR if is_model else ''
         yield MODEL_FRAME if is_model else WORLD_FRAME
         count = 0
@@ -144,3 +165,25 @@ class Scopes:
                 count += 1
                 if count == _MOST_NAMES_COMPARED:
                     return
+
+
+def _absolute_names(table: Elements) -> list[str]:
+    parents: list[int] = table.parents.tolist()
+    names = list(table.names)
+    prefixes = dict.fromkeys(np.flatnonzero(table.parents < 0).tolist(), '')
+    for index in prefixes:
+        names[index] = WORLD_FRAME if table.kinds[index] == Kind.WORLD else ROOT_FRAME
+    # Holders come before what they hold.
+    for index in np.flatnonzero(_MAY_HOLD[table.kinds] & (table.parents >= 0)).tolist():
+        name = names[index] = prefixes[parents[index]] + names[index]
+        prefixes[index] = name + SEPARATOR
+    for index in np.flatnonzero(~_MAY_HOLD[table.kinds] & (table.parents >= 0)).tolist():
+        names[index] = prefixes[parents[index]] + names[index]
+    return names
+
+
+def _roots(table: Elements) -> list[int]:
+    tops = np.flatnonzero(table.parents < 0)
+    # Elements stand in file order, so each belongs to the top before it.
+    counts = np.diff(np.append(tops, len(table.names)))
+    return np.repeat(tops, counts).tolist()  # type: ignore[no-any-return]

@@ -29,6 +29,7 @@ from sdf_pose_bridge.grammar import REQUIRED_ATTRIBUTES
 from sdf_pose_bridge.grammar import SMALLEST_VALUES
 from sdf_pose_bridge.grammar import VALUE_TYPES
 from sdf_pose_bridge.grammar import ValueType
+from sdf_pose_bridge.markup_index import MarkupIndex
 from sdf_pose_bridge.pose_text import pose_from_text
 from sdf_pose_bridge.pose_text import PoseText
 from sdf_pose_bridge.pose_text import PoseTextError
@@ -45,30 +46,96 @@ _PATTERNS = {
 _LEADING_NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?')
 _AXES = frozenset({('axis', 'xyz'), ('axis2', 'xyz')})
 _SMALLEST_AXIS = 1e-6
-_CHECKED_TAGS = (
-    *sorted({tag for types in VALUE_TYPES.values() for tag in types}),
-    *sorted(REQUIRED_ATTRIBUTES), 'script')
-_HOLDERS_OF_POSES = frozenset({'waypoint', 'camera', 'audio_source', 'population'})
+_HOLDERS_OF_POSES = ('waypoint', 'camera', 'audio_source', 'population')
 _SHADERS = frozenset({'pixel', 'vertex', 'normal_map_object_space', 'normal_map_tangent_space'})
+_VALUE_TAGS = sorted({tag for types in VALUE_TYPES.values() for tag in types})
+CHECKED_TAGS = tuple(dict.fromkeys((
+    *_VALUE_TAGS, *sorted(REQUIRED_ATTRIBUTES), 'script', *_HOLDERS_OF_POSES, 'state')))
+"""Tags of all elements that are checked here."""
+
+# What is certainly a good value of any element with the tag: without comments in it, which are
+# characters with the number 1 here. Values are separated by characters with the number 0.
+_PLAIN_NUMBER = r'[+-]?(?:[0-9]|\.[0-9])'
+_PLAIN_PATTERNS = {
+    ValueType.BOOLEAN: r'(?:true|false|0|1)\s*',
+    ValueType.INTEGER: r'[+-]?[0-9][^\0\1]*',
+    ValueType.NUMBER: rf'{_PLAIN_NUMBER}[^\0\1]*',
+    ValueType.TWO_NUMBERS: rf'{_PLAIN_NUMBER}[^\s\0\1]*\s+{_PLAIN_NUMBER}[^\0\1]*',
+    ValueType.THREE_NUMBERS: rf'(?:{_PLAIN_NUMBER}[^\s\0\1]*\s+){{2}}{_PLAIN_NUMBER}[^\0\1]*',
+    ValueType.COLOR:
+        r'(?:(?:0|1|0?\.[0-9]+|[01]\.0*)\s+){2,3}(?:0|1|0?\.[0-9]+|[01]\.0*)\s*',
+}
+_NOT_NEGATIVE = '(?!-)'
+_NOT_ALL_ZERO = r'(?=[^eE\0]*\0)(?=[^\0]*?(?<![.0-9])(?:0*[1-9]|0*\.0{0,3}[1-9]))'
+_STRICTEST_FIRST = (
+    ValueType.THREE_NUMBERS, ValueType.TWO_NUMBERS, ValueType.INTEGER, ValueType.NUMBER)
 
 
-def check_values(document: Document, problems: Problems) -> None:
+def _plain_values(tag: str) -> re.Pattern[str] | None:
+    """Make the pattern of a run of good values; None where they have to be looked at singly."""
+    types = {types[tag] for types in VALUE_TYPES.values() if tag in types}
+    smallest = {value for (_, each), value in SMALLEST_VALUES.items() if each == tag}
+    if smallest - {0.0} or any(each == tag for _, each in LARGEST_VALUES):
+        return None
+    if types <= set(_STRICTEST_FIRST):
+        strictest = next(each for each in _STRICTEST_FIRST if each in types)
+    elif len(types) == 1:
+        strictest = next(iter(types))
+    else:
+        return None
+    rules = (_NOT_NEGATIVE if smallest else '') + (
+        _NOT_ALL_ZERO if any(each == tag for _, each in _AXES) else '')
+    return re.compile(rf'(?:\s*{rules}{_PLAIN_PATTERNS[strictest]}\0)*')
+
+
+_PLAIN_IF_BEGUN = frozenset(
+    tag for tag in _VALUE_TAGS
+    if {types[tag] for types in VALUE_TYPES.values() if tag in types} <= {
+        ValueType.NUMBER, ValueType.INTEGER})
+"""Tags of elements whose values are good if only they begin with a digit."""
+
+_PLAIN_VALUES = {tag: _plain_values(tag) for tag in _VALUE_TAGS}
+
+
+def check_values(document: Document, index: MarkupIndex, problems: Problems) -> None:
     """
     Check what no other stage reads.
 
     :param document: a file in the newest grammar; what it includes is not looked at.
+    :param index: its elements.
     :param problems: takes what is wrong.
     """
     check = _Check(document, problems)
-    for xml in document.root.iter(*_CHECKED_TAGS):
-        check.value(xml)
-        if xml.tag in REQUIRED_ATTRIBUTES:
+    for tag in _VALUE_TAGS:
+        for xml in _doubtful(tag, index):
+            check.value(xml)
+    for tag in REQUIRED_ATTRIBUTES:
+        for xml in index.xmls(tag):
             check.attribute(xml)
-        if xml.tag in ('script', 'shader'):
+    for tag in ('script', 'shader'):
+        for xml in index.xmls(tag):
             check.material(xml)
-    for xml in document.root.iter(*_HOLDERS_OF_POSES, 'state'):
-        for pose in xml.iter('pose') if xml.tag == 'state' else xml.iterchildren('pose'):
-            check.pose(pose)
+    for tag in (*_HOLDERS_OF_POSES, 'state'):
+        for xml in index.xmls(tag):
+            for pose in xml.iter('pose') if tag == 'state' else xml.iterchildren('pose'):
+                check.pose(pose)
+
+
+def _doubtful(tag: str, index: MarkupIndex) -> list[XmlElement]:
+    """Leave out elements whose values are certainly good, which is quick where all are."""
+    elements = index.of(tag)
+    pattern = _PLAIN_VALUES[tag]
+    if not len(elements) or pattern is None:
+        return index.xmls(tag)
+    if tag in _PLAIN_IF_BEGUN:
+        elements = elements[~index.begins_with_digit(elements)]
+        if not len(elements):
+            return []
+    texts = index.texts(elements)
+    if pattern.fullmatch('\0'.join(set(texts)) + '\0'):
+        return []
+    is_doubtful = [not pattern.fullmatch(text + '\0') for text in texts]
+    return index.xmls_of(tag, elements[is_doubtful])
 
 
 class _Check:

@@ -10,7 +10,6 @@ neither poses nor frames are left out.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 from lxml import etree
@@ -59,22 +58,26 @@ def version_of(document: Document) -> Version:
     raise ConversionError(msg, Place(document.path, document.root.sourceline or 0, '/sdf'))
 
 
-def upgrade(document: Document) -> None:
+def upgrade(document: Document) -> bool:
     """
     Convert a document in place, by the rules of the version that it declares.
 
     :param document: a file as it was read; afterwards it has the meaning of version 1.12.
+    :return: whether its tree may differ from its text now.
     :raises ConversionError: if its version is unknown, or names in it cannot be converted.
     """
     version = version_of(document)
+    changes = 0
     if version < _JOINTS_TURN_WITH_LINKS:
-        _turn_axes_with_model(document.root)
+        changes += _turn_axes_with_model(document.root)
     if version < _FRAME_ATTRIBUTE_ENDS:
-        _rename_frame_attributes(document.root)
-        _express_axes_in_model(document.root)
-    if version < _FLAT_NAMES_END:
+        changes += _rename_frame_attributes(document.root)
+        changes += _express_axes_in_model(document.root)
+    if version < _FLAT_NAMES_END and document.may_hold_separators:
+        changes += 1
         for model in document.root.iterfind('world/model'):
             unflatten_model(model, document.path)
+    return changes > 0
 
 
 def may_hold_flat_names(version: Version) -> bool:
@@ -97,31 +100,37 @@ def renames_clashes(version: Version) -> bool:
     return version < _FRAME_ATTRIBUTE_ENDS
 
 
-def _turn_axes_with_model(root: XmlElement) -> None:
+def _turn_axes_with_model(root: XmlElement) -> int:
+    count = 0
     for path in ('model/joint', 'world/model/joint'):
         for joint in root.iterfind(path):
             for axis in joint.iterchildren('axis', 'axis2'):
                 if axis.find('use_parent_model_frame') is None:
                     etree.SubElement(axis, 'use_parent_model_frame').text = 'true'
+                    count += 1
+    return count
 
 
-def _rename_frame_attributes(root: XmlElement) -> None:
-    for pose in _data_elements(root, 'pose'):
-        frame = pose.attrib.pop('frame', None)
-        if frame is not None:
+def _rename_frame_attributes(root: XmlElement) -> int:
+    count = 0
+    for pose in root.iter('pose'):
+        frame = pose.get('frame')
+        if frame is not None and is_data(pose):
+            del pose.attrib['frame']
             pose.set('relative_to', frame)
+            count += 1
+    return count
 
 
-def _express_axes_in_model(root: XmlElement) -> None:
-    for flag in list(_data_elements(root, 'use_parent_model_frame')):
+def _express_axes_in_model(root: XmlElement) -> int:
+    count = 0
+    for flag in list(root.iter('use_parent_model_frame')):
         axis = flag.getparent()
-        if axis is None:
+        if axis is None or not is_data(flag):
             continue
         xyz = axis.find('xyz')
         if boolean_from_text(text_of(flag)) and xyz is not None:
             xyz.set('expressed_in', MODEL_FRAME)
         axis.remove(flag)
-
-
-def _data_elements(root: XmlElement, tag: str) -> Iterator[XmlElement]:
-    return (element for element in root.iter(tag) if is_data(element))
+        count += 1
+    return count

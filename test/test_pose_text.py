@@ -169,7 +169,10 @@ def one_by_one(texts):
 
 
 def assert_read_as_one_by_one(texts):
-    poses, failures = poses_from_texts(texts)
+    poses, failures = poses_from_texts(
+        [pose.text for pose in texts],
+        quaternions=[index for index, pose in enumerate(texts) if pose.is_quaternion],
+        degrees=[index for index, pose in enumerate(texts) if pose.is_degrees])
     expected, reasons = one_by_one(texts)
     assert failures == sorted(reasons.items())
     np.testing.assert_allclose(poses, expected, rtol=1e-15, atol=1e-15)
@@ -186,10 +189,17 @@ def test_many_plain_ones_are_read_as_one_by_one(texts, is_quaternion, is_degrees
         PoseText(text, is_quaternion, is_degrees and not is_quaternion) for text in texts])
 
 
+@pytest.mark.parametrize('tiny', ['1e-400', '1E-0400', '0.' + 400 * '0' + '1'])
+def test_what_became_zero_is_told_among_good_ones(tiny):
+    good = '1 2 3 0 0 0'
+    poses, failures = poses_from_texts([good, f'{tiny} 0 0 0 0 0', good])
+    assert [index for index, _ in failures] == [1]
+    assert poses[2, :3].tolist() == [1, 2, 3]
+
+
 def test_failures_stand_in_order_and_tell_the_text():
-    good = PoseText('1 2 3 0 0 0', False, False)
-    poses, failures = poses_from_texts([
-        good, PoseText('1 2', False, False), good, PoseText('1 2 x 0 0 0', False, False)])
+    good = '1 2 3 0 0 0'
+    poses, failures = poses_from_texts([good, '1 2', good, '1 2 x 0 0 0'])
     assert [index for index, _ in failures] == [1, 3]
     assert re.search('"1 2".*has 2', failures[0][1])
     assert '"x"' in failures[1][1]

@@ -1,0 +1,188 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The elements of one document that carry a pose, column by column, as they were found in its text.
+
+Most of a large file is regular: every element has a name of its own, and nothing is wrong with it.
+Such elements are told here from odd ones, which have to be looked at one by one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from collections.abc import Sequence
+from functools import cached_property
+import itertools
+from typing import Any
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from sdf_pose_bridge.document import XmlElement
+from sdf_pose_bridge.elements import Indices
+
+_Rows = npt.NDArray[np.intp]
+
+
+class Facts(NamedTuple):
+    """What only some rows have."""
+
+    rows: _Rows
+    """In ascending order."""
+    values: Sequence[Any]
+
+    def copy_to(self, target: dict[int, Any], start: int, end: int, offset: int) -> None:
+        """
+        Copy what some rows have.
+
+        :param target: takes it.
+        :param start: the first of the rows.
+        :param end: the row after the last.
+        :param offset: what to add to a row to get its key.
+        """
+        first, last = np.searchsorted(self.rows, (start, end)).tolist()
+        if first < last:
+            target.update(zip(
+                (self.rows[first:last] + offset).tolist(), self.values[first:last], strict=True))
+
+
+class Run(NamedTuple):
+    """Regular siblings that follow one another, with all that they hold."""
+
+    start: int
+    end: int
+    """The row after the last."""
+    children: _Rows
+    """The rows of the siblings themselves."""
+
+
+class Columns(NamedTuple):
+    """
+    What is known of each row; row i of each sequence and array is about element i.
+
+    Rows stand in the order of the file. What is said of odd ones may be wrong.
+    """
+
+    names: list[str]
+    kinds: npt.NDArray[np.uint8]
+    parents: Indices
+    """The row that holds each; -1 for what stands at the top."""
+    scopes: Indices
+    """The model or world whose names the references of each use; -1 at the top."""
+    lines: Indices
+    pose_lines: Indices
+    is_odd: npt.NDArray[np.bool_]
+    posed: _Rows
+    """The rows that have a pose, in ascending order."""
+    texts: list[str]
+    """Their poses."""
+    quaternions: _Rows
+    """Which of the texts are quaternions."""
+    degrees: _Rows
+    """Which of the texts are in degrees."""
+    relative_to: Facts
+    models: Facts
+    frames: Facts
+    joints: Facts
+    sensors: Facts
+
+
+class ElementRows:
+    """
+    The rows of a document, and the elements of its tree that they are about.
+
+    :param columns: what is known of each row.
+    :param root: the outermost element of the document.
+    :param tags: the tags of the elements that rows are about, and maybe of others.
+    :param top_tags: those of them that stand at the top.
+    :param places: for each row which of the elements with these tags it is.
+    """
+
+    def __init__(
+        self,
+        columns: Columns,
+        root: XmlElement,
+        tags: Sequence[str],
+        top_tags: Sequence[str],
+        places: _Rows,
+    ) -> None:
+        self.columns = columns
+        self._root = root
+        self._tags = tags
+        self._top_tags = top_tags
+        self._places = places
+        parents = columns.parents
+        self._odd_before = np.append(0, np.cumsum(columns.is_odd))
+        self._by_parent = np.argsort(parents, kind='stable')
+        # Children of the document come first; those of row i are between entries i + 1 and i + 2.
+        self._first_children = np.searchsorted(
+            parents[self._by_parent], np.arange(-1, len(parents) + 1))
+
+    def row_of(self, xml: XmlElement) -> int:
+        """
+        Find the row of an element.
+
+        :param xml: an element of the document.
+        :return: its row.
+        """
+        if xml.getparent() is self._root:
+            # Much quicker than to make an object for each element of the tree.
+            place = list(self._root.iterchildren(*self._top_tags)).index(xml)
+            return int(self._children(-1)[place])
+        return self._rows_of_xmls[xml]
+
+    def xmls(self, rows: _Rows) -> list[XmlElement]:
+        """
+        Return the elements of the tree that rows are about.
+
+        :param rows: some rows.
+        :return: the elements.
+        """
+        return [self._xmls[row] for row in rows.tolist()]
+
+    def runs(self, xml: XmlElement) -> Iterator[Run | XmlElement]:
+        """
+        Go through what a model or a world holds.
+
+        :param xml: a model or world of the document.
+        :return: runs of regular rows, and between them the elements that are odd or hold
+            something odd, in the order of the file.
+        """
+        row = self.row_of(xml)
+        children = self._children(row)
+        if not len(children):
+            return
+        ends = np.append(children[1:], self._end_of(row))
+        is_odd = self._odd_before[ends] > self._odd_before[children]
+        borders = np.flatnonzero(is_odd[1:] | is_odd[:-1]) + 1
+        for begin, end in itertools.pairwise([0, *borders.tolist(), len(children)]):
+            if is_odd[begin]:
+                yield self._xmls[children[begin]]
+            else:
+                yield Run(int(children[begin]), int(ends[end - 1]), children[begin:end])
+
+    def _children(self, row: int) -> _Rows:
+        first, last = self._first_children[row + 1:row + 3].tolist()
+        children: _Rows = self._by_parent[first:last]
+        return children
+
+    def _end_of(self, row: int) -> int:
+        """Return the row after the last that a row holds."""
+        while row >= 0:
+            parent = int(self.columns.parents[row])
+            siblings = self._children(parent)
+            following = int(np.searchsorted(siblings, row, side='right'))
+            if following < len(siblings):
+                return int(siblings[following])
+            row = parent
+        return len(self.columns.names)
+
+    @cached_property
+    def _xmls(self) -> list[XmlElement]:
+        found = list(self._root.iter(*self._tags))
+        return [found[place] for place in self._places.tolist()]
+
+    @cached_property
+    def _rows_of_xmls(self) -> dict[XmlElement, int]:
+        return dict(zip(self._xmls, range(len(self._xmls)), strict=True))
