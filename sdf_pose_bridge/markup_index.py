@@ -83,6 +83,7 @@ class MarkupIndex:
         chosen = starts[self._ordinals]
         self._begins = begins[chosen]
         self._ends = ends[chosen]
+        self._content_ends = self._ends - is_empty[chosen]
         # What follows is another tag, that of a child or of the end.
         following = np.append(begins, len(text))[chosen + 1]
         self._text_ends = np.where(is_empty[chosen], self._ends + 1, following)
@@ -150,7 +151,7 @@ class MarkupIndex:
         :return: its value for each, as it is written; empty where there is only a name; and
             whether there may be anything else.
         """
-        ends = self._ends[elements]
+        ends = self._content_ends[elements]
         _, name_ends = self._value_places(elements, (b'name',))
         begins, value_ends = self._value_places(elements, (b'name', attribute))
         is_plain = (name_ends + 1 == ends) | (value_ends + 1 == ends)
@@ -179,7 +180,7 @@ class MarkupIndex:
         :return: false for those whose tag has nothing but its name.
         """
         lengths = self._name_lengths[self.numbers[elements]]
-        is_longer: _Flags = self._begins[elements] + lengths < self._ends[elements]
+        is_longer: _Flags = self._begins[elements] + lengths < self._content_ends[elements]
         return is_longer
 
     def holders(self, elements: Positions) -> Positions:

@@ -1,0 +1,111 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Elements found in text are those of the tree, however the text is written."""
+
+from lxml import etree
+import numpy as np
+import pytest
+
+from sdf_pose_bridge.document import document_from_text
+from sdf_pose_bridge.document import text_of
+from sdf_pose_bridge.markup_index import COMMENT
+from sdf_pose_bridge.markup_index import MarkupIndex
+from sdf_pose_bridge.tag_names import TagNames
+
+TAGS = ('sdf', 'model', 'link', 'pose')
+TEXTS = {
+    'plain': '<model name="m"><link name="l"><pose>1 2</pose></link></model>',
+    'empty elements': '<model name="m"><link name="l"/><link name="k"><pose/></link></model>',
+    'lines': '\n<model\n name="m"\n\n>\n<link\tname="l"\r\n><pose>1\n2</pose\n></link\t></model>',
+    'comment with tags': '<!-- <link name="x"> > < --><model name="m"><!--\n--><link/></model>',
+    'comment in a value': '<model name="m"><pose>1 <!-- <pose> --> 2</pose></model>',
+    'bracket in an attribute': '<model name="a>b"><link name="/>"/><link name="l"/></model>',
+    'bracket in a value': '<model name="m"><pose>1 > 2</pose><link/></model>',
+    'character data': '<model name="m"><pose><![CDATA[1 <link> 2]]></pose><link/></model>',
+    'other quotes': "<model name='m'><link kind='\"' name=\"l\"/></model>",
+    'other tags between': '<plugin><model><x><link/></x></model></plugin><model><pose/></model>',
+    'letters': '<model name="größe"><link name="\U0001f916"><pose>é</pose></link></model>',
+    'references': '<model name="a&amp;b"><pose>1 &lt; 2</pose></model>',
+}
+
+
+def index_of(text):
+    document = document_from_text(text, 'x.sdf')
+    return document.root, MarkupIndex(document.root, document.text, TagNames(TAGS))
+
+
+def sdf(content):
+    return f'<?xml version="1.0"?>\n<sdf version="1.9">{content}</sdf>'
+
+
+@pytest.mark.parametrize('content', TEXTS.values(), ids=TEXTS)
+def test_tags_and_holders_are_those_of_the_tree(content):
+    root, index = index_of(sdf(content))
+    xmls = list(root.iter(*TAGS))
+    assert [TAGS[number] for number in index.numbers] == [xml.tag for xml in xmls]
+    holders = index.holders(np.arange(len(xmls))).tolist()
+    expected = [
+        xmls.index(xml.getparent()) if xml.getparent() in xmls else -1 for xml in xmls]
+    assert holders == expected
+
+
+@pytest.mark.parametrize('content', TEXTS.values(), ids=TEXTS)
+def test_lines_are_those_of_the_tree(content):
+    root, index = index_of(sdf(content))
+    xmls = list(root.iter(*TAGS))
+    assert index.lines(np.arange(len(xmls))).tolist() == [xml.sourceline for xml in xmls]
+
+
+@pytest.mark.parametrize('content', TEXTS.values(), ids=TEXTS)
+def test_texts_are_those_of_the_tree_where_nothing_is_odd_in_them(content):
+    root, index = index_of(sdf(content))
+    poses = index.of('pose')
+    for text, xml in zip(index.texts(poses), root.iter('pose'), strict=True):
+        if '&' not in text and COMMENT not in text:
+            assert text.strip() == text_of(xml).strip()
+
+
+@pytest.mark.parametrize('content', TEXTS.values(), ids=TEXTS)
+def test_first_values_are_names_or_empty(content):
+    root, index = index_of(sdf(content))
+    models = index.of('model')
+    for name, xml in zip(index.first_values(models), root.iter('model'), strict=True):
+        assert name in ('', xml.get('name'), 'a&amp;b', 'a&gt;b')
+
+
+def test_a_second_value():
+    _, index = index_of(sdf(
+        '<link name="a"/><link name="b" type="t"/><link name="c" type="t" more="x"/>'
+        '<link name="d" other="o"/><link type="t" name="e"/><link/>'))
+    values, has_more = index.second_values(index.of('link'), b'type')
+    assert values[1] == 't'
+    assert values[0] == values[3] == values[4] == ''
+    assert has_more[2:5].all()
+    assert not has_more[1]
+
+
+def test_what_follows_the_outermost_element_is_not_found():
+    _, index = index_of(sdf('<link/>') + '<sdf><link/></sdf>')
+    assert len(index.of('link')) == 1
+
+
+def test_another_encoding():
+    text = '<?xml version="1.0" encoding="utf-16"?><sdf version="1.9"><model name="é"/></sdf>'
+    _, index = index_of(text.encode('utf-16'))
+    assert index.first_values(index.of('model')) == ['é']
+
+
+def test_a_tree_that_has_changed():
+    root = etree.fromstring('<sdf>\n<link name="a"/>\n</sdf>')
+    etree.SubElement(root, 'link', name='b')
+    index = MarkupIndex(root, None, TagNames(TAGS))
+    assert index.first_values(index.of('link')) == ['a', 'b']
+    assert index.lines(index.of('link')).tolist()[0] == 2
+
+
+def test_xmls_of_some():
+    root, index = index_of(sdf('<link name="a"/><model/><link name="b"/>'))
+    links = index.of('link')
+    assert [xml.get('name') for xml in index.xmls_of('link', links[1:])] == ['b']
+    assert index.xmls('pose') == []
+    assert index.xmls('link') == list(root.iter('link'))
