@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from collections.abc import Sequence
-import difflib
 from typing import NamedTuple
 
 
@@ -267,5 +266,7 @@ def hint_from_names(wanted: str, names: Iterable[str]) -> str:
     :param names: those that exist where it was looked for.
     :return: ``; did you mean "..."?`` with the nearest name, or an empty string.
     """
+    # Most processes need it for nothing.
+    import difflib
     near = difflib.get_close_matches(wanted, list(names), n=1, cutoff=0.6)
     return f'; did you mean "{near[0]}"?' if near else ''

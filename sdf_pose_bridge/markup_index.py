@@ -11,6 +11,7 @@ that could be taken for a tag, the tree is written out again, in which form noth
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cached_property
 import re
 from typing import NamedTuple
@@ -91,6 +92,16 @@ class MarkupIndex:
         self._by_number = np.argsort(self.numbers, kind='stable')
         self._firsts: list[int] = np.searchsorted(
             self.numbers[self._by_number], np.arange(len(names.tags) + 1)).tolist()
+
+    def present(self, tags: Iterable[str]) -> list[str]:
+        """
+        Choose the tags that there are.
+
+        :param tags: some of the tags.
+        :return: those that any element has.
+        """
+        firsts, number_of = self._firsts, self.names.number_of
+        return [tag for tag in tags if firsts[number_of[tag]] < firsts[number_of[tag] + 1]]
 
     def of(self, tag: str) -> Positions:
         """
@@ -196,7 +207,7 @@ class MarkupIndex:
         ordinals = self._ordinals[elements]
         depths = self._depths[ordinals]
         result = np.full(len(elements), -1, dtype=np.intp)
-        for depth in np.unique(depths[depths > 0]).tolist():
+        for depth in (np.flatnonzero(np.bincount(depths)[1:]) + 1).tolist():
             here = np.flatnonzero(depths == depth)
             # The last element before, of those one level further out, is the holder.
             outer = order[borders[depth - 1]:borders[depth]]
@@ -222,7 +233,7 @@ class MarkupIndex:
         :param tag: one of the tags.
         :return: the elements, in the order of the file.
         """
-        return list(self._root.iter(tag)) if len(self.of(tag)) else []
+        return list(self._root.iter(tag))
 
     def xmls_of(self, tag: str, elements: Positions) -> list[XmlElement]:
         """

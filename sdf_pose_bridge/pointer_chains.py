@@ -34,10 +34,11 @@ def rings_from_pointers(pointers: Indices) -> list[list[int]]:
     :param pointers: the node that each node points to; -1 for none.
     :return: the nodes of each ring, each pointing to the next.
     """
-    nodes = np.unique(ends_from_pointers(pointers))
+    ends = ends_from_pointers(pointers)
+    nodes = ends[pointers[ends] >= 0]
     rings: list[list[int]] = []
     found: set[int] = set()
-    for node in nodes[pointers[nodes] >= 0].tolist():
+    for node in nodes.tolist():
         ring: list[int] = []
         while node not in found:
             found.add(node)

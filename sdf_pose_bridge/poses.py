@@ -10,6 +10,7 @@ unit quaternion x y z w of its axes, both expressed in the parent. Poses chain a
 
 from __future__ import annotations
 
+from typing import Any
 from typing import NamedTuple
 from typing import TypeAlias
 
@@ -83,15 +84,20 @@ def pose_products(a: PoseArray, b: PoseArray) -> PoseArray:
     return product
 
 
-def pose_inverses(a: PoseArray) -> PoseArray:
+def relative_poses(references: PoseArray, poses: PoseArray) -> PoseArray:
     """
-    Turn many poses around.
+    Return poses in other frames.
 
-    :param a: poses of frames B in frames A, shape (n, 7).
-    :return: poses of frames A in frames B, shape (n, 7).
+    :param references: poses of frames B in frames A, shape (n, 7).
+    :param poses: poses of frames C in frames A, shape (n, 7).
+    :return: poses of frames C in frames B, shape (n, 7): to the last bit the products of
+        :func:`pose_inverse` and the poses.
     """
-    conjugates = a * np.array([0.0, 0.0, 0.0, -1.0, -1.0, -1.0, 1.0])
-    origins = np.zeros_like(a)
-    origins[:, :3] = -a[:, :3]
-    origins[:, 6] = 1.0
-    return pose_products(conjugates, origins)
+    x, y, z, qx, qy, qz, qw = np.ascontiguousarray(references.T)
+    # As in pose_inverse and pose_product, on columns.
+    inverses = pose_product(_columns(0.0, 0.0, 0.0, -qx, -qy, -qz, qw), _columns(-x, -y, -z))
+    return np.stack(pose_product(inverses, Pose(*np.ascontiguousarray(poses.T))), axis=1)
+
+
+def _columns(*columns: Any) -> Pose:
+    return Pose(*columns)

@@ -59,7 +59,8 @@ _MAY_HOLD = np.zeros((256, 256), dtype=bool)
 for _holder, _held in _CHILDREN.items():
     _MAY_HOLD[_holder, list(_held)] = True
 _MAY_HOLD.setflags(write=False)
-_IS_SCOPE = np.isin(np.arange(256), (Kind.WORLD, Kind.MODEL, _OUTSIDE))
+_IS_SCOPE = np.zeros(256, dtype=bool)
+_IS_SCOPE[[Kind.WORLD, Kind.MODEL, _OUTSIDE]] = True
 _IS_SCOPE.setflags(write=False)
 _SPACES = np.arange(256)
 _SPACES[list(FRAME_KINDS)] = Kind.FRAME
@@ -84,7 +85,9 @@ _FORMS = {
     ('degrees', 'false'): '', ('degrees', '0'): '',
     ('rotation_format', 'quat_xyzw'): 'quaternions', ('rotation_format', 'euler_rpy'): '',
 }
-_NEVER_RELATIVE = (Kind.INERTIAL, Kind.ACTOR)
+_IS_NEVER_RELATIVE = np.zeros(256, dtype=bool)
+_IS_NEVER_RELATIVE[[Kind.INERTIAL, Kind.ACTOR]] = True
+_IS_NEVER_RELATIVE.setflags(write=False)
 
 
 def rows_from_index(index: MarkupIndex, root: XmlElement) -> ElementRows:
@@ -244,7 +247,7 @@ class _Extraction:
         rows = np.array(sorted(self._relative_to), dtype=np.intp)
         names = [self._relative_to[row] for row in rows.tolist()]
         self._mark_odd_references(rows, names)
-        self._is_odd[rows[np.isin(self._kinds[rows], _NEVER_RELATIVE)]] = True
+        self._is_odd[rows[_IS_NEVER_RELATIVE[self._kinds[rows]]]] = True
         return Facts(rows, names)
 
     def _mark_odd_references(self, rows: _Rows, names: list[str]) -> None:
@@ -272,8 +275,7 @@ class _Extraction:
         statics = self._children('static', Kind.MODEL)
         facts = dict.fromkeys(rows.tolist(), ModelFacts(False, '', ''))
         _, has_more = self._index.second_values(self._elements[rows], b'')
-        more = rows[has_more]
-        more = np.union1d(more, np.fromiter(statics, np.intp, len(statics)))
+        more = np.array(sorted({*rows[has_more].tolist(), *statics}), dtype=np.intp)
         for row, attributes in zip(more.tolist(), self._attributes(more), strict=True):
             text = statics[row].name if row in statics else ''
             is_static = boolean_from_text(text) if text else False
@@ -317,7 +319,9 @@ class _Extraction:
         elements = index.of('xyz')
         elements = elements[index.has_attributes(elements)]
         axes = index.holders(elements)
-        is_axis = np.isin(axes, np.append(index.of('axis'), index.of('axis2')))
+        is_axis = np.zeros(len(index.numbers) + 1, dtype=bool)
+        is_axis[index.of('axis')] = is_axis[index.of('axis2')] = True
+        is_axis = is_axis[axes]
         elements, axes = elements[is_axis], axes[is_axis]
         rows = self._rows_of(index.holders(axes)).tolist()
         for row, tag, line in zip(
@@ -353,7 +357,10 @@ def _firsts(rows: Indices) -> tuple[Indices, _Rows, _Rows]:
     """Return the rows that there are, in ascending order, where each is first, and how often."""
     if len(rows) > 1 and (rows[1:] > rows[:-1]).all():
         return rows, np.arange(len(rows)), np.ones(len(rows), dtype=np.intp)
-    return np.unique(rows, return_index=True, return_counts=True)
+    order = np.argsort(rows, kind='stable')
+    in_order = rows[order]
+    starts = np.flatnonzero(np.append(True, in_order[1:] != in_order[:-1])[:len(rows)])
+    return in_order[starts], order[starts], np.diff(np.append(starts, len(rows)))
 
 
 def _attributes_from_tag(tag: str) -> dict[str, str]:

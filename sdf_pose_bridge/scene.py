@@ -153,7 +153,7 @@ class Scene:
         :raises UnknownFrameError: if there is no such name, or more than one.
         """
         found = self._indices.get(name, [])
-        if len(found) == 1 and not world:
+        if len(found) == 1 and (not world or self.world_of(found[0]) == world):
             return found[0]
         if world:
             found = [i for i in found if self.world_of(i) == world]

@@ -23,11 +23,13 @@ from sdf_pose_bridge.names import WORLD_FRAME
 _OWN_FRAME = SEPARATOR + MODEL_FRAME
 _MOST_NAMES_COMPARED = 2000
 
-IS_FRAME_KIND = np.isin(np.arange(len(Kind)), list(FRAME_KINDS))
+IS_FRAME_KIND = np.zeros(len(Kind), dtype=bool)
+IS_FRAME_KIND[list(FRAME_KINDS)] = True
 IS_FRAME_KIND.setflags(write=False)
 """For each kind whether others may refer to elements of it."""
 
-_MAY_HOLD = np.isin(np.arange(len(Kind)), (Kind.MODEL, Kind.LINK, Kind.JOINT))
+_MAY_HOLD = np.zeros(len(Kind), dtype=bool)
+_MAY_HOLD[[Kind.MODEL, Kind.LINK, Kind.JOINT]] = True
 _MAY_HOLD.setflags(write=False)
 
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from collections.abc import Mapping
-import dataclasses
 import enum
 from pathlib import Path
 from typing import NamedTuple
@@ -51,8 +50,7 @@ class SettingsError(ValueError):
         super().__init__('\n'.join(problem.sentence for problem in self.problems))
 
 
-@dataclasses.dataclass(frozen=True)
-class Settings:
+class Settings(NamedTuple):
     """What the node is set to do."""
 
     sdf_file: str

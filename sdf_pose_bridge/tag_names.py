@@ -128,7 +128,7 @@ def _step_from_names(
     numbers, next_states = np.array(list(rows.values()), dtype=np.int16).T
     keys = _keys(states, words)
     factor = _SPREADING
-    while len(np.unique(_slots(keys, factor))) < len(keys):
+    while len(set(_slots(keys, factor).tolist())) < len(keys):
         factor += np.uint64(2)
     slots = np.zeros(1 << _SLOT_BITS, dtype=np.int16)
     slots[_slots(keys, factor)] = np.arange(len(keys))

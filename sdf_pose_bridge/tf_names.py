@@ -10,9 +10,13 @@ that may share a name with others have the kind before their name: ``robot/link/
 
 from __future__ import annotations
 
-import dataclasses
 import enum
+from typing import NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
+from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene import Scene
@@ -22,6 +26,9 @@ OPTICAL_SUFFIX = '_optical'
 
 _KINDS_IN_NAMES = frozenset({
     Kind.VISUAL, Kind.COLLISION, Kind.LIGHT, Kind.PARTICLE_EMITTER, Kind.PROJECTOR, Kind.ACTOR})
+_HAS_KIND_IN_NAME = np.array([Kind(value) in _KINDS_IN_NAMES for value in range(len(Kind))])
+_END = '\0'
+"""Stands between names that are changed together; XML has no such character."""
 
 
 class FrameNames(enum.Enum):
@@ -35,8 +42,7 @@ class FrameNames(enum.Enum):
     """Without the name of the top-level model: ``arm/tool``."""
 
 
-@dataclasses.dataclass(frozen=True)
-class FrameNaming:
+class FrameNaming(NamedTuple):
     """
     The rule by which frame ids are made.
 
@@ -49,34 +55,57 @@ class FrameNaming:
     separator: str = '/'
     prefix: str = ''
 
-    def frame_ids_from_scene(self, scene: Scene) -> list[str]:
+    def frame_ids_from_scene(self, scene: Scene, indices: Indices | None = None) -> list[str]:
         """
-        Name the frames of all elements, as if no file gave any a frame id of its own.
+        Name the frames of elements, as if no file gave any a frame id of its own.
 
         :param scene: the scene.
-        :return: a frame id for each element; empty for worlds, implicit roots, and names that are
-            nothing but slashes.
+        :param indices: which of its elements; all if None.
+        :return: a frame id for each; empty for worlds, implicit roots, and names that are nothing
+            but slashes.
         """
-        names = scene.names
-        holders: list[int] = scene.parents.tolist()
-        kinds: list[int] = scene.kinds.tolist()
-        left_out = [0] * len(names)
-        ids = []
-        for index, (name, kind, holder) in enumerate(zip(names, kinds, holders, strict=True)):
-            if holder < 0:
-                ids.append('')
-                continue
-            skipped = left_out[holder]
-            is_at_top = holders[holder] < 0
-            if is_at_top and self._is_relative(kinds[holder]):
-                left_out[index] = len(name) + len(SEPARATOR)
-            else:
-                left_out[index] = skipped
-            if kind in _KINDS_IN_NAMES:
-                start = 0 if is_at_top else len(names[holder]) + len(SEPARATOR)
-                name = f'{name[:start]}{Kind(kind).label}{SEPARATOR}{name[start:]}'
-            ids.append(self.frame_id_from_name(name[skipped:]))
-        return ids
+        if indices is None:
+            indices = np.arange(len(scene.names), dtype=np.int32)
+        names = list(map(scene.names.__getitem__, indices.tolist()))
+        holders = scene.parents[indices]
+        for row in np.flatnonzero(_HAS_KIND_IN_NAME[scene.kinds[indices]]).tolist():
+            holder = holders[row]
+            is_at_top = scene.parents[holder] < 0
+            start = 0 if is_at_top else len(scene.names[holder]) + len(SEPARATOR)
+            label = Kind(scene.kinds[indices[row]]).label
+            names[row] = f'{names[row][:start]}{label}{SEPARATOR}{names[row][start:]}'
+        if self._is_any_relative(scene):
+            left_out = self._left_out(scene)[indices].tolist()
+            names = [name[count:] for name, count in zip(names, left_out, strict=True)]
+        for row in np.flatnonzero(holders < 0).tolist():
+            names[row] = ''
+        return self._frame_ids_from_names(names)
+
+    def _is_any_relative(self, scene: Scene) -> bool:
+        return self.names is FrameNames.RELATIVE or (
+            self.names is FrameNames.AUTO and bool((scene.kinds == Kind.ROOT).any()))
+
+    def _left_out(self, scene: Scene) -> npt.NDArray[np.int64]:
+        """Return how many characters each name loses at its beginning."""
+        tops = _tops(scene.parents)
+        lengths = np.zeros(len(tops), np.int64)
+        for top in set(tops.tolist()):
+            lengths[top] = len(scene.names[top]) + len(SEPARATOR)
+        lengths = lengths[tops]
+        lengths[tops == np.arange(len(tops))] = 0
+        if self.names is FrameNames.AUTO:
+            lengths[scene.kinds[scene.roots] != Kind.ROOT] = 0
+        return lengths
+
+    def _frame_ids_from_names(self, names: list[str]) -> list[str]:
+        # All at once, unless some of them need more than a replacement.
+        text = f'{_END}{_END.join(names)}{_END}'.replace(SEPARATOR, self.separator)
+        if text.count(_END) == len(names) + 1 and not (
+                f'{_END}/' in text or f'{_END}{_END}' in text or _END in self.prefix):
+            if self.prefix:
+                text = text.replace(_END, _END + self.prefix)
+            return text.split(_END)[1:-1]
+        return [self.frame_id_from_name(name) for name in names]
 
     def frame_id_from_name(self, name: str) -> str:
         """
@@ -88,7 +117,11 @@ class FrameNaming:
         rest = name.replace(SEPARATOR, self.separator).lstrip('/')
         return self.prefix + rest if rest else ''
 
-    def _is_relative(self, root_kind: int) -> bool:
-        if self.names is FrameNames.AUTO:
-            return root_kind == Kind.ROOT
-        return self.names is FrameNames.RELATIVE
+
+def _tops(holders: Indices) -> Indices:
+    """Return the outermost element around each that is no world and no implicit root."""
+    own = np.arange(len(holders), dtype=np.int32)
+    tops = np.where((holders < 0) | (holders[holders] < 0), own, holders)
+    while not np.array_equal(tops, higher := tops[tops]):
+        tops = higher
+    return tops

@@ -14,17 +14,25 @@ from collections import deque
 from collections.abc import Iterator
 from typing import NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
+from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.scene import Joint
 from sdf_pose_bridge.scene import Scene
 
 NO_PARENT = -1
 
+_FIRST = 0
+_LAST = 4
+"""Classes of bodies by how much the others should hang on them."""
+
 
 class TfParents(NamedTuple):
     """The parent of each element of a scene, and how the tree hangs on its root."""
 
-    parents: list[int]
+    parents: Indices
     """Index of the element that each hangs on; -1 for worlds and implicit roots."""
     anchored: frozenset[int]
     """Elements that hang on their root only because nothing else holds them: free models."""
@@ -49,35 +57,104 @@ class _Builder:
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
-        self._kinds = [Kind(kind) for kind in scene.kinds.tolist()]
-        self._holders: list[int] = scene.parents.tolist()
-        self._roots: list[int] = scene.roots.tolist()
-        self._bodies: list[int] = scene.bodies.tolist()
-        self._canonical: list[int] = scene.canonical_links.tolist()
+        self._own = np.arange(len(scene.kinds), dtype=np.int32)
+        # The body that carries each frame; for a static model its canonical link.
+        canonical = scene.canonical_links[scene.bodies]
+        self._nodes = np.where(canonical >= 0, canonical, scene.bodies)
+        elements, _, starts, ends = zip(*scene.joints, strict=True) if scene.joints else [()] * 4
+        self._joints = np.array(elements, np.int32)
+        self._ends = (
+            self._nodes[np.array(starts, np.int32)], self._nodes[np.array(ends, np.int32)])
 
     def parents(self) -> TfParents:
-        parents = [NO_PARENT] * len(self._kinds)
-        attachments: list[int] = self._scene.attachments.tolist()
-        for index, kind in enumerate(self._kinds):
-            if kind is Kind.MODEL:
-                parents[index] = self._canonical[index]
-            elif kind is Kind.FRAME:
-                parents[index] = attachments[index]
-            elif kind is Kind.SENSOR and self._kinds[self._holders[index]] is Kind.JOINT:
-                parents[index] = self._node(self._holders[index])
-            elif kind is not Kind.LINK:
-                parents[index] = self._holders[index]
-        for joint in self._scene.joints:
-            parents[joint.element] = self._node(joint.element)
-        neighbours, loops = self._joint_forest()
-        anchored = self._hang_bodies(parents, neighbours)
-        return TfParents(parents, frozenset(anchored), tuple(loops))
+        scene = self._scene
+        kinds, holders = scene.kinds, scene.parents
+        parents = np.where(kinds == Kind.FRAME, scene.attachments, holders)
+        parents = np.where(kinds == Kind.MODEL, scene.canonical_links, parents)
+        of_joints = np.flatnonzero((kinds == Kind.SENSOR) & (kinds[holders] == Kind.JOINT))
+        parents[of_joints] = self._nodes[holders[of_joints]]
+        parents[self._joints] = self._nodes[self._joints]
+        parents[kinds == Kind.LINK] = NO_PARENT
+        seeds = self._seeds()
+        movers = self._movers_if_trees_hang_on(seeds)
+        loops: list[Joint] = []
+        if movers is None:
+            movers, loops = self._movers_of_any(seeds.tolist())
+        held = self._own[seeds]
+        held = held[(movers[held] == NO_PARENT) & (holders[held] >= 0)]
+        fallbacks = self._fallbacks(held)
+        moved = np.flatnonzero(movers != NO_PARENT)
+        parents[moved] = movers[moved]
+        parents[held] = fallbacks
+        anchored = held[fallbacks == scene.roots[held]]
+        return TfParents(parents, frozenset(anchored.tolist()), tuple(loops))
 
-    def _node(self, frame: int) -> int:
-        """Return the body that carries a frame; for a static model its canonical link."""
-        body = self._bodies[frame]
-        canonical = self._canonical[body]
-        return canonical if canonical >= 0 else body
+    def _seeds(self) -> Indices:
+        """Return bodies, those first that the others should hang on; some more than once."""
+        scene = self._scene
+        models = np.flatnonzero(scene.kinds == Kind.MODEL).astype(np.int32)
+        links = np.flatnonzero(scene.kinds == Kind.LINK).astype(np.int32)
+        roots = np.flatnonzero(scene.parents < 0).astype(np.int32)
+        canonical = scene.canonical_links[models]
+        is_static = np.zeros(len(self._own), np.bool_)
+        is_static[list(scene.static_models)] = True
+        is_child = np.zeros(len(self._own), np.bool_)
+        is_child[self._ends[1]] = True
+        is_top = scene.parents[models] == scene.roots[models]
+        is_static_top = is_top & is_static[models]
+        is_empty = ~is_static_top & (canonical < 0)
+        models_in_classes = np.where(
+            is_static_top, _FIRST, np.where(is_empty, _LAST, np.where(is_top, 1, 2)))
+        classes = np.concatenate([
+            np.full(len(roots), _FIRST), models_in_classes, np.where(is_child[links], _LAST, 3)])
+        places = np.concatenate([roots, models, links])
+        bodies = np.concatenate([roots, np.where(canonical >= 0, canonical, models), links])
+        return bodies[np.lexsort((places, classes))]
+
+    def _movers_if_trees_hang_on(self, seeds: Indices) -> Indices | None:
+        """
+        Let every joint move its child on its parent, if that is what a search would find.
+
+        It would if joints make trees, and of each tree the first of the seeds is the body that no
+        joint moves.
+
+        :return: the body that each one is moved on; None if only a search can tell.
+        """
+        starts, ends = self._ends
+        movers = np.full(len(self._own), NO_PARENT, dtype=np.int32)
+        movers[ends] = starts
+        if np.count_nonzero(movers != NO_PARENT) != len(ends):
+            return None
+        tops = np.where(movers == NO_PARENT, self._own, movers)
+        for _ in range(len(tops).bit_length()):
+            higher = tops[tops]
+            if np.array_equal(higher, tops):
+                break
+            tops = higher
+        if (movers[tops] != NO_PARENT).any():
+            return None
+        first = np.full(len(tops), NO_PARENT, dtype=np.int32)
+        first[tops[seeds[::-1]]] = seeds[::-1]
+        return movers if np.array_equal(first[tops[ends]], tops[ends]) else None
+
+    def _movers_of_any(self, seeds: list[int]) -> tuple[Indices, list[Joint]]:
+        """Search from one seed after the other; return also the joints that close loops."""
+        neighbours, loops = self._joint_forest()
+        movers = np.full(len(self._own), NO_PARENT, dtype=np.int32)
+        reached: set[int] = set()
+        for seed in seeds:
+            if seed in reached:
+                continue
+            reached.add(seed)
+            waiting = deque([seed])
+            while waiting:
+                node = waiting.popleft()
+                for neighbour in neighbours.get(node, ()):
+                    if neighbour not in reached:
+                        reached.add(neighbour)
+                        movers[neighbour] = node
+                        waiting.append(neighbour)
+        return movers, loops
 
     def _joint_forest(self) -> tuple[dict[int, list[int]], list[Joint]]:
         """Take joints in file order, leaving out those that join what is joined already."""
@@ -90,83 +167,47 @@ class _Builder:
 
         neighbours: dict[int, list[int]] = {}
         loops = []
-        for joint in self._scene.joints:
-            ends = self._node(joint.parent), self._node(joint.child)
-            first, second = leader(ends[0]), leader(ends[1])
+        starts, ends = (each.tolist() for each in self._ends)
+        for joint, start, end in zip(self._scene.joints, starts, ends, strict=True):
+            first, second = leader(start), leader(end)
             if first == second:
                 loops.append(joint)
                 continue
             leaders[second] = first
-            neighbours.setdefault(ends[0], []).append(ends[1])
-            neighbours.setdefault(ends[1], []).append(ends[0])
+            neighbours.setdefault(start, []).append(end)
+            neighbours.setdefault(end, []).append(start)
         return neighbours, loops
 
-    def _hang_bodies(
-        self, parents: list[int], neighbours: dict[int, list[int]],
-    ) -> list[int]:
-        anchored = []
-        reached: set[int] = set()
-        for seed in self._seeds():
-            if seed in reached:
-                continue
-            reached.add(seed)
-            if self._holders[seed] >= 0:
-                parents[seed] = self._fallback(seed)
-                if parents[seed] == self._roots[seed]:
-                    anchored.append(seed)
-            waiting = deque([seed])
-            while waiting:
-                node = waiting.popleft()
-                for neighbour in neighbours.get(node, ()):
-                    if neighbour not in reached:
-                        reached.add(neighbour)
-                        parents[neighbour] = node
-                        waiting.append(neighbour)
-        return anchored
-
-    def _seeds(self) -> Iterator[int]:
-        """Yield bodies, those first that the others should hang on; some more than once."""
-        children = {self._node(joint.child) for joint in self._scene.joints}
-        top: list[int] = []
-        nested: list[int] = []
-        free: list[int] = []
-        rest: list[int] = []
-        for index, kind in enumerate(self._kinds):
-            if kind in (Kind.WORLD, Kind.ROOT):
-                yield index
-            elif kind is Kind.MODEL:
-                canonical = self._canonical[index]
-                body = canonical if canonical >= 0 else index
-                is_top = self._holders[index] == self._roots[index]
-                if is_top and index in self._scene.static_models:
-                    yield body
-                elif canonical >= 0:
-                    (top if is_top else nested).append(body)
-                else:
-                    rest.append(index)
-            elif kind is Kind.LINK:
-                (rest if index in children else free).append(index)
-        yield from top
-        yield from nested
-        yield from free
-        yield from rest
-
-    def _fallback(self, body: int) -> int:
+    def _fallbacks(self, bodies: Indices) -> Indices:
         """
-        Return what a body hangs on that no joint holds: the canonical link of a model around it.
+        Return what bodies hang on that no joint holds: canonical links of models around them.
 
         The canonical link of a model, which may lie in a nested one, stands for all of that model;
         so it is the models around that one which count.
         """
-        holder = start = self._holders[body]
-        while holder != self._roots[body]:
-            if self._canonical[holder] == body:
-                start = self._holders[holder]
-            holder = self._holders[holder]
-        holder = start
-        while holder != self._roots[body]:
-            canonical = self._canonical[holder]
-            if canonical >= 0 and canonical != body:
-                return canonical
-            holder = self._holders[holder]
-        return holder
+        holders, roots = self._scene.parents, self._scene.roots
+        starts = holders[bodies]
+        for rows, around in self._models_around(bodies, starts):
+            stands_for = self._scene.canonical_links[around] == bodies[rows]
+            starts[rows[stands_for]] = holders[around[stands_for]]
+        found = roots[bodies]
+        is_found = np.zeros(len(bodies), np.bool_)
+        for rows, around in self._models_around(bodies, starts):
+            canonical = self._scene.canonical_links[around]
+            is_first = (canonical >= 0) & (canonical != bodies[rows]) & ~is_found[rows]
+            found[rows[is_first]] = canonical[is_first]
+            is_found[rows[is_first]] = True
+        return found
+
+    def _models_around(
+        self, bodies: Indices, starts: Indices,
+    ) -> Iterator[tuple[npt.NDArray[np.intp], Indices]]:
+        """Climb from models to the roots, all at once; yield who still climbs, and where."""
+        holders, roots = self._scene.parents, self._scene.roots
+        rows = np.flatnonzero(starts != roots[bodies])
+        around = starts[rows]
+        while len(rows):
+            yield rows, around
+            around = holders[around]
+            goes_on = around != roots[bodies[rows]]
+            rows, around = rows[goes_on], around[goes_on]

@@ -4,13 +4,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-import dataclasses
 import enum
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
+from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.elements import SensorFacts
 from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementInvalidError
@@ -20,13 +20,11 @@ from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.poses import Pose
-from sdf_pose_bridge.poses import pose_inverses
 from sdf_pose_bridge.poses import pose_product
-from sdf_pose_bridge.poses import pose_products
 from sdf_pose_bridge.poses import PoseArray
+from sdf_pose_bridge.poses import relative_poses
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.rotation import canonical_quaternion
-from sdf_pose_bridge.scene import Indices
 from sdf_pose_bridge.scene import Joint
 from sdf_pose_bridge.scene import Scene
 from sdf_pose_bridge.tf_names import FrameNames
@@ -42,6 +40,7 @@ OPTICAL_POSE = Pose(0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
 
 _NO_PARENT = -1
 _ROOT_PARENT = -2
+_NOT_THERE = -3
 
 
 class AnchorModels(enum.Enum):
@@ -53,8 +52,7 @@ class AnchorModels(enum.Enum):
     NONE = 'none'
 
 
-@dataclasses.dataclass(frozen=True)
-class TfOptions:
+class TfOptions(NamedTuple):
     """What becomes a frame, and what it is called."""
 
     root_frame: str = 'world'
@@ -74,8 +72,7 @@ class TfOptions:
     """Whether cameras get an optical frame beside their own."""
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class TfTree:
+class TfTree(NamedTuple):
     """
     Frames to publish; entry i of each sequence and array is about frame i.
 
@@ -111,14 +108,14 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     return _Builder(scene, options or TfOptions()).tree()
 
 
-class _Frame(NamedTuple):
-    """One row of the tree while it is being laid out."""
+class _OpticalFrame(NamedTuple):
+    """One that stands behind the frames of elements."""
 
-    frame_id: str
-    element: int
+    camera: int
+    """The element of the camera."""
     pose: Pose
     parent: int
-    """Row of the frame that it hangs on, or one of the constants."""
+    """Row of the camera's frame, or that of the root."""
 
 
 class _Builder:
@@ -129,53 +126,59 @@ class _Builder:
         self._naming = FrameNaming(
             options.frame_names, options.frame_separator, options.frame_prefix)
         self._problems = Problems(scene.files)
-        self._kinds: list[int] = scene.kinds.tolist()
-        self._holders: list[int] = scene.parents.tolist()
-        self._roots: list[int] = scene.roots.tolist()
         self._parents = tf_parents_from_scene(scene)
-        self._rows: list[_Frame] = []
+        self._ids: list[str] = []
+        self._elements: Indices = np.empty(0, np.int32)
         self._row_of_id: dict[str, int] = {}
-        self._row_of_element: dict[int, int] = {}
-        self._optical_rows: set[int] = set()
+        self._row_of_element = np.full(len(scene.kinds), _NOT_THERE, np.int32)
+        self._optical: list[_OpticalFrame] = []
 
     def tree(self) -> TfTree:
-        published = self._published()
-        self._name(published)
-        for row, frame in enumerate(self._rows):
-            self._rows[row] = frame._replace(parent=self._parent_row(frame.element))
+        self._name(self._published())
+        parents = self._parent_rows()
         if self._options.optical_frames:
-            for index in published:
-                self._add_optical_frame(index)
+            for index, facts in sorted(self._scene.sensors.items()):
+                if facts.is_camera and self._row_of_element[index] != _NOT_THERE:
+                    self._add_optical_frame(index, facts)
         for joint in self._parents.loop_joints:
             self._warn_loop(joint)
         self._problems.raise_any()
-        return self._laid_out()
+        return self._laid_out(parents)
 
     # What is published
 
-    def _published(self) -> list[int]:
+    def _published(self) -> Indices:
         options = self._options
-        roots = [index for index, holder in enumerate(self._holders) if holder < 0]
-        for index in roots[1:]:
+        holders = self._scene.parents
+        roots = np.flatnonzero(holders < 0)
+        for index in roots[1:].tolist():
             name = self._scene.world_names.get(index)
             what = 'the model beside the worlds' if name is None else f'world "{name}"'
             msg = f'{what} is not published; only the first world or model of a file is'
             self._problems.warning('WARNING', msg, self._scene.place(index))
-        wanted = [kind in options.kinds for kind in Kind]
-        inside = set(roots[:1])
         if options.model:
-            inside = {self._model(options.model)}
-        for index, holder in enumerate(self._holders):
-            if holder in inside:
-                inside.add(index)
-        return [
-            index for index in sorted(inside)
-            if wanted[self._kinds[index]] and self._holders[index] >= 0]
+            is_inside = self._is_inside(self._model(options.model))
+        else:
+            is_inside = self._scene.roots == 0
+        wanted = np.array([kind in options.kinds for kind in Kind])
+        return np.flatnonzero(
+            is_inside & wanted[self._scene.kinds] & (holders >= 0)).astype(np.int32)
+
+    def _is_inside(self, model: int) -> npt.NDArray[np.bool_]:
+        """Tell of each element whether it is a model or something in it."""
+        around = self._scene.parents.copy()
+        around[model] = model
+        # What holds each, then what holds that: twice as far with every step.
+        around = np.where(around < 0, np.arange(len(around), dtype=np.int32), around)
+        while not np.array_equal(around, further := around[around]):
+            around = further
+        is_inside: npt.NDArray[np.bool_] = around == model
+        return is_inside
 
     def _model(self, name: str) -> int:
-        models = {
-            self._scene.names[index]: index
-            for index, kind in reversed(list(enumerate(self._kinds))) if kind == Kind.MODEL}
+        models: dict[str, int] = {}
+        for index in np.flatnonzero(self._scene.kinds == Kind.MODEL).tolist():
+            models.setdefault(self._scene.names[index], index)
         if name not in models:
             msg = f'there is no model "{name}" to publish{hint_from_names(name, models)}'
             raise UnknownFrameError(msg, Place(self._scene.path))
@@ -183,36 +186,75 @@ class _Builder:
 
     # What frames are called
 
-    def _name(self, published: Sequence[int]) -> None:
-        ids = self._naming.frame_ids_from_scene(self._scene)
-        existing = {
-            ids[index]: index for index in published if self._kinds[index] != Kind.SENSOR}
-        for index in published:
-            frame_id = ids[index]
-            if self._kinds[index] == Kind.SENSOR and self._scene.sensors[index].frame_id:
-                frame_id = self._naming.frame_id_from_name(self._scene.sensors[index].frame_id)
-                if frame_id in existing or frame_id == self._options.root_frame:
-                    continue
-                row = self._row_of_id.get(frame_id)
-                if row is not None and self._is_same_place(self._rows[row], index):
-                    self._row_of_element[index] = row
-                    continue
-            pose = Pose(*self._scene.poses[index].tolist())
-            self._row_of_element[index] = self._add(frame_id, index, pose)
-        for index in published:
-            if index not in self._row_of_element:
-                # The frame that the sensor's messages are stamped with exists by itself.
-                frame_id = self._naming.frame_id_from_name(self._scene.sensors[index].frame_id)
-                self._row_of_element[index] = self._row_of_id.get(frame_id, _ROOT_PARENT)
+    def _name(self, published: Indices) -> None:
+        ids = self._naming.frame_ids_from_scene(self._scene, published)
+        same: dict[int, int] = {}
+        lent: dict[int, str] = {}
+        if any(facts.frame_id for facts in self._scene.sensors.values()):
+            same, lent = self._give_sensors_their_ids(published, ids)
+            kept = [
+                row for row, index in enumerate(published.tolist())
+                if index not in same and index not in lent]
+            published, ids = published[kept], [ids[row] for row in kept]
+        self._ids, self._elements = ids, published
+        self._row_of_element[published] = np.arange(len(ids))
+        self._row_of_id = dict(zip(ids, range(len(ids)), strict=True))
+        if len(self._row_of_id) < len(ids):
+            # Of several with one id, the first counts.
+            self._row_of_id = dict(zip(reversed(ids), range(len(ids) - 1, -1, -1), strict=True))
+        if self._is_any_id_doubtful():
+            for row in range(len(ids)):
+                self._judge(row)
+        for index, other in same.items():
+            self._row_of_element[index] = self._row_of_element[other]
+        for index, frame_id in lent.items():
+            self._row_of_element[index] = self._row_of_id.get(frame_id, _ROOT_PARENT)
 
-    def _is_same_place(self, frame: _Frame, index: int) -> bool:
+    def _give_sensors_their_ids(
+        self, published: Indices, ids: list[str],
+    ) -> tuple[dict[int, int], dict[int, str]]:
+        """
+        Put the frame ids that the file sets in the place of those made of names.
+
+        :return: the sensors that share the frame of another sensor, with that; and those that are
+            stamped with the id of a frame that exists by itself, with that id.
+        """
+        is_sensor = self._scene.kinds[published] == Kind.SENSOR
+        existing = {ids[row] for row in np.flatnonzero(~is_sensor).tolist()}
+        existing.add(self._options.root_frame)
+        sensors: dict[str, int] = {}
+        same: dict[int, int] = {}
+        lent: dict[int, str] = {}
+        for row in np.flatnonzero(is_sensor).tolist():
+            index = int(published[row])
+            if self._scene.sensors[index].frame_id:
+                frame_id = self._naming.frame_id_from_name(self._scene.sensors[index].frame_id)
+                other = sensors.get(frame_id)
+                if frame_id in existing:
+                    lent[index] = frame_id
+                    continue
+                if other is not None and self._is_same_place(other, index):
+                    same[index] = other
+                    continue
+                ids[row] = frame_id
+            sensors.setdefault(ids[row], index)
+        return same, lent
+
+    def _is_same_place(self, sensor: int, other: int) -> bool:
         """Tell whether a sensor can share the frame of another one that sets the same id."""
-        return (self._kinds[frame.element] == Kind.SENSOR
-                and self._holders[frame.element] == self._holders[index]
-                and frame.pose == Pose(*self._scene.poses[index].tolist()))
+        scene = self._scene
+        return bool(
+            scene.parents[sensor] == scene.parents[other]
+            and (scene.poses[sensor] == scene.poses[other]).all())
 
-    def _add(self, frame_id: str, element: int, pose: Pose) -> int:
-        row = len(self._rows)
+    def _is_any_id_doubtful(self) -> bool:
+        text = ''.join(self._ids)
+        return (
+            len(self._row_of_id) < len(self._ids) or '' in self._row_of_id
+            or self._options.root_frame in self._row_of_id or text.split(None, 1) != [text])
+
+    def _judge(self, row: int) -> None:
+        frame_id, element = self._ids[row], self._element(row)
         name = self._scene.names[element]
         place = self._scene.place(element)
         if not frame_id:
@@ -221,8 +263,8 @@ class _Builder:
         elif frame_id == self._options.root_frame:
             msg = f'"{name}" would have the frame id "{frame_id}", which is that of the root frame'
             self._problems.error(DuplicateNameError(msg, place))
-        elif frame_id in self._row_of_id:
-            other = self._rows[self._row_of_id[frame_id]].element
+        elif self._row_of_id[frame_id] != row:
+            other = self._element(self._row_of_id[frame_id])
             msg = (f'{self._described(element)} and {self._described(other)} (line '
                    f'{self._scene.lines[other]}) would share the frame id "{frame_id}"; '
                    'frame_names "scoped", or another frame_separator, can tell them apart')
@@ -230,65 +272,80 @@ class _Builder:
         elif any(character.isspace() for character in frame_id):
             msg = f'the frame id "{frame_id}" holds white space, which some tools cannot take'
             self._problems.warning('WARNING', msg, place)
-        self._row_of_id.setdefault(frame_id, row)
-        self._rows.append(_Frame(frame_id, element, pose, _NO_PARENT))
-        return row
 
     def _described(self, element: int) -> str:
-        return f'{Kind(self._kinds[element]).label} "{self._scene.names[element]}"'
+        return f'{Kind(self._scene.kinds[element]).label} "{self._scene.names[element]}"'
 
-    def _add_optical_frame(self, index: int) -> None:
-        facts = self._scene.sensors.get(index)
-        if facts is None or not facts.is_camera:
-            return
-        camera = self._row_of_element[index]
+    def _element(self, row: int) -> int:
+        """Return the element of a row; of an optical frame, its camera."""
+        count = len(self._elements)
+        return int(self._elements[row]) if row < count else self._optical[row - count].camera
+
+    def _add_optical_frame(self, index: int, facts: SensorFacts) -> None:
+        camera = int(self._row_of_element[index])
         if facts.optical_frame_id:
             frame_id = self._naming.frame_id_from_name(facts.optical_frame_id)
         elif camera == _ROOT_PARENT:
             frame_id = self._options.root_frame + OPTICAL_SUFFIX
         else:
-            frame_id = self._rows[camera].frame_id + OPTICAL_SUFFIX
-        pose = pose_product(Pose(*self._scene.poses[index].tolist()), OPTICAL_POSE)
+            frame_id = self._ids[camera] + OPTICAL_SUFFIX
+        pose = pose_product(self._scene.pose_of(index), OPTICAL_POSE)
         row = self._row_of_id.get(frame_id)
         if row is not None and self._serves_as_optical_frame(row, pose, facts):
             return
-        row = self._add(frame_id, index, pose)
-        self._rows[row] = self._rows[row]._replace(parent=camera)
-        self._optical_rows.add(row)
+        self._ids.append(frame_id)
+        self._optical.append(_OpticalFrame(index, pose, camera))
+        self._row_of_id.setdefault(frame_id, len(self._ids) - 1)
+        self._judge(len(self._ids) - 1)
 
     def _serves_as_optical_frame(self, row: int, pose: Pose, facts: SensorFacts) -> bool:
         """Tell whether a frame is there already that a camera's optical frame id means."""
-        frame = self._rows[row]
-        is_of_sensor = self._kinds[frame.element] == Kind.SENSOR
-        return frame.pose == pose or (bool(facts.optical_frame_id) and not is_of_sensor)
+        element = self._element(row)
+        is_of_sensor = self._scene.kinds[element] == Kind.SENSOR
+        count = len(self._elements)
+        other = (
+            self._scene.pose_of(element) if row < count else self._optical[row - count].pose)
+        return other == pose or (bool(facts.optical_frame_id) and not is_of_sensor)
 
     # What hangs on what
 
-    def _parent_row(self, element: int) -> int:
+    def _parent_rows(self) -> Indices:
         """Climb to the next element that is published; what is not stands in no one's way."""
-        last = element
-        parent = self._parents.parents[element]
-        while parent not in self._row_of_element and self._holders[parent] >= 0:
-            last = parent
-            parent = self._parents.parents[parent]
-        if self._holders[parent] >= 0:
-            return self._row_of_element[parent]
-        return _ROOT_PARENT if self._is_anchored(last) else _NO_PARENT
+        holders, parents = self._scene.parents, self._parents.parents
+        lasts = self._elements.copy()
+        above = parents[lasts]
+        climbing = np.arange(len(lasts))
+        while len(climbing):
+            stands = above[climbing]
+            climbing = climbing[
+                (self._row_of_element[stands] == _NOT_THERE) & (holders[stands] >= 0)]
+            lasts[climbing] = above[climbing]
+            above[climbing] = parents[above[climbing]]
+        is_on_root = holders[above] < 0
+        rows = np.where(is_on_root, _ROOT_PARENT, self._row_of_element[above])
+        is_adrift = np.zeros(len(holders), np.bool_)
+        for last in set(lasts[is_on_root].tolist()):
+            is_adrift[last] = not self._is_anchored(last)
+        rows[is_on_root & is_adrift[lasts]] = _NO_PARENT
+        return rows
 
     def _is_anchored(self, element: int) -> bool:
         """Tell whether what hangs on the root directly gets a transform from it."""
-        if self._kinds[element] not in (Kind.LINK, Kind.MODEL):
+        scene = self._scene
+        if self._options.anchor_models is AnchorModels.ALL:
             return True
-        if self._options.anchor_models is not AnchorModels.STATIC:
-            return self._options.anchor_models is AnchorModels.ALL
+        if scene.kinds[element] not in (Kind.LINK, Kind.MODEL):
+            return True
+        if self._options.anchor_models is AnchorModels.NONE:
+            return False
         if element not in self._parents.anchored:
             return True
-        while self._holders[element] != self._roots[element]:
-            element = self._holders[element]
-        return element in self._scene.static_models
+        while scene.parents[element] != scene.roots[element]:
+            element = int(scene.parents[element])
+        return element in scene.static_models
 
     def _is_world(self) -> bool:
-        return bool(self._kinds) and self._kinds[0] == Kind.WORLD
+        return len(self._scene.kinds) > 0 and bool(self._scene.kinds[0] == Kind.WORLD)
 
     def _warn_loop(self, joint: Joint) -> None:
         names = self._scene.names
@@ -296,27 +353,28 @@ class _Builder:
                f'"{names[joint.child]}"; TF is a tree, so it moves nothing there')
         self._problems.warning('WARNING', msg, self._scene.place(joint.element))
 
-    def _laid_out(self) -> TfTree:
-        poses = np.array([frame.pose for frame in self._rows], dtype=np.float64).reshape(-1, 7)
-        parents = np.array([frame.parent for frame in self._rows], dtype=np.intp)
+    def _laid_out(self, parents: Indices) -> TfTree:
+        optical = self._optical
+        poses = np.concatenate([
+            self._scene.poses[self._elements],
+            np.array([frame.pose for frame in optical], np.float64).reshape(-1, 7)])
+        parents = np.concatenate(
+            [parents, np.array([frame.parent for frame in optical], np.int32)])
         # The last two rows serve the constants for no parent and for the root.
-        origins = np.concatenate([poses, [Pose(), Pose()]])[parents]
-        transforms = pose_products(pose_inverses(origins), poses)
+        origins = np.concatenate([poses, [Pose(), Pose()]]).take(parents, axis=0)
+        transforms = relative_poses(origins, poses)
         transforms[parents == _NO_PARENT] = Pose()
         transforms[:, 3:] = canonical_quaternion(transforms[:, 3:])
         transforms[:, :3] += 0.0  # no negative zeros
-        elements = np.array(
-            [-1 if row in self._optical_rows else frame.element
-             for row, frame in enumerate(self._rows)], dtype=np.int32)
-        elements.setflags(write=False)
-        ids = (*(frame.frame_id for frame in self._rows), self._options.root_frame, '')
-        poses.setflags(write=False)
-        transforms.setflags(write=False)
+        elements = np.concatenate([self._elements, np.full(len(optical), -1, np.int32)])
+        for array in (elements, poses, transforms):
+            array.setflags(write=False)
+        ids = (*self._ids, self._options.root_frame, '')
         return TfTree(
             root_frame=self._options.root_frame,
             frame_ids=ids[:-2],
             poses=poses,
-            parent_ids=tuple(ids[parent] for parent in parents.tolist()),
+            parent_ids=tuple(map(ids.__getitem__, parents.tolist())),
             transforms=transforms,
             elements=elements,
             world=next(iter(self._scene.world_names.values()), '') if self._is_world() else '',

@@ -29,7 +29,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
-import hashlib
 from itertools import groupby
 from operator import itemgetter
 import re
@@ -72,6 +71,8 @@ def topic_name_from_frame_id(frame_id: str, limit: int = LONGEST_NAME) -> str:
     name = '/'.join(_level_from_text(level) for level in frame_id.split('/'))
     if len(name) <= limit and not _CUT.search(name):
         return name
+    # Seldom needed, and slow to import.
+    import hashlib
     digest = hashlib.sha256(_bytes_from_text(frame_id)).hexdigest()[:32]
     return f'{name[:limit - _CUT_LENGTH].rstrip("_/")}_xh{digest}_'
 

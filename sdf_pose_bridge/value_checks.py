@@ -9,8 +9,10 @@ published as if it did; so numbers have to be numbers, and materials whole.
 
 from __future__ import annotations
 
+import functools
 import math
 import re
+from typing import NamedTuple
 
 from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import Document
@@ -48,7 +50,11 @@ _AXES = frozenset({('axis', 'xyz'), ('axis2', 'xyz')})
 _SMALLEST_AXIS = 1e-6
 _HOLDERS_OF_POSES = ('waypoint', 'camera', 'audio_source', 'population')
 _SHADERS = frozenset({'pixel', 'vertex', 'normal_map_object_space', 'normal_map_tangent_space'})
-_VALUE_TAGS = sorted({tag for types in VALUE_TYPES.values() for tag in types})
+_TYPES_OF_TAG: dict[str, set[ValueType]] = {}
+for _types in VALUE_TYPES.values():
+    for _tag, _type in _types.items():
+        _TYPES_OF_TAG.setdefault(_tag, set()).add(_type)
+_VALUE_TAGS = sorted(_TYPES_OF_TAG)
 CHECKED_TAGS = tuple(dict.fromkeys((
     *_VALUE_TAGS, *sorted(REQUIRED_ATTRIBUTES), 'script', *_HOLDERS_OF_POSES, 'state')))
 """Tags of all elements that are checked here."""
@@ -71,9 +77,17 @@ _STRICTEST_FIRST = (
     ValueType.THREE_NUMBERS, ValueType.TWO_NUMBERS, ValueType.INTEGER, ValueType.NUMBER)
 
 
-def _plain_values(tag: str) -> re.Pattern[str] | None:
-    """Make the pattern of a run of good values; None where they have to be looked at singly."""
-    types = {types[tag] for types in VALUE_TYPES.values() if tag in types}
+class _PlainRule(NamedTuple):
+    """What is known to be good at once, of elements with some tag."""
+
+    value_type: ValueType
+    is_not_negative: bool
+    is_axis: bool
+
+
+def _plain_rule(tag: str) -> _PlainRule | None:
+    """Return a rule that is as strict as any for elements with a tag; None if there is none."""
+    types = _TYPES_OF_TAG[tag]
     smallest = {value for (_, each), value in SMALLEST_VALUES.items() if each == tag}
     if smallest - {0.0} or any(each == tag for _, each in LARGEST_VALUES):
         return None
@@ -83,18 +97,22 @@ def _plain_values(tag: str) -> re.Pattern[str] | None:
         strictest = next(iter(types))
     else:
         return None
-    rules = (_NOT_NEGATIVE if smallest else '') + (
-        _NOT_ALL_ZERO if any(each == tag for _, each in _AXES) else '')
-    return re.compile(rf'(?:\s*{rules}{_PLAIN_PATTERNS[strictest]}\0)*')
+    return _PlainRule(strictest, bool(smallest), any(each == tag for _, each in _AXES))
 
 
+@functools.cache
+def _pattern(rule: _PlainRule) -> re.Pattern[str]:
+    """Make the pattern of a run of good values."""
+    conditions = (_NOT_NEGATIVE if rule.is_not_negative else '') + (
+        _NOT_ALL_ZERO if rule.is_axis else '')
+    return re.compile(rf'(?:\s*{conditions}{_PLAIN_PATTERNS[rule.value_type]}\0)*')
+
+
+_PLAIN_RULES = {tag: _plain_rule(tag) for tag in _VALUE_TAGS}
 _PLAIN_IF_BEGUN = frozenset(
-    tag for tag in _VALUE_TAGS
-    if {types[tag] for types in VALUE_TYPES.values() if tag in types} <= {
-        ValueType.NUMBER, ValueType.INTEGER})
+    tag for tag, rule in _PLAIN_RULES.items()
+    if rule and rule.value_type in (ValueType.NUMBER, ValueType.INTEGER))
 """Tags of elements whose values are good if only they begin with a digit."""
-
-_PLAIN_VALUES = {tag: _plain_values(tag) for tag in _VALUE_TAGS}
 
 
 def check_values(document: Document, index: MarkupIndex, problems: Problems) -> None:
@@ -106,16 +124,16 @@ def check_values(document: Document, index: MarkupIndex, problems: Problems) -> 
     :param problems: takes what is wrong.
     """
     check = _Check(document, problems)
-    for tag in _VALUE_TAGS:
+    for tag in index.present(_VALUE_TAGS):
         for xml in _doubtful(tag, index):
             check.value(xml)
-    for tag in REQUIRED_ATTRIBUTES:
+    for tag in index.present(REQUIRED_ATTRIBUTES):
         for xml in index.xmls(tag):
             check.attribute(xml)
-    for tag in ('script', 'shader'):
+    for tag in index.present(('script', 'shader')):
         for xml in index.xmls(tag):
             check.material(xml)
-    for tag in (*_HOLDERS_OF_POSES, 'state'):
+    for tag in index.present((*_HOLDERS_OF_POSES, 'state')):
         for xml in index.xmls(tag):
             for pose in xml.iter('pose') if tag == 'state' else xml.iterchildren('pose'):
                 check.pose(pose)
@@ -124,14 +142,15 @@ def check_values(document: Document, index: MarkupIndex, problems: Problems) -> 
 def _doubtful(tag: str, index: MarkupIndex) -> list[XmlElement]:
     """Leave out elements whose values are certainly good, which is quick where all are."""
     elements = index.of(tag)
-    pattern = _PLAIN_VALUES[tag]
-    if not len(elements) or pattern is None:
+    rule = _PLAIN_RULES[tag]
+    if rule is None:
         return index.xmls(tag)
     if tag in _PLAIN_IF_BEGUN:
         elements = elements[~index.begins_with_digit(elements)]
         if not len(elements):
             return []
     texts = index.texts(elements)
+    pattern = _pattern(rule)
     if pattern.fullmatch('\0'.join(set(texts)) + '\0'):
         return []
     is_doubtful = [not pattern.fullmatch(text + '\0') for text in texts]

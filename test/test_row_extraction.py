@@ -58,8 +58,8 @@ ODDITIES = (
     '<link name="k"><inertial/><inertial><pose>0 0 1 0 0 0</pose></inertial></link>',
     '<link name="k"><visual name="v"/><visual name="v"/><collision name="v"/></link>',
     '<link name="k"><visual name="v"><pose relative_to="x">0 0 1 0 0 0</pose></visual></link>',
-    '<link name="k"><sensor name="s" type="x"><camera><optical_frame_id>o</optical_frame_id>'
-    + '</camera></sensor></link>',
+    ('<link name="k"><sensor name="s" type="x"><camera><optical_frame_id>o</optical_frame_id>'
+     '</camera></sensor></link>'),
     '<link name="k"><sensor type="imu" name="s"><gz_frame_id> i </gz_frame_id></sensor></link>',
     '<link name="k"><visual name="v"><visual name="w"/></visual></link>',
     '<link name="k"/>' + JOINT,
@@ -90,8 +90,8 @@ ODDITIES = (
     '<model name="n"><static/></model>', '<model name="n"/>',
     '<model name="n" canonical_link="k"><link name="i"/><link name="k"/></model>',
     '<model name="n" canonical_link="x"><link name="i"/></model>',
-    '<model name="n" placement_frame="k"><pose>1 0 0 0 0 0</pose><link name="k">'
-    + '<pose>0 1 0 0 0 0</pose></link></model>',
+    ('<model name="n" placement_frame="k"><pose>1 0 0 0 0 0</pose><link name="k">'
+     '<pose>0 1 0 0 0 0</pose></link></model>'),
     '<model name="n" placement_frame="__root__"><link name="k"/></model>',
     '<model name="n"><model name="o"><link name=""/></model><link name="k"/></model>',
     '<plugin name="p" filename="f"><link name="l"><pose>x</pose></link></plugin>',

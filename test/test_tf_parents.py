@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parents in TF: what a frame is fixed to, or what a joint moves it on."""
 
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
 from sdf_texts import element
 from sdf_texts import fixed_joint
@@ -10,6 +12,7 @@ from sdf_texts import posed
 from sdf_texts import world_file
 
 import sdf_pose_bridge
+from sdf_pose_bridge.tf_parents import _Builder
 from sdf_pose_bridge.tf_parents import tf_parents_from_scene
 
 LINKS = '<link name="a"/><link name="b"/><link name="c"/>'
@@ -262,3 +265,46 @@ def test_a_long_chain():
         + joints(*((f'l{i}', f'l{i - 1}') for i in range(1, count))))
     parents = parents_of(text)
     assert parents[f'm::l{count - 1}'] == f'm::l{count - 2}'
+
+
+# Parents found for all at once
+
+BODIES = [f'{name}::{link}' for name in 'pqr' for link in 'abc']
+
+
+def builder_of_joints(pairs, static=()):
+    models = ''.join(
+        model(name, f'<static>{name in static}</static>{LINKS}') for name in 'pqr')
+    return _Builder(sdf_pose_bridge.load_text(world_file(models + joints(*pairs))))
+
+
+@given(
+    edges=st.lists(
+        st.tuples(st.sampled_from(['world', *BODIES]), st.sampled_from(BODIES)),
+        unique_by=lambda edge: edge[1]),
+    static=st.sets(st.sampled_from('pqr'), max_size=1))
+def test_what_is_found_at_once_is_what_a_search_finds(edges, static):
+    pairs = [
+        (start, end) for start, end in edges
+        if start != end and (start[0] != end[0] or end[0] not in static)]
+    builder = builder_of_joints(pairs, static)
+    seeds = builder._seeds()
+    movers = builder._movers_if_trees_hang_on(seeds)
+    found, loops = builder._movers_of_any(seeds.tolist())
+    assert movers is None or (movers.tolist(), []) == (found.tolist(), loops)
+
+
+def test_a_tree_below_the_first_link_is_found_at_once():
+    builder = builder_of_joints([('p::a', 'p::b'), ('p::b', 'p::c'), ('p::a', 'q::a')])
+    assert builder._movers_if_trees_hang_on(builder._seeds()) is not None
+
+
+@pytest.mark.parametrize('pairs', [
+    [('p::a', 'p::b'), ('p::b', 'p::a')],
+    [('p::b', 'p::c'), ('p::c', 'q::a'), ('q::a', 'p::b')],
+    [('p::a', 'p::c'), ('p::b', 'p::c')],
+    [('p::b', 'p::a')],
+])
+def test_loops_two_parents_and_other_tops_need_a_search(pairs):
+    builder = builder_of_joints(pairs)
+    assert builder._movers_if_trees_hang_on(builder._seeds()) is None
