@@ -4,9 +4,11 @@
 
 import os
 from pathlib import Path
+from typing import Any
 
 from setuptools import find_packages
 from setuptools import setup
+from setuptools.command.install_scripts import install_scripts
 
 PACKAGE = 'sdf_pose_bridge'
 SHARE = f'share/{PACKAGE}'
@@ -28,6 +30,27 @@ def data_files_of(folder: str) -> list[tuple[str, list[str]]]:
             sources = [str(Path(path, name)) for name in sorted(files)]
             found.append((f'{SHARE}/{Path(path).as_posix()}', sources))
     return found
+
+
+class InstallScripts(install_scripts):
+    """
+    Writes executables that import what they call.
+
+    Those of setuptools look their entry point up first, which takes longer than to read a file and
+    publish it.
+    """
+
+    def write_script(self, script_name: str, contents: str, *args: Any, **kwargs: Any) -> None:
+        """Write an executable, with the first line that setuptools gives it."""
+        (entry,) = (
+            text for text in self.distribution.entry_points['console_scripts']
+            if text.split(' = ')[0] == script_name)
+        module, function = entry.split(' = ')[1].split(':')
+        first_line = contents.partition('\n')[0]
+        lines = [
+            first_line, 'import sys', f'from {module} import {function}',
+            f'sys.exit({function}())', '']
+        super().write_script(script_name, '\n'.join(lines), *args, **kwargs)
 
 
 setup(
@@ -53,6 +76,7 @@ setup(
         (SHARE, ['package.xml']),
         *(pair for folder in SHARED_FOLDERS for pair in data_files_of(folder)),
     ],
+    cmdclass={'install_scripts': InstallScripts},
     entry_points={
         'console_scripts': [
             'bridge = sdf_pose_bridge.bridge:main',

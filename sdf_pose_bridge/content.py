@@ -17,6 +17,7 @@ from sdf_pose_bridge.errors import UriLookupError
 from sdf_pose_bridge.file_address import AddressError
 from sdf_pose_bridge.file_address import path_from_address
 from sdf_pose_bridge.loading import load
+from sdf_pose_bridge.lookup import PoseLookup
 from sdf_pose_bridge.manifest import model_file_from_directory
 from sdf_pose_bridge.resources import resource_finder
 from sdf_pose_bridge.scene import Scene
@@ -31,6 +32,8 @@ class Content(NamedTuple):
     path: Path
     scene: Scene
     tree: TfTree
+    lookup: PoseLookup
+    """Answers queries about the two."""
     warnings: tuple[SdfWarning, ...]
     files: tuple[str, ...]
     """All files that were read, which tell when to read again."""
@@ -56,9 +59,11 @@ def content_from_settings(settings: Settings) -> Content:
         path, resource_paths=settings.resource_paths,
         on_missing_include=settings.on_missing_include)
     tree = tf_tree_from_scene(scene, settings.tf_options)
+    lookup = PoseLookup(scene, tree)
     return Content(
-        path, scene, tree, (*warnings, *scene.warnings, *tree.warnings),
-        (*manifests, *scene.files), read_since_ns, time.perf_counter() - begin)
+        path, scene, tree, lookup,
+        (*warnings, *scene.warnings, *tree.warnings), (*manifests, *scene.files), read_since_ns,
+        time.perf_counter() - begin)
 
 
 def files_behind_error(error: SdfError | AddressError, settings: Settings) -> list[str]:

@@ -42,6 +42,8 @@ class Diagnostics:
     def __init__(self, node: Node) -> None:
         self._node = node
         self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', 10)
+        self._state: State | None = None
+        self._message = DiagnosticArray()
 
     def publish(self, state: State) -> None:
         """
@@ -49,10 +51,13 @@ class Diagnostics:
 
         :param state: what there is to say.
         """
-        message = DiagnosticArray(status=[status_from_state(
-            state, self._node.get_fully_qualified_name().lstrip('/'))])
-        message.header.stamp = self._node.get_clock().now().to_msg()
-        self._publisher.publish(message)
+        # It is the same for hours, and to put it into words costs more than to publish it.
+        if state is not self._state:
+            name = self._node.get_fully_qualified_name().lstrip('/')
+            self._message.status = [status_from_state(state, name)]
+            self._state = state
+        self._message.header.stamp = self._node.get_clock().now().to_msg()
+        self._publisher.publish(self._message)
 
 
 def status_from_state(state: State, name: str) -> DiagnosticStatus:

@@ -16,6 +16,9 @@ from sdf_pose_bridge.rotation import canonical_quaternion
 from sdf_pose_bridge.scene import Scene
 from sdf_pose_bridge.tf_tree import TfTree
 
+MOST_KEPT = 1000
+"""How many answers are kept; who asks often asks the same."""
+
 
 class FoundPose(NamedTuple):
     """The answer to a query."""
@@ -45,6 +48,9 @@ class PoseLookup:
             element: frame_id
             for element, frame_id in zip(tree.elements.tolist(), tree.frame_ids, strict=True)
             if element >= 0}
+        self._found: dict[tuple[str, str], FoundPose] = {}
+        # Made when it is first wanted, which takes too long while somebody waits for an answer.
+        scene.has('')
 
     def pose(self, frame: str, relative_to: str = '') -> FoundPose:
         """
@@ -55,6 +61,16 @@ class PoseLookup:
         :return: the pose.
         :raises UnknownFrameError: if a name means nothing, or more than one thing.
         """
+        question = (frame, relative_to)
+        found = self._found.get(question)
+        if found is None:
+            found = self._find(frame, relative_to)
+            if len(self._found) >= MOST_KEPT:
+                self._found.clear()
+            self._found[question] = found
+        return found
+
+    def _find(self, frame: str, relative_to: str) -> FoundPose:
         pose, _ = self._in_root(frame)
         if not relative_to:
             return FoundPose(pose, self._tree.root_frame)

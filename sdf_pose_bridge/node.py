@@ -4,22 +4,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Awaitable
 from collections.abc import Callable
 from collections.abc import Sequence
+import contextlib
 import datetime
 import time
 import traceback
-from typing import Any
 
 from rcl_interfaces.msg import SetParametersResult
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock
 from rclpy.clock import ClockType
+from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.task import Future
 from rclpy.timer import Timer
 from std_srvs.srv import Trigger
 
+from sdf_pose_bridge.background import at_once
+from sdf_pose_bridge.background import Background
 from sdf_pose_bridge.content import Content
+from sdf_pose_bridge.content import content_from_settings
 from sdf_pose_bridge.content import files_behind_error
 from sdf_pose_bridge.conversion_services import add_conversion_services
 from sdf_pose_bridge.conversion_services import never_raising
@@ -29,11 +36,11 @@ from sdf_pose_bridge.diagnostics import State
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.file_address import AddressError
 from sdf_pose_bridge.file_watch import FileWatch
+from sdf_pose_bridge.file_watch import Watchman
 from sdf_pose_bridge.log_lines import lines_from_error
 from sdf_pose_bridge.log_lines import lines_from_warnings
 from sdf_pose_bridge.log_lines import names_in_line
-from sdf_pose_bridge.lookup import PoseLookup
-from sdf_pose_bridge.messages import pose_stamped
+from sdf_pose_bridge.messages import fill_pose_stamped
 from sdf_pose_bridge.parameters import changed_settings
 from sdf_pose_bridge.parameters import SettingTogether
 from sdf_pose_bridge.publications import Publications
@@ -41,139 +48,174 @@ from sdf_pose_bridge.settings import Settings
 from sdf_pose_bridge.settings import SettingsError
 from sdf_pose_bridge_interfaces.srv import LookupPose
 
-NODE_NAME = 'sdf_pose_bridge'
 
-WATCH_PERIOD_S = 0.5
-"""Seconds between two looks at the files."""
+class SdfPoseBridge:
+    """
+    Everything that a node does; it serves nothing before :meth:`serve`.
 
+    :param node: the node, its parameters declared.
+    :param publications: its publishers for frames.
+    """
 
-class SdfPoseBridge(Node):
-    """The node; it serves nothing before :meth:`serve`."""
-
-    def __init__(self) -> None:
-        super().__init__(NODE_NAME, start_parameter_services=False)
-        self._parameter_services = SettingTogether(self)
-        # Simulated time may stand still, and files change all the same.
+    def __init__(self, node: Node, publications: Publications) -> None:
+        self._node = node
+        self._publications = publications
+        self._background = Background(node)
+        # One change after the other, whatever else goes on while a file is read.
+        self._changes = MutuallyExclusiveCallbackGroup()
+        self._parameter_services = SettingTogether(
+            node, self._changes, self._prepare, self._guarded(self._take_judged))
+        self._prepared: tuple[Settings, Future] | None = None
+        self._judged: tuple[Settings, Content | None] | None = None
+        # Simulated time may stand still, and work goes on all the same.
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._again: Timer | None = None
         self._watch = FileWatch()
         self._suspicion: list[str] = []
-        self._prepared: tuple[Settings, Content | None] | None = None
-        self._again: Timer | None = None
 
-    def serve(
-        self, settings: Settings, content: Content, load: Callable[[Settings], Content],
-    ) -> None:
+    def serve(self, settings: Settings, content: Content) -> None:
         """
         Publish what a file holds, offer services, and follow changes from now on.
 
         :param settings: what the node is set to do.
         :param content: what it shall serve.
-        :param load: reads the file again; it raises what
-            :func:`~sdf_pose_bridge.content.content_from_settings` does.
         """
-        self._load = load
         self._settings = settings
-        self._publications = Publications(self)
-        self._diagnostics = Diagnostics(self)
-        self._take_content(content)
+        self._diagnostics = Diagnostics(self._node)
+        at_once(self._take_content(content))
         self._publish_again_at(settings.publish_rate)
-        add_conversion_services(self)
-        logger = self.get_logger()
-        self.create_service(
+        add_conversion_services(self._node)
+        logger = self._node.get_logger()
+        self._node.create_service(
             LookupPose, '~/lookup_pose', never_raising(self._answer_to_lookup, logger))
-        self.create_service(Trigger, '~/reload', never_raising(self._answer_to_reload, logger))
-        self.add_on_set_parameters_callback(self._judge_parameters)
-        self.add_post_set_parameters_callback(self._guarded(self._take_prepared))
-        self._every(WATCH_PERIOD_S, self._look_at_files)
-        self._every(PERIOD_S, self._diagnose)
+        self._node.create_service(
+            Trigger, '~/reload', self._answer_to_reload, callback_group=self._changes)
+        self._node.add_on_set_parameters_callback(self._judge_parameters)
+        self._node.create_timer(PERIOD_S, self._guarded(self._diagnose), clock=self._steady)
+        self._files_may_differ = self._node.create_guard_condition(
+            self._guarded(self._look_at_files), callback_group=self._changes)
+        self._watchman = Watchman(self._is_to_look_at_files, self._ask_for_look_at_files)
 
     # Changes
 
-    def _take_content(self, content: Content) -> None:
+    async def _take_content(self, content: Content) -> None:
         """Serve something else from now on; nothing before this call has changed anything."""
-        lookup = PoseLookup(content.scene, content.tree)
-        transforms = self._publish(content)
-        self._lookup = lookup
+        self._lookup = content.lookup
         self._watch.watch(content.files, content.read_since_ns)
         self._suspicion = []
+        transforms = await self._publish(content)
         self._state = State(content, transforms, datetime.datetime.now(datetime.timezone.utc))
-        logger = self.get_logger()
+        logger = self._node.get_logger()
         for line in lines_from_warnings(content.warnings):
             logger.warning(line)
         logger.info(
             f'publishing {_count(len(content.tree.frame_ids), "frame")} of {content.path} with '
             f'{_count(transforms, "transform")}, root frame "{content.tree.root_frame}" '
             f'(read in {1e3 * content.seconds:.0f} ms)')
-        self._diagnose()
+        await self._diagnose()
 
-    def _publish(self, content: Content) -> int:
-        outcome = self._publications.publish(content.tree, self._settings.pose_topics)
+    async def _publish(self, content: Content) -> int:
+        outcome = await self._background.all_of(
+            self._publications.publish(content.tree, self._settings.pose_topics))
         if outcome.vanished:
-            self.get_logger().warning(
+            self._node.get_logger().warning(
                 f'{_count(len(outcome.vanished), "frame")} no longer published, which TF '
                 f'listeners keep until they are restarted: {names_in_line(outcome.vanished)}')
         return outcome.transforms
 
-    def _reload(self) -> list[str]:
+    def _loading(self, settings: Settings) -> Future:
+        return self._background.started(lambda: content_from_settings(settings))
+
+    async def _reload(self) -> list[str]:
         """Read the file again; return what is wrong with it, which leaves everything as it was."""
         try:
-            content = self._load(self._settings)
+            await self._take_content(await self._loading(self._settings))
         except (SdfError, AddressError) as error:
             self._watch.watch_also(files_behind_error(error, self._settings))
             return lines_from_error(error)
         except Exception as error:  # noqa: BLE001 - a defect is told like any other failure
             return [self._internal_error(error)]
-        self._take_content(content)
         return []
 
-    def _report_failure(self, lines: Sequence[str]) -> None:
+    async def _report_failure(self, lines: Sequence[str]) -> None:
         if list(lines) != list(self._state.failure):
-            self.get_logger().error(
+            self._node.get_logger().error(
                 f'{self._settings.sdf_file} is not taken; what was published before stays')
             for line in lines:
-                self.get_logger().error(line)
+                self._node.get_logger().error(line)
         self._suspicion = []
         self._state = self._state._replace(failure=lines)
-        self._diagnose()
+        await self._diagnose()
 
-    def _look_at_files(self) -> None:
-        if not self._settings.watch:
-            return
-        before = self._suspicion
-        if self._watch.has_changed():
-            self._suspicion = self._reload()
-            is_sure = self._suspicion == before
-        else:
-            # A period later the files are the same, so nobody is about to finish writing them.
-            is_sure = True
-        if is_sure and self._suspicion:
-            self._report_failure(self._suspicion)
+    def _is_to_look_at_files(self) -> bool:
+        return self._settings.watch and (bool(self._suspicion) or self._watch.would_differ())
 
-    def _judge_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+    def _ask_for_look_at_files(self) -> None:
+        # A node that is just being ended asks for nothing any more.
+        with contextlib.suppress(InvalidHandle):
+            self._files_may_differ.trigger()
+
+    async def _look_at_files(self) -> None:
+        try:
+            before = self._suspicion
+            if self._watch.has_changed():
+                self._suspicion = await self._reload()
+                is_sure = self._suspicion == before
+            else:
+                # A period later the files are the same, so nobody is about to finish writing them.
+                is_sure = True
+            if is_sure and self._suspicion:
+                await self._report_failure(self._suspicion)
+        finally:
+            self._watchman.go_on()
+
+    def _needs_load(self, settings: Settings, parameters: Sequence[Parameter]) -> bool:
+        return settings.file_settings != self._settings.file_settings or any(
+            parameter.name == 'sdf_file' for parameter in parameters)
+
+    async def _prepare(self, parameters: Sequence[Parameter]) -> None:
+        """Read what the parameters name before they are set, which cannot be waited for."""
         self._prepared = None
         try:
-            settings = changed_settings(self, parameters)
-            needs_load = settings.file_settings != self._settings.file_settings or any(
-                parameter.name == 'sdf_file' for parameter in parameters)
-            content = self._load(settings) if needs_load else None
+            settings = changed_settings(self._node, parameters)
+        except SettingsError:
+            return
+        if self._needs_load(settings, parameters):
+            loading = self._loading(settings)
+            self._prepared = settings, loading
+            # Judging the parameters tells what is wrong.
+            with contextlib.suppress(Exception):
+                await loading
+
+    def _judge_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+        self._judged = None
+        prepared, self._prepared = self._prepared, None
+        try:
+            settings = changed_settings(self._node, parameters)
+            if not self._needs_load(settings, parameters):
+                content = None
+            elif prepared is not None and prepared[0] == settings:
+                content = prepared[1].result()
+            else:
+                content = content_from_settings(settings)
         except (SdfError, SettingsError, AddressError) as error:
             return SetParametersResult(
                 successful=False, reason='; '.join(lines_from_error(error)))
         except Exception as error:  # noqa: BLE001 - an exception here would end the node
             return SetParametersResult(successful=False, reason=self._internal_error(error))
-        self._prepared = settings, content
+        self._judged = settings, content
         return SetParametersResult(successful=True)
 
-    def _take_prepared(self, _parameters: list[Parameter]) -> None:
-        if self._prepared is None:
+    async def _take_judged(self) -> None:
+        if self._judged is None:
             return
         before = self._settings
-        self._settings, content = self._prepared
-        self._prepared = None
+        self._settings, content = self._judged
+        self._judged = None
         if content is not None:
-            self._take_content(content)
+            await self._take_content(content)
         elif self._settings.pose_topics != before.pose_topics:
-            self._publish(self._state.content)
+            await self._publish(self._state.content)
         if self._settings.publish_rate != before.publish_rate:
             self._publish_again_at(self._settings.publish_rate)
 
@@ -181,48 +223,47 @@ class SdfPoseBridge(Node):
 
     def _publish_again_at(self, rate: float) -> None:
         if self._again is not None:
-            self.destroy_timer(self._again)
+            self._node.destroy_timer(self._again)
             self._again = None
         if rate:
-            self._again = self._every(1.0 / rate, self._publish_again)
+            self._again = self._node.create_timer(
+                1.0 / rate, self._guarded(self._publish_again), callback_group=self._changes,
+                clock=self._steady)
 
-    def _publish_again(self) -> None:
+    async def _publish_again(self) -> None:
         begin = time.perf_counter()
-        self._publications.publish_again()
+        await self._background.all_of(self._publications.publish_again())
         seconds = time.perf_counter() - begin
         if seconds * self._settings.publish_rate > 1.0:
-            self.get_logger().warning(
+            self._node.get_logger().warning(
                 f'publish_rate {self._settings.publish_rate} Hz is not reached: to publish '
                 f'everything takes {1e3 * seconds:.0f} ms', throttle_duration_sec=60.0)
 
-    def _diagnose(self) -> None:
+    async def _diagnose(self) -> None:
         self._diagnostics.publish(self._state)
 
-    def _every(self, seconds: float, action: Callable[[], None]) -> Timer:
-        return self.create_timer(seconds, self._guarded(action), clock=self._steady)
-
-    def _guarded(self, action: Callable[..., None]) -> Callable[..., None]:
+    def _guarded(self, action: Callable[[], Awaitable[None]]) -> Callable[[], Awaitable[None]]:
         """Keep a defect in what nobody waits for from ending the node."""
-        def callback(*arguments: Any) -> None:
+        async def callback() -> None:
             try:
-                action(*arguments)
+                await action()
             except Exception:  # noqa: BLE001 - whatever it is, the node lives on
-                self.get_logger().error(
+                self._node.get_logger().error(
                     f'internal error:\n{traceback.format_exc()}', throttle_duration_sec=60.0)
         return callback
 
     def _internal_error(self, error: Exception) -> str:
-        self.get_logger().error(f'internal error:\n{traceback.format_exc()}')
+        self._node.get_logger().error(f'internal error:\n{traceback.format_exc()}')
         return f'internal error, see the log of the node: {error!r}'
 
     # Services
 
-    def _answer_to_reload(
+    async def _answer_to_reload(
         self, _request: Trigger.Request, response: Trigger.Response,
     ) -> Trigger.Response:
-        failure = self._reload()
+        failure = await self._reload()
         if failure:
-            self._report_failure(failure)
+            await self._report_failure(failure)
         response.success = not failure
         response.message = '; '.join(failure) or (
             f'publishing {_count(len(self._state.content.tree.frame_ids), "frame")} of '
@@ -237,7 +278,8 @@ class SdfPoseBridge(Node):
         except SdfError as error:
             response.message = error.message
             return response
-        response.pose = pose_stamped(found.pose, found.frame_id, self.get_clock().now().to_msg())
+        now = self._node.get_clock().now().seconds_nanoseconds()
+        fill_pose_stamped(response.pose, found.pose, found.frame_id, now)
         response.success = True
         return response
 

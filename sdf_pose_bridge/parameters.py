@@ -5,14 +5,20 @@
 from __future__ import annotations
 
 import array
+from collections.abc import Awaitable
+from collections.abc import Callable
 from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import Any
 from typing import NamedTuple
 
 from rcl_interfaces.msg import FloatingPointRange
+from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterDescriptor
 from rcl_interfaces.msg import SetParametersResult
+from rcl_interfaces.srv import SetParameters
 from rcl_interfaces.srv import SetParametersAtomically
+from rclpy.callback_groups import CallbackGroup
 from rclpy.exceptions import InvalidParameterTypeException
 from rclpy.exceptions import InvalidParameterValueException
 from rclpy.node import Node
@@ -124,10 +130,15 @@ PARAMETERS = (
 _TYPES = {
     str: Parameter.Type.STRING, bool: Parameter.Type.BOOL, float: Parameter.Type.DOUBLE,
     list: Parameter.Type.STRING_ARRAY}
+_DEFAULT_TYPES = {
+    declaration.name: _TYPES[type(declaration.default)] for declaration in PARAMETERS}
+_LIST_TYPES = (
+    Parameter.Type.BYTE_ARRAY, Parameter.Type.BOOL_ARRAY, Parameter.Type.INTEGER_ARRAY,
+    Parameter.Type.DOUBLE_ARRAY, Parameter.Type.STRING_ARRAY)
 _RATES = FloatingPointRange(from_value=0.0, to_value=FASTEST_RATE)
 _TYPE_WORDS = {
     Parameter.Type.STRING: 'a string', Parameter.Type.BOOL: 'true or false',
-    Parameter.Type.INTEGER: 'an integer', Parameter.Type.DOUBLE: 'a number',
+    Parameter.Type.INTEGER: 'an integer', Parameter.Type.DOUBLE: 'a number with a decimal point',
     Parameter.Type.STRING_ARRAY: 'a list of strings',
     Parameter.Type.BOOL_ARRAY: 'a list of booleans',
     Parameter.Type.INTEGER_ARRAY: 'a list of integers',
@@ -151,7 +162,7 @@ def settings_from_node(node: Node) -> Settings:
         try:
             values[name] = _declared(node, declaration)
         except InvalidParameterTypeException:
-            wrong_types[name] = Problem(name, _sentence_on_type(node, declaration))
+            wrong_types[name] = Problem(name, _sentence_on_override(node, declaration))
             values[name] = declaration.default
         except InvalidParameterValueException as error:
             sentence = f'parameter {name} must be {declaration.constraint}: {error}'
@@ -193,28 +204,68 @@ class SettingTogether(ParameterService):
 
     rclpy's own set one parameter after the other: a file of parameters would be judged once for
     each, and the scene be read anew, in states between that nobody asked for.
+
+    :param node: the node.
+    :param group: keeps two calls that set parameters from running at the same time.
+    :param prepare: does, before parameters are set, what judging them needs and takes long.
+    :param take: does what follows when they have been set.
     """
 
-    def _set_parameters_callback(self, request: Any, response: Any) -> Any:
-        together = self._set_parameters_atomically_callback(
-            request, SetParametersAtomically.Response())
-        response.results = [together.result] * len(request.parameters)
+    def __init__(
+        self, node: Node, group: CallbackGroup,
+        prepare: Callable[[Sequence[Parameter]], Awaitable[None]],
+        take: Callable[[], Awaitable[None]],
+    ) -> None:
+        super().__init__(node)
+        self._prepare = prepare
+        self._take = take
+        # The parent makes the services, and takes no group for them.
+        for service in node.services:
+            if service.srv_type in (SetParameters, SetParametersAtomically):
+                service.callback_group = group
+                group.add_entity(service)
+
+    async def _set_parameters_callback(self, request: Any, response: Any) -> Any:
+        result = await self._result_of_setting(request.parameters)
+        response.results = [result] * len(request.parameters)
         return response
 
-    def _set_parameters_atomically_callback(self, request: Any, response: Any) -> Any:
+    async def _set_parameters_atomically_callback(self, request: Any, response: Any) -> Any:
+        response.result = await self._result_of_setting(request.parameters)
+        return response
+
+    async def _result_of_setting(self, messages: Sequence[ParameterMessage]) -> Any:
         node = self._get_node()
-        for parameter in request.parameters:
-            if not node.has_parameter(parameter.name):
+        for message in messages:
+            if not node.has_parameter(message.name):
                 known = [declaration.name for declaration in PARAMETERS]
-                reason = (f'there is no parameter "{parameter.name}"'
-                          f'{hint_from_names(parameter.name, known)}')
-                response.result = SetParametersResult(successful=False, reason=reason)
-                return response
+                return SetParametersResult(successful=False, reason=(
+                    f'there is no parameter "{message.name}"'
+                    f'{hint_from_names(message.name, known)}'))
         try:
-            return super()._set_parameters_atomically_callback(request, response)
+            parameters = [_parameter_from_message(message) for message in messages]
+            for each in parameters:
+                wanted = _DEFAULT_TYPES.get(each.name, each.type_)
+                if each.type_ not in (wanted, Parameter.Type.NOT_SET):
+                    return SetParametersResult(
+                        successful=False, reason=_sentence_on_type(each, wanted))
+            await self._prepare(parameters)
+            result = node.set_parameters_atomically(parameters)
         except (ValueError, TypeError) as error:  # a value of a type that does not exist
-            response.result = SetParametersResult(successful=False, reason=str(error))
-            return response
+            return SetParametersResult(successful=False, reason=str(error))
+        if result.successful:
+            await self._take()
+        return result
+
+
+def _parameter_from_message(message: ParameterMessage) -> Parameter:
+    parameter = Parameter.from_parameter_msg(message)
+    # In [] there is nothing to tell what it is a list of, and the command line says: of booleans.
+    is_list = parameter.type_ in _LIST_TYPES and _DEFAULT_TYPES.get(
+        message.name) is Parameter.Type.STRING_ARRAY
+    if is_list and not len(parameter.value):
+        return Parameter(message.name, Parameter.Type.STRING_ARRAY, [])
+    return parameter
 
 
 def _declared(node: Node, declaration: _Declaration) -> object:
@@ -240,18 +291,25 @@ def _descriptor(declaration: _Declaration) -> ParameterDescriptor:
     )
 
 
-def _sentence_on_type(node: Node, declaration: _Declaration) -> str:
+def _sentence_on_override(node: Node, declaration: _Declaration) -> str:
     name = declaration.name
     given = node.declare_parameter(name, None, ParameterDescriptor(dynamic_typing=True))
-    value = list(given.value) if isinstance(given.value, array.array) else given.value
     wanted = _TYPES[type(declaration.default)]
-    sentence = (
-        f'parameter {name} is {value}, which is {_TYPE_WORDS[given.type_]}; '
-        f'it must be {_TYPE_WORDS[wanted]}')
+    sentence = _sentence_on_type(given, wanted)
     if wanted is Parameter.Type.STRING:
-        sentence += f', so quote it twice: -p "{name}:=\'{value}\'"'
+        sentence += f', so quote it twice: -p "{name}:=\'{_shown_value(given)}\'"'
     elif given.type_ is Parameter.Type.STRING and wanted is Parameter.Type.STRING_ARRAY:
-        sentence += f': -p "{name}:=[\'{value}\']"'
+        sentence += f': -p "{name}:=[\'{given.value}\']"'
     elif given.type_ is Parameter.Type.INTEGER and wanted is Parameter.Type.DOUBLE:
-        sentence += f', with a decimal point: -p {name}:={value}.0'
+        sentence += f', such as: -p {name}:={given.value}.0'
     return sentence
+
+
+def _sentence_on_type(given: Parameter, wanted: Parameter.Type) -> str:
+    return (
+        f'parameter {given.name} is {_shown_value(given)}, which is {_TYPE_WORDS[given.type_]}; '
+        f'it must be {_TYPE_WORDS[wanted]}')
+
+
+def _shown_value(given: Parameter) -> object:
+    return list(given.value) if isinstance(given.value, array.array) else given.value

@@ -4,11 +4,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from collections.abc import Sequence
-from typing import Any
 from typing import NamedTuple
 
-from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PoseStamped
 from geometry_msgs.msg import TransformStamped
 from rclpy.event_handler import PublisherEventCallbacks
@@ -21,9 +20,11 @@ from rclpy.qos import QoSProfile
 from rclpy.qos import ReliabilityPolicy
 from tf2_msgs.msg import TFMessage
 
-from sdf_pose_bridge.messages import poses_from_tree
-from sdf_pose_bridge.messages import tf_message_from_transforms
-from sdf_pose_bridge.messages import transforms_from_tree
+from sdf_pose_bridge.poses import PoseArray
+from sdf_pose_bridge.tf_message_bytes import pose_stamped_bytes
+from sdf_pose_bridge.tf_message_bytes import StampedBytes
+from sdf_pose_bridge.tf_message_bytes import tf_message_bytes
+from sdf_pose_bridge.tf_message_bytes import transform_stamped_bytes
 from sdf_pose_bridge.tf_tree import TfTree
 from sdf_pose_bridge.topic_names import is_everything_too_much
 from sdf_pose_bridge.topic_names import LONGEST_NAME
@@ -34,6 +35,12 @@ from sdf_pose_bridge.topic_names import topic_names_from_frame_ids
 LONGEST_FULL_NAME = 246
 """Most characters that the middleware takes in the full name of a topic."""
 
+SENT_IN_STEP = 200
+"""How many messages are sent in one step, which is a matter of milliseconds."""
+
+MADE_IN_STEP = 10
+"""How many publishers are made or destroyed in one step."""
+
 
 class Outcome(NamedTuple):
     """What there is to know of a tree that was published."""
@@ -42,6 +49,23 @@ class Outcome(NamedTuple):
     """How many transforms it has."""
     vanished: list[str]
     """The frames that had a transform before and have none now, sorted."""
+
+
+class _Transforms(NamedTuple):
+    """The transforms of a tree, which not every frame has."""
+
+    parent_ids: Sequence[str]
+    child_ids: Sequence[str]
+    poses: PoseArray
+
+    @classmethod
+    def from_tree(cls, tree: TfTree) -> _Transforms:
+        if '' not in tree.parent_ids:
+            return cls(tree.parent_ids, tree.frame_ids, tree.transforms)
+        rows = [row for row, parent_id in enumerate(tree.parent_ids) if parent_id]
+        return cls(
+            [tree.parent_ids[row] for row in rows], [tree.frame_ids[row] for row in rows],
+            tree.transforms[rows])
 
 
 class Publications:
@@ -57,55 +81,80 @@ class Publications:
         self._transforms: Publisher | None = None
         self._children: frozenset[str] = frozenset()
         self._poses: dict[str, Publisher] = {}
-        self._stamp = Time()
-        self._sent: list[tuple[Publisher, Any]] = []
+        self._sent: list[tuple[Sequence[Publisher], StampedBytes]] = []
+        self._announced: TfTree | None = None
 
-    def publish(self, tree: TfTree, patterns: Sequence[str]) -> Outcome:
+    def publish_tf_static(self, tree: TfTree) -> None:
         """
-        Publish a tree, in the place of the one before.
+        Publish the one message that most listeners wait for, before all others.
+
+        :param tree: a tree that :meth:`publish` is going to be called with.
+        """
+        transforms = _Transforms.from_tree(tree)
+        self._announced = tree
+        self._sent = []
+        messages = tf_message_bytes(*transforms)
+        self._sent.append(([self._tf_static], messages))
+        (data,) = messages.at(*self._now())
+        self._tf_static.publish(data)
+
+    def publish(
+        self, tree: TfTree, patterns: Sequence[str],
+    ) -> Generator[None, None, Outcome]:
+        """
+        Publish a tree, in the place of the one before, in steps of milliseconds.
+
+        The first step has ``/tf_static``. All of them must be taken before anything else is asked.
 
         :param tree: the tree.
         :param patterns: glob patterns for the frame ids that get a topic of their own.
         :return: what there is to know of it.
         """
-        self._stamp = self._node.get_clock().now().to_msg()
-        transforms = transforms_from_tree(tree, self._stamp)
-        self._prepare_transforms_publisher(len(transforms))
-        self._sent = [
-            (self._tf_static, tf_message_from_transforms(transforms)),
-            *((self._transforms, transform) for transform in transforms)]
+        if tree is not self._announced:
+            self.publish_tf_static(tree)
+            yield
+        del self._sent[1:]
+        now = self._now()
+        transforms = _Transforms.from_tree(tree)
+        count = len(transforms.child_ids)
+        publisher = self._transforms_publisher(count)
+        yield from self._send_also([publisher] * count, transform_stamped_bytes(*transforms), now)
         topics = self._topics_from_tree(tree, patterns)
-        self._replace_pose_publishers(topics)
+        yield from self._replace_pose_publishers(topics)
         rows = [row for row, frame_id in enumerate(tree.frame_ids) if frame_id in topics]
-        messages = poses_from_tree(tree, rows, self._stamp)
-        self._sent += [
-            (self._poses[topics[tree.frame_ids[row]]], message)
-            for row, message in zip(rows, messages, strict=True)]
-        self._send()
-        children = frozenset(each.child_frame_id for each in transforms)
+        yield from self._send_also(
+            [self._poses[topics[tree.frame_ids[row]]] for row in rows],
+            pose_stamped_bytes([tree.root_frame] * len(rows), tree.poses[rows]), now)
+        children = frozenset(transforms.child_ids)
         vanished = sorted(self._children - children)
         self._children = children
-        return Outcome(len(transforms), vanished)
+        return Outcome(count, vanished)
 
-    def publish_again(self) -> None:
-        """Publish what was published last once more, with new stamps."""
-        now = self._node.get_clock().now().to_msg()
-        # All messages hold this one stamp.
-        self._stamp.sec, self._stamp.nanosec = now.sec, now.nanosec
-        self._send()
+    def publish_again(self) -> Generator[None, None, None]:
+        """Publish what was published last once more, with new stamps, in such steps."""
+        now = self._now()
+        for publishers, messages in self._sent:
+            yield from _sent(publishers, messages, now)
 
-    def _send(self) -> None:
-        for publisher, message in self._sent:
-            publisher.publish(message)
+    def _now(self) -> tuple[int, int]:
+        seconds, nanoseconds = self._node.get_clock().now().seconds_nanoseconds()
+        return seconds, nanoseconds
 
-    def _prepare_transforms_publisher(self, count: int) -> None:
+    def _send_also(
+        self, publishers: Sequence[Publisher], messages: StampedBytes, stamp: tuple[int, int],
+    ) -> Generator[None, None, None]:
+        self._sent.append((publishers, messages))
+        yield from _sent(publishers, messages, stamp)
+
+    def _transforms_publisher(self, count: int) -> Publisher:
         # It keeps as many messages as there are transforms, so that the new ones push all the old
         # ones out. Another number needs another publisher, which knows nothing of the old ones.
-        if count and count == len(self._children):
-            return
-        if self._transforms is not None:
-            self._node.destroy_publisher(self._transforms)
-        self._transforms = self._publisher(TransformStamped, '~/transforms', depth=max(1, count))
+        if self._transforms is None or count != len(self._children) or not count:
+            if self._transforms is not None:
+                self._node.destroy_publisher(self._transforms)
+            self._transforms = self._publisher(
+                TransformStamped, '~/transforms', depth=max(1, count))
+        return self._transforms
 
     def _topics_from_tree(self, tree: TfTree, patterns: Sequence[str]) -> dict[str, str]:
         if is_everything_too_much(tree.frame_ids, patterns):
@@ -127,14 +176,18 @@ class Publications:
                 'the names of topics would be longer than the middleware allows')
             return {}
 
-    def _replace_pose_publishers(self, topics: dict[str, str]) -> None:
+    def _replace_pose_publishers(self, topics: dict[str, str]) -> Generator[None, None, None]:
         wanted = set(topics.values())
-        for name in [name for name in self._poses if name not in wanted]:
+        for number, name in enumerate([name for name in self._poses if name not in wanted]):
+            if not number % MADE_IN_STEP:
+                yield
             self._node.destroy_publisher(self._poses.pop(name))
         logger = self._node.get_logger()
         is_debugged = logger.is_enabled_for(LoggingSeverity.DEBUG)
         for frame_id, name in topics.items():
             if name not in self._poses:
+                if not len(self._poses) % MADE_IN_STEP:
+                    yield
                 self._poses[name] = self._publisher(PoseStamped, f'~/poses/{name}', depth=1)
             if is_debugged:
                 logger.debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
@@ -149,3 +202,15 @@ class Publications:
         return self._node.create_publisher(
             message_type, name, quality,
             event_callbacks=PublisherEventCallbacks(use_default_callbacks=False))
+
+
+def _sent(
+    publishers: Sequence[Publisher], messages: StampedBytes, stamp: tuple[int, int],
+) -> Generator[None, None, None]:
+    # To lay out many messages took as long as a step.
+    yield
+    pairs = zip(publishers, messages.at(*stamp), strict=True)
+    for number, (publisher, message) in enumerate(pairs, start=1):
+        publisher.publish(message)
+        if not number % SENT_IN_STEP:
+            yield

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from collections.abc import Sequence
 from contextlib import contextmanager
+import gc
 import os
 import signal
 import sys
@@ -16,6 +17,7 @@ import rclpy
 from rclpy.executors import Executor
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
@@ -23,14 +25,14 @@ from sdf_pose_bridge.content import Content
 from sdf_pose_bridge.content import content_from_settings
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.file_address import AddressError
-from sdf_pose_bridge.log_lines import lines_from_error
-from sdf_pose_bridge.log_lines import lines_from_warnings
-from sdf_pose_bridge.node import NODE_NAME
-from sdf_pose_bridge.node import SdfPoseBridge
 from sdf_pose_bridge.parameters import settings_from_node
+from sdf_pose_bridge.publications import Publications
 from sdf_pose_bridge.settings import Settings
 from sdf_pose_bridge.settings import SettingsError
 from sdf_pose_bridge.stop_request import StopRequest
+import sdf_pose_bridge_interfaces  # noqa: F401 - if missing, that comes out before anything is done
+
+NODE_NAME = 'sdf_pose_bridge'
 
 USAGE = """\
 Publish every frame of an SDFormat file on TF and on topics.
@@ -56,7 +58,7 @@ def run(args: Sequence[str], stop: StopRequest) -> int:
         words = remove_ros_args(args)[1:]
         if words:
             return _exit_code_from_words(words)
-        node = SdfPoseBridge()
+        node = Node(NODE_NAME, start_parameter_services=False)
     except RuntimeError as error:
         _complain(_sentence_from_ros_error(error))
         return 1
@@ -77,7 +79,7 @@ def _exit_code_from_words(words: Sequence[str]) -> int:
     return 1
 
 
-def _exit_code_from_node(node: SdfPoseBridge, stop: StopRequest) -> int:
+def _exit_code_from_node(node: Node, stop: StopRequest) -> int:
     logger = node.get_logger()
 
     def load(settings: Settings) -> Content:
@@ -88,17 +90,25 @@ def _exit_code_from_node(node: SdfPoseBridge, stop: StopRequest) -> int:
         settings = settings_from_node(node)
         content = load(settings)
     except (SdfError, SettingsError, AddressError) as error:
+        from sdf_pose_bridge.log_lines import lines_from_error
+        from sdf_pose_bridge.log_lines import lines_from_warnings
         for line in lines_from_warnings(error.warnings if isinstance(error, SdfError) else ()):
             logger.warning(line)
         for line in lines_from_error(error):
             logger.fatal(line)
         return 1
-    node.serve(settings, content, load)
+    publications = Publications(node)
+    publications.publish_tf_static(content.tree)
+    # What others wait for is out, so there is time for everything else.
+    from sdf_pose_bridge.node import SdfPoseBridge
+    bridge = SdfPoseBridge(node, publications)
+    bridge.serve(settings, content)
+    gc.enable()
     _spin(node, stop)
     return 0
 
 
-def _spin(node: SdfPoseBridge, stop: StopRequest) -> None:
+def _spin(node: Node, stop: StopRequest) -> None:
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     try:

@@ -12,6 +12,7 @@ from benchmarks.harness import PerSecond
 from benchmarks.harness import result_of
 from benchmarks.harness import table
 from benchmarks.harness import TimesAsFast
+from benchmarks.harness import Took
 from benchmarks.harness import Unavailable
 
 
@@ -92,3 +93,12 @@ def test_the_table_has_a_line_for_each_result_under_its_columns():
     assert header.split() == ['what', 'ours', 'counterpart', 'ratio', 'goal', 'reached']
     assert set(rule) == {'-', ' '}
     assert line.startswith('nothing  ')
+
+
+def test_what_a_function_has_measured_itself_counts():
+    @benchmark('ours', counterpart='theirs', goal=AtMostTimes(2.0))
+    def measuring():
+        yield lambda: Took(3.0), lambda: Took(2.0)
+
+    result = result_of(measuring)
+    assert (result.ours, result.ratio) == ('3 s', '1.50 times the time')

@@ -58,3 +58,26 @@ def test_a_failed_import_is_one_sentence(error, sentence):
 
 def test_the_readme_says_the_same_words():
     assert BUILD_COMMAND in (ROOT / 'README.md').read_text(encoding='utf-8')
+
+
+# Each of these takes milliseconds to import, or what imports it does.
+WAITS_FOR_THE_FIRST_MESSAGE = (
+    'sdf_pose_bridge.node', 'sdf_pose_bridge.conversion_services', 'sdf_pose_bridge.diagnostics',
+    'diagnostic_msgs', 'std_srvs', 'difflib', 'hashlib', 'importlib.metadata', 'numpy.ma')
+
+
+def test_what_can_wait_for_the_first_message_is_not_imported_before():
+    pytest.importorskip('rclpy', reason='needs ROS 2')
+    program = (
+        'import sdf_pose_bridge.running\n'
+        'from sdf_pose_bridge import load\n'
+        'from sdf_pose_bridge.tf_message_bytes import tf_message_bytes\n'
+        'from sdf_pose_bridge.tf_tree import tf_tree_from_scene\n'
+        'tree = tf_tree_from_scene(load("examples/work_cell.sdf"))\n'
+        'tf_message_bytes(tree.parent_ids, tree.frame_ids, tree.transforms).at(1, 2)\n'
+        'import sys\n'
+        f'print([name for name in {WAITS_FOR_THE_FIRST_MESSAGE} if name in sys.modules])')
+    result = subprocess.run(
+        [sys.executable, '-c', program], cwd=ROOT, capture_output=True, text=True, timeout=30,
+        check=True)
+    assert result.stdout.strip() == '[]'

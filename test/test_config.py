@@ -25,11 +25,6 @@ def values_in_file():
     return content['ros__parameters']
 
 
-def without_empty_texts(value):
-    # A list in a params file must not be empty, so that ROS can tell what it is a list of.
-    return [each for each in value if each] if isinstance(value, list) else value
-
-
 def test_there_is_every_parameter_and_no_other():
     assert values_in_file().keys() == DEFAULTS.keys()
 
@@ -37,12 +32,8 @@ def test_there_is_every_parameter_and_no_other():
 @pytest.mark.parametrize('name', values_in_file())
 def test_a_value_is_the_default(name):
     value = values_in_file()[name]
-    assert without_empty_texts(value) == DEFAULTS[name]
+    assert value == DEFAULTS[name]
     assert type(value) is type(DEFAULTS[name])
-
-
-def test_no_list_is_empty():
-    assert [] not in values_in_file().values()
 
 
 @pytest.mark.parametrize('name', values_in_file())

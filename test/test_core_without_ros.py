@@ -15,8 +15,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / 'sdf_pose_bridge'
 ROS_HALF = {
-    'bridge', 'content', 'conversion_services', 'diagnostics', 'messages', 'node', 'parameters',
-    'publications', 'running',
+    'background', 'bridge', 'content', 'conversion_services', 'diagnostics', 'messages', 'node',
+    'parameters', 'publications', 'running',
 }
 """The modules of the node; all others are the core and the command line."""
 

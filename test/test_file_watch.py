@@ -3,10 +3,13 @@
 """Changes of files are noticed once each, whatever way they come about."""
 
 import os
+import threading
 
 import pytest
 
+from sdf_pose_bridge import file_watch
 from sdf_pose_bridge.file_watch import FileWatch
+from sdf_pose_bridge.file_watch import Watchman
 
 LONG_AGO = 10 ** 18
 LATER = 10 ** 19
@@ -77,6 +80,15 @@ def test_a_change_is_noticed_once(watch, path, change):
     change(path)
     assert watch.has_changed()
     assert not watch.has_changed()
+
+
+@CHANGES
+def test_a_look_without_taking_note_leaves_the_change_to_be_noticed(watch, path, change):
+    assert not watch.would_differ()
+    change(path)
+    assert watch.would_differ()
+    assert watch.has_changed()
+    assert not watch.would_differ()
 
 
 def test_a_file_that_appears_is_noticed(tmp_path):
@@ -152,3 +164,35 @@ def test_a_path_that_cannot_exist_is_a_file_that_is_not_there(name):
     watch = FileWatch()
     watch.watch([name, f'{name}/x'], LONG_AGO)
     assert not watch.has_changed() or not name
+
+
+@pytest.fixture
+def calls(monkeypatch):
+    """What a watchman that always has something to do calls; a semaphore."""
+    monkeypatch.setattr(file_watch, 'PERIOD_S', 0.001)
+    return threading.Semaphore(0)
+
+
+def test_a_watchman_calls_once_until_told_to_go_on(calls):
+    is_due = threading.Event()
+    watchman = Watchman(is_due.is_set, calls.release)
+    is_due.set()
+    assert calls.acquire(timeout=20)
+    assert not calls.acquire(timeout=0.05)
+    watchman.go_on()
+    assert calls.acquire(timeout=20)
+    is_due.clear()
+    watchman.go_on()
+
+
+def test_a_watchman_with_nothing_to_do_only_looks(calls):
+    looks = threading.Semaphore(0)
+
+    def is_due():
+        looks.release()
+        return False
+
+    Watchman(is_due, calls.release)
+    for _ in range(3):
+        assert looks.acquire(timeout=20)
+    assert not calls.acquire(blocking=False)

@@ -48,11 +48,14 @@ def package_xml(package):
     return ET.parse(PACKAGES[package] / 'package.xml').getroot()
 
 
-def setup_value(*options):
-    result = subprocess.run(
+def run_setup(*options):
+    return subprocess.run(
         [sys.executable, 'setup.py', '--quiet', *options], cwd=ROOT, check=True,
         capture_output=True, text=True, env={**os.environ, 'PYTHONWARNINGS': 'ignore'})
-    return result.stdout.strip().splitlines()[-1]
+
+
+def setup_value(*options):
+    return run_setup(*options).stdout.strip().splitlines()[-1]
 
 
 def service_files():
@@ -140,6 +143,14 @@ def test_scripts_go_where_ros2_run_looks():
     settings.read(ROOT / 'setup.cfg')
     assert {settings['develop']['script_dir'], settings['install']['install_scripts']} == {
         '$base/lib/sdf_pose_bridge'}
+
+
+@pytest.mark.parametrize('name', ['bridge', 'sdf_pose'])
+def test_scripts_import_what_they_call(name, tmp_path):
+    run_setup('egg_info', '--egg-base', tmp_path, 'install_scripts', '--install-dir', tmp_path)
+    first, *lines = (tmp_path / name).read_text().splitlines()
+    assert first.startswith('#!')
+    assert [line.split()[0] for line in lines] == ['import', 'from', 'sys.exit(main())']
 
 
 @pytest.mark.parametrize('verb', COLCON_VERBS)

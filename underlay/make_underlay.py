@@ -41,9 +41,10 @@ BRIDGE = 'sdf_pose_bridge'
 INTERFACES = 'sdf_pose_bridge_interfaces'
 BRIDGE_SOURCES = (
     'package.xml', 'setup.py', 'setup.cfg', 'resource', BRIDGE, 'launch', 'config', 'examples')
-# Left out of the commands' environment: each would make them find another Python or another ROS.
+# Left out of the commands' environment: each would make them find another Python or another ROS,
+# or install modules that have to be compiled at every start.
 FOREIGN_VARIABLES = re.compile(
-    r'MAKE.*|MFLAGS|VIRTUAL_ENV|PYTHON(HOME|PATH|STARTUP)'
+    r'MAKE.*|MFLAGS|VIRTUAL_ENV|PYTHON(DONTWRITEBYTECODE|HOME|PATH|STARTUP)'
     r'|PIP_(PREFIX|PYTHON|REQUIRE_VIRTUALENV|ROOT|TARGET|USER)'
     r'|(AMENT|CMAKE|COLCON|RMW|_?ROS)_.*')
 BUILD_MACHINE_PREFIX = re.compile(r'/opt/python/cp3\d+-cp3\d+/(include|lib)/python3\.\d+')

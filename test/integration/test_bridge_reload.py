@@ -286,7 +286,8 @@ def test_parameters_that_change_nothing_publish_nothing(listener):
 REFUSED = [
     ({'publish_rate': float('nan')}, 'out of range'),
     ({'publish_rate': 100.5}, 'out of range'),
-    ({'publish_rate': 10}, 'DOUBLE'),
+    ({'publish_rate': 10}, 'is 10, which is an integer; it must be a number with a'),
+    ({'kinds': [True]}, 'is [True], which is a list of booleans; it must be a list of strings'),
     ({'sdf_file': ''}, 'parameter sdf_file is not set'),
     ({'sdf_file': '/'}, '/: FILE_READ: the directory has no model.config'),
     ({'sdf_file': 'not_there.sdf'}, '/not_there.sdf: FILE_READ: the file cannot be read'),

@@ -1,0 +1,193 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""A bridge that reads a file which takes long, here a pipe that nobody has written to yet."""
+
+import os
+import threading
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from changes import BRIDGE
+from changes import last_x
+from changes import listen_to_tf
+from changes import Monitor
+from changes import reload
+from changes import replace
+from changes import set_parameters
+from changes import wait_for_x
+from changes import world
+from diagnostic_msgs.msg import DiagnosticStatus
+from rcl_interfaces.msg import ParameterType
+from rcl_interfaces.msg import ParameterValue
+from rcl_interfaces.srv import GetParameters
+from rcl_interfaces.srv import SetParameters
+from rcl_interfaces.srv import SetParametersAtomically
+from rclpy.parameter import Parameter
+from std_srvs.srv import Trigger
+
+from sdf_pose_bridge_interfaces.srv import ConvertRotation
+from sdf_pose_bridge_interfaces.srv import LookupPose
+
+
+@pytest.fixture(name='pipe')
+def make_pipe(tmp_path):
+    path = tmp_path / 'slow.sdf'
+    os.mkfifo(path)
+    return path
+
+
+@pytest.fixture(name='file')
+def write_file(tmp_path):
+    path = tmp_path / 'cell.sdf'
+    path.write_text(world(1), encoding='utf-8')
+    return path
+
+
+@pytest.fixture(name='bridge')
+def bridge_on_file(start_bridge, file):
+    return start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
+
+
+@pytest.fixture(name='bridge_on_pipe')
+def start_on_pipe(start_bridge, pipe):
+    writer = threading.Thread(target=pipe.write_text, args=[world(1)], daemon=True)
+    writer.start()
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={pipe}', '-p', 'watch:=false')
+    bridge.wait_until_started()
+    writer.join()
+    return bridge
+
+
+@pytest.fixture(name='listener')
+def listener_to_tf(start_listener):
+    listener = start_listener()
+    listen_to_tf(listener)
+    wait_for_x(listener, 1.0)
+    return listener
+
+
+def asked(listener, service_type, name, request):
+    """Ask a service for something, and return what will have the answer."""
+    client = listener.node.create_client(service_type, f'{BRIDGE}/{name}')
+    listener.wait(client.service_is_ready, lambda: name)
+    return client.call_async(request)
+
+
+def asked_for_file(listener, path):
+    parameter = Parameter('sdf_file', value=str(path)).to_parameter_msg()
+    return asked(
+        listener, SetParameters, 'set_parameters', SetParameters.Request(parameters=[parameter]))
+
+
+def answer_to(listener, future):
+    listener.wait(future.done, lambda: 'the answer')
+    return future.result()
+
+
+def assert_services_answer(listener):
+    answer = listener.call(
+        ConvertRotation, f'{BRIDGE}/convert_rotation', ConvertRotation.Request())
+    assert answer.success, answer.message
+    answer = listener.call(
+        LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(frame='crate::body'))
+    assert answer.pose.pose.position.x == 1.0
+    request = GetParameters.Request(names=['root_frame'])
+    (value,) = listener.call(GetParameters, f'{BRIDGE}/get_parameters', request).values
+    assert value.string_value == 'world'
+
+
+def test_services_answer_while_a_parameter_has_a_file_read(bridge, pipe, listener):
+    setting = asked_for_file(listener, pipe)
+    # Opens when the other side has, which is reading from then on.
+    with pipe.open('w', encoding='utf-8') as slow:
+        assert_services_answer(listener)
+        assert not setting.done()
+        assert last_x(listener) == 1.0
+        slow.write(world(2))
+    (result,) = answer_to(listener, setting).results
+    assert result.successful, result.reason
+    wait_for_x(listener, 2.0)
+
+
+def test_services_answer_while_a_file_is_read_again(bridge_on_pipe, pipe, listener):
+    reloading = asked(listener, Trigger, 'reload', Trigger.Request())
+    with pipe.open('w', encoding='utf-8') as slow:
+        assert_services_answer(listener)
+        assert not reloading.done()
+        slow.write(world(2))
+    answer = answer_to(listener, reloading)
+    assert answer.success, answer.message
+    wait_for_x(listener, 2.0)
+
+
+def test_services_answer_while_a_changed_file_is_read(bridge, file, pipe, listener):
+    pipe.replace(file)
+    with file.open('w', encoding='utf-8') as slow:
+        assert_services_answer(listener)
+        slow.write(world(2))
+    wait_for_x(listener, 2.0)
+
+
+def test_what_is_asked_for_during_a_reload_comes_after_it(
+        bridge_on_pipe, pipe, file, listener):
+    replace(file, world(5))
+    reloading = asked(listener, Trigger, 'reload', Trigger.Request())
+    with pipe.open('w', encoding='utf-8') as slow:
+        setting = asked_for_file(listener, file)
+        assert_services_answer(listener)
+        assert not setting.done()
+        slow.write(world(2))
+    assert answer_to(listener, reloading).success
+    assert answer_to(listener, setting).results[0].successful
+    wait_for_x(listener, 5.0)
+    places = [each.transforms[-1].transform.translation.x for each in listener.tf_messages]
+    assert sorted(places) == places
+    assert 2.0 in {
+        each.transform.translation.x for message in listener.tf_messages
+        for each in message.transforms}
+
+
+def test_what_arrives_bad_after_a_while_is_refused(bridge, pipe, listener):
+    setting = asked_for_file(listener, pipe)
+    with pipe.open('w', encoding='utf-8') as slow:
+        slow.write('not XML')
+    (result,) = answer_to(listener, setting).results
+    assert not result.successful
+    assert f'{pipe}:1: FILE_READ' in result.reason
+    assert reload(listener).success
+    assert last_x(listener) == 1.0
+
+
+def test_diagnostics_go_on_while_a_file_is_read(bridge, pipe, listener):
+    monitor = Monitor(listener)
+    setting = asked_for_file(listener, pipe)
+    with pipe.open('w', encoding='utf-8') as slow:
+        assert monitor.wait_for_more().level == DiagnosticStatus.OK
+        slow.write(world(2))
+    assert answer_to(listener, setting).results[0].successful
+
+
+EMPTY_LISTS = [
+    ParameterType.PARAMETER_BYTE_ARRAY, ParameterType.PARAMETER_BOOL_ARRAY,
+    ParameterType.PARAMETER_INTEGER_ARRAY, ParameterType.PARAMETER_DOUBLE_ARRAY,
+    ParameterType.PARAMETER_STRING_ARRAY]
+
+
+@pytest.mark.parametrize(('service', 'name'), [
+    (SetParameters, 'set_parameters'), (SetParametersAtomically, 'set_parameters_atomically')])
+def test_an_empty_list_of_whatever_type_is_taken_for_a_list_of_strings(
+        bridge, start_listener, service, name):
+    listener = start_listener()
+    for type_ in EMPTY_LISTS:
+        assert set_parameters(listener, resource_paths=['x'])[0].successful
+        parameter = Parameter('resource_paths', value=['x']).to_parameter_msg()
+        parameter.value = ParameterValue(type=type_)
+        answer = listener.call(
+            service, f'{BRIDGE}/{name}', service.Request(parameters=[parameter]))
+        result = answer.result if hasattr(answer, 'result') else answer.results[0]
+        assert result.successful, result.reason
+        request = GetParameters.Request(names=['resource_paths'])
+        (value,) = listener.call(GetParameters, f'{BRIDGE}/get_parameters', request).values
+        assert value == ParameterValue(type=ParameterType.PARAMETER_STRING_ARRAY)
