@@ -30,11 +30,13 @@ MODEL = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
 MINIMAL_NODE = """
 import rclpy
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
+from sdf_pose_bridge_interfaces.srv import LookupPose
 from std_srvs.srv import Empty
 rclpy.init()
 node = rclpy.create_node('minimal')
 node.create_service(Empty, '~/empty', lambda request, response: response)
 node.create_service(ConvertRotation, '~/same_type', lambda request, response: response)
+node.create_service(LookupPose, '~/type_of_lookup', lambda request, response: response)
 try:
     rclpy.spin(node)
 except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
@@ -73,6 +75,23 @@ class Client:
             return future.result()
         return call
 
+    def listener(
+        self, message_type: type, topic: str, quality: object,
+    ) -> Callable[[], bytes]:
+        """Return a function that waits for one more message, and returns its bytes."""
+        messages: list[bytes] = []
+        self._node.create_subscription(message_type, topic, messages.append, quality, raw=True)
+
+        def wait() -> bytes:
+            deadline = time.monotonic() + DEADLINE_S
+            while not messages:
+                if time.monotonic() > deadline:
+                    msg = f'nothing came on {topic}'
+                    raise Unavailable(msg)
+                self._executor.spin_once(timeout_sec=1.0)
+            return messages.pop(0)
+        return wait
+
     def close(self) -> None:
         """Leave ROS."""
         self._executor.shutdown()
@@ -82,8 +101,12 @@ class Client:
 
 
 @contextlib.contextmanager
-def bridge_and_minimal_node() -> Iterator[Client]:
-    """Run the installed bridge and a node that does nothing, each in its own process."""
+def bridge_and_minimal_node(text: str = MODEL) -> Iterator[Client]:
+    """
+    Run the installed bridge and a node that does nothing, each in its own process.
+
+    :param text: the file that the bridge publishes.
+    """
     from ament_index_python.packages import get_package_prefix
     domain = random.randint(1, 100)
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
@@ -96,7 +119,7 @@ def bridge_and_minimal_node() -> Iterator[Client]:
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         file = folder / 'model.sdf'
-        file.write_text(MODEL, encoding='utf-8')
+        file.write_text(text, encoding='utf-8')
         for command in (
             [prefix / 'lib/sdf_pose_bridge/bridge', '--ros-args', '-p', f'sdf_file:={file}'],
             [sys.executable, '-c', MINIMAL_NODE],

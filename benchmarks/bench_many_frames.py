@@ -1,0 +1,155 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Large scenes at a listener that comes late: everything arrives, and as fast as from any node."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from collections.abc import Iterator
+import contextlib
+from pathlib import Path
+import random
+import subprocess
+import sys
+import tempfile
+import time
+
+from benchmarks.bench_reload import RunningBridge
+from benchmarks.harness import AtMostTimes
+from benchmarks.harness import benchmark
+from benchmarks.harness import Function
+from benchmarks.harness import Unavailable
+
+FRAMES = 10_000
+TOPICS = 1_000
+DEADLINE_S = 60.0
+
+MINIMAL_NODE = """
+import sys
+from geometry_msgs.msg import PoseStamped, TransformStamped
+import rclpy
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from tf2_msgs.msg import TFMessage
+
+def latched(depth):
+    return QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+frames, topics = int(sys.argv[1]), int(sys.argv[2])
+rclpy.init()
+node = rclpy.create_node('sdf_pose_bridge')
+message = TFMessage()
+for number in range(frames):
+    each = TransformStamped(child_frame_id=f'f{number}')
+    each.header.frame_id = 'world'
+    each.transform.translation.x = float(number)
+    message.transforms.append(each)
+node.create_publisher(TFMessage, '/tf_static', latched(1)).publish(message)
+one_by_one = node.create_publisher(TransformStamped, '~/transforms', latched(frames))
+for each in message.transforms:
+    one_by_one.publish(each)
+for number in range(topics):
+    pose = PoseStamped()
+    pose.header.frame_id = 'world'
+    pose.pose.position.x = float(number)
+    node.create_publisher(PoseStamped, f'~/poses/f{number}', latched(1)).publish(pose)
+print('ready', flush=True)
+try:
+    rclpy.spin(node)
+except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+    pass
+"""
+
+
+@contextlib.contextmanager
+def two_domains(frames: int, topics: int) -> Iterator[tuple[int, int]]:
+    """Run the bridge, and a node that publishes the same from objects, in a domain each."""
+    with contextlib.ExitStack() as stack:
+        file = Path(stack.enter_context(tempfile.TemporaryDirectory()), 'world.sdf')
+        elements = ''.join(
+            f'<frame name="f{number}"><pose>{number} 0 0 0 0 0</pose></frame>'
+            for number in range(frames))
+        file.write_text(
+            f'<sdf version="1.10"><world name="w">{elements}</world></sdf>', encoding='utf-8')
+        bridge = RunningBridge(stack, file)
+        other = bridge.domain % 100 + 1
+        minimal = stack.enter_context(subprocess.Popen(
+            [sys.executable, '-c', MINIMAL_NODE, str(frames), str(topics)],
+            env=dict(bridge.environment, ROS_DOMAIN_ID=str(other)), stdout=subprocess.PIPE,
+            text=True))
+        stack.callback(minimal.terminate)
+        assert minimal.stdout is not None
+        minimal.stdout.readline()
+        yield bridge.domain, other
+
+
+def late_listener(domain: int, wanted: dict[str, tuple[type, int]]) -> None:
+    """
+    Start to listen, and stop when everything has come.
+
+    :param domain: where to.
+    :param wanted: the topics, with their type and how many messages each must have for a listener
+        that comes late.
+    """
+    import rclpy
+    from rclpy.context import Context
+    from rclpy.qos import DurabilityPolicy
+    from rclpy.qos import QoSProfile
+    context = Context()
+    rclpy.init(args=[], context=context, domain_id=domain)
+    node = rclpy.create_node(f'late_{random.randint(0, 10 ** 9)}', context=context)
+    try:
+        missing = {
+            node.create_subscription(
+                type_, topic, print, QoSProfile(
+                    depth=count, durability=DurabilityPolicy.TRANSIENT_LOCAL)): count
+            for topic, (type_, count) in wanted.items()}
+        deadline = time.monotonic() + DEADLINE_S
+        # An executor would look at every subscription for each message.
+        while missing:
+            if time.monotonic() > deadline:
+                msg = f'{sum(missing.values())} messages did not come'
+                raise Unavailable(msg)
+            for subscription, count in list(missing.items()):
+                left = count
+                with subscription.handle:
+                    take = subscription.handle.take_message
+                    while left and take(subscription.msg_type, False):
+                        left -= 1
+                missing[subscription] = left
+                if not left:
+                    del missing[subscription]
+            time.sleep(0.001)
+    finally:
+        node.destroy_node()
+        context.shutdown()
+        context.destroy()
+
+
+def both(
+    domains: tuple[int, int], wanted: dict[str, tuple[type, int]],
+) -> tuple[Callable[[], None], Callable[[], None]]:
+    """Return what listens to the one, and to the other."""
+    ours, other = domains
+    return lambda: late_listener(ours, wanted), lambda: late_listener(other, wanted)
+
+
+@benchmark(
+    f'{FRAMES:,} frames: /tf_static and all of ~/transforms at a late listener',
+    counterpart='a node that publishes objects', goal=AtMostTimes(1.15))
+def frames_at_late_listener() -> Iterator[tuple[Function, Function | None]]:
+    from geometry_msgs.msg import TransformStamped
+    from tf2_msgs.msg import TFMessage
+    with two_domains(FRAMES, 0) as domains:
+        yield both(domains, {
+            '/tf_static': (TFMessage, 1),
+            '/sdf_pose_bridge/transforms': (TransformStamped, FRAMES)})
+
+
+@benchmark(
+    f'{TOPICS:,} topics of poses at a late listener',
+    counterpart='a node that publishes objects', goal=AtMostTimes(1.15))
+def topics_at_late_listener() -> Iterator[tuple[Function, Function | None]]:
+    from geometry_msgs.msg import PoseStamped
+    with two_domains(TOPICS, TOPICS) as domains:
+        yield both(domains, {
+            f'/sdf_pose_bridge/poses/f{number}': (PoseStamped, 1) for number in range(TOPICS)})

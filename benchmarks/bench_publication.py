@@ -1,0 +1,247 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Publishing many frames, through real publishers, beside what most programs with rclpy do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from collections.abc import Iterator
+import contextlib
+import os
+from pathlib import Path
+import random
+import tempfile
+from typing import TYPE_CHECKING
+
+from benchmarks.harness import AtMostTimes
+from benchmarks.harness import benchmark
+from benchmarks.harness import Function
+from benchmarks.harness import TimesAsFast
+import sdf_pose_bridge
+from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.poses import Pose
+from sdf_pose_bridge.scene import Scene
+from sdf_pose_bridge.tf_tree import DEFAULT_KINDS
+from sdf_pose_bridge.tf_tree import tf_tree_from_scene
+from sdf_pose_bridge.tf_tree import TfTree
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.publisher import Publisher
+
+MODELS = 1000
+FRAMES = 10 * MODELS
+TOPICS = 1000
+LINKS = 5
+
+
+def world_text(models: int) -> str:
+    """Write a world of jointed models, each of ten frames (itself, five links, four frames)."""
+    parts = ['<sdf version="1.10"><world name="hall">']
+    for number in range(models):
+        place = f'{number % 100} {number // 100} 0 0 0 0.{number % 9}'
+        parts.append(f'<model name="robot_{number}"><pose>{place}</pose>')
+        for link in range(LINKS):
+            parts.append(
+                f'<link name="link_{link}"><pose>{link} 1 2 0.1 0.2 0.3</pose><visual name="v">'
+                '<geometry><box><size>1 1 1</size></box></geometry></visual></link>')
+            if link:
+                parts.append(
+                    f'<joint name="joint_{link}" type="revolute"><parent>link_{link - 1}</parent>'
+                    f'<child>link_{link}</child><axis><xyz>0 0 1</xyz></axis></joint>'
+                    f'<frame name="frame_{link}" attached_to="link_{link}">'
+                    '<pose>0 0 1 0 0 0</pose></frame>')
+        parts.append('</model>')
+    return ''.join([*parts, '</world></sdf>'])
+
+
+def scene_of(models: int) -> Scene:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, 'hall.sdf')
+        path.write_text(world_text(models), encoding='utf-8')
+        return sdf_pose_bridge.load(path)
+
+
+@contextlib.contextmanager
+def node() -> Iterator[Node]:
+    """Make a node of this process, in a ROS context of its own."""
+    import rclpy
+    from rclpy.context import Context
+    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    context = Context()
+    rclpy.init(args=[], context=context, domain_id=random.randint(1, 100))
+    made = rclpy.create_node('benchmark', context=context)
+    try:
+        yield made
+    finally:
+        made.destroy_node()
+        context.shutdown()
+        context.destroy()
+
+
+def latched_publisher(node: Node, message_type: type, name: str, depth: int) -> Publisher:
+    from rclpy.qos import DurabilityPolicy
+    from rclpy.qos import QoSProfile
+    return node.create_publisher(
+        message_type, name, QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+
+
+def all_steps_of(steps: Iterable[object]) -> None:
+    """Do at once what the node does between its services."""
+    for _ in steps:
+        pass
+
+
+def transforms_of_tree(tree: TfTree) -> Iterator[tuple[str, str, Pose]]:
+    """Give the frames of a transform and the pose of the second in the first."""
+    return zip(tree.parent_ids, tree.frame_ids, tree.transforms.tolist(), strict=True)
+
+
+def transforms_of_scene(scene: Scene) -> Iterator[tuple[str, str, Pose]]:
+    """
+    Give the same of a scene, as a loop over its elements finds it.
+
+    Each hangs on what holds it, which is less than the bridge's own choice of parents.
+    """
+    for index, name in enumerate(scene.names):
+        if scene.kinds[index] in DEFAULT_KINDS:
+            holder = int(scene.parents[index])
+            yield (
+                scene.names[holder].replace(SEPARATOR, '/'), name.replace(SEPARATOR, '/'),
+                scene.relative_pose_of(index, holder))
+
+
+def transform_messages(node: Node, transforms: Iterable[tuple[str, str, Pose]]) -> list:
+    """Make an object of each."""
+    from geometry_msgs.msg import TransformStamped
+    stamp = node.get_clock().now().to_msg()
+    messages = []
+    for parent_id, child_id, numbers in transforms:
+        message = TransformStamped()
+        message.header.stamp = stamp
+        message.header.frame_id = parent_id
+        message.child_frame_id = child_id
+        move, turn = message.transform.translation, message.transform.rotation
+        move.x, move.y, move.z, turn.x, turn.y, turn.z, turn.w = numbers
+        messages.append(message)
+    return messages
+
+
+class Bench:
+    """
+    The bridge's publications, and a publisher as any program has it.
+
+    :param ros: the node of both.
+    """
+
+    def __init__(self, ros: Node) -> None:
+        from tf2_msgs.msg import TFMessage
+
+        from sdf_pose_bridge.publications import Publications
+        self.ros = ros
+        self.scene = scene_of(MODELS)
+        self.tree = tf_tree_from_scene(self.scene)
+        assert len(self.tree.frame_ids) == FRAMES
+        self.publications = Publications(ros)
+        self._message_type = TFMessage
+        self._publisher = latched_publisher(ros, TFMessage, '/objects', 1)
+
+    def send_objects(self, transforms: Iterable[tuple[str, str, Pose]]) -> None:
+        """Send a TFMessage made of one object each."""
+        self._publisher.publish(
+            self._message_type(transforms=transform_messages(self.ros, transforms)))
+
+    def send_objects_of_tree(self) -> None:
+        """Send those of the tree so."""
+        self.send_objects(transforms_of_tree(self.tree))
+
+
+@benchmark(
+    f'{FRAMES:,} transforms from Scene to sent TFMessage',
+    counterpart='name, pose and an object for each element, and sent', goal=TimesAsFast(25.0))
+def first_tf_static() -> Iterator[tuple[Function, Function | None]]:
+    with node() as ros:
+        bench = Bench(ros)
+        yield (
+            lambda: bench.publications.publish_tf_static(tf_tree_from_scene(bench.scene)),
+            lambda: bench.send_objects(transforms_of_scene(bench.scene)))
+
+
+@benchmark(
+    f'{FRAMES:,} transforms from Scene to sent TFMessage',
+    counterpart='only the objects, of known transforms, and sent', goal=TimesAsFast())
+def first_tf_static_and_objects_alone() -> Iterator[tuple[Function, Function | None]]:
+    with node() as ros:
+        bench = Bench(ros)
+        yield (
+            lambda: bench.publications.publish_tf_static(tf_tree_from_scene(bench.scene)),
+            bench.send_objects_of_tree)
+
+
+@benchmark(
+    f'{FRAMES:,} transforms from TfTree to sent TFMessage',
+    counterpart='an object for each, and sent', goal=TimesAsFast(25.0))
+def tf_static_from_tree() -> Iterator[tuple[Function, Function | None]]:
+    with node() as ros:
+        bench = Bench(ros)
+        yield (
+            lambda: bench.publications.publish_tf_static(bench.tree), bench.send_objects_of_tree)
+
+
+@benchmark(
+    f'{FRAMES:,} transforms sent again with new stamps',
+    counterpart='an object for each, and sent', goal=TimesAsFast(100.0))
+def tf_static_again() -> Iterator[tuple[Function, Function | None]]:
+    with node() as ros:
+        bench = Bench(ros)
+        bench.publications.publish_tf_static(bench.tree)
+        yield lambda: all_steps_of(bench.publications.publish_again()), bench.send_objects_of_tree
+
+
+@benchmark(
+    f'{FRAMES:,} messages on ~/transforms sent again with new stamps, and /tf_static',
+    counterpart='an object for each, and sent', goal=TimesAsFast())
+def transforms_one_by_one() -> Iterator[tuple[Function, Function | None]]:
+    from geometry_msgs.msg import TransformStamped
+    with node() as ros:
+        bench = Bench(ros)
+        all_steps_of(bench.publications.publish(bench.tree, ()))
+        publisher = latched_publisher(ros, TransformStamped, '/one_by_one', FRAMES)
+
+        def send_one_by_one() -> None:
+            for message in transform_messages(ros, transforms_of_tree(bench.tree)):
+                publisher.publish(message)
+        yield lambda: all_steps_of(bench.publications.publish_again()), send_one_by_one
+
+
+@benchmark(
+    f'{TOPICS:,} topics of poses, made, sent and taken down',
+    counterpart="rclpy's publishers, of the same quality", goal=AtMostTimes(1.0))
+def topics_of_poses() -> Iterator[tuple[Function, Function | None]]:
+    from geometry_msgs.msg import PoseStamped
+
+    from sdf_pose_bridge.publications import Publications
+    tree = tf_tree_from_scene(scene_of(TOPICS // 10))
+    assert len(tree.frame_ids) == TOPICS
+    with node() as ros:
+        publications = Publications(ros)
+
+        def ours() -> None:
+            all_steps_of(publications.publish(tree, ('*',)))
+            all_steps_of(publications.publish(tree, ()))
+
+        def counterpart() -> None:
+            stamp = ros.get_clock().now().to_msg()
+            publishers = []
+            for frame_id, numbers in zip(tree.frame_ids, tree.poses.tolist(), strict=True):
+                publisher = latched_publisher(ros, PoseStamped, f'/poses/{frame_id}', 1)
+                publishers.append(publisher)
+                message = PoseStamped()
+                message.header.stamp = stamp
+                message.header.frame_id = tree.root_frame
+                place, turn = message.pose.position, message.pose.orientation
+                place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w = numbers
+                publisher.publish(message)
+            for publisher in publishers:
+                ros.destroy_publisher(publisher)
+        yield ours, counterpart

@@ -1,0 +1,275 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Reloads of the running node: how soon a listener has the new frames, and who waits meanwhile."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from collections.abc import Iterator
+import contextlib
+import itertools
+import os
+from pathlib import Path
+import random
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+
+from benchmarks.bench_services import Client
+from benchmarks.bench_services import MINIMAL_NODE
+from benchmarks.harness import AtMostTimes
+from benchmarks.harness import benchmark
+from benchmarks.harness import Function
+from benchmarks.harness import TimesAsFast
+from benchmarks.harness import Took
+from benchmarks.harness import Unavailable
+
+EXAMPLES = Path(__file__).resolve().parents[1] / 'examples'
+WORK_CELL = 'work_cell.sdf'
+MODELS = 1000
+POSES_OF_MODEL = 22
+LONGEST_ANSWER_S = 0.1
+LONGEST_RELOAD_S = 0.05
+
+CALLER = """
+import sys
+import threading
+import time
+
+from benchmarks.bench_services import Client
+from benchmarks.bench_services import rotation_request
+from sdf_pose_bridge_interfaces.srv import ConvertRotation
+
+asked = threading.Event()
+
+def listen():
+    for line in sys.stdin:
+        asked.set()
+
+client = Client(int(sys.argv[1]))
+call = client.caller(ConvertRotation, '/sdf_pose_bridge/convert_rotation', rotation_request())
+call()
+threading.Thread(target=listen, daemon=True).start()
+print('ready', flush=True)
+longest = 0.0
+while True:
+    begin = time.perf_counter()
+    call()
+    longest = max(longest, time.perf_counter() - begin)
+    if asked.is_set():
+        asked.clear()
+        print(longest, flush=True)
+        longest = 0.0
+    time.sleep(0.001)
+"""
+"""Calls the bridge without end, and writes the longest call since it was last asked for it."""
+
+
+class RunningBridge:
+    """
+    The installed bridge on a file, in a process and a domain of its own.
+
+    :param stack: ends it.
+    :param file: the file.
+    """
+
+    def __init__(self, stack: contextlib.ExitStack, file: Path) -> None:
+        from ament_index_python.packages import get_package_prefix
+        self.domain = random.randint(1, 100)
+        os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+        self.environment = dict(os.environ, ROS_DOMAIN_ID=str(self.domain))
+        self.file = file
+        try:
+            prefix = Path(get_package_prefix('sdf_pose_bridge'))
+        except LookupError:
+            msg = 'sdf_pose_bridge is not installed'
+            raise Unavailable(msg) from None
+        self.start(stack, prefix / 'lib/sdf_pose_bridge/bridge', '--ros-args', '-p',
+                   f'sdf_file:={file}', stderr=subprocess.DEVNULL)
+        self.client = Client(self.domain)
+        stack.callback(self.client.close)
+
+    def start(
+        self, stack: contextlib.ExitStack, *command: object, **options: object,
+    ) -> subprocess.Popen[str]:
+        """Start another process in its domain."""
+        process = stack.enter_context(subprocess.Popen(
+            list(map(str, command)), env=self.environment, text=True, **options))
+        stack.callback(process.terminate)
+        return process
+
+    def replace(self, text: str) -> None:
+        """Put another file in the place of the file, as editors do."""
+        new = self.file.with_suffix('.new')
+        new.write_text(text, encoding='utf-8')
+        new.replace(self.file)
+
+
+@contextlib.contextmanager
+def work_cell() -> Iterator[tuple[RunningBridge, Callable[[], bytes]]]:
+    """Run the bridge on a copy of the example; also give what waits for its next /tf_static."""
+    from rclpy.qos import DurabilityPolicy
+    from rclpy.qos import QoSProfile
+    from tf2_msgs.msg import TFMessage
+    with contextlib.ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()), 'examples')
+        shutil.copytree(EXAMPLES, folder)
+        bridge = RunningBridge(stack, folder / WORK_CELL)
+        next_message = bridge.client.listener(
+            TFMessage, '/tf_static',
+            QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+        next_message()
+        yield bridge, next_message
+
+
+def work_cell_with_frame_at(x: float) -> str:
+    """Return the example with one more frame."""
+    text = (EXAMPLES / WORK_CELL).read_text(encoding='utf-8')
+    assert '</world>' in text
+    return text.replace(
+        '</world>', f'<frame name="moving"><pose>{x} 0 0 0 0 0</pose></frame></world>')
+
+
+@benchmark(
+    'work cell: ~/reload to its transforms at a listener', counterpart='an empty service',
+    goal=TimesAsFast(longest_s=LONGEST_RELOAD_S))
+def asked_reload() -> Iterator[tuple[Function, Function | None]]:
+    from std_srvs.srv import Empty
+    from std_srvs.srv import Trigger
+    with work_cell() as (bridge, next_message), contextlib.ExitStack() as stack:
+        bridge.start(stack, sys.executable, '-c', MINIMAL_NODE, stderr=subprocess.DEVNULL)
+        reload = bridge.client.caller(Trigger, '/sdf_pose_bridge/reload', Trigger.Request())
+
+        def ours() -> None:
+            reload()
+            next_message()
+        yield ours, bridge.client.caller(Empty, '/minimal/empty', Empty.Request())
+
+
+@benchmark(
+    'work cell: change of the file, right after the watch looked, to its transforms at a listener',
+    counterpart='the period of the watch', goal=AtMostTimes(1.2))
+def noticed_change() -> Iterator[tuple[Function, Function | None]]:
+    from sdf_pose_bridge.file_watch import PERIOD_S
+    assert PERIOD_S * 0.2 <= LONGEST_RELOAD_S
+    with work_cell() as (bridge, next_message):
+        numbers = itertools.count(1)
+
+        def change() -> None:
+            x = next(numbers) + 0.125
+            bridge.replace(work_cell_with_frame_at(x))
+            while struct.pack('<d', x) not in next_message():
+                pass
+
+        def ours() -> Took:
+            change()
+            begin = time.perf_counter()
+            change()
+            return Took(time.perf_counter() - begin)
+        yield ours, lambda: time.sleep(PERIOD_S)
+
+
+def wide_world() -> str:
+    """Return a world of many models that stand beside each other."""
+    links = ''.join(
+        f'<link name="l{number}"><pose degrees="true">{number} 1 2 10 20 30</pose>'
+        '<visual name="v"><pose>0 0 1 0 0 0</pose><geometry/></visual>'
+        '<collision name="c"><geometry/></collision><inertial/></link>'
+        for number in range(5))
+    models = ''.join(
+        f'<model name="m{number}"><pose>{number} 0 0 0 0 0</pose>{links}<frame name="f"/></model>'
+        for number in range(MODELS))
+    assert POSES_OF_MODEL == 1 + 4 * 5 + 1
+    return f'<sdf version="1.10"><world name="w">{models}</world></sdf>'
+
+
+@contextlib.contextmanager
+def wide_bridge() -> Iterator[tuple[RunningBridge, Callable[[], Took]]]:
+    """Run the bridge on a wide world; also give what tells the longest call since it was asked."""
+    with contextlib.ExitStack() as stack:
+        file = Path(stack.enter_context(tempfile.TemporaryDirectory()), 'wide.sdf')
+        file.write_text(wide_world(), encoding='utf-8')
+        bridge = RunningBridge(stack, file)
+        caller = bridge.start(
+            stack, sys.executable, '-c', CALLER, bridge.domain, stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE)
+        assert caller.stdin is not None
+        assert caller.stdout is not None
+        caller.stdout.readline()
+
+        def longest() -> Took:
+            print(file=caller.stdin, flush=True)
+            return Took(float(caller.stdout.readline()))
+        yield bridge, longest
+
+
+def measured(
+    longest: Callable[[], Took], reload: Callable[[], object],
+) -> tuple[Function, Function]:
+    """Return what tells the longest call during a reload, and during as much time without one."""
+    took = 0.0
+
+    def ours() -> Took:
+        nonlocal took
+        longest()
+        begin = time.perf_counter()
+        reload()
+        took = time.perf_counter() - begin
+        return longest()
+
+    def counterpart() -> Took:
+        longest()
+        time.sleep(took)
+        return longest()
+    return ours, counterpart
+
+
+WIDE = f'longest ~/convert_rotation while {MODELS * POSES_OF_MODEL:,} poses are reloaded'
+
+
+@benchmark(
+    f'{WIDE} by ~/reload', counterpart='without a reload',
+    goal=TimesAsFast(longest_s=LONGEST_ANSWER_S))
+def answers_during_reload() -> Iterator[tuple[Function, Function | None]]:
+    from std_srvs.srv import Trigger
+    with wide_bridge() as (bridge, longest):
+        yield measured(longest, bridge.client.caller(
+            Trigger, '/sdf_pose_bridge/reload', Trigger.Request()))
+
+
+@benchmark(
+    f'{WIDE} by sdf_file', counterpart='without a reload',
+    goal=TimesAsFast(longest_s=LONGEST_ANSWER_S))
+def answers_during_setting() -> Iterator[tuple[Function, Function | None]]:
+    from rcl_interfaces.srv import SetParameters
+    from rclpy.parameter import Parameter
+    with wide_bridge() as (bridge, longest):
+        parameter = Parameter('sdf_file', value=str(bridge.file)).to_parameter_msg()
+        yield measured(longest, bridge.client.caller(
+            SetParameters, '/sdf_pose_bridge/set_parameters',
+            SetParameters.Request(parameters=[parameter])))
+
+
+@benchmark(
+    f'{WIDE} by the watch', counterpart='without a reload',
+    goal=TimesAsFast(longest_s=LONGEST_ANSWER_S))
+def answers_during_noticed_change() -> Iterator[tuple[Function, Function | None]]:
+    from rclpy.qos import DurabilityPolicy
+    from rclpy.qos import QoSProfile
+    from tf2_msgs.msg import TFMessage
+    with wide_bridge() as (bridge, longest):
+        next_message = bridge.client.listener(
+            TFMessage, '/tf_static',
+            QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+        next_message()
+        text = wide_world()
+
+        def reload() -> None:
+            bridge.replace(text)
+            next_message()
+            # What follows /tf_static belongs to the reload too.
+            time.sleep(0.5)
+        yield measured(longest, reload)

@@ -1,0 +1,227 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The start of the node, from the start of its process, beside one that publishes nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from collections.abc import Iterator
+import contextlib
+import itertools
+import os
+from pathlib import Path
+import random
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+from benchmarks.harness import AtMostTimes
+from benchmarks.harness import benchmark
+from benchmarks.harness import Function
+from benchmarks.harness import RUNS
+from benchmarks.harness import Unavailable
+
+WORK_CELL = Path(__file__).resolve().parents[1] / 'examples/work_cell.sdf'
+DEADLINE_S = 20.0
+LISTENER_AGE_S = (0.8, 1.3)
+IMPORTS_MS = 60
+SLOW_S = 1.0
+"""Discovery mostly takes far less; where an announcement is lost, the next comes much later."""
+
+MINIMAL_NODE = """
+import rclpy
+from rclpy.qos import DurabilityPolicy
+from rclpy.qos import QoSProfile
+from tf2_msgs.msg import TFMessage
+rclpy.init()
+node = rclpy.create_node('minimal')
+publisher = node.create_publisher(
+    TFMessage, '/tf_static', QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+publisher.publish(TFMessage())
+rclpy.spin(node)
+"""
+
+# Runs a program as it is, and writes to a pipe when it has published on /tf_static. Nothing is
+# imported for that: the class of publishers is changed at the next import after its own.
+RUNNER = """
+import os, sys
+
+class Changer:
+    def find_spec(name, path=None, target=None):
+        publisher = getattr(sys.modules.get('rclpy.publisher'), 'Publisher', None)
+        if publisher is not None:
+            sys.meta_path.remove(Changer)
+            publish = publisher.publish
+            def publish_and_tell(self, message):
+                publish(self, message)
+                if self.topic_name == '/tf_static':
+                    os.write(pipe, b'.')
+            publisher.publish = publish_and_tell
+
+del sys.argv[0]
+pipe = int(sys.argv.pop(0))
+sys.path[0] = os.path.dirname(sys.argv[0])
+sys.meta_path.insert(0, Changer)
+with open(sys.argv[0]) as file:
+    program = compile(file.read(), sys.argv[0], 'exec')
+exec(program)
+"""
+
+
+class Starter:
+    """
+    Starts programs, each in a domain of its own, and ends all of them.
+
+    :param folder: for what Python compiles, so that both find their modules compiled.
+    """
+
+    def __init__(self, folder: str) -> None:
+        self._environment = dict(
+            os.environ, PYTHONPYCACHEPREFIX=f'{folder}/compiled',
+            ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST')
+        self._environment.pop('PYTHONDONTWRITEBYTECODE', None)
+        self._folder = folder
+        self._processes: list[subprocess.Popen] = []
+        self._domains = itertools.cycle(random.sample(range(1, 101), 100))
+
+    def start(self, command: list[str], domain: int, **options: object) -> subprocess.Popen:
+        """Start a program."""
+        process = subprocess.Popen(
+            command, cwd=self._folder, stderr=subprocess.DEVNULL,
+            env=dict(self._environment, ROS_DOMAIN_ID=str(domain)), **options)
+        self._processes.append(process)
+        return process
+
+    def until_published(self, command: list[str]) -> None:
+        """Start a program and wait until it has published."""
+        reader, writer = os.pipe()
+        process = self.start(
+            [sys.executable, '-c', RUNNER, str(writer), *command], next(self._domains),
+            pass_fds=[writer])
+        os.close(writer)
+        told = os.read(reader, 1)
+        os.close(reader)
+        process.kill()
+        if not told:
+            msg = f'{command[0]} ended before it published anything'
+            raise Unavailable(msg)
+
+    def until_received(self, command: list[str]) -> float:
+        """Start a program for a listener that waits; return the seconds until it got something."""
+        with listener(domain := next(self._domains)) as has_received:
+            # It has announced itself by then; the pace of that would show in the times.
+            time.sleep(random.uniform(*LISTENER_AGE_S))
+            begin = time.perf_counter()
+            process = self.start([sys.executable, *command], domain)
+            while not has_received():
+                if time.perf_counter() - begin > DEADLINE_S:
+                    msg = f'nothing came from {command[0]}'
+                    raise Unavailable(msg)
+            seconds = time.perf_counter() - begin
+            process.kill()
+        return seconds
+
+    def imports(self, program: str) -> dict[str, float]:
+        """Return the seconds that each import of a program takes by itself."""
+        done = subprocess.run(
+            [sys.executable, '-X', 'importtime', '-c', program], cwd=self._folder,
+            env=dict(self._environment, ROS_DOMAIN_ID='1'), capture_output=True, text=True,
+            check=True)
+        lines = (line.removeprefix('import time:').split('|') for line in
+                 done.stderr.splitlines() if line.startswith('import time:'))
+        next(lines)
+        return {name.strip(): 1e-6 * float(seconds) for seconds, _, name in lines}
+
+    def end(self) -> None:
+        """End all of them."""
+        for process in self._processes:
+            process.kill()
+            process.wait()
+
+
+@contextlib.contextmanager
+def listener(domain: int) -> Iterator[Callable[[], bool]]:
+    """Listen to /tf_static; give a function that waits a little and tells whether it came."""
+    import rclpy
+    from rclpy.context import Context
+    from rclpy.executors import SingleThreadedExecutor
+    from rclpy.qos import DurabilityPolicy
+    from rclpy.qos import QoSProfile
+    from tf2_msgs.msg import TFMessage
+    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    context = Context()
+    rclpy.init(args=[], context=context, domain_id=domain)
+    node = rclpy.create_node('listener', context=context)
+    received: list[object] = []
+    node.create_subscription(
+        TFMessage, '/tf_static', received.append,
+        QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+
+    def has_received() -> bool:
+        executor.spin_once(timeout_sec=1.0)
+        return bool(received)
+    try:
+        yield has_received
+    finally:
+        executor.shutdown()
+        node.destroy_node()
+        context.shutdown()
+        context.destroy()
+
+
+def report_imports(starter: Starter) -> None:
+    """Print what the node's imports take beyond those of the minimal node, which has rclpy's."""
+    program = MINIMAL_NODE.replace('rclpy.spin(node)', '')
+    seconds = []
+    for _ in range(RUNS):
+        common = starter.imports(program)
+        ours = starter.imports('import sdf_pose_bridge.running, sdf_pose_bridge.node')
+        seconds.append(sum(each for name, each in ours.items() if name not in common))
+    print(
+        f'    imports of the bridge beyond those of the minimal node: median '
+        f'{1e3 * statistics.median(seconds):.0f} ms; goal: at most {IMPORTS_MS} ms',
+        file=sys.stderr)
+
+
+def report(what: str, seconds: list[float]) -> None:
+    """Print all times to a first message: a median would hide that there are two kinds of them."""
+    slow = sum(each > SLOW_S for each in seconds)
+    times = ' '.join(f'{1e3 * each:.0f}' for each in sorted(seconds))
+    print(
+        f'    first message of {what} at a waiting listener, from the start of the process: '
+        f'median {1e3 * statistics.median(seconds):.0f} ms, {slow} of {len(seconds)} slower than '
+        f'{SLOW_S:g} s; all: {times} ms', file=sys.stderr)
+
+
+@benchmark(
+    'start to /tf_static of the work cell published',
+    counterpart='a minimal node that publishes an empty message', goal=AtMostTimes(1.1))
+def start_and_minimal_node() -> Iterator[tuple[Function, Function | None]]:
+    from ament_index_python.packages import get_package_prefix
+    try:
+        prefix = get_package_prefix('sdf_pose_bridge')
+    except LookupError:
+        msg = 'sdf_pose_bridge is not installed'
+        raise Unavailable(msg) from None
+    with contextlib.ExitStack() as stack:
+        folder = stack.enter_context(tempfile.TemporaryDirectory())
+        minimal = Path(folder, 'minimal_node')
+        minimal.write_text(MINIMAL_NODE, encoding='utf-8')
+        starter = Starter(folder)
+        stack.callback(starter.end)
+        ours = [
+            f'{prefix}/lib/sdf_pose_bridge/bridge', '--ros-args', '-p', f'sdf_file:={WORK_CELL}']
+        theirs = [str(minimal)]
+        for command in (ours, theirs):
+            starter.until_published(command)
+        yield lambda: starter.until_published(ours), lambda: starter.until_published(theirs)
+        starter.end()
+        report_imports(starter)
+        pairs = [
+            (starter.until_received(ours), starter.until_received(theirs)) for _ in range(RUNS)]
+        report('the bridge', [first for first, _ in pairs])
+        report('the minimal node', [second for _, second in pairs])
