@@ -49,11 +49,17 @@ class Took(NamedTuple):
     """What counts."""
 
 
+class Held(NamedTuple):
+    """Returned by a function that has measured how much memory something takes."""
+
+    bytes_: int
+
+
 class Medians(NamedTuple):
     """What was measured."""
 
     ours_s: float
-    """Seconds that one call takes."""
+    """Seconds that one call takes; bytes where memory is measured."""
     counterpart_s: float | None
     """Seconds that one call of the counterpart takes, if there is one."""
 
@@ -140,18 +146,35 @@ class PerSecond(NamedTuple):
         return self.items / medians.ours_s >= self.rate
 
 
+class AtMostAsMuch(NamedTuple):
+    """Ours may hold so many times the memory that the counterpart holds."""
+
+    limit: float
+
+    def __str__(self) -> str:
+        return f'at most {self.limit:g} times the memory'
+
+    def ratio(self, medians: Medians) -> str:
+        """Say how many times the counterpart's memory ours is."""
+        return f'{_quotient(medians):.2f} times the memory'
+
+    def is_reached(self, medians: Medians) -> bool | None:
+        """Tell whether ours keeps within the limit."""
+        return _quotient(medians) <= self.limit
+
+
 @dataclasses.dataclass(frozen=True, slots=True)
 class Benchmark:
     """Two functions to be timed, and what the comparison shall show."""
 
     what: str
     counterpart: str
-    goal: AtMostTimes | TimesAsFast | PerSecond
+    goal: AtMostTimes | TimesAsFast | PerSecond | AtMostAsMuch
     prepare: Preparation
 
 
 def benchmark(
-    what: str, *, counterpart: str, goal: AtMostTimes | TimesAsFast | PerSecond
+    what: str, *, counterpart: str, goal: AtMostTimes | TimesAsFast | PerSecond | AtMostAsMuch
 ) -> Callable[[Preparation], Benchmark]:
     """
     Make a benchmark of a generator function that yields the two functions once.
@@ -192,11 +215,12 @@ def result_of(bench: Benchmark) -> Result:
     except Unavailable as reason:
         return _skipped(bench, str(reason))
     reached = bench.goal.is_reached(medians)
+    text = memory_text if isinstance(bench.goal, AtMostAsMuch) else time_text
     return Result(
         bench.what,
-        time_text(medians.ours_s),
+        text(medians.ours_s),
         bench.counterpart if medians.counterpart_s is None
-        else f'{bench.counterpart}: {time_text(medians.counterpart_s)}',
+        else f'{bench.counterpart}: {text(medians.counterpart_s)}',
         bench.goal.ratio(medians),
         str(bench.goal),
         {True: 'yes', False: 'NO', None: '-'}[reached],
@@ -252,6 +276,11 @@ def time_text(seconds: float) -> str:
     return f'{seconds / 1e-9:.3g} ns'
 
 
+def memory_text(size: float) -> str:
+    """Write a number of bytes."""
+    return f'{size / 1e6:.3g} MB'
+
+
 def _quotient(medians: Medians) -> float:
     if medians.counterpart_s is None:
         msg = 'this goal needs a counterpart to compare with'
@@ -268,7 +297,7 @@ def _skipped(bench: Benchmark, reason: str) -> Result:
 def _loops(function: Function) -> int:
     """Return how many calls make a run long enough; the calls warm up caches besides."""
     count = 1
-    if isinstance(function(), Took):
+    if isinstance(function(), Took | Held):
         return count
     while (seconds := _time_of(function, count)) < SHORTEST_RUN_S:
         count = max(2 * count, int(1.1 * count * SHORTEST_RUN_S / max(seconds, 1e-6)))
@@ -282,4 +311,6 @@ def _time_of(function: Function, count: int) -> float:
     for _ in turns:
         result = function()
     seconds = time.perf_counter() - start
+    if isinstance(result, Held):
+        return float(result.bytes_)
     return result.seconds * count if isinstance(result, Took) else seconds
