@@ -24,6 +24,7 @@ from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.markup import Search
 from sdf_pose_bridge.names import SEPARATOR
 
 XmlElement: TypeAlias = etree._Element  # noqa: SLF001  # lxml has no public name for it
@@ -63,9 +64,8 @@ class Document(NamedTuple):
     """What is wrong with its XML, but does not stand in the way."""
     origins: Mapping[XmlElement, Document] = MappingProxyType({})
     """For what was put into its tree from elsewhere: the file that it stands in."""
-    text: bytes | None = None
-    """What the tree was made from, in UTF-8; None if it has another encoding, or the tree has
-    changed since then."""
+    search: Search | None = None
+    """Finds its elements in its text; None if that is not in UTF-8, or the tree has changed."""
     may_hold_separators: bool = True
     """False if it is certain that no name in it holds ``::``."""
 
@@ -117,6 +117,7 @@ def document_from_text(text: bytes | str, path: str) -> Document:
     :raises SdfError: as for :func:`document_from_file`.
     """
     content = text.encode(errors='surrogatepass') if isinstance(text, str) else text
+    search = Search(content) if content[:1] in (b'<', b' ', b'\n') else None
     # The encoding of text is known; that of bytes is whatever they declare.
     root, warnings = _root_from_text(content, path, 'utf-8' if isinstance(text, str) else None)
     tag = str(root.tag)
@@ -132,9 +133,9 @@ def document_from_text(text: bytes | str, path: str) -> Document:
     if version is None:
         msg = '<sdf> declares no version, such as version="1.10"'
         raise FileReadError(msg, place)
-    is_utf_8 = root.getroottree().docinfo.encoding in _UTF_8 and content[:1] in (b'<', b' ', b'\n')
+    is_utf_8 = root.getroottree().docinfo.encoding in _UTF_8
     return Document(
-        path, root, version, warnings, text=content if is_utf_8 else None,
+        path, root, version, warnings, search=search if is_utf_8 else None,
         may_hold_separators=_may_hold_separators(content))
 
 

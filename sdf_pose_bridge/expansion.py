@@ -75,7 +75,7 @@ class _Expander:
                 if old in document.origins:
                     self.origins[new] = document.origins[old]
         result = document._replace(
-            root=root, origins=self.origins, text=None, may_hold_separators=True)
+            root=root, origins=self.origins, search=None, may_hold_separators=True)
         # Listed first, for the copy changes on the way.
         pairs = list(zip(document.root.iter('include'), root.iter('include'), strict=True))
         for old, new in pairs:

@@ -23,14 +23,9 @@ from sdf_pose_bridge.inclusions import DocumentSet
 from sdf_pose_bridge.markup_index import MarkupIndex
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.resources import resource_finder
-from sdf_pose_bridge.row_extraction import ROW_TAGS
 from sdf_pose_bridge.scene import Scene
 from sdf_pose_bridge.scene_assembly import scene_from_graph
-from sdf_pose_bridge.tag_names import TagNames
 from sdf_pose_bridge.value_checks import check_values
-from sdf_pose_bridge.value_checks import CHECKED_TAGS
-
-_TAGS = TagNames(tuple(dict.fromkeys((*ROW_TAGS, *CHECKED_TAGS))))
 
 
 class MissingInclude(enum.Enum):
@@ -117,7 +112,8 @@ def _resolved_scene(
     problems = Problems(documents.files)
     indices = {
         each.root: MarkupIndex(
-            each.root, None if each.root in documents.changed else each.text, _TAGS)
+            each.root, None if each.root in documents.changed or each.search is None
+            else each.search.markup())
         for each in documents.all_documents()}
     for each in documents.all_documents():
         check_values(each, indices[each.root], problems)

@@ -67,7 +67,7 @@ class Reading:
             return None
         root = self._document.root
         if root not in self._rows:
-            self._rows[root] = rows_from_index(self._indices[root], root)
+            self._rows[root] = rows_from_index(self._indices[root])
         return self._rows[root]
 
     def version_of_element(self, index: int) -> Version:

@@ -18,7 +18,6 @@ import numpy.typing as npt
 
 from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import WHITE_SPACE
-from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.element_rows import Columns
 from sdf_pose_bridge.element_rows import ElementRows
 from sdf_pose_bridge.element_rows import Facts
@@ -29,9 +28,10 @@ from sdf_pose_bridge.elements import JointFacts
 from sdf_pose_bridge.elements import ModelFacts
 from sdf_pose_bridge.elements import NOWHERE
 from sdf_pose_bridge.elements import Reference
-from sdf_pose_bridge.markup_index import COMMENT
+from sdf_pose_bridge.known_tags import KNOWN_TAGS
+from sdf_pose_bridge.markup import COMMENT
+from sdf_pose_bridge.markup import Positions
 from sdf_pose_bridge.markup_index import MarkupIndex
-from sdf_pose_bridge.markup_index import Positions
 from sdf_pose_bridge.names import FRAME_KINDS
 from sdf_pose_bridge.names import is_reserved
 from sdf_pose_bridge.names import Kind
@@ -66,14 +66,15 @@ _SPACES = np.arange(256)
 _SPACES[list(FRAME_KINDS)] = Kind.FRAME
 _SPACES.setflags(write=False)
 
-ROW_TAGS = ('sdf', *_KINDS, 'pose', 'static', 'parent', 'child', 'axis', 'axis2', 'xyz')
-"""Tags of all elements that are read here."""
-
+_KIND_OF_NUMBER = np.full(len(KNOWN_TAGS.tags), _NO_KIND, dtype=np.uint8)
+_KIND_OF_NUMBER[[KNOWN_TAGS.number_of[tag] for tag in _KINDS]] = list(_KINDS.values())
+_KIND_OF_NUMBER.setflags(write=False)
 _NO_ROW = -2
 _SPREADING = 0x1E3779B97F4A7C15
 """Spreads numbers over all bits."""
 
-_ATTRIBUTE = re.compile(r'([^\s=\'"]+)\s*=\s*(?:"([^"]*)"|\'([^\']*)\')')
+_ATTRIBUTE = r'([^\s=\'"]+)\s*=\s*(?:"([^"]*)"|\'([^\']*)\')'
+"""Left for `re` to compile when it is first needed."""
 _RELATIVE_TO = re.compile(r'pose relative_to="([^"&\t\n\r]*)"')
 _CHANGED_BY_PARSER = frozenset('&\t\n\r' + COMMENT)
 """Characters of which an XML parser makes something else."""
@@ -90,31 +91,26 @@ _IS_NEVER_RELATIVE[[Kind.INERTIAL, Kind.ACTOR]] = True
 _IS_NEVER_RELATIVE.setflags(write=False)
 
 
-def rows_from_index(index: MarkupIndex, root: XmlElement) -> ElementRows:
+def rows_from_index(index: MarkupIndex) -> ElementRows:
     """
     Take all rows out of a document.
 
-    :param index: the elements of a file in the newest grammar, all of which stand in that file;
-        it knows those with :data:`ROW_TAGS`.
-    :param root: its outermost element.
+    :param index: the elements of a file in the newest grammar, all of which stand in that file.
     :return: its rows.
     """
-    return _Extraction(index, root).rows()
+    return _Extraction(index).rows()
 
 
 class _Extraction:
 
-    def __init__(self, index: MarkupIndex, root: XmlElement) -> None:
+    def __init__(self, index: MarkupIndex) -> None:
         self._index = index
-        self._root = root
-        kind_of = np.full(len(index.names.tags), _NO_KIND, dtype=np.uint8)
-        for tag, kind in _KINDS.items():
-            kind_of[index.names.number_of[tag]] = kind
-        kinds = kind_of[index.numbers]
+        self._markup = markup = index.markup
+        kinds = _KIND_OF_NUMBER[markup.numbers]
         elements = np.flatnonzero(kinds != _NO_KIND)
         kinds = kinds[elements]
         places = np.arange(len(elements))
-        holders = index.holders(elements)
+        holders = markup.holders(elements)
         self._number_rows(elements)
         is_valid = _valid_rows(kinds, self._rows_of(holders))
         if not is_valid.all():
@@ -130,7 +126,7 @@ class _Extraction:
         self._relative_to: dict[int, str] = {}
 
     def _number_rows(self, elements: Positions) -> None:
-        self._row_of_element = np.full(len(self._index.numbers) + 1, _NO_ROW, dtype=np.int32)
+        self._row_of_element = np.full(len(self._markup.numbers) + 1, _NO_ROW, dtype=np.int32)
         self._row_of_element[elements] = np.arange(len(elements))
         self._row_of_element[0] = NOWHERE  # the outermost one
 
@@ -153,7 +149,7 @@ class _Extraction:
         columns = Columns(
             names, self._kinds, parents, scopes, self._index.lines(self._elements), pose_lines,
             self._is_odd, posed, texts, quaternions, degrees, self._references(), *facts)
-        return ElementRows(columns, self._root, tuple(_KINDS), _TOP_TAGS, self._places)
+        return ElementRows(columns, self._index.root, tuple(_KINDS), _TOP_TAGS, self._places)
 
     def _of_kind(self, kind: int) -> _Rows:
         return np.flatnonzero(self._kinds == kind)
@@ -163,7 +159,7 @@ class _Extraction:
 
     def _attributes(self, rows: _Rows) -> list[dict[str, str]]:
         """Read what is written in the start tags of rows; mark those where that is unusual."""
-        tags = self._index.tags(self._elements[rows])
+        tags = self._markup.tags(self._elements[rows])
         if not _CHANGED_BY_PARSER.isdisjoint(''.join(tags)):
             self._mark_odd(row for row, tag in zip(rows.tolist(), tags, strict=True)
                            if not _CHANGED_BY_PARSER.isdisjoint(tag))
@@ -171,7 +167,7 @@ class _Extraction:
 
     def _second_values(self, rows: _Rows, attribute: str) -> list[str]:
         """Read an attribute that mostly comes second, behind the name."""
-        values, has_more = self._index.second_values(self._elements[rows], attribute.encode())
+        values, has_more = self._markup.second_values(self._elements[rows], attribute.encode())
         places = np.flatnonzero(has_more)
         for place, attributes in zip(places.tolist(), self._attributes(rows[places]), strict=True):
             values[place] = attributes.get(attribute, '')
@@ -180,7 +176,7 @@ class _Extraction:
     # Names
 
     def _names(self) -> list[str]:
-        names = self._index.first_values(self._elements)
+        names = self._markup.first_values(self._elements)
         for kind, name in ((Kind.INERTIAL, Kind.INERTIAL.label), (_INCLUDE, 'include')):
             for row in self._of_kind(kind).tolist():
                 names[row] = name
@@ -209,8 +205,8 @@ class _Extraction:
     # Poses
 
     def _poses(self) -> tuple[_Rows, Positions]:
-        poses = self._index.of('pose')
-        rows = self._rows_of(self._index.holders(poses))
+        poses = self._markup.of('pose')
+        rows = self._rows_of(self._markup.holders(poses))
         posed, first, counts = _firsts(rows)
         is_row = (posed >= 0) & (np.append(self._kinds, _INCLUDE)[posed] != _INCLUDE)
         posed, first, counts = posed[is_row], first[is_row], counts[is_row]
@@ -220,9 +216,9 @@ class _Extraction:
     def _pose_attributes(self, posed: _Rows, poses: Positions) -> tuple[_Rows, _Rows]:
         """Read how poses are written, and what they are relative to."""
         forms: dict[str, list[int]] = {'degrees': [], 'quaternions': []}
-        having = np.flatnonzero(self._index.has_attributes(poses))
+        having = np.flatnonzero(self._markup.has_attributes(poses))
         for place, row, tag in zip(
-                having.tolist(), posed[having].tolist(), self._index.tags(poses[having]),
+                having.tolist(), posed[having].tolist(), self._markup.tags(poses[having]),
                 strict=True):
             plain = _RELATIVE_TO.fullmatch(tag)
             if plain:
@@ -260,7 +256,7 @@ class _Extraction:
                     any(text in f'\n{name}\n' for text in _ODD_IN_REFERENCES)))
 
     def _pose_texts(self, posed: _Rows, poses: Positions) -> list[str]:
-        texts = self._index.texts(poses)
+        texts = self._markup.texts(poses)
         joined = ''.join(texts)
         if '&' in joined or COMMENT in joined:
             self._mark_odd(
@@ -274,7 +270,7 @@ class _Extraction:
         rows = self._of_kind(Kind.MODEL)
         statics = self._children('static', Kind.MODEL)
         facts = dict.fromkeys(rows.tolist(), ModelFacts(False, '', ''))
-        _, has_more = self._index.second_values(self._elements[rows], b'')
+        _, has_more = self._markup.second_values(self._elements[rows], b'')
         more = np.array(sorted({*rows[has_more].tolist(), *statics}), dtype=np.intp)
         for row, attributes in zip(more.tolist(), self._attributes(more), strict=True):
             text = statics[row].name if row in statics else ''
@@ -314,18 +310,18 @@ class _Extraction:
         return Facts(rows, facts)
 
     def _expressed_in(self) -> dict[int, tuple[Reference, ...]]:
-        index = self._index
+        markup = self._markup
         found: dict[int, tuple[Reference, ...]] = {}
-        elements = index.of('xyz')
-        elements = elements[index.has_attributes(elements)]
-        axes = index.holders(elements)
-        is_axis = np.zeros(len(index.numbers) + 1, dtype=bool)
-        is_axis[index.of('axis')] = is_axis[index.of('axis2')] = True
+        elements = markup.of('xyz')
+        elements = elements[markup.has_attributes(elements)]
+        axes = markup.holders(elements)
+        is_axis = np.zeros(len(markup.numbers) + 1, dtype=bool)
+        is_axis[markup.of('axis')] = is_axis[markup.of('axis2')] = True
         is_axis = is_axis[axes]
         elements, axes = elements[is_axis], axes[is_axis]
-        rows = self._rows_of(index.holders(axes)).tolist()
+        rows = self._rows_of(markup.holders(axes)).tolist()
         for row, tag, line in zip(
-                rows, index.tags(elements), index.lines(elements).tolist(), strict=True):
+                rows, markup.tags(elements), self._index.lines(elements).tolist(), strict=True):
             name = _attributes_from_tag(tag).get('expressed_in', '')
             if row >= 0 and (name != name.strip(WHITE_SPACE) or (
                     not _CHANGED_BY_PARSER.isdisjoint(tag))):
@@ -341,12 +337,12 @@ class _Extraction:
 
     def _children(self, tag: str, kind: Kind) -> dict[int, Reference]:
         """Find the first child of that tag of each row of that kind."""
-        elements = self._index.of(tag)
-        rows = self._rows_of(self._index.holders(elements))
+        elements = self._markup.of(tag)
+        rows = self._rows_of(self._markup.holders(elements))
         is_kind = np.append(self._kinds, (_NO_KIND, _NO_KIND))[rows] == kind
         rows, first, _ = _firsts(rows[is_kind])
         elements = elements[is_kind][first]
-        texts, lines = self._index.texts(elements), self._index.lines(elements).tolist()
+        texts, lines = self._markup.texts(elements), self._index.lines(elements).tolist()
         return dict(zip(rows.tolist(), map(Reference, texts, lines), strict=True))
 
 
@@ -364,7 +360,7 @@ def _firsts(rows: Indices) -> tuple[Indices, _Rows, _Rows]:
 
 
 def _attributes_from_tag(tag: str) -> dict[str, str]:
-    return {name: a or b for name, a, b in _ATTRIBUTE.findall(tag)}
+    return {name: a or b for name, a, b in re.findall(_ATTRIBUTE, tag)}
 
 
 def _valid_rows(kinds: npt.NDArray[np.uint8], parents: Indices) -> _Flags:

@@ -31,34 +31,32 @@ from sdf_pose_bridge.grammar import REQUIRED_ATTRIBUTES
 from sdf_pose_bridge.grammar import SMALLEST_VALUES
 from sdf_pose_bridge.grammar import VALUE_TYPES
 from sdf_pose_bridge.grammar import ValueType
+from sdf_pose_bridge.known_tags import HOLDERS_OF_POSES
 from sdf_pose_bridge.markup_index import MarkupIndex
 from sdf_pose_bridge.pose_text import pose_from_text
 from sdf_pose_bridge.pose_text import PoseText
 from sdf_pose_bridge.pose_text import PoseTextError
 from sdf_pose_bridge.problems import Problems
 
+# Patterns are left for `re` to compile when they are first needed, which in most files is never.
+
 # What C's strtod takes: a number, and then whatever follows it.
 _NUMBER = r'[+-]?(?:[0-9]|\.[0-9]|inf|nan)'
 _PATTERNS = {
-    ValueType.INTEGER: re.compile(r'[+-]?[0-9]|true|false', re.IGNORECASE),
-    ValueType.NUMBER: re.compile(f'{_NUMBER}|true|false', re.IGNORECASE),
-    ValueType.TWO_NUMBERS: re.compile(rf'{_NUMBER}\S*\s+{_NUMBER}', re.IGNORECASE),
-    ValueType.THREE_NUMBERS: re.compile(rf'(?:{_NUMBER}\S*\s+){{2}}{_NUMBER}', re.IGNORECASE),
+    ValueType.INTEGER: r'[+-]?[0-9]|true|false',
+    ValueType.NUMBER: f'{_NUMBER}|true|false',
+    ValueType.TWO_NUMBERS: rf'{_NUMBER}\S*\s+{_NUMBER}',
+    ValueType.THREE_NUMBERS: rf'(?:{_NUMBER}\S*\s+){{2}}{_NUMBER}',
 }
-_LEADING_NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?')
+_LEADING_NUMBER = r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?'
 _AXES = frozenset({('axis', 'xyz'), ('axis2', 'xyz')})
 _SMALLEST_AXIS = 1e-6
-_HOLDERS_OF_POSES = ('waypoint', 'camera', 'audio_source', 'population')
 _SHADERS = frozenset({'pixel', 'vertex', 'normal_map_object_space', 'normal_map_tangent_space'})
 _TYPES_OF_TAG: dict[str, set[ValueType]] = {}
 for _types in VALUE_TYPES.values():
     for _tag, _type in _types.items():
         _TYPES_OF_TAG.setdefault(_tag, set()).add(_type)
 _VALUE_TAGS = sorted(_TYPES_OF_TAG)
-CHECKED_TAGS = tuple(dict.fromkeys((
-    *_VALUE_TAGS, *sorted(REQUIRED_ATTRIBUTES), 'script', *_HOLDERS_OF_POSES, 'state')))
-"""Tags of all elements that are checked here."""
-
 # What is certainly a good value of any element with the tag: without comments in it, which are
 # characters with the number 1 here. Values are separated by characters with the number 0.
 _PLAIN_NUMBER = r'[+-]?(?:[0-9]|\.[0-9])'
@@ -75,6 +73,8 @@ _NOT_NEGATIVE = '(?!-)'
 _NOT_ALL_ZERO = r'(?=[^eE\0]*\0)(?=[^\0]*?(?<![.0-9])(?:0*[1-9]|0*\.0{0,3}[1-9]))'
 _STRICTEST_FIRST = (
     ValueType.THREE_NUMBERS, ValueType.TWO_NUMBERS, ValueType.INTEGER, ValueType.NUMBER)
+_PLAIN_IF_BEGUN = (ValueType.NUMBER, ValueType.INTEGER)
+"""Types of values that are good if only they begin with a digit."""
 
 
 class _PlainRule(NamedTuple):
@@ -85,6 +85,7 @@ class _PlainRule(NamedTuple):
     is_axis: bool
 
 
+@functools.cache
 def _plain_rule(tag: str) -> _PlainRule | None:
     """Return a rule that is as strict as any for elements with a tag; None if there is none."""
     types = _TYPES_OF_TAG[tag]
@@ -108,13 +109,6 @@ def _pattern(rule: _PlainRule) -> re.Pattern[str]:
     return re.compile(rf'(?:\s*{conditions}{_PLAIN_PATTERNS[rule.value_type]}\0)*')
 
 
-_PLAIN_RULES = {tag: _plain_rule(tag) for tag in _VALUE_TAGS}
-_PLAIN_IF_BEGUN = frozenset(
-    tag for tag, rule in _PLAIN_RULES.items()
-    if rule and rule.value_type in (ValueType.NUMBER, ValueType.INTEGER))
-"""Tags of elements whose values are good if only they begin with a digit."""
-
-
 def check_values(document: Document, index: MarkupIndex, problems: Problems) -> None:
     """
     Check what no other stage reads.
@@ -124,16 +118,16 @@ def check_values(document: Document, index: MarkupIndex, problems: Problems) -> 
     :param problems: takes what is wrong.
     """
     check = _Check(document, problems)
-    for tag in index.present(_VALUE_TAGS):
+    for tag in index.markup.present(_VALUE_TAGS):
         for xml in _doubtful(tag, index):
             check.value(xml)
-    for tag in index.present(REQUIRED_ATTRIBUTES):
+    for tag in index.markup.present(REQUIRED_ATTRIBUTES):
         for xml in index.xmls(tag):
             check.attribute(xml)
-    for tag in index.present(('script', 'shader')):
+    for tag in index.markup.present(('script', 'shader')):
         for xml in index.xmls(tag):
             check.material(xml)
-    for tag in index.present((*_HOLDERS_OF_POSES, 'state')):
+    for tag in index.markup.present((*HOLDERS_OF_POSES, 'state')):
         for xml in index.xmls(tag):
             for pose in xml.iter('pose') if tag == 'state' else xml.iterchildren('pose'):
                 check.pose(pose)
@@ -141,15 +135,15 @@ def check_values(document: Document, index: MarkupIndex, problems: Problems) -> 
 
 def _doubtful(tag: str, index: MarkupIndex) -> list[XmlElement]:
     """Leave out elements whose values are certainly good, which is quick where all are."""
-    elements = index.of(tag)
-    rule = _PLAIN_RULES[tag]
+    elements = index.markup.of(tag)
+    rule = _plain_rule(tag)
     if rule is None:
         return index.xmls(tag)
-    if tag in _PLAIN_IF_BEGUN:
-        elements = elements[~index.begins_with_digit(elements)]
+    if rule.value_type in _PLAIN_IF_BEGUN:
+        elements = elements[~index.markup.begins_with_digit(elements)]
         if not len(elements):
             return []
-    texts = index.texts(elements)
+    texts = index.markup.texts(elements)
     pattern = _pattern(rule)
     if pattern.fullmatch('\0'.join(set(texts)) + '\0'):
         return []
@@ -183,7 +177,7 @@ class _Check:
             self._check_axis(xml, text)
 
     def _check_range(self, xml: XmlElement, text: str, key: tuple[str, str]) -> None:
-        number = _LEADING_NUMBER.match(text)
+        number = re.match(_LEADING_NUMBER, text)
         smallest, largest = SMALLEST_VALUES[key], LARGEST_VALUES.get(key, math.inf)
         if number and not smallest <= float(number.group()) <= largest:
             rule = f'at least {smallest:g}' if largest == math.inf else (
@@ -228,7 +222,7 @@ class _Check:
             self._error(ElementMissingError, shader, msg)
 
     def _check_axis(self, xml: XmlElement, text: str) -> None:
-        numbers = [_LEADING_NUMBER.match(word) for word in text.split()]
+        numbers = [re.match(_LEADING_NUMBER, word) for word in text.split()]
         if math.hypot(*(float(number.group()) for number in numbers if number)) <= _SMALLEST_AXIS:
             self._error(ElementInvalidError, xml, f'"{text}" is no axis: its length is zero')
 
@@ -247,9 +241,9 @@ def _is_of_type(text: str, value_type: ValueType) -> bool:
     if value_type is ValueType.BOOLEAN:
         return boolean_from_text(text) is not None
     if value_type is ValueType.COLOR:
-        numbers = [_LEADING_NUMBER.match(word) for word in text.split()]
+        numbers = [re.match(_LEADING_NUMBER, word) for word in text.split()]
         values = [float(number.group()) for number in numbers if number]
         return (len(values) == len(numbers) and len(values) in (3, 4)
                 and all(0.0 <= value <= 1.0 for value in values))
-    return _PATTERNS[value_type].match(text) is not None
+    return re.match(_PATTERNS[value_type], text, re.IGNORECASE) is not None
 

@@ -8,11 +8,12 @@ import pytest
 
 from sdf_pose_bridge.document import document_from_text
 from sdf_pose_bridge.document import text_of
-from sdf_pose_bridge.markup_index import COMMENT
+from sdf_pose_bridge.errors import FileReadError
+from sdf_pose_bridge.known_tags import KNOWN_TAGS
+from sdf_pose_bridge.markup import COMMENT
 from sdf_pose_bridge.markup_index import MarkupIndex
-from sdf_pose_bridge.tag_names import TagNames
 
-TAGS = ('sdf', 'model', 'link', 'pose')
+TAGS = KNOWN_TAGS.tags
 TEXTS = {
     'plain': '<model name="m"><link name="l"><pose>1 2</pose></link></model>',
     'empty elements': '<model name="m"><link name="l"/><link name="k"><pose/></link></model>',
@@ -31,7 +32,13 @@ TEXTS = {
 
 def index_of(text):
     document = document_from_text(text, 'x.sdf')
-    return document.root, MarkupIndex(document.root, document.text, TagNames(TAGS))
+    markup = document.search.markup() if document.search else None
+    return document.root, MarkupIndex(document.root, markup)
+
+
+def found_in(text):
+    root, index = index_of(text)
+    return root, index.markup
 
 
 def sdf(content):
@@ -40,10 +47,10 @@ def sdf(content):
 
 @pytest.mark.parametrize('content', TEXTS.values(), ids=TEXTS)
 def test_tags_and_holders_are_those_of_the_tree(content):
-    root, index = index_of(sdf(content))
+    root, markup = found_in(sdf(content))
     xmls = list(root.iter(*TAGS))
-    assert [TAGS[number] for number in index.numbers] == [xml.tag for xml in xmls]
-    holders = index.holders(np.arange(len(xmls))).tolist()
+    assert [TAGS[number] for number in markup.numbers] == [xml.tag for xml in xmls]
+    holders = markup.holders(np.arange(len(xmls))).tolist()
     expected = [
         xmls.index(xml.getparent()) if xml.getparent() in xmls else -1 for xml in xmls]
     assert holders == expected
@@ -58,26 +65,26 @@ def test_lines_are_those_of_the_tree(content):
 
 @pytest.mark.parametrize('content', TEXTS.values(), ids=TEXTS)
 def test_texts_are_those_of_the_tree_where_nothing_is_odd_in_them(content):
-    root, index = index_of(sdf(content))
-    poses = index.of('pose')
-    for text, xml in zip(index.texts(poses), root.iter('pose'), strict=True):
+    root, markup = found_in(sdf(content))
+    poses = markup.of('pose')
+    for text, xml in zip(markup.texts(poses), root.iter('pose'), strict=True):
         if '&' not in text and COMMENT not in text:
             assert text.strip() == text_of(xml).strip()
 
 
 @pytest.mark.parametrize('content', TEXTS.values(), ids=TEXTS)
 def test_first_values_are_names_or_empty(content):
-    root, index = index_of(sdf(content))
-    models = index.of('model')
-    for name, xml in zip(index.first_values(models), root.iter('model'), strict=True):
+    root, markup = found_in(sdf(content))
+    models = markup.of('model')
+    for name, xml in zip(markup.first_values(models), root.iter('model'), strict=True):
         assert name in ('', xml.get('name'), 'a&amp;b', 'a&gt;b')
 
 
 def test_a_second_value():
-    _, index = index_of(sdf(
+    _, markup = found_in(sdf(
         '<link name="a"/><link name="b" type="t"/><link name="c" type="t" more="x"/>'
         '<link name="d" other="o"/><link type="t" name="e"/><link/>'))
-    values, has_more = index.second_values(index.of('link'), b'type')
+    values, has_more = markup.second_values(markup.of('link'), b'type')
     assert values[1] == 't'
     assert values[0] == values[3] == values[4] == ''
     assert has_more[2:5].all()
@@ -85,27 +92,40 @@ def test_a_second_value():
 
 
 def test_what_follows_the_outermost_element_is_not_found():
-    _, index = index_of(sdf('<link/>') + '<sdf><link/></sdf>')
-    assert len(index.of('link')) == 1
+    _, markup = found_in(sdf('<link/>') + '<sdf><link/></sdf>')
+    assert len(markup.of('link')) == 1
 
 
 def test_another_encoding():
     text = '<?xml version="1.0" encoding="utf-16"?><sdf version="1.9"><model name="é"/></sdf>'
-    _, index = index_of(text.encode('utf-16'))
-    assert index.first_values(index.of('model')) == ['é']
+    _, markup = found_in(text.encode('utf-16'))
+    assert markup.first_values(markup.of('model')) == ['é']
+
+
+def test_a_long_text_is_searched_beside_its_parse():
+    count = 20_000
+    root, index = index_of(sdf(count * '<link name="l"><pose/></link>'))
+    assert len(index.markup.of('link')) == count == len(root)
+    assert index.lines(index.markup.of('pose')).tolist() == count * [2]
+
+
+def test_a_long_text_that_is_not_well_formed_is_refused():
+    with pytest.raises(FileReadError):
+        index_of(sdf(20_000 * '<link><<pose/></link>'))
 
 
 def test_a_tree_that_has_changed():
     root = etree.fromstring('<sdf>\n<link name="a"/>\n</sdf>')
     etree.SubElement(root, 'link', name='b')
-    index = MarkupIndex(root, None, TagNames(TAGS))
-    assert index.first_values(index.of('link')) == ['a', 'b']
-    assert index.lines(index.of('link')).tolist()[0] == 2
+    index = MarkupIndex(root, None)
+    links = index.markup.of('link')
+    assert index.markup.first_values(links) == ['a', 'b']
+    assert index.lines(links).tolist()[0] == 2
 
 
 def test_xmls_of_some():
     root, index = index_of(sdf('<link name="a"/><model/><link name="b"/>'))
-    links = index.of('link')
+    links = index.markup.of('link')
     assert [xml.get('name') for xml in index.xmls_of('link', links[1:])] == ['b']
     assert index.xmls('pose') == []
     assert index.xmls('link') == list(root.iter('link'))

@@ -1,0 +1,19 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The tags of all elements that are looked at many at a time."""
+
+from __future__ import annotations
+
+from sdf_pose_bridge.grammar import REQUIRED_ATTRIBUTES
+from sdf_pose_bridge.grammar import VALUE_TYPES
+from sdf_pose_bridge.names import Kind
+from sdf_pose_bridge.tag_names import TagNames
+
+HOLDERS_OF_POSES = ('waypoint', 'camera', 'audio_source', 'population')
+"""Tags of elements whose poses are no frames' poses."""
+
+KNOWN_TAGS = TagNames(tuple(dict.fromkeys((
+    'sdf', 'include', *(kind.label for kind in Kind if kind is not Kind.ROOT),
+    'pose', 'static', 'parent', 'child', 'axis', 'axis2', 'xyz',
+    *(tag for types in VALUE_TYPES.values() for tag in types),
+    *REQUIRED_ATTRIBUTES, 'script', *HOLDERS_OF_POSES, 'state'))))
