@@ -60,7 +60,12 @@ def _doubtful(
     is_doubtful = (
         (parent < 0) | (child < 0) | (parent == joint) | (child == joint)
         | (body == bodies[parent]) | (body == np.array(scopes.roots)[child]))
-    is_doubtful |= [bool(table.joints[ends.joint].expressed_in) for ends in joints]
+    axes = [(place, reference.name) for place, ends in enumerate(joints)
+            for reference in table.joints[ends.joint].expressed_in]
+    scopes_of_axes: list[int] = table.scopes[joint[[place for place, _ in axes]]].tolist()
+    frames = scopes.frames(scopes_of_axes, [name for _, name in axes])
+    is_doubtful[[place for (place, _), frame in zip(axes, frames, strict=True)
+                 if frame is None]] = True
     return [joints[place] for place in np.flatnonzero(is_doubtful).tolist()]
 
 

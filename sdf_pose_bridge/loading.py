@@ -112,8 +112,8 @@ def _resolved_scene(
     problems = Problems(documents.files)
     indices = {
         each.root: MarkupIndex(
-            each.root, None if each.root in documents.changed or each.search is None
-            else each.search.markup())
+            each.root, None if each.search is None else each.search.markup(),
+            is_changed=each.root in documents.changed)
         for each in documents.all_documents()}
     for each in documents.all_documents():
         check_values(each, indices[each.root], problems)

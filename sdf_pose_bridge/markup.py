@@ -240,6 +240,7 @@ class Search:
         self._text = text
         self._thread: threading.Thread | None = None
         self._found: Markup | None = None
+        self._is_done = False
         if len(text) > _LONG:
             # A parser leaves other threads alone, and so do most operations on arrays.
             self._thread = threading.Thread(target=self._search, daemon=True)
@@ -251,15 +252,18 @@ class Search:
 
         :return: the elements; None if there is more in brackets than tags and comments.
         """
-        if self._thread is None:
-            return markup_from_text(self._text)
-        self._thread.join()
+        if not self._is_done:
+            if self._thread is None:
+                self._search()
+            else:
+                self._thread.join()
         return self._found
 
     def _search(self) -> None:
         # Of a text that is not well-formed nobody wants to know.
         with contextlib.suppress(ValueError, IndexError):
             self._found = markup_from_text(self._text)
+        self._is_done = True
 
 
 def markup_from_text(text: bytes) -> Markup | None:

@@ -22,18 +22,23 @@ class MarkupIndex:
     The elements of a document that have known tags, in the order of the file.
 
     :param root: the outermost element of its tree, which must not change as long as this is used.
-    :param markup: what was found in the text that the tree was made from; None if that is not
-        known, or the tree has changed since.
+    :param written: what was found in the text that the tree was made from; None if that is not
+        known.
+    :param is_changed: whether the tree has changed since.
     """
 
-    def __init__(self, root: XmlElement, markup: Markup | None) -> None:
+    def __init__(
+        self, root: XmlElement, written: Markup | None, *, is_changed: bool = False,
+    ) -> None:
         self.root = root
-        self._is_as_written = markup is not None
-        if markup is None:
+        markup = written
+        if written is None or is_changed:
             # What is written here has no bracket but those of tags and comments.
             markup = markup_from_text(etree.tostring(root, encoding='utf-8'))
-            assert markup is not None
+        assert markup is not None
         self.markup = markup
+        has_lines = written is not None and np.array_equal(written.numbers, markup.numbers)
+        self._with_lines = written if has_lines else None
 
     def lines(self, elements: Positions) -> npt.NDArray[np.int32]:
         """
@@ -42,10 +47,10 @@ class MarkupIndex:
         :param elements: their indices.
         :return: the line in which the start tag of each ends, the first one being 1.
         """
-        if not self._is_as_written:
-            lines: npt.NDArray[np.int32] = self._tree_lines[elements]
-            return lines
-        return self.markup.lines(elements)
+        if self._with_lines is not None:
+            return self._with_lines.lines(elements)
+        lines: npt.NDArray[np.int32] = self._tree_lines[elements]
+        return lines
     def xmls(self, tag: str) -> list[XmlElement]:
         """
         Return the elements of the tree with a tag.

@@ -93,6 +93,7 @@ class Scopes:
         """
         is_model, names, roots = self._is_model, self.names, self.roots
         frames = [
+            scope if reference == MODEL_FRAME and is_model[scope] else
             self._frames[roots[scope]].get(
                 f'{names[scope]}{SEPARATOR}{reference}' if is_model[scope] else reference)
             for scope, reference in zip(scopes, references, strict=True)]

@@ -12,8 +12,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from lxml import etree
-
 from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import is_data
@@ -22,7 +20,6 @@ from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.errors import ConversionError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.names import MODEL_FRAME
-from sdf_pose_bridge.unflattening import unflatten_model
 
 
 class Version(NamedTuple):
@@ -71,10 +68,12 @@ def upgrade(document: Document) -> bool:
     if version < _JOINTS_TURN_WITH_LINKS:
         changes += _turn_axes_with_model(document.root)
     if version < _FRAME_ATTRIBUTE_ENDS:
-        changes += _rename_frame_attributes(document.root)
+        changes += _rename_frame_attributes(document)
         changes += _express_axes_in_model(document.root)
     if version < _FLAT_NAMES_END and document.may_hold_separators:
         changes += 1
+        # Few old files hold such names.
+        from sdf_pose_bridge.unflattening import unflatten_model
         for model in document.root.iterfind('world/model'):
             unflatten_model(model, document.path)
     return changes > 0
@@ -102,18 +101,23 @@ def renames_clashes(version: Version) -> bool:
 
 def _turn_axes_with_model(root: XmlElement) -> int:
     count = 0
-    for path in ('model/joint', 'world/model/joint'):
-        for joint in root.iterfind(path):
-            for axis in joint.iterchildren('axis', 'axis2'):
-                if axis.find('use_parent_model_frame') is None:
-                    etree.SubElement(axis, 'use_parent_model_frame').text = 'true'
-                    count += 1
+    models = (model for holder in (root, *root.iterchildren('world'))
+              for model in holder.iterchildren('model'))
+    for axis in (axis for model in models for joint in model.iterchildren('joint')
+                 for axis in joint.iterchildren('axis', 'axis2')):
+        xyz = next(axis.iterchildren('xyz'), None)
+        if xyz is not None and next(axis.iterchildren('use_parent_model_frame'), None) is None:
+            xyz.set('expressed_in', MODEL_FRAME)
+            count += 1
     return count
 
 
-def _rename_frame_attributes(root: XmlElement) -> int:
+def _rename_frame_attributes(document: Document) -> int:
+    markup = None if document.search is None else document.search.markup()
+    if markup is not None and not markup.has_attributes(markup.of('pose')).any():
+        return 0
     count = 0
-    for pose in root.iter('pose'):
+    for pose in document.root.iter('pose'):
         frame = pose.get('frame')
         if frame is not None and is_data(pose):
             del pose.attrib['frame']
