@@ -22,6 +22,8 @@ import numpy.typing as npt
 
 from sdf_pose_bridge.known_tags import KNOWN_TAGS
 from sdf_pose_bridge.tag_names import UNKNOWN
+from sdf_pose_bridge.tag_names import WIDTH
+from sdf_pose_bridge.tag_names import words_from_text
 
 Positions: TypeAlias = npt.NDArray[np.intp]
 
@@ -67,6 +69,7 @@ class Markup:
         begins, ends, is_closing, is_empty, depths = tags
         self._text = text
         self._buffer = np.frombuffer(text, np.uint8)
+        self._words = words_from_text(self._buffer)
         starts = np.flatnonzero(~is_closing)
         numbers = KNOWN_TAGS.numbers_from_text(self._buffer, begins[starts] + 1)
         self._depths = depths[starts]
@@ -156,36 +159,45 @@ class Markup:
         :return: value of the attribute ``name``, as it is written; empty where it is written in
             another way, or there is none.
         """
-        return self._cut(*self._value_places(elements, (b'name',)))
+        return self._cut(*self._places_of_value(self._places_of_name(elements), b'name'))
 
     def second_values(self, elements: Positions, attribute: bytes) -> tuple[list[str], _Flags]:
         """
         Return an attribute where it comes second and last, behind the name.
 
         :param elements: indices of elements.
-        :param attribute: its name.
+        :param attribute: its name; empty for none.
         :return: its value for each, as it is written; empty where there is only a name; and
             whether there may be anything else.
         """
         ends = self._content_ends[elements]
-        _, name_ends = self._value_places(elements, (b'name',))
-        begins, value_ends = self._value_places(elements, (b'name', attribute))
-        is_plain = (name_ends + 1 == ends) | (value_ends + 1 == ends)
+        _, name_ends = self._places_of_value(self._places_of_name(elements), b'name')
+        is_only_name = name_ends + 1 == ends
+        if is_only_name.all():
+            return [''] * len(elements), ~is_only_name
+        begins, value_ends = self._places_of_value(name_ends, attribute)
+        is_plain = is_only_name | (value_ends + 1 == ends)
         return self._cut(begins, value_ends), ~is_plain
 
-    def _value_places(
-        self, elements: Positions, attributes: tuple[bytes, ...],
+    def _places_of_name(self, elements: Positions) -> Positions:
+        """Return the last character of each tag's own name."""
+        places: Positions = self._begins[elements] + _NAME_LENGTHS[self.numbers[elements]] - 1
+        return places
+
+    def _places_of_value(
+        self, before: Positions, attribute: bytes,
     ) -> tuple[Positions, Positions]:
-        """Return where the last of the first attributes begins and ends; 0 where it is not."""
-        ends = self._begins[elements] + _NAME_LENGTHS[self.numbers[elements]] - 1
-        is_there = np.ones(len(elements), dtype=bool)
-        for attribute in attributes:
-            begins = ends + 1
-            for byte in b' %b="' % attribute:
-                is_there &= self._buffer.take(begins, mode='clip') == byte
-                begins += 1
-            quotes = np.searchsorted(self._quotes, begins)
-            ends = np.append(self._quotes, 0)[quotes]
+        """Return where a value begins and ends of which the attribute follows; else 0 and 0."""
+        written = b' %b="' % attribute
+        begins = before + 1
+        is_there = before > 0
+        for start in range(0, len(written), WIDTH):
+            part = written[start:start + WIDTH]
+            words = self._words[np.minimum(begins + start, len(self._words) - 1)]
+            mask = np.uint64((1 << 8 * len(part)) - 1)
+            is_there &= words & mask == np.uint64(int.from_bytes(part, 'little'))
+        begins = begins + len(written)
+        ends = self._quotes.take(np.searchsorted(self._quotes, begins), mode='clip')
         return np.where(is_there, begins, 0), np.where(is_there, ends, 0)
 
     def has_attributes(self, elements: Positions) -> npt.NDArray[np.bool_]:

@@ -71,8 +71,7 @@ class TagNames:
         :return: the number of each name, or :data:`UNKNOWN`.
         """
         # Behind each name there are at least the end of its tag and that of the outermost element.
-        words = np.ndarray(
-            (len(text) - WIDTH + 1,), np.dtype('<u8'), text.data, strides=(1,))
+        words = words_from_text(text)
         numbers = np.full(len(places), UNKNOWN, dtype=np.int16)
         rest = np.arange(len(places))
         states = np.zeros(len(places), dtype=np.int16)
@@ -86,6 +85,18 @@ class TagNames:
             rest, places = rest[goes_on], places[goes_on]
             states = step.next_states[found[goes_on]]
         return numbers
+
+
+def words_from_text(text: npt.NDArray[np.uint8]) -> _Words:
+    """
+    Look at a text as words.
+
+    :param text: bytes, at least :data:`WIDTH` of them.
+    :return: for each place the word that begins there; its lowest byte is the one in that place.
+    """
+    words: _Words = np.ndarray(
+        (len(text) - WIDTH + 1,), np.dtype('<u8'), text.data, strides=(1,))
+    return words
 
 
 def _cut_at_end(words: _Words) -> tuple[_Words, npt.NDArray[np.bool_]]:
