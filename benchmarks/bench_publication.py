@@ -138,11 +138,13 @@ class Bench:
         from tf2_msgs.msg import TFMessage
 
         from sdf_pose_bridge.publications import Publications
+        from sdf_pose_bridge.tf_static import TfStatic
         self.ros = ros
         self.scene = scene_of(MODELS)
         self.tree = tf_tree_from_scene(self.scene)
         assert len(self.tree.frame_ids) == FRAMES
-        self.publications = Publications(ros)
+        self.tf_static = TfStatic(ros)
+        self.publications = Publications(ros, self.tf_static)
         self._message_type = TFMessage
         self._publisher = latched_publisher(ros, TFMessage, '/objects', 1)
 
@@ -163,7 +165,7 @@ def first_tf_static() -> Iterator[tuple[Function, Function | None]]:
     with node() as ros:
         bench = Bench(ros)
         yield (
-            lambda: bench.publications.publish_tf_static(tf_tree_from_scene(bench.scene)),
+            lambda: bench.tf_static.publish(tf_tree_from_scene(bench.scene)),
             lambda: bench.send_objects(transforms_of_scene(bench.scene)))
 
 
@@ -174,7 +176,7 @@ def first_tf_static_and_objects_alone() -> Iterator[tuple[Function, Function | N
     with node() as ros:
         bench = Bench(ros)
         yield (
-            lambda: bench.publications.publish_tf_static(tf_tree_from_scene(bench.scene)),
+            lambda: bench.tf_static.publish(tf_tree_from_scene(bench.scene)),
             bench.send_objects_of_tree)
 
 
@@ -185,7 +187,7 @@ def tf_static_from_tree() -> Iterator[tuple[Function, Function | None]]:
     with node() as ros:
         bench = Bench(ros)
         yield (
-            lambda: bench.publications.publish_tf_static(bench.tree), bench.send_objects_of_tree)
+            lambda: bench.tf_static.publish(bench.tree), bench.send_objects_of_tree)
 
 
 @benchmark(
@@ -194,8 +196,8 @@ def tf_static_from_tree() -> Iterator[tuple[Function, Function | None]]:
 def tf_static_again() -> Iterator[tuple[Function, Function | None]]:
     with node() as ros:
         bench = Bench(ros)
-        bench.publications.publish_tf_static(bench.tree)
-        yield lambda: all_steps_of(bench.publications.publish_again()), bench.send_objects_of_tree
+        bench.tf_static.publish(bench.tree)
+        yield bench.tf_static.publish_again, bench.send_objects_of_tree
 
 
 @benchmark(
@@ -221,10 +223,11 @@ def topics_of_poses() -> Iterator[tuple[Function, Function | None]]:
     from geometry_msgs.msg import PoseStamped
 
     from sdf_pose_bridge.publications import Publications
+    from sdf_pose_bridge.tf_static import TfStatic
     tree = tf_tree_from_scene(scene_of(TOPICS // 10))
     assert len(tree.frame_ids) == TOPICS
     with node() as ros:
-        publications = Publications(ros)
+        publications = Publications(ros, TfStatic(ros))
 
         def ours() -> None:
             all_steps_of(publications.publish(tree, ('*',)))

@@ -110,8 +110,11 @@ class TimesAsFast(NamedTuple):
         return ', '.join(parts) or '-'
 
     def ratio(self, medians: Medians) -> str:
-        """Say how many times as fast as the counterpart ours is."""
-        return f'{1.0 / _quotient(medians):.1f} times as fast'
+        """Say how many times as fast as the counterpart ours is, or how many times as slow."""
+        quotient = _quotient(medians)
+        if self.factor is None and quotient > 1.0:
+            return f'{quotient:.2f} times the time'
+        return f'{1.0 / quotient:.1f} times as fast'
 
     def is_reached(self, medians: Medians) -> bool | None:
         """Tell whether ours is as fast as asked."""

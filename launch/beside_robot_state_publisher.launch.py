@@ -7,10 +7,12 @@ Start the bridge beside robot_state_publisher, each with frames of its own.
         urdf_file:=robot.urdf sdf_file:=cell.sdf
 
 robot_state_publisher publishes the robot: every link of the URDF but its root gets its parent from
-there, on /tf or /tf_static. The bridge publishes what stands around the robot: every frame of the
-SDFormat file gets its parent from here, and its id begins with ``cell/``, which no link of the
-URDF does. The two meet in ``root_frame``, a link of the URDF that gets children from the bridge,
-but never a parent. So no frame has two parents, and all are in one tree.
+there, on /tf_static or, once joint states arrive, on /tf. The bridge publishes what stands around
+the robot: every frame of the SDFormat file gets its parent from here, and its id begins with
+``cell/``, which no link of the URDF does. The two meet in ``root_frame``, a link of the URDF that
+gets children from the bridge, but never a parent. So no frame has two parents, and all are in one
+tree. Only for a floating joint robot_state_publisher publishes nothing: what hangs on it is a tree
+of its own until localization, say, publishes where it is.
 
 ``root_frame`` is ``world``, for a URDF whose root link is called so. For another one, name the
 link that the SDFormat world is measured from, such as ``root_frame:=base_link``; or any other

@@ -6,9 +6,12 @@ from __future__ import annotations
 
 import math
 from typing import overload
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 
 @overload

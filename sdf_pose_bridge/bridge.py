@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 import gc
+import os
 import sys
 
 from sdf_pose_bridge.stop_request import StopRequest
@@ -36,6 +37,8 @@ def main(args: Sequence[str] | None = None) -> int:
     stop = StopRequest()
     # Nothing that a start leaves behind is garbage; to look for some would take a tenth of it.
     gc.disable()
+    # numpy's threads for large matrices, which there are none of here, would spin for a while.
+    os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     try:
         from sdf_pose_bridge.running import run
         return run(list(sys.argv if args is None else args), stop)

@@ -18,7 +18,6 @@ from sdf_pose_bridge.file_address import AddressError
 from sdf_pose_bridge.file_address import path_from_address
 from sdf_pose_bridge.loading import load
 from sdf_pose_bridge.lookup import PoseLookup
-from sdf_pose_bridge.manifest import model_file_from_directory
 from sdf_pose_bridge.resources import resource_finder
 from sdf_pose_bridge.scene import Scene
 from sdf_pose_bridge.settings import Settings
@@ -93,7 +92,10 @@ def _file_from_settings(
     path = path_from_address(
         settings.sdf_file, get_package_share_directory,
         lambda uri: finder.path_from_uri(uri, including_file=''))
-    if not path.is_dir():
+    # Unlike Path's, it says no of a path that is too long; reading the file says why.
+    if not os.path.isdir(path):  # noqa: PTH112
         return path, (), ()
+    # Mostly it is a file.
+    from sdf_pose_bridge.manifest import model_file_from_directory
     chosen = model_file_from_directory(str(path))
     return Path(chosen.path), (chosen.manifest,), chosen.warnings

@@ -7,9 +7,9 @@ from __future__ import annotations
 from array import array
 from collections.abc import Mapping
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from sdf_pose_bridge.element_rows import Columns
 from sdf_pose_bridge.elements import element_path
@@ -22,6 +22,9 @@ from sdf_pose_bridge.elements import SensorFacts
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.pose_text import poses_from_texts
 from sdf_pose_bridge.pose_text import PoseText
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 
 class ElementColumns:

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from collections.abc import Mapping
 from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 from lxml import etree
 
@@ -34,9 +35,6 @@ from sdf_pose_bridge.errors import JointChildError
 from sdf_pose_bridge.errors import JointParentError
 from sdf_pose_bridge.errors import MergeIncludeError
 from sdf_pose_bridge.errors import ReservedNameError
-from sdf_pose_bridge.include_reader import Include
-from sdf_pose_bridge.include_reader import include_from_xml
-from sdf_pose_bridge.inclusion import Inclusion
 from sdf_pose_bridge.inclusions import DocumentSet
 from sdf_pose_bridge.markup_index import MarkupIndex
 from sdf_pose_bridge.name_claims import NameClaims
@@ -46,6 +44,10 @@ from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sensor_facts import sensor_facts_from_xml
+
+if TYPE_CHECKING:
+    from sdf_pose_bridge.include_reader import Include
+    from sdf_pose_bridge.inclusion import Inclusion
 
 _NO_REFERENCE = Reference('', 0)
 _TOP_KINDS = {'model': Kind.MODEL, 'light': Kind.LIGHT, 'actor': Kind.ACTOR}
@@ -151,6 +153,8 @@ class _ElementReader:
     # Includes
 
     def _include(self, xml: XmlElement, scope: _Scope) -> None:
+        # Many files include nothing, and need not wait for this.
+        from sdf_pose_bridge.include_reader import include_from_xml
         include = include_from_xml(
             xml, self._inclusions[xml], self._table, scope.holder,
             skips_missing=self._skips_missing)

@@ -15,14 +15,18 @@ from functools import cached_property
 import itertools
 from typing import Any
 from typing import NamedTuple
+from typing import TYPE_CHECKING
+from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.elements import Indices
 
-_Rows = npt.NDArray[np.intp]
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+_Rows: TypeAlias = 'npt.NDArray[np.intp]'
 
 
 class Facts(NamedTuple):

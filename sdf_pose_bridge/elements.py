@@ -8,20 +8,23 @@ from collections.abc import Mapping
 from collections.abc import Sequence
 from typing import Any
 from typing import NamedTuple
+from typing import TYPE_CHECKING
 from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.names import Kind
 
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
 NOWHERE = -1
 """Stands for an index where there is none."""
 
-Indices: TypeAlias = npt.NDArray[np.int32]
+Indices: TypeAlias = 'npt.NDArray[np.int32]'
 
-_Integers: TypeAlias = Sequence[int] | npt.NDArray[Any]
+_Integers: TypeAlias = 'Sequence[int] | npt.NDArray[Any]'
 
 CAMERA_TYPES = frozenset({
     'boundingbox', 'boundingbox_camera', 'camera', 'depth', 'depth_camera', 'multicamera', 'rgbd',

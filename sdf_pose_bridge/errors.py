@@ -8,6 +8,7 @@ there.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from collections.abc import Iterable
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -258,6 +259,10 @@ class UnknownFrameError(SdfError, LookupError):
     code = 'POSE_RELATIVE_TO_INVALID'
 
 
+MOST_COMPARED = 400
+"""With how many names one that was not found is compared in full."""
+
+
 def hint_from_names(wanted: str, names: Iterable[str]) -> str:
     """
     Return the end of a sentence about a name that was not found.
@@ -268,5 +273,31 @@ def hint_from_names(wanted: str, names: Iterable[str]) -> str:
     """
     # Most processes need it for nothing.
     import difflib
-    near = difflib.get_close_matches(wanted, list(names), n=1, cutoff=0.6)
+    near = difflib.get_close_matches(wanted, _likeliest(wanted, list(names)), n=1, cutoff=0.6)
     return f'; did you mean "{near[0]}"?' if near else ''
+
+
+def _likeliest(wanted: str, names: list[str]) -> list[str]:
+    """Leave out what would take seconds to compare, as large scenes have many similar names."""
+    if len(names) <= MOST_COMPARED:
+        return names
+    length = len(wanted)
+    most = min(length, max(map(len, names)))
+    beginning = _sharing_most(names, most, str.startswith, lambda size: wanted[:size])
+    end = _sharing_most(names, most, str.endswith, lambda size: wanted[length - size:])
+    return [*beginning[:MOST_COMPARED // 2], *end[:MOST_COMPARED // 2]]
+
+
+def _sharing_most(
+    names: list[str], most: int, shares: Callable[[str, str], bool], part: Callable[[int], str],
+) -> list[str]:
+    least = 0
+    while least < most:
+        size = (least + most + 1) // 2
+        wanted = part(size)
+        sharing = [name for name in names if shares(name, wanted)]
+        if sharing:
+            names, least = sharing, size
+        else:
+            most = size - 1
+    return names

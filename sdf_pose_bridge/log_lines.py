@@ -25,18 +25,12 @@ def lines_from_error(error: Exception) -> list[str]:
     Return what is wrong, a line for each thing.
 
     :param error: an error of this package; one of a file starts its lines with file and line.
-    :return: at least one line; at most ``MOST_ERRORS``, and one more if a file has more errors.
+    :return: at least one line; at most ``MOST_ERRORS``, and one more if there are more errors.
     """
     if isinstance(error, SdfError):
-        lines = [_line(str(each)) for each in error.errors[:MOST_ERRORS]]
-        rest = len(error.errors) - len(lines)
-        if rest:
-            lines.append(
-                f'{rest} more {"error is" if rest == 1 else "errors are"} not shown; '
-                '"sdf_pose check" shows all of them')
-        return lines
+        return _first_lines(error.errors, '; "sdf_pose check" shows all of them')
     if isinstance(error, SettingsError):
-        return [_line(problem.sentence) for problem in error.problems]
+        return _first_lines([problem.sentence for problem in error.problems], '')
     return [_line(str(error))]
 
 
@@ -64,6 +58,14 @@ def names_in_line(names: Sequence[str]) -> str:
     shown = ', '.join(f'"{name}"' for name in names[:MOST_WARNINGS])
     rest = len(names) - MOST_WARNINGS
     return _line(f'{shown} and {rest} more' if rest > 0 else shown)
+
+
+def _first_lines(errors: Sequence[object], hint: str) -> list[str]:
+    lines = [_line(str(each)) for each in errors[:MOST_ERRORS]]
+    rest = len(errors) - len(lines)
+    if rest:
+        lines.append(f'{rest} more {"error is" if rest == 1 else "errors are"} not shown{hint}')
+    return lines
 
 
 def _line(text: str) -> str:

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import NamedTuple
 
@@ -38,7 +39,10 @@ def model_file_from_directory(directory: str) -> ModelFile:
     :raises FileReadError: if there is no manifest, or it is not XML.
     :raises ParsingError: if the manifest names no file.
     """
-    manifests = [path for path in (Path(directory, name) for name in _NAMES) if path.exists()]
+    # Unlike Path's, this raises no error for what may not be looked at.
+    manifests = [
+        path for path in (Path(directory, name) for name in _NAMES)
+        if os.path.exists(path)]  # noqa: PTH110
     if not manifests:
         msg = 'the directory has no model.config, which would name the file to read'
         raise FileReadError(msg, Place(directory))

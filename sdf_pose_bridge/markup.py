@@ -15,17 +15,20 @@ import contextlib
 import re
 import threading
 from typing import NamedTuple
+from typing import TYPE_CHECKING
 from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from sdf_pose_bridge.known_tags import KNOWN_TAGS
 from sdf_pose_bridge.tag_names import UNKNOWN
 from sdf_pose_bridge.tag_names import WIDTH
 from sdf_pose_bridge.tag_names import words_from_text
 
-Positions: TypeAlias = npt.NDArray[np.intp]
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+Positions: TypeAlias = 'npt.NDArray[np.intp]'
 
 COMMENT = '\x01'
 """Stands for each character of a comment in the texts of elements."""
@@ -40,7 +43,7 @@ _BLOCK = 1 << 18
 _LONG = 1 << 18
 """Bytes of a text for which another thread is worth while."""
 
-_Flags: TypeAlias = npt.NDArray[np.bool_]
+_Flags: TypeAlias = 'npt.NDArray[np.bool_]'
 
 
 class _Tags(NamedTuple):
@@ -300,10 +303,10 @@ def _without_comments(text: bytes) -> bytes:
 def _tags_from_text(text: bytes) -> _Tags | None:
     """Find all tags; None if there is anything else in brackets, or a bracket by itself."""
     buffer = np.frombuffer(text, np.uint8)
-    begins = _places(buffer, '<')
-    ends = _places(buffer, '>')
+    brackets = _places(buffer, '>', also=ord('<') ^ ord('>'))
+    begins, ends = brackets[0::2].copy(), brackets[1::2].copy()
     if len(begins) != len(ends) or not len(begins) or (
-            not (begins < ends).all() or not (ends[:-1] < begins[1:]).all()):
+            (buffer[begins] != ord('<')).any() or (buffer[ends] != ord('>')).any()):
         return None
     kinds = buffer[begins + 1]
     if kinds[0] == ord('?'):
@@ -321,10 +324,17 @@ def _tags_from_text(text: bytes) -> _Tags | None:
     return _Tags(begins, ends, is_closing, is_empty, depths.astype(np.int16))
 
 
-def _places(buffer: npt.NDArray[np.uint8], character: str) -> Positions:
-    """Find a character; block by block, so that what lies between stays in the processor."""
-    byte = ord(character)
+def _places(buffer: npt.NDArray[np.uint8], character: str, also: int = 0) -> Positions:
+    """
+    Find a character; block by block, so that what lies between stays in the processor.
+
+    :param buffer: where to look.
+    :param character: what to look for, which has all bits of ``also`` set.
+    :param also: bits without which it is another character that is looked for too.
+    :return: the places.
+    """
+    byte, bits = np.uint8(ord(character)), np.uint8(also)
     blocks = [
-        np.flatnonzero(buffer[start:start + _BLOCK] == byte) + start
+        np.flatnonzero((buffer[start:start + _BLOCK] | bits) == byte) + start
         for start in range(0, len(buffer), _BLOCK)]
     return np.concatenate(blocks)

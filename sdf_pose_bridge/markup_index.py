@@ -5,16 +5,19 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from lxml import etree
 import numpy as np
-import numpy.typing as npt
 
 from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.known_tags import KNOWN_TAGS
 from sdf_pose_bridge.markup import Markup
 from sdf_pose_bridge.markup import markup_from_text
 from sdf_pose_bridge.markup import Positions
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 
 class MarkupIndex:

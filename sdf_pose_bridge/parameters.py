@@ -249,6 +249,8 @@ class SettingTogether(ParameterService):
                 if each.type_ not in (wanted, Parameter.Type.NOT_SET):
                     return SetParametersResult(
                         successful=False, reason=_sentence_on_type(each, wanted))
+            # What "ros2 param dump" wrote has them too.
+            parameters = [each for each in parameters if not _is_fixed_so(node, each)]
             await self._prepare(parameters)
             result = node.set_parameters_atomically(parameters)
         except (ValueError, TypeError) as error:  # a value of a type that does not exist
@@ -256,6 +258,11 @@ class SettingTogether(ParameterService):
         if result.successful:
             await self._take()
         return result
+
+
+def _is_fixed_so(node: Node, given: Parameter) -> bool:
+    is_fixed = node.describe_parameter(given.name).read_only
+    return bool(is_fixed and node.get_parameter(given.name).value == given.value)
 
 
 def _parameter_from_message(message: ParameterMessage) -> Parameter:

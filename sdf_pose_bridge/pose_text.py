@@ -15,11 +15,14 @@ import math
 import re
 import sys
 from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from sdf_pose_bridge.rotation import quaternion_from_rpy
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 IDENTITY = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 """The pose that moves nothing: x y z, quaternion x y z w."""
@@ -27,8 +30,9 @@ IDENTITY = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 SMALLEST_QUATERNION_NORM = 1e-9
 """A quaternion shorter than this has no direction that its author can have meant."""
 
-_NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?')
-_NOT_ZERO = re.compile(r'[^eE]*[1-9]')
+# Patterns are left for `re` to compile when they are first needed; most files need only _TINY.
+_NUMBER = r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?'
+_NOT_ZERO = r'[^eE]*[1-9]'
 _MARK = '|'
 _LONGEST_PLAIN = 200
 _TINY = re.compile(r'[eE]-0*[1-9][0-9][0-9]')
@@ -36,10 +40,10 @@ _TINY = re.compile(r'[eE]-0*[1-9][0-9][0-9]')
 _NUMBER_CHARACTERS = b'0123456789+-.eE \t\n\r|'
 _RPY_COUNT = 6
 _QUATERNION_COUNT = 7
+_IDENTITY_TEXTS = {_RPY_COUNT: '0 0 0 0 0 0', _QUATERNION_COUNT: '0 0 0 0 0 0 1'}
 _PLAIN_NUMBER = r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,2})?'
 _PLAIN = {
-    count: re.compile(
-        rf'[ \t\n\r]*(?:{_PLAIN_NUMBER}[ \t\n\r]+){{{count - 1}}}{_PLAIN_NUMBER}[ \t\n\r]*')
+    count: rf'[ \t\n\r]*(?:{_PLAIN_NUMBER}[ \t\n\r]+){{{count - 1}}}{_PLAIN_NUMBER}[ \t\n\r]*'
     for count in (_RPY_COUNT, _QUATERNION_COUNT)}
 
 
@@ -83,10 +87,12 @@ def poses_from_texts(
         width = _QUATERNION_COUNT if form_is_quaternion else _RPY_COUNT
         form_texts = texts if len(indices) == len(texts) else [
             texts[index] for index in indices.tolist()]
+        if '' in form_texts:
+            form_texts = [text or _IDENTITY_TEXTS[width] for text in form_texts]
         table = _table_from_texts(form_texts, width)
         if table is None:
             is_plain = [
-                len(text) <= _LONGEST_PLAIN and _PLAIN[width].fullmatch(text) is not None
+                len(text) <= _LONGEST_PLAIN and re.fullmatch(_PLAIN[width], text) is not None
                 for text in form_texts]
             doubtful += indices[np.logical_not(is_plain)].tolist()
             indices = indices[is_plain]
@@ -122,7 +128,7 @@ def pose_from_text(pose: PoseText) -> tuple[float, ...]:
     shown = ' '.join(tokens)
     shown = shown if len(shown) <= 80 else shown[:77] + '...'
     for token in tokens:
-        if not _NUMBER.fullmatch(token):
+        if not re.fullmatch(_NUMBER, token):
             msg = f'"{token[:80]}" in the pose "{shown}" is not a finite decimal number'
             raise PoseTextError(msg)
         if not _is_representable(token):
@@ -181,7 +187,7 @@ def _is_representable(number: str) -> bool:
     """Tell whether C's strtod takes a number without a range error."""
     value = float(number)
     if value == 0.0:
-        return not _NOT_ZERO.match(number)
+        return not re.match(_NOT_ZERO, number)
     return sys.float_info.min <= abs(value) <= sys.float_info.max
 
 

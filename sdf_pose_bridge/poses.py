@@ -12,12 +12,15 @@ from __future__ import annotations
 
 from typing import Any
 from typing import NamedTuple
+from typing import TYPE_CHECKING
 from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
-PoseArray: TypeAlias = npt.NDArray[np.float64]
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+PoseArray: TypeAlias = 'npt.NDArray[np.float64]'
 """Poses as rows: shape (n, 7), x y z in metres, unit quaternion x y z w."""
 
 

@@ -10,27 +10,21 @@ from typing import NamedTuple
 
 from geometry_msgs.msg import PoseStamped
 from geometry_msgs.msg import TransformStamped
-from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.logging import LoggingSeverity
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from rclpy.qos import DurabilityPolicy
-from rclpy.qos import HistoryPolicy
-from rclpy.qos import QoSProfile
-from rclpy.qos import ReliabilityPolicy
-from tf2_msgs.msg import TFMessage
 
-from sdf_pose_bridge.poses import PoseArray
+from sdf_pose_bridge.log_lines import names_in_line
 from sdf_pose_bridge.tf_message_bytes import pose_stamped_bytes
 from sdf_pose_bridge.tf_message_bytes import StampedBytes
-from sdf_pose_bridge.tf_message_bytes import tf_message_bytes
 from sdf_pose_bridge.tf_message_bytes import transform_stamped_bytes
+from sdf_pose_bridge.tf_static import latched_publisher
+from sdf_pose_bridge.tf_static import TfStatic
 from sdf_pose_bridge.tf_tree import TfTree
 from sdf_pose_bridge.topic_names import is_everything_too_much
 from sdf_pose_bridge.topic_names import LONGEST_NAME
 from sdf_pose_bridge.topic_names import MOST_BY_DEFAULT
-from sdf_pose_bridge.topic_names import patterns_of_nothing
-from sdf_pose_bridge.topic_names import topic_names_from_frame_ids
+from sdf_pose_bridge.topic_names import topics_from_patterns
 
 LONGEST_FULL_NAME = 246
 """Most characters that the middleware takes in the full name of a topic."""
@@ -51,52 +45,21 @@ class Outcome(NamedTuple):
     """The frames that had a transform before and have none now, sorted."""
 
 
-class _Transforms(NamedTuple):
-    """The transforms of a tree, which not every frame has."""
-
-    parent_ids: Sequence[str]
-    child_ids: Sequence[str]
-    poses: PoseArray
-
-    @classmethod
-    def from_tree(cls, tree: TfTree) -> _Transforms:
-        if '' not in tree.parent_ids:
-            return cls(tree.parent_ids, tree.frame_ids, tree.transforms)
-        rows = [row for row, parent_id in enumerate(tree.parent_ids) if parent_id]
-        return cls(
-            [tree.parent_ids[row] for row in rows], [tree.frame_ids[row] for row in rows],
-            tree.transforms[rows])
-
-
 class Publications:
     """
     Publishers of one node for the frames of a tree.
 
     :param node: the node that they belong to.
+    :param tf_static: the first of them, which may have published a tree already.
     """
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, tf_static: TfStatic) -> None:
         self._node = node
-        self._tf_static = self._publisher(TFMessage, '/tf_static', depth=1)
+        self._tf_static = tf_static
         self._transforms: Publisher | None = None
         self._children: frozenset[str] = frozenset()
         self._poses: dict[str, Publisher] = {}
         self._sent: list[tuple[Sequence[Publisher], StampedBytes]] = []
-        self._announced: TfTree | None = None
-
-    def publish_tf_static(self, tree: TfTree) -> None:
-        """
-        Publish the one message that most listeners wait for, before all others.
-
-        :param tree: a tree that :meth:`publish` is going to be called with.
-        """
-        transforms = _Transforms.from_tree(tree)
-        self._announced = tree
-        self._sent = []
-        messages = tf_message_bytes(*transforms)
-        self._sent.append(([self._tf_static], messages))
-        (data,) = messages.at(*self._now())
-        self._tf_static.publish(data)
 
     def publish(
         self, tree: TfTree, patterns: Sequence[str],
@@ -104,22 +67,23 @@ class Publications:
         """
         Publish a tree, in the place of the one before, in steps of milliseconds.
 
-        The first step has ``/tf_static``. All of them must be taken before anything else is asked.
+        The first step has ``/tf_static``, and the others have its stamp. All of them must be taken
+        before anything else is asked.
 
         :param tree: the tree.
         :param patterns: glob patterns for the frame ids that get a topic of their own.
         :return: what there is to know of it.
         """
-        if tree is not self._announced:
-            self.publish_tf_static(tree)
+        if tree is not self._tf_static.tree:
+            self._tf_static.publish(tree)
             yield
-        del self._sent[1:]
-        now = self._now()
-        transforms = _Transforms.from_tree(tree)
+        self._sent = []
+        now = self._tf_static.stamp
+        transforms = self._tf_static.transforms
         count = len(transforms.child_ids)
         publisher = self._transforms_publisher(count)
         yield from self._send_also([publisher] * count, transform_stamped_bytes(*transforms), now)
-        topics = self._topics_from_tree(tree, patterns)
+        topics = yield from self._topics_from_tree(tree, patterns)
         yield from self._replace_pose_publishers(topics)
         rows = [row for row, frame_id in enumerate(tree.frame_ids) if frame_id in topics]
         yield from self._send_also(
@@ -132,13 +96,9 @@ class Publications:
 
     def publish_again(self) -> Generator[None, None, None]:
         """Publish what was published last once more, with new stamps, in such steps."""
-        now = self._now()
+        self._tf_static.publish_again()
         for publishers, messages in self._sent:
-            yield from _sent(publishers, messages, now)
-
-    def _now(self) -> tuple[int, int]:
-        seconds, nanoseconds = self._node.get_clock().now().seconds_nanoseconds()
-        return seconds, nanoseconds
+            yield from _sent(publishers, messages, self._tf_static.stamp)
 
     def _send_also(
         self, publishers: Sequence[Publisher], messages: StampedBytes, stamp: tuple[int, int],
@@ -152,29 +112,34 @@ class Publications:
         if self._transforms is None or count != len(self._children) or not count:
             if self._transforms is not None:
                 self._node.destroy_publisher(self._transforms)
-            self._transforms = self._publisher(
-                TransformStamped, '~/transforms', depth=max(1, count))
+            self._transforms = latched_publisher(
+                self._node, TransformStamped, '~/transforms', depth=max(1, count))
         return self._transforms
 
-    def _topics_from_tree(self, tree: TfTree, patterns: Sequence[str]) -> dict[str, str]:
+    def _topics_from_tree(
+        self, tree: TfTree, patterns: Sequence[str],
+    ) -> Generator[None, None, dict[str, str]]:
+        logger = self._node.get_logger()
         if is_everything_too_much(tree.frame_ids, patterns):
-            self._node.get_logger().warning(
+            logger.warning(
                 f'no ~/poses/... topics: {len(tree.frame_ids)} frames are more than '
                 f'{MOST_BY_DEFAULT}; name those that you want in pose_topics, such as "robot/*", '
                 'or ask for all with "?*"')
             return {}
         room = LONGEST_FULL_NAME - len(f'{self._node.get_fully_qualified_name()}/poses/')
-        for pattern in patterns_of_nothing(tree.frame_ids, patterns):
-            self._node.get_logger().warning(
-                f'no ~/poses/... topics for "{pattern}" in pose_topics: no frame id matches it')
         try:
-            return topic_names_from_frame_ids(
+            names, idle = yield from topics_from_patterns(
                 tree.frame_ids, patterns, min(room, LONGEST_NAME))
         except ValueError:
-            self._node.get_logger().warning(
+            logger.warning(
                 'no ~/poses/... topics: the name of the node and its namespace are so long that '
                 'the names of topics would be longer than the middleware allows')
             return {}
+        if idle:
+            logger.warning(
+                f'no ~/poses/... topics for {names_in_line(idle)} in pose_topics: no frame id '
+                'matches')
+        return names
 
     def _replace_pose_publishers(self, topics: dict[str, str]) -> Generator[None, None, None]:
         wanted = set(topics.values())
@@ -188,20 +153,10 @@ class Publications:
             if name not in self._poses:
                 if not len(self._poses) % MADE_IN_STEP:
                     yield
-                self._poses[name] = self._publisher(PoseStamped, f'~/poses/{name}', depth=1)
+                self._poses[name] = latched_publisher(
+                    self._node, PoseStamped, f'~/poses/{name}', depth=1)
             if is_debugged:
                 logger.debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
-
-    def _publisher(self, message_type: type, name: str, *, depth: int) -> Publisher:
-        quality = QoSProfile(
-            history=HistoryPolicy.KEEP_LAST, depth=depth,
-            reliability=ReliabilityPolicy.RELIABLE,
-            durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        # The default callbacks only report listeners that ask for more than is offered, and there
-        # is no more to offer; but each would be waited on, a thousand of them for a large scene.
-        return self._node.create_publisher(
-            message_type, name, quality,
-            event_callbacks=PublisherEventCallbacks(use_default_callbacks=False))
 
 
 def _sent(

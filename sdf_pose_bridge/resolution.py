@@ -4,8 +4,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import numpy.typing as npt
 
 from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.frame_graph import FrameGraph
@@ -15,6 +16,9 @@ from sdf_pose_bridge.poses import pose_product
 from sdf_pose_bridge.poses import pose_products
 from sdf_pose_bridge.poses import PoseArray
 from sdf_pose_bridge.rotation import canonical_quaternion
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 
 def root_poses_from_graph(poses: PoseArray, graph: FrameGraph) -> PoseArray:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from urllib.parse import unquote
 from urllib.parse import urlsplit
 
-_SCHEME = re.compile(r'[A-Za-z][A-Za-z0-9+.-]*://')
+_SCHEME = r'[A-Za-z][A-Za-z0-9+.-]*://'
 _PATH_VARIABLES = ('GZ_SIM_RESOURCE_PATH', 'SDF_PATH')
 
 
@@ -43,11 +43,11 @@ class ResourceFinder(NamedTuple):
         :return: path of what was found, or None. Nothing is ever downloaded.
         """
         found = (os.fspath(path) for path in self._candidates(uri, including_file)
-                 if path.exists())
+                 if _exists(path))
         return next(found, None)
 
     def _candidates(self, uri: str, including_file: str) -> Iterator[Path]:
-        scheme = _SCHEME.match(uri)
+        scheme = re.match(_SCHEME, uri)
         name = uri[scheme.end():] if scheme else uri
         scheme_name = scheme.group()[:-3].lower() if scheme else ''
         if scheme_name in ('http', 'https'):
@@ -71,7 +71,7 @@ class ResourceFinder(NamedTuple):
         for prefix in self.package_prefixes:
             share = Path(prefix, 'share', package)
             marker = Path(prefix, 'share', 'ament_index', 'resource_index', 'packages', package)
-            if package and marker.exists():
+            if package and _exists(marker):
                 yield share / rest
 
     def _in_fuel_cache(self, uri: str) -> Iterator[Path]:
@@ -81,7 +81,10 @@ class ResourceFinder(NamedTuple):
         Its URIs read ``https://SERVER/1.0/OWNER/models/NAME[/VERSION][/files/REST]``, the cache
         has ``SERVER/owner/models/name/VERSION/REST``.
         """
-        parts = urlsplit(uri)
+        try:
+            parts = urlsplit(uri)
+        except ValueError:  # a host with one square bracket
+            return
         steps = [unquote(part) for part in parts.path.split('/') if part]
         if steps and re.fullmatch(r'[0-9]+\.[0-9]+', steps[0]):
             steps = steps[1:]
@@ -92,7 +95,7 @@ class ResourceFinder(NamedTuple):
         for part in steps[:3]:
             model = _entry_in_any_case(model, part)
         versions = [version]
-        if version == 'tip' and model.is_dir():
+        if version == 'tip' and _is_directory(model):
             numbers = [int(entry.name) for entry in model.iterdir() if entry.name.isdigit()]
             versions = [str(number) for number in sorted(numbers, reverse=True)]
         for candidate in versions:
@@ -122,10 +125,21 @@ def resource_finder(
     )
 
 
+# Those of Path raise an error for names that are too long, and what may not be looked at.
+
+
+def _exists(path: Path) -> bool:
+    return os.path.exists(path)  # noqa: PTH110
+
+
+def _is_directory(path: Path) -> bool:
+    return os.path.isdir(path)  # noqa: PTH112
+
+
 def _entry_in_any_case(directory: Path, name: str) -> Path:
     """Return the entry of a name; Gazebo's cache writes owners and models in lower case."""
     plain = directory / name
-    if plain.exists() or not directory.is_dir():
+    if _exists(plain) or not _is_directory(directory):
         return plain
     for entry in directory.iterdir():
         if entry.name.lower() == name.lower():

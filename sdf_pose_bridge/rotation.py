@@ -32,10 +32,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 from typing import overload
+from typing import TYPE_CHECKING
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sdf_pose_bridge import rotation_of_many
 from sdf_pose_bridge import rotation_of_one
@@ -44,6 +44,9 @@ from sdf_pose_bridge.rotation_checks import RotationError
 from sdf_pose_bridge.rotation_of_one import Quadruple
 from sdf_pose_bridge.rotation_of_one import Rows
 from sdf_pose_bridge.rotation_of_one import Triple
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 __all__ = [
     'RotationError',
@@ -62,8 +65,8 @@ __all__ = [
 
 One: TypeAlias = Sequence[float]
 OneMatrix: TypeAlias = Sequence[Sequence[float]]
-Many: TypeAlias = Floats | Sequence[Sequence[float]]
-ManyMatrices: TypeAlias = Floats | Sequence[Sequence[Sequence[float]]]
+Many: TypeAlias = 'Floats | Sequence[Sequence[float]]'
+ManyMatrices: TypeAlias = 'Floats | Sequence[Sequence[Sequence[float]]]'
 
 
 @overload

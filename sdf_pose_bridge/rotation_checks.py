@@ -6,12 +6,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats: TypeAlias = NDArray[np.float64]
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+Floats: TypeAlias = 'NDArray[np.float64]'
 
 MATRIX_TOLERANCE = 1e-5
 """How far a given matrix may be from a rotation; libfranka allows its matrices as much."""

@@ -11,10 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 import re
+from typing import TYPE_CHECKING
 from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import WHITE_SPACE
@@ -38,8 +38,11 @@ from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.sensor_facts import sensor_facts_from_xml
 
-_Flags: TypeAlias = npt.NDArray[np.bool_]
-_Rows: TypeAlias = npt.NDArray[np.intp]
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+_Flags: TypeAlias = 'npt.NDArray[np.bool_]'
+_Rows: TypeAlias = 'npt.NDArray[np.intp]'
 
 _INCLUDE = 253
 _NO_KIND = 254

@@ -26,10 +26,10 @@ from sdf_pose_bridge.content import content_from_settings
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.file_address import AddressError
 from sdf_pose_bridge.parameters import settings_from_node
-from sdf_pose_bridge.publications import Publications
 from sdf_pose_bridge.settings import Settings
 from sdf_pose_bridge.settings import SettingsError
 from sdf_pose_bridge.stop_request import StopRequest
+from sdf_pose_bridge.tf_static import TfStatic
 import sdf_pose_bridge_interfaces  # noqa: F401 - if missing, that comes out before anything is done
 
 NODE_NAME = 'sdf_pose_bridge'
@@ -97,11 +97,12 @@ def _exit_code_from_node(node: Node, stop: StopRequest) -> int:
         for line in lines_from_error(error):
             logger.fatal(line)
         return 1
-    publications = Publications(node)
-    publications.publish_tf_static(content.tree)
+    tf_static = TfStatic(node)
+    tf_static.publish(content.tree)
     # What others wait for is out, so there is time for everything else.
     from sdf_pose_bridge.node import SdfPoseBridge
-    bridge = SdfPoseBridge(node, publications)
+    from sdf_pose_bridge.publications import Publications
+    bridge = SdfPoseBridge(node, Publications(node, tf_static))
     bridge.serve(settings, content)
     gc.enable()
     _spin(node, stop)

@@ -8,9 +8,9 @@ from collections.abc import Mapping
 import dataclasses
 from functools import cached_property
 from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.elements import SensorFacts
@@ -24,6 +24,9 @@ from sdf_pose_bridge.poses import Pose
 from sdf_pose_bridge.poses import pose_inverse
 from sdf_pose_bridge.poses import pose_product
 from sdf_pose_bridge.poses import PoseArray
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 
 class Joint(NamedTuple):

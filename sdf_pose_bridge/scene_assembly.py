@@ -6,10 +6,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 from typing import TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
 from sdf_pose_bridge.elements import Elements
 from sdf_pose_bridge.elements import Indices
@@ -21,6 +21,9 @@ from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.resolution import root_poses_from_graph
 from sdf_pose_bridge.scene import Joint
 from sdf_pose_bridge.scene import Scene
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 _Scalar = TypeVar('_Scalar', bound=np.generic)
 

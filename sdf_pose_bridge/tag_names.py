@@ -6,12 +6,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import NamedTuple
+from typing import TYPE_CHECKING
+from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
-_Words = npt.NDArray[np.uint64]
-_Numbers = npt.NDArray[np.int16]
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+_Words: TypeAlias = 'npt.NDArray[np.uint64]'
+_Numbers: TypeAlias = 'npt.NDArray[np.int16]'
 
 WIDTH = 8
 """Bytes that are looked at together."""
@@ -126,7 +130,7 @@ def _step_from_names(
     rows: dict[tuple[int, int], list[int]] = {}
     for state, names in known.items():
         for name, number in names:
-            word = int.from_bytes(name[:WIDTH].ljust(WIDTH, b'\0'), 'little')
+            word = int.from_bytes(name[:WIDTH], 'little')
             row = rows.setdefault((state, word), [UNKNOWN, UNKNOWN])
             if len(name) < WIDTH:
                 row[0] = number

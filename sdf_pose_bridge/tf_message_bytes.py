@@ -14,13 +14,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import NamedTuple
+from typing import TYPE_CHECKING
+from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from sdf_pose_bridge.poses import PoseArray
 
-_Places = npt.NDArray[np.int64]
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+_Places: TypeAlias = 'npt.NDArray[np.int64]'
 
 _ENCAPSULATION = 4
 _COUNT = 4

@@ -12,14 +12,17 @@ from __future__ import annotations
 
 import enum
 from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene import Scene
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 OPTICAL_SUFFIX = '_optical'
 """Follows a camera's frame id in that of its optical frame, where the file names none."""

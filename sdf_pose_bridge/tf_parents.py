@@ -13,14 +13,17 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator
 from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.scene import Joint
 from sdf_pose_bridge.scene import Scene
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 NO_PARENT = -1
 

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 import enum
 from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.elements import SensorFacts
@@ -31,6 +31,9 @@ from sdf_pose_bridge.tf_names import FrameNames
 from sdf_pose_bridge.tf_names import FrameNaming
 from sdf_pose_bridge.tf_names import OPTICAL_SUFFIX
 from sdf_pose_bridge.tf_parents import tf_parents_from_scene
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 DEFAULT_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.FRAME, Kind.SENSOR})
 """The kinds of element that become frames unless others are asked for."""

@@ -26,13 +26,15 @@ depends on nothing but its frame id and the limit.
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from collections.abc import Iterable
 from collections.abc import Sequence
-from fnmatch import fnmatchcase
+import fnmatch
 from itertools import groupby
 from operator import itemgetter
 import re
 import string
+from typing import NamedTuple
 
 LONGEST_NAME = 160
 """
@@ -54,6 +56,28 @@ _CUT_LENGTH = len('_xh_') + 32
 
 MOST_BY_DEFAULT = 1000
 """So many topics are made without being asked for; each takes time to start, and memory."""
+
+COST_OF_PATTERN = 250
+"""As many frame ids are matched in the time that it takes to compile a pattern."""
+
+COST_OF_STEP = 10_000
+"""How many frame ids are matched in one step, if there are so many."""
+
+NAMED_IN_STEP = 1000
+"""How many frame ids are turned into names in one step."""
+
+
+class Topics(NamedTuple):
+    """What patterns mean for frame ids."""
+
+    names: dict[str, str]
+    """The names of the topics by frame id, in the order of the frame ids."""
+    idle: list[str]
+    """
+    The patterns that choose no frame, which are mostly mistakes.
+
+    ``*`` is none, and neither is an empty one, which stands for no topics.
+    """
 
 
 def topic_name_from_frame_id(frame_id: str, limit: int = LONGEST_NAME) -> str:
@@ -88,39 +112,40 @@ def is_everything_too_much(frame_ids: Sequence[str], patterns: Sequence[str]) ->
     return list(patterns) == ['*'] and len(frame_ids) > MOST_BY_DEFAULT
 
 
-def topic_names_from_frame_ids(
-    frame_ids: Iterable[str], patterns: Sequence[str], limit: int = LONGEST_NAME,
-) -> dict[str, str]:
+def topics_from_patterns(
+    frame_ids: Sequence[str], patterns: Iterable[str], limit: int = LONGEST_NAME,
+) -> Generator[None, None, Topics]:
     """
-    Choose the frames that get a topic, and name it.
+    Choose the frames that get a topic, and name it, in steps of milliseconds.
 
     :param frame_ids: all frame ids.
     :param patterns: glob patterns; ``*`` stands for any text, slashes included. A frame is chosen
         if any of them matches the whole of its id.
     :param limit: as for :func:`topic_name_from_frame_id`.
-    :return: the names of the topics by frame id, in the order given.
+    :return: the names.
     :raises ValueError: if the limit is too low.
     """
-    return {
-        frame_id: topic_name_from_frame_id(frame_id, limit) for frame_id in frame_ids
-        if any(fnmatchcase(frame_id, pattern) for pattern in patterns)
-    }
-
-
-def patterns_of_nothing(frame_ids: Iterable[str], patterns: Sequence[str]) -> list[str]:
-    """
-    Find the patterns that choose no frame, which are mostly mistakes.
-
-    :param frame_ids: all frame ids.
-    :param patterns: as for :func:`topic_names_from_frame_ids`; ``*`` is no mistake,
-        and neither is an empty one, which stands for no topics.
-    :return: those that match none of the frame ids.
-    """
-    ids = list(frame_ids)
-    return [
-        pattern for pattern in patterns
-        if pattern not in ('', '*')
-        and not any(fnmatchcase(frame_id, pattern) for frame_id in ids)]
+    chosen: set[str] = set()
+    idle = []
+    cost = 0
+    for pattern in dict.fromkeys(patterns):
+        cost += COST_OF_PATTERN + len(frame_ids)
+        if cost > COST_OF_STEP:
+            cost = 0
+            yield
+        # fnmatch keeps too few compiled patterns for a long list of them.
+        matches = re.compile(fnmatch.translate(pattern)).match
+        found = [frame_id for frame_id in frame_ids if matches(frame_id)]
+        chosen.update(found)
+        if not found and pattern not in ('', '*'):
+            idle.append(pattern)
+    names = {}
+    for number, frame_id in enumerate(frame_ids):
+        if not number % NAMED_IN_STEP:
+            yield
+        if frame_id in chosen:
+            names[frame_id] = topic_name_from_frame_id(frame_id, limit)
+    return Topics(names, idle)
 
 
 def _level_from_text(text: str) -> str:

@@ -38,16 +38,14 @@ from sdf_pose_bridge.pose_text import PoseText
 from sdf_pose_bridge.pose_text import PoseTextError
 from sdf_pose_bridge.problems import Problems
 
-# Patterns are left for `re` to compile when they are first needed, which in most files is never.
+# Patterns are left for `re` to compile when they are first needed, which for some is never.
 
 # What C's strtod takes: a number, and then whatever follows it.
 _NUMBER = r'[+-]?(?:[0-9]|\.[0-9]|inf|nan)'
-_PATTERNS = {
-    ValueType.INTEGER: r'[+-]?[0-9]|true|false',
-    ValueType.NUMBER: f'{_NUMBER}|true|false',
-    ValueType.TWO_NUMBERS: rf'{_NUMBER}\S*\s+{_NUMBER}',
-    ValueType.THREE_NUMBERS: rf'(?:{_NUMBER}\S*\s+){{2}}{_NUMBER}',
-}
+_INTEGER = r'[+-]?[0-9]'
+_TRUTH = 'true|false'
+"""Goes for a number, too."""
+_COUNTS = {ValueType.TWO_NUMBERS: 2, ValueType.THREE_NUMBERS: 3}
 _LEADING_NUMBER = r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?'
 _AXES = frozenset({('axis', 'xyz'), ('axis2', 'xyz')})
 _SMALLEST_AXIS = 1e-6
@@ -58,17 +56,17 @@ for _types in VALUE_TYPES.values():
         _TYPES_OF_TAG.setdefault(_tag, set()).add(_type)
 _VALUE_TAGS = sorted(_TYPES_OF_TAG)
 # What is certainly a good value of any element with the tag: without comments in it, which are
-# characters with the number 1 here. Values are separated by characters with the number 0.
+# characters with the number 1 here. A space and a character with the number 0 follow each value.
 _PLAIN_NUMBER = r'[+-]?(?:[0-9]|\.[0-9])'
 _PLAIN_PATTERNS = {
     ValueType.BOOLEAN: r'(?:true|false|0|1)\s*',
     ValueType.INTEGER: r'[+-]?[0-9][^\0\1]*',
     ValueType.NUMBER: rf'{_PLAIN_NUMBER}[^\0\1]*',
-    ValueType.TWO_NUMBERS: rf'{_PLAIN_NUMBER}[^\s\0\1]*\s+{_PLAIN_NUMBER}[^\0\1]*',
-    ValueType.THREE_NUMBERS: rf'(?:{_PLAIN_NUMBER}[^\s\0\1]*\s+){{2}}{_PLAIN_NUMBER}[^\0\1]*',
-    ValueType.COLOR:
-        r'(?:(?:0|1|0?\.[0-9]+|[01]\.0*)\s+){2,3}(?:0|1|0?\.[0-9]+|[01]\.0*)\s*',
+    ValueType.TWO_NUMBERS: rf'(?:{_PLAIN_NUMBER}[^\s\0\1]*\s+){{2}}[^\0\1]*',
+    ValueType.THREE_NUMBERS: rf'(?:{_PLAIN_NUMBER}[^\s\0\1]*\s+){{3}}[^\0\1]*',
+    ValueType.COLOR: r'(?:(?:0|1|0?\.[0-9]+|[01]\.0*)\s+){3,4}',
 }
+_END = ' \0'
 _NOT_NEGATIVE = '(?!-)'
 _NOT_ALL_ZERO = r'(?=[^eE\0]*\0)(?=[^\0]*?(?<![.0-9])(?:0*[1-9]|0*\.0{0,3}[1-9]))'
 _STRICTEST_FIRST = (
@@ -145,9 +143,9 @@ def _doubtful(tag: str, index: MarkupIndex) -> list[XmlElement]:
             return []
     texts = index.markup.texts(elements)
     pattern = _pattern(rule)
-    if pattern.fullmatch('\0'.join(set(texts)) + '\0'):
+    if pattern.fullmatch(_END.join(set(texts)) + _END):
         return []
-    is_doubtful = [not pattern.fullmatch(text + '\0') for text in texts]
+    is_doubtful = [not pattern.fullmatch(text + _END) for text in texts]
     return index.xmls_of(tag, elements[is_doubtful])
 
 
@@ -245,5 +243,10 @@ def _is_of_type(text: str, value_type: ValueType) -> bool:
         values = [float(number.group()) for number in numbers if number]
         return (len(values) == len(numbers) and len(values) in (3, 4)
                 and all(0.0 <= value <= 1.0 for value in values))
-    return re.match(_PATTERNS[value_type], text, re.IGNORECASE) is not None
+    count = _COUNTS.get(value_type, 1)
+    words = text.split()[:count]
+    number = _INTEGER if value_type is ValueType.INTEGER else _NUMBER
+    if len(words) == count and all(re.match(number, word, re.IGNORECASE) for word in words):
+        return True
+    return count == 1 and re.match(_TRUTH, text, re.IGNORECASE) is not None
 

@@ -25,8 +25,12 @@ def values_in_file():
     return content['ros__parameters']
 
 
-def test_there_is_every_parameter_and_no_other():
-    assert values_in_file().keys() == DEFAULTS.keys()
+def test_there_is_every_parameter_that_has_a_default_and_no_other():
+    assert values_in_file().keys() == DEFAULTS.keys() - {'sdf_file'}
+
+
+def test_a_running_node_keeps_its_file():
+    assert '    # sdf_file: ' in FILE.read_text(encoding='utf-8')
 
 
 @pytest.mark.parametrize('name', values_in_file())
@@ -46,7 +50,8 @@ def test_a_parameter_is_explained_above_it(name):
 def test_a_node_takes_it(make_node, tmp_path):
     copy = tmp_path / 'bridge.yaml'
     text = FILE.read_text(encoding='utf-8')
-    copy.write_text(text.replace("sdf_file: ''", 'sdf_file: cell.sdf'), encoding='utf-8')
+    text = text.replace('# sdf_file: package://my_robot/worlds/', 'sdf_file: ')
+    copy.write_text(text, encoding='utf-8')
     with_file = make_node('with_file', '--params-file', str(copy))
     without = make_node('without', '-p', 'sdf_file:=cell.sdf')
     assert settings_from_node(with_file) == settings_from_node(without)

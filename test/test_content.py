@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a load leaves behind: a node may go through thousands of them."""
+"""What a load leaves behind, as a node may go through thousands of them; and paths that fail."""
 
 import gc
 
@@ -44,3 +44,9 @@ def test_nothing_is_left_that_only_a_search_for_garbage_would_free(tmp_path, tex
         assert gc.collect() == 0
     finally:
         gc.enable()
+
+
+def test_a_path_that_is_too_long_is_said_to_be():
+    settings = settings_from_values({**VALUES, 'sdf_file': '/' + 'x' * 1000})
+    with pytest.raises(SdfError, match='File name too long'):
+        content_from_settings(settings)

@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / 'sdf_pose_bridge'
 ROS_HALF = {
     'background', 'bridge', 'content', 'conversion_services', 'diagnostics', 'messages', 'node',
-    'parameters', 'publications', 'running',
+    'parameters', 'publications', 'running', 'tf_static',
 }
 """The modules of the node; all others are the core and the command line."""
 

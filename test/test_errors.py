@@ -73,3 +73,12 @@ def test_errors_pass_between_processes(error):
 ])
 def test_hints(wanted, names, hint):
     assert hint_from_names(wanted, names) == hint
+
+
+@pytest.mark.parametrize(('wanted', 'hint'), [
+    ('robot_17/link_44', 'robot_17/link_4'), ('rbot_30/link_7', 'robot_30/link_7'),
+    ('robot_5_link_6', 'robot_5/link_6'), ('nothing', ''), ('', ''), ('x' * 100_000, ''),
+])
+def test_hints_among_many_names_that_are_alike(wanted, hint):
+    names = [f'robot_{robot}/link_{link}' for robot in range(1000) for link in range(10)]
+    assert hint_from_names(wanted, names) == (hint and f'; did you mean "{hint}"?')

@@ -33,6 +33,13 @@ def test_each_problem_of_the_settings_has_its_line():
     assert lines_from_error(error) == ['first', 'second']
 
 
+def test_a_flood_of_problems_of_the_settings_ends_with_its_size():
+    error = SettingsError([Problem('kinds', 'wrong')] * (MOST_ERRORS + 2))
+    lines = lines_from_error(error)
+    assert len(lines) == MOST_ERRORS + 1
+    assert lines[-1] == '2 more errors are not shown'
+
+
 @pytest.mark.parametrize(('name', 'shown'), [
     ('a\nb', r'a\nb'), ('a\r\x1b[31mb', r'a\r\x1b[31mb'), ('a\u2028b', r'a\u2028b'),
     ('größe 1', 'größe 1'),

@@ -22,6 +22,8 @@ def find(uri, tmp_path, paths=(), **environment):
 @pytest.mark.parametrize('uri', [
     'model://box', 'box', 'file://box', 'package://box', 'model://', '://box', 'http://x/box',
     'https://fuel.gazebosim.org/1.0/me/models', 'https://fuel.gazebosim.org/1.0/me/models/..',
+    'x' * 1000, 'package://' + 'x' * 1000, 'https://x/me/models/' + 'x' * 1000,
+    'https://[/1.0/me/models/box', 'a\x00b', 'https://x/me/models/a\x00b', 'package://a\x00b',
 ])
 def test_what_is_nowhere_is_not_found(uri, tmp_path):
     assert find(uri, tmp_path) is None

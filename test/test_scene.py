@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The scene: questions with a wrong name, poses of anything in anything, nothing to change."""
 
+import copy
 import dataclasses
 
 from matrices import assert_same_pose
@@ -210,6 +211,15 @@ def test_arrays_cannot_be_written(scene, name):
 def test_fields_cannot_be_set(scene, name):
     with pytest.raises((dataclasses.FrozenInstanceError, TypeError, AttributeError)):
         setattr(scene, name, ())
+
+
+def test_fields_cannot_be_deleted(scene):
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        del scene.poses
+
+
+def test_copy_of_a_scene_is_another_scene(scene):
+    assert scene != copy.copy(scene)
 
 
 @pytest.mark.parametrize('name', ['sensors', 'world_names'])

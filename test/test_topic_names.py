@@ -10,9 +10,9 @@ import pytest
 
 from sdf_pose_bridge.topic_names import is_everything_too_much
 from sdf_pose_bridge.topic_names import LONGEST_NAME
-from sdf_pose_bridge.topic_names import patterns_of_nothing
 from sdf_pose_bridge.topic_names import SHORTEST_LIMIT
 from sdf_pose_bridge.topic_names import topic_name_from_frame_id
+from sdf_pose_bridge.topic_names import topics_from_patterns
 
 # Letters that the escapes themselves are made of, so that look-alikes are common.
 ESCAPE_LIKE_TEXT = st.text(alphabet='xab0235_ /-hé', max_size=24)
@@ -136,9 +136,45 @@ def test_the_default_pattern_does_not_mean_thousands_of_topics(count, patterns, 
     assert is_everything_too_much(frame_ids, patterns) is is_too_much
 
 
+def topics(frame_ids, patterns, limit=LONGEST_NAME):
+    """Take all steps."""
+    steps = topics_from_patterns(frame_ids, patterns, limit)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return end.value
+
+
+@pytest.mark.parametrize(('patterns', 'chosen'), [
+    (['*'], ['a/b c', 'a/d', 'e']),
+    (['a/*', 'e', 'e'], ['a/b c', 'a/d', 'e']),
+    (['e', '?/d'], ['a/d', 'e']),
+    (['[ae]'], ['e']),
+    (['E', 'a'], []),
+    ([], []),
+])
+def test_patterns_choose_whole_frame_ids_in_their_order(patterns, chosen):
+    names = topics(['a/b c', 'a/d', 'e'], patterns).names
+    assert list(names) == chosen
+    assert all(name == topic_name_from_frame_id(frame_id) for frame_id, name in names.items())
+
+
 def test_patterns_that_match_nothing_are_found():
-    assert patterns_of_nothing(['a/b', 'c'], ['a::*', 'a/*', '*', 'C']) == ['a::*', 'C']
+    assert topics(['a/b', 'c'], ['a::*', 'a/*', '*', 'C']).idle == ['a::*', 'C']
 
 
 def test_an_empty_pattern_is_no_mistake():
-    assert patterns_of_nothing(['a'], ['', 'b']) == ['b']
+    assert topics(['a'], ['', 'b']).idle == ['b']
+
+
+def test_a_limit_that_leaves_no_room_is_refused():
+    with pytest.raises(ValueError, match='limit is 9'):
+        topics(['a'], ['*'], 9)
+
+
+@pytest.mark.parametrize(('frames', 'patterns'), [(30_000, 1), (5, 3000), (2000, 50)])
+def test_many_frames_or_patterns_are_chosen_in_many_steps(frames, patterns):
+    steps = topics_from_patterns(
+        [f'f{number}' for number in range(frames)], [f'f*{number}' for number in range(patterns)])
+    assert sum(1 for _ in steps) >= 10

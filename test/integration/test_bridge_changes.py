@@ -20,7 +20,10 @@ from changes import world
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import TransformStamped
 from listener import latched
+from rcl_interfaces.msg import Parameter
 from rcl_interfaces.srv import GetParameters
+from rcl_interfaces.srv import ListParameters
+from rcl_interfaces.srv import SetParameters
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge_interfaces.srv import LookupPose
@@ -95,6 +98,21 @@ def test_of_parameters_set_in_one_call_none_is_taken_if_one_is_wrong(bridge, sta
     assert [result.successful for result in results] == [False, False]
     assert 'parameter root_frame is ""' in results[0].reason
     assert value_of(listener, 'frame_prefix') == ''
+
+
+def test_what_is_dumped_can_be_loaded(bridge, start_listener):
+    listener = start_listener()
+    names = listener.call(
+        ListParameters, '/sdf_pose_bridge/list_parameters', ListParameters.Request()).result.names
+    values = listener.call(
+        GetParameters, '/sdf_pose_bridge/get_parameters',
+        GetParameters.Request(names=names)).values
+    assert {'sdf_file', 'start_type_description_service', 'use_sim_time'} <= set(names)
+    results = listener.call(
+        SetParameters, '/sdf_pose_bridge/set_parameters', SetParameters.Request(parameters=[
+            Parameter(name=name, value=value)
+            for name, value in zip(names, values, strict=True)])).results
+    assert [result.successful for result in results] == [True] * len(names), results[0].reason
 
 
 def test_a_replaced_file_is_read_again(bridge, file, start_listener):

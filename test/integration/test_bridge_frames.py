@@ -131,6 +131,13 @@ def test_transforms_arrive_one_by_one(listener):
     assert_expected_transforms(listener.transforms.values())
 
 
+def test_they_are_those_of_the_one_message_with_its_stamp(listener):
+    listener.wait(lambda: listener.tf_messages, lambda: '/tf_static')
+    listener.wait_for_keys(listener.transforms, PARENTS_AND_POSES)
+    (message,) = listener.tf_messages
+    assert {each.child_frame_id: each for each in message.transforms} == listener.transforms
+
+
 def test_every_frame_has_its_pose_in_the_root_frame(listener):
     listener.wait_for_keys(listener.poses, TOPICS.values())
     for frame, (_, pose) in PARENTS_AND_POSES.items():

@@ -1,0 +1,89 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a topic of poses costs the node, beside one of rclpy, each in a process of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+import subprocess
+import sys
+
+from benchmarks.harness import AtMostAsMuch
+from benchmarks.harness import AtMostTimes
+from benchmarks.harness import benchmark
+from benchmarks.harness import Function
+from benchmarks.harness import Held
+from benchmarks.harness import Took
+
+ROOT = Path(__file__).resolve().parents[1]
+TOPICS = 1000
+
+PROGRAM = """
+import sys
+import time
+
+from benchmarks.bench_publication import all_steps_of
+from benchmarks.bench_publication import latched_publisher
+from benchmarks.bench_publication import node
+from benchmarks.bench_publication import scene_of
+from geometry_msgs.msg import PoseStamped
+from sdf_pose_bridge.publications import Publications
+from sdf_pose_bridge.tf_static import TfStatic
+from sdf_pose_bridge.tf_tree import tf_tree_from_scene
+
+def memory_kb():
+    with open('/proc/self/status') as status:
+        return next(int(line.split()[1]) for line in status if line.startswith('VmRSS:'))
+
+def publish_as_the_bridge(ros, tree):
+    all_steps_of(publications.publish(tree, ('*',)))
+
+def publish_as_rclpy(ros, tree):
+    stamp = ros.get_clock().now().to_msg()
+    for frame_id, numbers in zip(tree.frame_ids, tree.poses.tolist(), strict=True):
+        message = PoseStamped()
+        message.header.stamp = stamp
+        message.header.frame_id = tree.root_frame
+        place, turn = message.pose.position, message.pose.orientation
+        place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w = numbers
+        publishers.append(latched_publisher(ros, PoseStamped, f'/poses/{frame_id}', 1))
+        publishers[-1].publish(message)
+
+publishers = []
+publish = publish_as_the_bridge if sys.argv[1] == 'bridge' else publish_as_rclpy
+tree = tf_tree_from_scene(scene_of(int(sys.argv[2]) // 10))
+assert len(tree.frame_ids) == int(sys.argv[2])
+with node() as ros:
+    publications = Publications(ros, TfStatic(ros))
+    # Whatever is needed only once is there after this.
+    all_steps_of(publications.publish(tree, tree.frame_ids[:1]))
+    latched_publisher(ros, PoseStamped, '/first', 1).publish(PoseStamped())
+    held = memory_kb()
+    begin = time.perf_counter()
+    publish(ros, tree)
+    print(time.perf_counter() - begin, 1024 * (memory_kb() - held))
+"""
+
+
+def cost_of_topic(whose: str) -> tuple[float, int]:
+    """Return the seconds and bytes that one topic takes in a new process."""
+    printed = subprocess.run(
+        [sys.executable, '-c', PROGRAM, whose, str(TOPICS)], cwd=ROOT, check=True,
+        capture_output=True, text=True).stdout
+    seconds, bytes_ = printed.split()
+    return float(seconds) / TOPICS, int(bytes_) // TOPICS
+
+
+@benchmark(
+    f'topic of poses made and sent, each of {TOPICS:,}', counterpart="rclpy's publisher",
+    goal=AtMostTimes(1.0))
+def time_of_topic() -> Iterator[tuple[Function, Function | None]]:
+    yield lambda: Took(cost_of_topic('bridge')[0]), lambda: Took(cost_of_topic('rclpy')[0])
+
+
+@benchmark(
+    f'topic of poses held, each of {TOPICS:,}', counterpart="rclpy's publisher",
+    goal=AtMostAsMuch(1.0))
+def memory_of_topic() -> Iterator[tuple[Function, Function | None]]:
+    yield lambda: Held(cost_of_topic('bridge')[1]), lambda: Held(cost_of_topic('rclpy')[1])
