@@ -14,28 +14,19 @@ from lxml import etree
 from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import value_of
-from sdf_pose_bridge.document import WHITE_SPACE
 from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.element_builder import ElementBuilder
 from sdf_pose_bridge.element_rows import Run
 from sdf_pose_bridge.elements import Elements
 from sdf_pose_bridge.elements import FrameFacts
-from sdf_pose_bridge.elements import JOINT_TYPES
-from sdf_pose_bridge.elements import JointFacts
 from sdf_pose_bridge.elements import ModelFacts
 from sdf_pose_bridge.elements import NOWHERE
-from sdf_pose_bridge.elements import Reference
-from sdf_pose_bridge.errors import AttributeInvalidError
-from sdf_pose_bridge.errors import AttributeMissingError
 from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementIncorrectTypeError
 from sdf_pose_bridge.errors import ElementInvalidError
-from sdf_pose_bridge.errors import ElementMissingError
-from sdf_pose_bridge.errors import JointChildError
-from sdf_pose_bridge.errors import JointParentError
 from sdf_pose_bridge.errors import MergeIncludeError
-from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.inclusions import DocumentSet
+from sdf_pose_bridge.joint_reader import joint_facts_from_xml
 from sdf_pose_bridge.markup_index import MarkupIndex
 from sdf_pose_bridge.name_claims import NameClaims
 from sdf_pose_bridge.names import Kind
@@ -49,7 +40,6 @@ if TYPE_CHECKING:
     from sdf_pose_bridge.include_reader import Include
     from sdf_pose_bridge.inclusion import Inclusion
 
-_NO_REFERENCE = Reference('', 0)
 _TOP_KINDS = {'model': Kind.MODEL, 'light': Kind.LIGHT, 'actor': Kind.ACTOR}
 _LINK_CHILD_KINDS = {
     'visual': Kind.VISUAL,
@@ -349,51 +339,10 @@ class _ElementReader:
             return
         joint = self._table.add(Kind.JOINT, xml, name, scope.holder, scope.holder)
         self._hang_on_proxy(joint, scope)
-        joint_type = self._joint_type(xml, joint)
-        expressed_in = [
-            Reference(scope.name(xyz.get('expressed_in', '').strip(WHITE_SPACE)),
-                      xyz.sourceline or 0)
-            for axis in xml.iterchildren('axis', 'axis2') for xyz in axis.iterchildren('xyz')]
-        self._table.columns.joints[joint] = JointFacts(
-            joint_type,
-            self._joint_end(xml, 'parent', joint, joint_type, scope),
-            self._joint_end(xml, 'child', joint, joint_type, scope),
-            tuple(reference for reference in expressed_in if reference.name))
+        self._table.columns.joints[joint] = joint_facts_from_xml(
+            xml, self._table, joint, scope.name)
         for child in xml.iterchildren('sensor'):
             self._sensor(child, joint, scope)
-
-    def _joint_type(self, xml: XmlElement, joint: int) -> str:
-        written = xml.get('type')
-        if written is None:
-            self._table.error(AttributeMissingError, xml, 'the joint has no type', joint, '')
-            return ''
-        joint_type = written.strip(WHITE_SPACE).lower()
-        if joint_type not in JOINT_TYPES:
-            known = ', '.join(sorted(JOINT_TYPES))
-            msg = f'"{written}" is no type of joint; known are {known}'
-            self._table.error(AttributeInvalidError, xml, msg, joint, '')
-        return joint_type
-
-    def _joint_end(
-        self, xml: XmlElement, end: str, joint: int, joint_type: str, scope: _Scope,
-    ) -> Reference:
-        element = next(xml.iterchildren(end), None)
-        name = '' if element is None else value_of(element)
-        if element is not None and not name:
-            msg = f'<{end}> is empty; it must name a frame'
-            self._table.error(ElementInvalidError, element, msg, joint, end)
-            return _NO_REFERENCE
-        if element is None:
-            missing = JointParentError if end == 'parent' else JointChildError
-            self._table.error(
-                missing if joint_type == 'ball' else ElementMissingError,
-                xml, f'the joint has no <{end}>; it must name a frame', joint, '')
-            return _NO_REFERENCE
-        if name == ROOT_FRAME:
-            msg = f'"{name}" is reserved; it cannot be the {end} of a joint'
-            self._table.error(ReservedNameError, element, msg, joint, end)
-            return _NO_REFERENCE
-        return Reference(scope.name(name), element.sourceline or 0)
 
     def _sensor(self, xml: XmlElement, parent: int, scope: _Scope) -> None:
         sensor = self._leaf(Kind.SENSOR, xml, parent, scope)

@@ -89,7 +89,8 @@ class Markup:
         self._by_number = np.argsort(self.numbers, kind='stable')
         self._firsts: list[int] = np.searchsorted(
             self.numbers[self._by_number], np.arange(len(KNOWN_TAGS.tags) + 1)).tolist()
-        self._quotes = _places(self._buffer, '"')
+        # The last one stands for all that are not there.
+        self._quotes = np.append(_places(self._buffer, '"'), 0)
         self._newlines = _places(self._buffer, '\n')
         # All elements in the order of their depths, and where each depth begins.
         self._by_depth = np.argsort(self._depths, kind='stable')
@@ -200,7 +201,7 @@ class Markup:
             mask = np.uint64((1 << 8 * len(part)) - 1)
             is_there &= words & mask == np.uint64(int.from_bytes(part, 'little'))
         begins = begins + len(written)
-        ends = self._quotes.take(np.searchsorted(self._quotes, begins), mode='clip')
+        ends = self._quotes[np.searchsorted(self._quotes[:-1], begins)]
         return np.where(is_there, begins, 0), np.where(is_there, ends, 0)
 
     def has_attributes(self, elements: Positions) -> npt.NDArray[np.bool_]:

@@ -80,6 +80,11 @@ def test_first_values_are_names_or_empty(content):
         assert name in ('', xml.get('name'), 'a&amp;b', 'a&gt;b')
 
 
+def test_a_text_without_double_quotes():
+    _, markup = found_in("<sdf version='1.9'><link name='a'/></sdf>")
+    assert markup.first_values(markup.of('link')) == ['']
+
+
 def test_a_second_value():
     _, markup = found_in(sdf(
         '<link name="a"/><link name="b" type="t"/><link name="c" type="t" more="x"/>'

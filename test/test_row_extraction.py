@@ -141,6 +141,11 @@ def test_something_odd_among_models(oddity):
                    f'<frame name="f"/><model name="m1">{LINK}</model>'))
 
 
+@pytest.mark.parametrize('oddity', ODDITIES)
+def test_something_odd_in_a_file_without_double_quotes(oddity):
+    assert_same_one_by_one(model_file(LINK + oddity).replace('"', "'"))
+
+
 @pytest.mark.parametrize('path', FILES, ids=lambda path: path.name)
 def test_files(path):
     assert_same_one_by_one(path.read_bytes())
