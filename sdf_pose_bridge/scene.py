@@ -100,7 +100,7 @@ class Scene:
         if not relative_to:
             return self.pose_of(index)
         reference = self.index(relative_to, world=world or self.world_of(index))
-        if self.roots[reference] != self.roots[index]:
+        if self._root_of[reference] != self._root_of[index]:
             msg = (f'"{frame}" and "{relative_to}" have nothing in common: one is in a world, the '
                    'other is the model beside it')
             raise UnknownFrameError(msg, Place(self.path))
@@ -123,8 +123,12 @@ class Scene:
         :param reference: index of the other, of the same root.
         :return: pose of the first in the second; unit quaternion with w >= 0.
         """
-        relative = pose_product(pose_inverse(self.pose_of(reference)), self.pose_of(index))
-        return Pose(*relative[:3], *_canonical(relative[3:]))
+        x, y, z, qx, qy, qz, qw = pose_product(
+            pose_inverse(self.pose_of(reference)), self.pose_of(index))
+        sign = -1.0 if qw < 0.0 else 1.0
+        # To add zero leaves no negative zeros.
+        return Pose(
+            x, y, z, sign * qx + 0.0, sign * qy + 0.0, sign * qz + 0.0, sign * qw + 0.0)
 
     def world_of(self, index: int) -> str:
         """
@@ -133,7 +137,7 @@ class Scene:
         :param index: its index.
         :return: the world's name; empty in a model file.
         """
-        return self.world_names.get(int(self.roots[index]), '')
+        return self.world_names.get(self._root_of[index], '')
 
     def has(self, name: str) -> bool:
         """
@@ -176,6 +180,11 @@ class Scene:
         return Place(self.files[self.file_indices[index]], int(self.lines[index]))
 
     @cached_property
+    def _root_of(self) -> list[int]:
+        roots: list[int] = self.roots.tolist()
+        return roots
+
+    @cached_property
     def _indices(self) -> dict[str, list[int]]:
         indices: dict[str, list[int]] = {}
         for index, name in enumerate(self.names):
@@ -196,9 +205,3 @@ class Scene:
 
 
 _FRAMES_AND_ROOTS = FRAME_KINDS | {Kind.WORLD, Kind.ROOT}
-
-
-def _canonical(quat_xyzw: tuple[float, ...]) -> tuple[float, ...]:
-    """Return a unit quaternion with w >= 0 and without negative zeros."""
-    sign = -1.0 if quat_xyzw[3] < 0.0 else 1.0
-    return tuple(sign * value + 0.0 for value in quat_xyzw)
