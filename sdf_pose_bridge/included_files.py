@@ -67,7 +67,9 @@ class IncludedFiles:
             element := next(include.iterchildren('uri'), None)) is not None else ''
         path = self._finder.path_from_uri(uri, document.path) if uri else None
         if path is None:
-            return Inclusion(None, 'nothing of that name was found')
+            return Inclusion(
+                None, 'nothing of that name was found beside the file or in the resource paths, '
+                'to which the variable GZ_SIM_RESOURCE_PATH adds')
         warnings: tuple[SdfWarning, ...] = ()
         if Path(path).is_dir():
             try:
