@@ -9,6 +9,7 @@ Such elements are told here from odd ones, which have to be looked at one by one
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from collections.abc import Iterator
 from collections.abc import Sequence
 from functools import cached_property
@@ -68,6 +69,8 @@ class Columns(NamedTuple):
     Rows stand in the order of the file. What is said of odd ones may be wrong.
     """
 
+    elements: _Rows
+    """Which of the elements of the document each row is about, in ascending order."""
     names: list[str]
     kinds: npt.NDArray[np.uint8]
     parents: Indices
@@ -77,6 +80,8 @@ class Columns(NamedTuple):
     lines: Indices
     pose_lines: Indices
     is_odd: npt.NDArray[np.bool_]
+    has_odd_name: npt.NDArray[np.bool_]
+    """Which of the odd ones may be called otherwise than is said here."""
     posed: _Rows
     """The rows that have a pose, in ascending order."""
     texts: list[str]
@@ -98,24 +103,22 @@ class ElementRows:
 
     :param columns: what is known of each row.
     :param root: the outermost element of the document.
-    :param tags: the tags of the elements that rows are about, and maybe of others.
-    :param top_tags: those of them that stand at the top.
-    :param places: for each row which of the elements with these tags it is.
+    :param top_tags: the tags of rows that stand at the top.
+    :param xmls_of_rows: returns the elements of the tree that rows are about, as far as it has
+        them, and which rows these are.
     """
 
     def __init__(
         self,
         columns: Columns,
         root: XmlElement,
-        tags: Sequence[str],
         top_tags: Sequence[str],
-        places: _Rows,
+        xmls_of_rows: Callable[[], tuple[_Rows, list[XmlElement]]],
     ) -> None:
         self.columns = columns
         self._root = root
-        self._tags = tags
         self._top_tags = top_tags
-        self._places = places
+        self._xmls_of_rows = xmls_of_rows
         parents = columns.parents
         self._odd_before = np.append(0, np.cumsum(columns.is_odd))
         self._by_parent = np.argsort(parents, kind='stable')
@@ -162,7 +165,7 @@ class ElementRows:
         borders = np.flatnonzero(is_odd[1:] | is_odd[:-1]) + 1
         for begin, end in itertools.pairwise([0, *borders.tolist(), len(children)]):
             if is_odd[begin]:
-                yield self._xmls[children[begin]]
+                yield self._xmls[int(children[begin])]
             else:
                 yield Run(int(children[begin]), int(ends[end - 1]), children[begin:end])
 
@@ -183,10 +186,10 @@ class ElementRows:
         return len(self.columns.names)
 
     @cached_property
-    def _xmls(self) -> list[XmlElement]:
-        found = list(self._root.iter(*self._tags))
-        return [found[place] for place in self._places.tolist()]
+    def _xmls(self) -> dict[int, XmlElement]:
+        rows, xmls = self._xmls_of_rows()
+        return dict(zip(rows.tolist(), xmls, strict=True))
 
     @cached_property
     def _rows_of_xmls(self) -> dict[XmlElement, int]:
-        return dict(zip(self._xmls, range(len(self._xmls)), strict=True))
+        return {xml: row for row, xml in self._xmls.items()}

@@ -241,6 +241,15 @@ for _value_type, _table in (
     for _parent, _tags in _table.items():
         VALUE_TYPES.setdefault(_parent, {}).update(dict.fromkeys(_tags.split(), _value_type))
 
+VALUE_TAGS = tuple(dict.fromkeys(_tag for _types in VALUE_TYPES.values() for _tag in _types))
+"""Tags of elements whose value has a type, at least in some parents."""
+
+AXES = frozenset({('axis', 'xyz'), ('axis2', 'xyz')})
+"""Elements that hold a direction, by the parent's tag and their own."""
+
+MATERIAL_TAGS = ('script', 'shader')
+"""Tags of what has to be whole in a material."""
+
 REQUIRED_ATTRIBUTES = {
     'actor': 'name',
     'battery': 'name',

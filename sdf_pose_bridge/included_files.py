@@ -9,10 +9,11 @@ import os
 from pathlib import Path
 
 from sdf_pose_bridge.document import Document
-from sdf_pose_bridge.document import document_from_file
 from sdf_pose_bridge.document import is_data
 from sdf_pose_bridge.document import value_of
 from sdf_pose_bridge.document import XmlElement
+from sdf_pose_bridge.document_reading import document_from_file
+from sdf_pose_bridge.document_reading import whole_document
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
@@ -21,6 +22,7 @@ from sdf_pose_bridge.expansion import expanded
 from sdf_pose_bridge.include_params import apply_params
 from sdf_pose_bridge.include_params import params_of
 from sdf_pose_bridge.inclusion import Inclusion
+from sdf_pose_bridge.inclusion import is_merge
 from sdf_pose_bridge.inclusions import DEEPEST
 from sdf_pose_bridge.manifest import model_file_from_directory
 from sdf_pose_bridge.resources import ResourceFinder
@@ -87,6 +89,10 @@ class IncludedFiles:
         if real not in self._known:
             self._known[real] = self._read(path, (*chain, real))
         known = self._known[real]
+        read = known.document
+        if read is not None and read.elements is not None and is_merge(include):
+            # Its elements come into another scope, where none can be told to be regular.
+            known = self._known[real] = known._replace(document=whole_document(read))
         inclusion = known._replace(warnings=(*known.warnings, *warnings))
         params = params_of(include)
         if params is None or inclusion.document is None:

@@ -4,16 +4,20 @@
 
 from __future__ import annotations
 
+from sdf_pose_bridge.grammar import MATERIAL_TAGS
 from sdf_pose_bridge.grammar import REQUIRED_ATTRIBUTES
-from sdf_pose_bridge.grammar import VALUE_TYPES
+from sdf_pose_bridge.grammar import VALUE_TAGS
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.tag_names import TagNames
 
 HOLDERS_OF_POSES = ('waypoint', 'camera', 'audio_source', 'population')
 """Tags of elements whose poses are no frames' poses."""
 
+CHECKED_TAGS = tuple(dict.fromkeys((
+    *VALUE_TAGS, *REQUIRED_ATTRIBUTES, *MATERIAL_TAGS, *HOLDERS_OF_POSES, 'state')))
+"""Tags of elements that have values which no stage reads for itself."""
+
 KNOWN_TAGS = TagNames(tuple(dict.fromkeys((
     'sdf', 'include', *(kind.label for kind in Kind if kind is not Kind.ROOT),
-    'pose', 'static', 'parent', 'child', 'axis', 'axis2', 'xyz',
-    *(tag for types in VALUE_TYPES.values() for tag in types),
-    *REQUIRED_ATTRIBUTES, 'script', *HOLDERS_OF_POSES, 'state'))))
+    'pose', 'static', 'parent', 'child', 'axis', 'axis2', 'xyz', 'use_parent_model_frame',
+    'gz_frame_id', 'ignition_frame_id', 'optical_frame_id', *CHECKED_TAGS))))

@@ -13,13 +13,14 @@ import gc
 import os
 
 from sdf_pose_bridge.document import Document
-from sdf_pose_bridge.document import document_from_file
-from sdf_pose_bridge.document import document_from_text
 from sdf_pose_bridge.document import XmlElement
+from sdf_pose_bridge.document_reading import document_from_file
+from sdf_pose_bridge.document_reading import document_from_text
 from sdf_pose_bridge.element_reader import elements_from_documents
 from sdf_pose_bridge.frame_graph import frame_graph_from_elements
 from sdf_pose_bridge.inclusions import document_set
 from sdf_pose_bridge.inclusions import DocumentSet
+from sdf_pose_bridge.markup_index import index_of_document
 from sdf_pose_bridge.markup_index import MarkupIndex
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.resources import resource_finder
@@ -111,9 +112,7 @@ def _resolved_scene(
     documents = document_set(document, resource_finder(resource_paths, os.environ))
     problems = Problems(documents.files)
     indices = {
-        each.root: MarkupIndex(
-            each.root, None if each.search is None else each.search.markup(),
-            is_changed=each.root in documents.changed)
+        each.root: index_of_document(each, is_changed=each.root in documents.changed)
         for each in documents.all_documents()}
     for each in documents.all_documents():
         check_values(each, indices[each.root], problems)

@@ -8,13 +8,13 @@ import os
 from pathlib import Path
 from typing import NamedTuple
 
-from sdf_pose_bridge.document import root_from_file
 from sdf_pose_bridge.document import text_of
 from sdf_pose_bridge.document import WHITE_SPACE
 from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.xml_reading import root_from_file
 
 _NAMES = ('model.config', 'manifest.xml')
 _NEWEST = (1, 12)

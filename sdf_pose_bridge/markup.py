@@ -11,9 +11,7 @@ each element of the tree, and makes no object for each.
 from __future__ import annotations
 
 from collections.abc import Iterable
-import contextlib
 import re
-import threading
 from typing import NamedTuple
 from typing import TYPE_CHECKING
 from typing import TypeAlias
@@ -40,8 +38,6 @@ _NAME_LENGTHS = np.array([1 + len(tag) for tag in KNOWN_TAGS.tags])
 _NAME_LENGTHS.setflags(write=False)
 
 _BLOCK = 1 << 18
-_LONG = 1 << 18
-"""Bytes of a text for which another thread is worth while."""
 
 _Flags: TypeAlias = 'npt.NDArray[np.bool_]'
 
@@ -60,18 +56,35 @@ class _Tags(NamedTuple):
     """How many elements are open before each."""
 
 
+class Spans(NamedTuple):
+    """Where elements stand, with all that they hold."""
+
+    begins: Positions
+    """Where each start tag begins."""
+    ends: Positions
+    """Where what follows each begins."""
+    first_tags: Positions
+    """Which of all tags each begins with."""
+    last_tags: Positions
+    """Which of all tags each ends with."""
+
+
 class Markup:
     """
     The elements with known tags that a text has, in their order.
 
-    :param text: XML, with nothing in brackets but tags.
-    :param tags: where these are.
+    :param text: XML, with nothing in brackets but tags and comments.
+    :param plain: the same with :data:`COMMENT` in the place of each character of a comment.
+    :param tags: where the tags are.
     """
 
-    def __init__(self, text: bytes, tags: _Tags) -> None:
+    def __init__(self, text: bytes, plain: bytes, tags: _Tags) -> None:
         begins, ends, is_closing, is_empty, depths = tags
-        self._text = text
-        self._buffer = np.frombuffer(text, np.uint8)
+        self.text = text
+        """The text, as it is written."""
+        self._plain = plain
+        self._all_tags = tags
+        self._buffer = np.frombuffer(plain, np.uint8)
         self._words = words_from_text(self._buffer)
         starts = np.flatnonzero(~is_closing)
         numbers = KNOWN_TAGS.numbers_from_text(self._buffer, begins[starts] + 1)
@@ -79,12 +92,12 @@ class Markup:
         self._ordinals = np.flatnonzero(numbers != UNKNOWN)
         self.numbers: npt.NDArray[np.int16] = numbers[self._ordinals]
         """The tag of each element, as a number of the known tags."""
-        chosen = starts[self._ordinals]
+        self._tags = chosen = starts[self._ordinals]
         self._begins = begins[chosen]
         self._ends = ends[chosen]
         self._content_ends = self._ends - is_empty[chosen]
         # What follows is another tag, that of a child or of the end.
-        following = np.append(begins, len(text))[chosen + 1]
+        following = np.append(begins, len(plain))[chosen + 1]
         self._text_ends = np.where(is_empty[chosen], self._ends + 1, following)
         self._by_number = np.argsort(self.numbers, kind='stable')
         self._firsts: list[int] = np.searchsorted(
@@ -95,6 +108,63 @@ class Markup:
         # All elements in the order of their depths, and where each depth begins.
         self._by_depth = np.argsort(self._depths, kind='stable')
         self._depth_borders: list[int] = [0, *np.cumsum(np.bincount(self._depths)).tolist()]
+
+    @property
+    def deepest(self) -> int:
+        """How many elements stand around the one that stands deepest."""
+        return int(self._depths.max())
+
+    @property
+    def longest_text(self) -> int:
+        """Length of the longest run of characters between two tags, in bytes."""
+        tags = self._all_tags
+        return int((tags.begins[1:] - tags.ends[:-1]).max(initial=0))
+
+    @property
+    def begins(self) -> Positions:
+        """Where the start tag of each element begins."""
+        return self._begins
+
+    @property
+    def has_tail(self) -> bool:
+        """Whether anything follows the outermost element."""
+        return bool(self.text[self._all_tags.ends[-1] + 1:].strip())
+
+    def head(self) -> bytes:
+        """
+        Return what comes before the content of the outermost element.
+
+        :return: the text up to the end of its start tag, as that of an empty element.
+        """
+        return self.text[:self._all_tags.ends[0]].removesuffix(b'/') + b'/>'
+
+    def spans(self, elements: Positions) -> Spans:
+        """
+        Tell where elements begin and end.
+
+        :param elements: their indices.
+        :return: their places.
+        """
+        tags, first_tags = self._all_tags, self._tags[elements]
+        last_tags = first_tags.copy()
+        depths = np.where(tags.is_empty[first_tags], -1, tags.depths[first_tags])
+        for depth in (np.flatnonzero(np.bincount(depths + 1)[1:])).tolist():
+            here = np.flatnonzero(depths == depth)
+            closing = np.flatnonzero(tags.is_closing & (tags.depths == depth + 1))
+            last_tags[here] = closing[np.searchsorted(closing, first_tags[here])]
+        return Spans(tags.begins[first_tags], tags.ends[last_tags] + 1, first_tags, last_tags)
+
+    def newlines_between(self, begins: Positions, ends: Positions) -> Positions:
+        """
+        Count the lines that parts of the text go over.
+
+        :param begins: where each part begins.
+        :param ends: where what follows each begins.
+        :return: the number of line ends in each.
+        """
+        counts: Positions = np.searchsorted(self._newlines, ends) - np.searchsorted(
+            self._newlines, begins)
+        return counts
 
     def present(self, tags: Iterable[str]) -> list[str]:
         """
@@ -238,48 +308,11 @@ class Markup:
     def _cut(self, begins: Positions, ends: Positions) -> list[str]:
         if not len(begins):
             return []
-        text = self._text
+        text = self._plain
         pieces = [text[begin:end] for begin, end in zip(
             begins.tolist(), ends.tolist(), strict=True)]
         # To decode one long text is quicker than many short ones; XML has no zero bytes.
         return b'\0'.join(pieces).decode().split('\0')
-
-
-class Search:
-    """
-    Finds the elements of a text, beside whatever else is done if it is long.
-
-    :param text: what is given to a parser, which tells whether it is well-formed; in UTF-8.
-    """
-
-    def __init__(self, text: bytes) -> None:
-        self._text = text
-        self._thread: threading.Thread | None = None
-        self._found: Markup | None = None
-        self._is_done = False
-        if len(text) > _LONG:
-            # A parser leaves other threads alone, and so do most operations on arrays.
-            self._thread = threading.Thread(target=self._search, daemon=True)
-            self._thread.start()
-
-    def markup(self) -> Markup | None:
-        """
-        Return what was found, for a text that is well-formed.
-
-        :return: the elements; None if there is more in brackets than tags and comments.
-        """
-        if not self._is_done:
-            if self._thread is None:
-                self._search()
-            else:
-                self._thread.join()
-        return self._found
-
-    def _search(self) -> None:
-        # Of a text that is not well-formed nobody wants to know.
-        with contextlib.suppress(ValueError, IndexError):
-            self._found = markup_from_text(self._text)
-        self._is_done = True
 
 
 def markup_from_text(text: bytes) -> Markup | None:
@@ -291,7 +324,7 @@ def markup_from_text(text: bytes) -> Markup | None:
     """
     plain = _without_comments(text)
     tags = _tags_from_text(plain)
-    return None if tags is None else Markup(plain, tags)
+    return None if tags is None else Markup(text, plain, tags)
 
 
 def _without_comments(text: bytes) -> bytes:

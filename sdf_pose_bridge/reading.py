@@ -27,7 +27,6 @@ from sdf_pose_bridge.inclusions import DEEPEST
 from sdf_pose_bridge.markup_index import MarkupIndex
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.row_extraction import rows_from_index
 from sdf_pose_bridge.versions import may_hold_flat_names
 from sdf_pose_bridge.versions import Version
 from sdf_pose_bridge.versions import version_of
@@ -54,7 +53,6 @@ class Reading:
         self._document = document
         self._file = 0
         self._open_files = [0]
-        self._rows: dict[XmlElement, ElementRows] = {}
         self.columns = ElementColumns()
 
     def rows(self) -> ElementRows | None:
@@ -65,10 +63,7 @@ class Reading:
         """
         if self._document.origins:
             return None
-        root = self._document.root
-        if root not in self._rows:
-            self._rows[root] = rows_from_index(self._indices[root])
-        return self._rows[root]
+        return self._indices[self._document.root].rows
 
     def version_of_element(self, index: int) -> Version:
         """

@@ -45,14 +45,26 @@ def version_of(document: Document) -> Version:
     :return: its version.
     :raises ConversionError: if SDFormat has no such version, or it is older than 1.2.
     """
-    text = document.version
+    version = version_from_text(document.version)
+    if version is None:
+        msg = f'version="{document.version}" is none that can be read; 1.2 to 1.12 can'
+        raise ConversionError(msg, Place(document.path, document.root.sourceline or 0, '/sdf'))
+    return version
+
+
+def version_from_text(text: str) -> Version | None:
+    """
+    Read a version.
+
+    :param text: such as ``1.10``.
+    :return: the version; None if SDFormat has no such version, or it is older than 1.2.
+    """
     major, _, minor = text.partition('.')
     if text.isascii() and major.isdigit() and minor.isdigit() and len(text) < 10:
         version = Version(int(major), int(minor))
         if OLDEST <= version <= NEWEST and text == f'{version.major}.{version.minor}':
             return version
-    msg = f'version="{text}" is none that can be read; 1.2 to 1.12 can'
-    raise ConversionError(msg, Place(document.path, document.root.sourceline or 0, '/sdf'))
+    return None
 
 
 def upgrade(document: Document) -> bool:
@@ -60,23 +72,42 @@ def upgrade(document: Document) -> bool:
     Convert a document in place, by the rules of the version that it declares.
 
     :param document: a file as it was read; afterwards it has the meaning of version 1.12.
-    :return: whether its tree may differ from its text now.
+    :return: whether names in its tree may differ from those in its text now.
     :raises ConversionError: if its version is unknown, or names in it cannot be converted.
     """
     version = version_of(document)
-    changes = 0
-    if version < _JOINTS_TURN_WITH_LINKS:
-        changes += _turn_axes_with_model(document.root)
-    if version < _FRAME_ATTRIBUTE_ENDS:
-        changes += _rename_frame_attributes(document)
-        changes += _express_axes_in_model(document.root)
-    if version < _FLAT_NAMES_END and document.may_hold_separators:
-        changes += 1
-        # Few old files hold such names.
-        from sdf_pose_bridge.unflattening import unflatten_model
-        for model in document.root.iterfind('world/model'):
-            unflatten_model(model, document.path)
-    return changes > 0
+    if turns_axes_with_model(version):
+        _turn_axes_with_model(document.root)
+    if has_frame_attributes(version):
+        _rename_frame_attributes(document.root)
+        _express_axes_in_model(document.root)
+    if not may_hold_flat_names(version) or not document.may_hold_separators:
+        return False
+    # Few old files hold such names.
+    from sdf_pose_bridge.unflattening import unflatten_model
+    for model in document.root.iterfind('world/model'):
+        unflatten_model(model, document.path)
+    return True
+
+
+def turns_axes_with_model(version: Version) -> bool:
+    """
+    Tell whether axes of joints are given in the model frame if nothing else is said.
+
+    :param version: the version that the file declares.
+    :return: true below 1.5.
+    """
+    return version < _JOINTS_TURN_WITH_LINKS
+
+
+def has_frame_attributes(version: Version) -> bool:
+    """
+    Tell whether ``frame`` is what ``relative_to`` is now, and a flag what ``expressed_in`` is.
+
+    :param version: the version that the file declares.
+    :return: true below 1.7.
+    """
+    return version < _FRAME_ATTRIBUTE_ENDS
 
 
 def may_hold_flat_names(version: Version) -> bool:
@@ -99,8 +130,7 @@ def renames_clashes(version: Version) -> bool:
     return version < _FRAME_ATTRIBUTE_ENDS
 
 
-def _turn_axes_with_model(root: XmlElement) -> int:
-    count = 0
+def _turn_axes_with_model(root: XmlElement) -> None:
     models = (model for holder in (root, *root.iterchildren('world'))
               for model in holder.iterchildren('model'))
     for axis in (axis for model in models for joint in model.iterchildren('joint')
@@ -108,26 +138,17 @@ def _turn_axes_with_model(root: XmlElement) -> int:
         xyz = next(axis.iterchildren('xyz'), None)
         if xyz is not None and next(axis.iterchildren('use_parent_model_frame'), None) is None:
             xyz.set('expressed_in', MODEL_FRAME)
-            count += 1
-    return count
 
 
-def _rename_frame_attributes(document: Document) -> int:
-    markup = None if document.search is None else document.search.markup()
-    if markup is not None and not markup.has_attributes(markup.of('pose')).any():
-        return 0
-    count = 0
-    for pose in document.root.iter('pose'):
+def _rename_frame_attributes(root: XmlElement) -> None:
+    for pose in root.iter('pose'):
         frame = pose.get('frame')
         if frame is not None and is_data(pose):
             del pose.attrib['frame']
             pose.set('relative_to', frame)
-            count += 1
-    return count
 
 
-def _express_axes_in_model(root: XmlElement) -> int:
-    count = 0
+def _express_axes_in_model(root: XmlElement) -> None:
     for flag in list(root.iter('use_parent_model_frame')):
         axis = flag.getparent()
         if axis is None or not is_data(flag):
@@ -135,6 +156,5 @@ def _express_axes_in_model(root: XmlElement) -> int:
         xyz = axis.find('xyz')
         if boolean_from_text(text_of(flag)) and xyz is not None:
             xyz.set('expressed_in', MODEL_FRAME)
-        axis.remove(flag)
-        count += 1
-    return count
+        if not len(flag):  # what has no place in it stays where it is
+            axis.remove(flag)

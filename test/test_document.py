@@ -14,9 +14,9 @@ from sdf_texts import only_error
 
 import sdf_pose_bridge
 from sdf_pose_bridge.document import boolean_from_text
-from sdf_pose_bridge.document import document_from_text
 from sdf_pose_bridge.document import text_of
 from sdf_pose_bridge.document import value_of
+from sdf_pose_bridge.document_reading import document_from_text
 
 LINK = '<link name="l"/>'
 POSED_LINK = '<link name="l"><pose>1 2 3 0 0 0</pose></link>'

@@ -4,7 +4,7 @@
 
 import pytest
 
-from sdf_pose_bridge.document import document_from_file
+from sdf_pose_bridge.document_reading import document_from_file
 from sdf_pose_bridge.expansion import expanded
 from sdf_pose_bridge.inclusions import document_set
 from sdf_pose_bridge.resources import resource_finder

@@ -6,12 +6,12 @@ from lxml import etree
 import numpy as np
 import pytest
 
-from sdf_pose_bridge.document import document_from_text
+from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import text_of
-from sdf_pose_bridge.errors import FileReadError
+from sdf_pose_bridge.document_reading import document_from_text
 from sdf_pose_bridge.known_tags import KNOWN_TAGS
 from sdf_pose_bridge.markup import COMMENT
-from sdf_pose_bridge.markup_index import MarkupIndex
+from sdf_pose_bridge.markup_index import index_of_document
 
 TAGS = KNOWN_TAGS.tags
 TEXTS = {
@@ -32,8 +32,7 @@ TEXTS = {
 
 def index_of(text):
     document = document_from_text(text, 'x.sdf')
-    markup = document.search.markup() if document.search else None
-    return document.root, MarkupIndex(document.root, markup)
+    return document.root, index_of_document(document)
 
 
 def found_in(text):
@@ -107,22 +106,10 @@ def test_another_encoding():
     assert markup.first_values(markup.of('model')) == ['é']
 
 
-def test_a_long_text_is_searched_beside_its_parse():
-    count = 20_000
-    root, index = index_of(sdf(count * '<link name="l"><pose/></link>'))
-    assert len(index.markup.of('link')) == count == len(root)
-    assert index.lines(index.markup.of('pose')).tolist() == count * [2]
-
-
-def test_a_long_text_that_is_not_well_formed_is_refused():
-    with pytest.raises(FileReadError):
-        index_of(sdf(20_000 * '<link><<pose/></link>'))
-
-
 def test_a_tree_that_has_changed():
     root = etree.fromstring('<sdf>\n<link name="a"/>\n</sdf>')
     etree.SubElement(root, 'link', name='b')
-    index = MarkupIndex(root, None)
+    index = index_of_document(Document('x.sdf', root, '1.9'))
     links = index.markup.of('link')
     assert index.markup.first_values(links) == ['a', 'b']
     assert index.lines(links).tolist()[0] == 2
@@ -131,6 +118,6 @@ def test_a_tree_that_has_changed():
 def test_xmls_of_some():
     root, index = index_of(sdf('<link name="a"/><model/><link name="b"/>'))
     links = index.markup.of('link')
-    assert [xml.get('name') for xml in index.xmls_of('link', links[1:])] == ['b']
-    assert index.xmls('pose') == []
-    assert index.xmls('link') == list(root.iter('link'))
+    assert [xml.get('name') for xml in index.xmls_of(('link',), links[1:])] == ['b']
+    assert index.xmls_of(('pose',), index.markup.of('pose')) == []
+    assert index.xmls_of(('link', 'model'), np.arange(1, 4)) == list(root)

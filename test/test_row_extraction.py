@@ -18,7 +18,9 @@ from sdf_texts import model_file
 from sdf_texts import world_file
 
 import sdf_pose_bridge
-from sdf_pose_bridge import value_checks
+from sdf_pose_bridge import document_reading
+from sdf_pose_bridge import markup_index
+from sdf_pose_bridge.known_tags import CHECKED_TAGS
 from sdf_pose_bridge.reading import Reading
 
 HERE = Path(__file__).parent
@@ -120,11 +122,18 @@ def outcome(text):
 
 
 def assert_same_one_by_one(text):
-    many = outcome(text)
+    whole = outcome(text)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(document_reading, '_LARGE', 0)
+        without_regular_part = outcome(text)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Reading, 'rows', lambda _reading: None)
-        patch.setattr(value_checks, '_doubtful', lambda tag, index: index.xmls(tag))
-        assert many == outcome(text)
+        patch.setattr(
+            markup_index, 'doubtful_elements',
+            lambda markup: {tag: markup.of(tag) for tag in markup.present(CHECKED_TAGS)})
+        one_by_one = outcome(text)
+    assert whole == one_by_one
+    assert without_regular_part == one_by_one
 
 
 @pytest.mark.parametrize('version', ['1.9', '1.6', '1.4'])

@@ -1,0 +1,178 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Read XML into a tree, or only find out whether it is well-formed.
+
+A file is hostile until it is read: no external entities, no expansion, no network, and the depth
+and the sizes that libxml2 allows without its "huge" option.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+import threading
+
+from lxml import etree
+
+from sdf_pose_bridge.document import XmlElement
+from sdf_pose_bridge.errors import FileReadError
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import SdfWarning
+
+_IGNORED_ERRORS = frozenset({
+    'NS_ERR_UNDEFINED_NAMESPACE', 'NS_ERR_QNAME', 'NS_ERR_COLON', 'DTD_ID_REDEFINED'})
+"""Prefixes that are not declared are common in SDF files, and only libxml2 minds them; nor has
+``xml:id`` a meaning in SDFormat."""
+
+_FORGIVEN_ERRORS = frozenset({'ERR_HYPHEN_IN_COMMENT', 'ERR_DOCUMENT_END'})
+"""Two hyphens in a comment, something after the outermost element: libsdformat reads on."""
+
+_DECLARATION_ERROR = 'ERR_RESERVED_XML_NAME'
+"""A declaration that is not at the start; only white space before it is forgiven."""
+
+_LONG = 1 << 18
+"""Bytes of a text for which another thread is worth while."""
+
+
+def bytes_from_file(path: str) -> bytes:
+    """
+    Return what a file holds.
+
+    :param path: path of the file.
+    :return: its bytes.
+    :raises FileReadError: if it is missing or unreadable.
+    """
+    try:
+        return Path(path).read_bytes()
+    except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
+        msg = f'the file cannot be read: {getattr(error, "strerror", None) or error}'
+        raise FileReadError(msg, Place(path)) from error
+
+
+def root_from_file(path: str) -> XmlElement:
+    """
+    Read a file of any XML.
+
+    :param path: path of the file.
+    :return: its outermost element.
+    :raises FileReadError: if it is missing, unreadable or not XML.
+    """
+    return root_from_text(bytes_from_file(path), path)[0]
+
+
+def root_from_text(
+    text: bytes, path: str, encoding: str | None = None,
+) -> tuple[XmlElement, tuple[SdfWarning, ...]]:
+    """
+    Read XML into a tree.
+
+    :param text: the XML.
+    :param path: the name to use in errors.
+    :param encoding: encoding of the text; None for the one that it declares.
+    :return: the outermost element, and what is wrong but does not stand in the way. Elements are
+        named as they are written, for SDFormat knows prefixes, but no namespaces.
+    :raises FileReadError: if it is not XML.
+    """
+    warnings = []
+    parser = etree.XMLParser(
+        encoding=encoding, recover=True, resolve_entities=False, no_network=True, load_dtd=False,
+        huge_tree=False, remove_blank_text=True)
+    root: XmlElement | None = None
+    failure: SdfError | None = None
+    try:
+        root = etree.fromstring(text, parser)
+    except etree.XMLSyntaxError as error:
+        failure = FileReadError(f'this is not XML: {error.msg}', Place(path, error.lineno or 0))
+    for entry in parser.error_log:
+        msg = f'this is not well-formed XML: {entry.message.strip()}'
+        is_early = entry.type_name == _DECLARATION_ERROR and text.lstrip().startswith(b'<?xml')
+        if is_early or (entry.type_name in _FORGIVEN_ERRORS and root is not None):
+            warnings.append(SdfWarning('WARNING', msg, Place(path, entry.line)))
+        elif entry.type_name not in _IGNORED_ERRORS:
+            raise FileReadError(msg, Place(path, entry.line)) from None
+    if failure is not None:
+        raise failure
+    if root is None:
+        msg = 'this is not XML: it has no element'
+        raise FileReadError(msg, Place(path))
+    _refuse_what_hides_text(root, text, path)
+    if b'xmlns' in text:
+        _forget_default_namespaces(root)
+    return root, tuple(warnings)
+
+
+class WellFormednessCheck:
+    """
+    Finds out whether a text is well-formed XML, beside whatever else is done if it is long.
+
+    That takes a third of the time of making a tree of it, and no memory.
+
+    :param text: the XML, in the encoding that it declares.
+    """
+
+    def __init__(self, text: bytes) -> None:
+        self._text = text
+        self._is_well_formed = False
+        self._thread: threading.Thread | None = None
+        if len(text) > _LONG:
+            # The parser leaves other threads alone.
+            self._thread = threading.Thread(target=self._check, daemon=True)
+            self._thread.start()
+        else:
+            self._check()
+
+    def is_well_formed(self) -> bool:
+        """
+        Return what was found.
+
+        :return: true if :func:`root_from_text` would find nothing wrong, as long as no element
+            stands deeper than 250 others and no text is longer than 9 MB.
+        """
+        if self._thread is not None:
+            self._thread.join()
+        return self._is_well_formed
+
+    def _check(self) -> None:
+        # The stubs ask for methods, each of which the parser would call.
+        parser = etree.XMLParser(  # type: ignore[call-overload]
+            target=_Nothing(), recover=True, resolve_entities=False, no_network=True,
+            load_dtd=False, huge_tree=False)
+        try:
+            etree.fromstring(self._text, parser)
+        except etree.XMLSyntaxError:
+            return
+        self._is_well_formed = all(
+            entry.type_name in _IGNORED_ERRORS for entry in parser.error_log)
+
+
+class _Nothing:
+    """What a parser makes that is asked for nothing but its errors."""
+
+    def close(self) -> None:
+        """Return what was made."""
+
+
+def _refuse_what_hides_text(root: XmlElement, text: bytes, path: str) -> None:
+    """Refuse what an XML parser takes out of the text, or puts into it."""
+    definitions = root.getroottree().docinfo.internalDTD
+    if definitions is not None and next(definitions.iterentities(), None) is not None:
+        msg = 'the file declares entities, which SDFormat does not have'
+        raise FileReadError(msg, Place(path, 1))
+    # Mostly there are no question marks but those of the declaration, and the tree is large.
+    declaration = text.find(b'?>') + 2 if text.startswith(b'<?xml') else 0
+    has_more = text.find(b'?', declaration) >= 0
+    instruction = next(root.iter(etree.PI), None) if has_more else None
+    if instruction is not None:
+        msg = f'the processing instruction <?{instruction.text}?> can only stand before <sdf>'
+        raise FileReadError(msg, Place(path, instruction.sourceline or 0))
+
+
+def _forget_default_namespaces(root: XmlElement) -> None:
+    """Name elements as they are written: SDFormat knows prefixes, but no namespaces."""
+    for element in root.iter(etree.Element):
+        tag = str(element.tag)
+        if tag.startswith('{'):
+            name = tag[tag.index('}') + 1:]
+            if not element.prefix:
+                element.tag = name
