@@ -8,20 +8,27 @@ Most of a large file is regular, and is found in its text. Only the rest needs a
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from collections.abc import Mapping
 import contextlib
 import os
 import re
+
+import numpy as np
 
 from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.markup import Markup
-from sdf_pose_bridge.markup import markup_from_text
+from sdf_pose_bridge.markup import markup_from_texts
 from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.versions import NEWEST
+from sdf_pose_bridge.versions import has_frame_attributes
+from sdf_pose_bridge.versions import turns_axes_with_model
 from sdf_pose_bridge.versions import upgrade
+from sdf_pose_bridge.versions import Version
 from sdf_pose_bridge.versions import version_from_text
 from sdf_pose_bridge.xml_reading import bytes_from_file
 from sdf_pose_bridge.xml_reading import root_from_text
@@ -29,11 +36,15 @@ from sdf_pose_bridge.xml_reading import WellFormednessCheck
 
 _UTF_8 = frozenset({None, 'UTF-8', 'utf-8', 'ASCII', 'US-ASCII'})
 
+_DECLARED_VERSION = re.compile(
+    rb'(?:<\?xml[^>]*\?>)?\s*(?:<!--(?:(?!--).)*-->\s*)*'
+    rb'<sdf\s(?:[^>]*\s)?version\s*=\s*["\']([0-9.]*)["\']', re.DOTALL)
+
 _SEPARATOR = re.compile(SEPARATOR.encode())
 _LONGEST_SURE_NAME = 500
 
 _LARGE = 1 << 15
-"""Bytes of a file of which it is worth while to leave the regular part out of the tree."""
+"""Bytes of files of which it is worth while to leave the regular part out of the tree."""
 _DEEPEST = 250
 _LONGEST_TEXT = 9_000_000
 
@@ -61,16 +72,31 @@ def document_from_text(text: bytes | str, path: str) -> Document:
     :raises SdfError: as for :func:`document_from_file`.
     """
     content = text.encode(errors='surrogatepass') if isinstance(text, str) else text
-    may_hold_separators = _may_hold_separators(content)
-    if len(content) >= _LARGE and not may_hold_separators:
-        document = _document_without_regular_part(content, path)
-        if document is not None:
-            return document
+    found = _documents_without_regular_part({path: content})
+    if path in found:
+        return found[path]
     # The encoding of text is known; that of bytes is whatever they declare.
     root, warnings = root_from_text(content, path, 'utf-8' if isinstance(text, str) else None)
     return Document(
         path, root, _version(root, path), warnings, text=content if _is_utf_8(root) else None,
-        may_hold_separators=may_hold_separators)
+        may_hold_separators=_may_hold_separators(content))
+
+
+def documents_from_files(paths: Iterable[str]) -> dict[str, Document]:
+    """
+    Read many files together, which is quicker than one by one.
+
+    :param paths: paths of SDFormat files.
+    :return: what they hold, by their paths; without those in which anything is unusual, which have
+        to be read alone.
+    """
+    contents = {}
+    for path in paths:
+        with contextlib.suppress(SdfError):
+            content = bytes_from_file(path)
+            if _may_be_joined(content):
+                contents[path] = content
+    return _documents_without_regular_part(contents)
 
 
 def whole_document(document: Document) -> Document:
@@ -87,31 +113,60 @@ def whole_document(document: Document) -> Document:
     return whole
 
 
-def _document_without_regular_part(content: bytes, path: str) -> Document | None:
-    """Leave what is regular out of the tree; None if the file needs its whole tree."""
-    if not content.startswith(b'<'):
-        return None
-    check = WellFormednessCheck(content)
+def _documents_without_regular_part(contents: Mapping[str, bytes]) -> dict[str, Document]:
+    """Leave what is regular out of the trees; leave out files that need their whole trees."""
+    if sum(map(len, contents.values())) < _LARGE:
+        return {}
+    groups: dict[tuple[bool, bool], dict[str, bytes]] = {}
+    for path, content in contents.items():
+        version = _early_version(content)
+        if version is not None and not _may_hold_separators(content):
+            rules = turns_axes_with_model(version), has_frame_attributes(version)
+            groups.setdefault(rules, {})[path] = content
+    found: dict[str, Document] = {}
+    for group in groups.values():
+        found.update(_documents_of_one_grammar(group))
+    return found
+
+
+def _documents_of_one_grammar(contents: Mapping[str, bytes]) -> dict[str, Document]:
+    texts = list(contents.values())
+    check = WellFormednessCheck(texts)
     markup: Markup | None = None
     # What happens with a text that is not well-formed does not matter.
     with contextlib.suppress(ValueError, IndexError):
-        markup = markup_from_text(content)
-    if not check.is_well_formed() or markup is None or len(markup.of('include')) or (
-            markup.has_tail or markup.deepest > _DEEPEST or markup.longest_text > _LONGEST_TEXT):
-        return None
-    head, _ = root_from_text(markup.head(), path)
-    if not _is_utf_8(head):
-        return None
+        markup = markup_from_texts(texts)
+    version = _early_version(texts[0])
+    if not check.are_well_formed() or version is None or markup is None or (
+            len(markup.of('include')) or not np.array_equal(markup.roots, markup.of('sdf'))
+            or markup.deepest > _DEEPEST or markup.longest_text > _LONGEST_TEXT):
+        return {}
     # Small files need not wait for these.
-    from sdf_pose_bridge.markup_index import MarkupIndex
-    from sdf_pose_bridge.remainder import remainder_from_markup
-    declared = _version(head, path)
-    version = version_from_text(declared) or NEWEST
-    remainder = remainder_from_markup(markup, version)
-    root, warnings = root_from_text(remainder.text, path)
-    elements = MarkupIndex(root, markup, version, with_lines=markup, remainder=remainder)
-    return Document(
-        path, root, declared, warnings, text=content, elements=elements, may_hold_separators=False)
+    from sdf_pose_bridge.markup_index import index_from_remainder
+    from sdf_pose_bridge.remainder import remainders_from_markup
+    found = {}
+    for (path, content), remainder in zip(
+            contents.items(), remainders_from_markup(markup, texts, version), strict=True):
+        root, warnings = root_from_text(remainder.text, path)
+        declared = _version(root, path)
+        if _is_utf_8(root) and version_from_text(declared) == _early_version(content):
+            found[path] = Document(
+                path, root, declared, warnings, text=content, may_hold_separators=False,
+                elements=index_from_remainder(root, markup, remainder))
+    return found
+
+
+def _may_be_joined(content: bytes) -> bool:
+    """Leave out what would keep all others from being read together."""
+    declaration = content.find(b'?>') + 2 if content.startswith(b'<?xml') else 0
+    return content.find(b'?', declaration) < 0 and b'<include' not in content and (
+        content.find(b'!') < 0 or re.search(rb'<!(?!--)', content) is None)
+
+
+def _early_version(text: bytes) -> Version | None:
+    """Look for the version of a text that may not be well-formed; None where it is not sure."""
+    declared = _DECLARED_VERSION.match(text)
+    return None if declared is None else version_from_text(declared.group(1).decode('ascii'))
 
 
 def _version(root: XmlElement, path: str) -> str:

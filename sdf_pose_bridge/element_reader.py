@@ -16,7 +16,6 @@ from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import value_of
 from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.element_builder import ElementBuilder
-from sdf_pose_bridge.element_rows import Run
 from sdf_pose_bridge.elements import Elements
 from sdf_pose_bridge.elements import FrameFacts
 from sdf_pose_bridge.elements import ModelFacts
@@ -281,9 +280,7 @@ class _ElementReader:
             yield from xml.iterchildren(etree.Element)
             return
         for run in rows.runs(xml):
-            if not isinstance(run, Run):
-                yield run
-            elif self._names.claim_run(rows, run, scope.holder):
+            if run.is_regular and self._names.claim_run(rows, run, scope.holder):
                 self._table.add_run(rows, run, xml, scope.holder)
             else:
                 yield from rows.xmls(run.children)

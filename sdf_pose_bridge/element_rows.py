@@ -23,6 +23,7 @@ import numpy as np
 
 from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.elements import Indices
+from sdf_pose_bridge.elements import NOWHERE
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -53,8 +54,10 @@ class Facts(NamedTuple):
 
 
 class Run(NamedTuple):
-    """Regular siblings that follow one another, with all that they hold."""
+    """Siblings that follow one another, with all that they hold."""
 
+    is_regular: bool
+    """False for a single one that is odd, or holds something odd."""
     start: int
     end: int
     """The row after the last."""
@@ -64,13 +67,13 @@ class Run(NamedTuple):
 
 class Columns(NamedTuple):
     """
-    What is known of each row; row i of each sequence and array is about element i.
+    What is known of each row; entry i of each sequence and array is about row i.
 
-    Rows stand in the order of the file. What is said of odd ones may be wrong.
+    Rows stand in the order of the files. What is said of odd ones may be wrong.
     """
 
     elements: _Rows
-    """Which of the elements of the document each row is about, in ascending order."""
+    """Which of the elements of the texts each row is about, in ascending order."""
     names: list[str]
     kinds: npt.NDArray[np.uint8]
     parents: Indices
@@ -97,12 +100,70 @@ class Columns(NamedTuple):
     sensors: Facts
 
 
+class RowTree:
+    """
+    Which rows hold which.
+
+    :param columns: what is known of each row, of one document or of several.
+    """
+
+    def __init__(self, columns: Columns) -> None:
+        self.columns = columns
+        parents = columns.parents
+        self._odd_before = np.append(0, np.cumsum(columns.is_odd))
+        self._by_parent = np.argsort(parents, kind='stable')
+        # What stands at the top comes first; children of row i are between entries i + 1, i + 2.
+        self._first_children = np.searchsorted(
+            parents[self._by_parent], np.arange(-1, len(parents) + 1))
+
+    def children(self, row: int) -> _Rows:
+        """
+        Return what a row holds itself.
+
+        :param row: the row; -1 for what stands at the top of the documents.
+        :return: other rows, in ascending order.
+        """
+        first, last = self._first_children[row + 1:row + 3].tolist()
+        children: _Rows = self._by_parent[first:last]
+        return children
+
+    def runs(self, row: int) -> Iterator[Run]:
+        """
+        Go through what a row holds.
+
+        :param row: a model or world.
+        :return: runs of regular rows, and between them the rows that are odd or hold something
+            odd, in the order of the file.
+        """
+        children = self.children(row)
+        if not len(children):
+            return
+        ends = np.append(children[1:], self._end_of(row))
+        is_odd = self._odd_before[ends] > self._odd_before[children]
+        borders = np.flatnonzero(is_odd[1:] | is_odd[:-1]) + 1
+        for begin, end in itertools.pairwise([0, *borders.tolist(), len(children)]):
+            yield Run(
+                not is_odd[begin], int(children[begin]), int(ends[end - 1]), children[begin:end])
+
+    def _end_of(self, row: int) -> int:
+        """Return the row after the last that a row holds."""
+        while row >= 0:
+            parent = int(self.columns.parents[row])
+            siblings = self.children(parent)
+            following = int(np.searchsorted(siblings, row, side='right'))
+            if following < len(siblings):
+                return int(siblings[following])
+            row = parent
+        return len(self.columns.names)
+
+
 class ElementRows:
     """
-    The rows of a document, and the elements of its tree that they are about.
+    The rows of one document, and the elements of its tree that they are about.
 
-    :param columns: what is known of each row.
-    :param root: the outermost element of the document.
+    :param tree: its rows, and maybe those of others.
+    :param first: the first of its rows.
+    :param root: its outermost element.
     :param top_tags: the tags of rows that stand at the top.
     :param xmls_of_rows: returns the elements of the tree that rows are about, as far as it has
         them, and which rows these are.
@@ -110,21 +171,18 @@ class ElementRows:
 
     def __init__(
         self,
-        columns: Columns,
+        tree: RowTree,
+        first: int,
         root: XmlElement,
         top_tags: Sequence[str],
         xmls_of_rows: Callable[[], tuple[_Rows, list[XmlElement]]],
     ) -> None:
-        self.columns = columns
+        self.columns = tree.columns
+        self._tree = tree
+        self._first = first
         self._root = root
         self._top_tags = top_tags
         self._xmls_of_rows = xmls_of_rows
-        parents = columns.parents
-        self._odd_before = np.append(0, np.cumsum(columns.is_odd))
-        self._by_parent = np.argsort(parents, kind='stable')
-        # Children of the document come first; those of row i are between entries i + 1 and i + 2.
-        self._first_children = np.searchsorted(
-            parents[self._by_parent], np.arange(-1, len(parents) + 1))
 
     def row_of(self, xml: XmlElement) -> int:
         """
@@ -136,7 +194,8 @@ class ElementRows:
         if xml.getparent() is self._root:
             # Much quicker than to make an object for each element of the tree.
             place = list(self._root.iterchildren(*self._top_tags)).index(xml)
-            return int(self._children(-1)[place])
+            tops = self._tree.children(NOWHERE)
+            return int(tops[np.searchsorted(tops, self._first) + place])
         return self._rows_of_xmls[xml]
 
     def xmls(self, rows: _Rows) -> list[XmlElement]:
@@ -148,42 +207,14 @@ class ElementRows:
         """
         return [self._xmls[row] for row in rows.tolist()]
 
-    def runs(self, xml: XmlElement) -> Iterator[Run | XmlElement]:
+    def runs(self, xml: XmlElement) -> Iterator[Run]:
         """
         Go through what a model or a world holds.
 
         :param xml: a model or world of the document.
-        :return: runs of regular rows, and between them the elements that are odd or hold
-            something odd, in the order of the file.
+        :return: as :meth:`RowTree.runs` does.
         """
-        row = self.row_of(xml)
-        children = self._children(row)
-        if not len(children):
-            return
-        ends = np.append(children[1:], self._end_of(row))
-        is_odd = self._odd_before[ends] > self._odd_before[children]
-        borders = np.flatnonzero(is_odd[1:] | is_odd[:-1]) + 1
-        for begin, end in itertools.pairwise([0, *borders.tolist(), len(children)]):
-            if is_odd[begin]:
-                yield self._xmls[int(children[begin])]
-            else:
-                yield Run(int(children[begin]), int(ends[end - 1]), children[begin:end])
-
-    def _children(self, row: int) -> _Rows:
-        first, last = self._first_children[row + 1:row + 3].tolist()
-        children: _Rows = self._by_parent[first:last]
-        return children
-
-    def _end_of(self, row: int) -> int:
-        """Return the row after the last that a row holds."""
-        while row >= 0:
-            parent = int(self.columns.parents[row])
-            siblings = self._children(parent)
-            following = int(np.searchsorted(siblings, row, side='right'))
-            if following < len(siblings):
-                return int(siblings[following])
-            row = parent
-        return len(self.columns.names)
+        return self._tree.runs(self.row_of(xml))
 
     @cached_property
     def _xmls(self) -> dict[int, XmlElement]:

@@ -7,12 +7,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 import os
 from pathlib import Path
+from typing import NamedTuple
 
 from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import is_data
 from sdf_pose_bridge.document import value_of
 from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.document_reading import document_from_file
+from sdf_pose_bridge.document_reading import documents_from_files
 from sdf_pose_bridge.document_reading import whole_document
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
@@ -29,6 +31,15 @@ from sdf_pose_bridge.resources import ResourceFinder
 from sdf_pose_bridge.versions import upgrade
 
 _HOLDERS = frozenset({'sdf', 'world', 'model'})
+
+
+class _Located(NamedTuple):
+    """What an include names."""
+
+    path: str
+    manifest: str
+    """The file that names it; empty for none."""
+    warnings: tuple[SdfWarning, ...]
 
 
 class IncludedFiles:
@@ -50,6 +61,8 @@ class IncludedFiles:
         self._has_copies = False
         self._finder = finder
         self._known: dict[str, Inclusion] = {}
+        self._documents: dict[str, Document] = {}
+        self._located_paths: dict[str, _Located | Inclusion] = {}
         self._read_new_includes(document, document, (os.path.realpath(document.path),))
         if self._has_copies:
             self.inclusions = _reachable(document, self.inclusions, {})
@@ -57,14 +70,20 @@ class IncludedFiles:
     def _read_new_includes(
         self, document: Document, source: Document, chain: tuple[str, ...],
     ) -> None:
-        for include in _includes_of(document):
-            if include not in self.inclusions:
-                # What is included inside comes first in the mapping, for it is read first.
-                self.inclusions[include] = self._inclusion(include, source, chain)
+        includes = [each for each in _includes_of(document) if each not in self.inclusions]
+        located = [self._located(include, source) for include in includes]
+        new = dict.fromkeys(
+            place.path for place in located
+            if isinstance(place, _Located) and place.path not in self._documents
+            and os.path.realpath(place.path) not in self._known)
+        self._documents.update(documents_from_files(new))
+        for include, place in zip(includes, located, strict=True):
+            # What is included inside comes first in the mapping, for it is read first.
+            self.inclusions[include] = place if isinstance(place, Inclusion) else (
+                self._inclusion(include, place, source, chain))
 
-    def _inclusion(
-        self, include: XmlElement, document: Document, chain: tuple[str, ...],
-    ) -> Inclusion:
+    def _located(self, include: XmlElement, document: Document) -> _Located | Inclusion:
+        """Find what an include names; if that fails, return what it stands for then."""
         uri = ' '.join(value_of(element).split()) if (
             element := next(include.iterchildren('uri'), None)) is not None else ''
         path = self._finder.path_from_uri(uri, document.path) if uri else None
@@ -72,12 +91,15 @@ class IncludedFiles:
             return Inclusion(
                 None, 'nothing of that name was found beside the file or in the resource paths, '
                 'to which the variable GZ_SIM_RESOURCE_PATH adds')
-        warnings: tuple[SdfWarning, ...] = ()
-        if Path(path).is_dir():
-            try:
-                path, manifest, warnings = model_file_from_directory(path)
-            except SdfError as error:
-                return Inclusion(None, f'{error.place}: {error.message}')
+        if path not in self._located_paths:
+            self._located_paths[path] = _located(path)
+        return self._located_paths[path]
+
+    def _inclusion(
+        self, include: XmlElement, located: _Located, document: Document, chain: tuple[str, ...],
+    ) -> Inclusion:
+        path, manifest, warnings = located
+        if manifest:
             self.files[manifest] = None
         real = os.path.realpath(path)
         if real in chain:
@@ -127,7 +149,7 @@ class IncludedFiles:
     def _read(self, path: str, chain: tuple[str, ...]) -> Inclusion:
         self.files[path] = None
         try:
-            document = document_from_file(path)
+            document = self._documents.pop(path, None) or document_from_file(path)
             if upgrade(document):
                 self.changed.add(document.root)
             self._read_new_includes(document, document, chain)
@@ -144,6 +166,15 @@ class IncludedFiles:
             and (error := _error_of(include, left, path)) is not None]
         return Inclusion(
             expansion.document, errors=(*expansion.errors, *errors), warnings=expansion.warnings)
+
+
+def _located(path: str) -> _Located | Inclusion:
+    if not Path(path).is_dir():
+        return _Located(path, '', ())
+    try:
+        return _Located(*model_file_from_directory(path))
+    except SdfError as error:
+        return Inclusion(None, f'{error.place}: {error.message}')
 
 
 def _reachable(

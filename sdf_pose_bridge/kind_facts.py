@@ -20,8 +20,6 @@ from sdf_pose_bridge.elements import ModelFacts
 from sdf_pose_bridge.elements import NOWHERE
 from sdf_pose_bridge.elements import Reference
 from sdf_pose_bridge.elements import SensorFacts
-from sdf_pose_bridge.markup import COMMENT
-from sdf_pose_bridge.markup import Positions
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import ROOT_FRAME
@@ -32,6 +30,8 @@ from sdf_pose_bridge.row_table import Flags
 from sdf_pose_bridge.row_table import OUTSIDE
 from sdf_pose_bridge.row_table import Rows
 from sdf_pose_bridge.row_table import RowTable
+from sdf_pose_bridge.tag_search import COMMENT
+from sdf_pose_bridge.tag_search import Positions
 from sdf_pose_bridge.versions import has_frame_attributes
 from sdf_pose_bridge.versions import turns_axes_with_model
 from sdf_pose_bridge.versions import Version

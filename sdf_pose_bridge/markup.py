@@ -1,9 +1,9 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Find elements in the text of a document, many at a time.
+Find elements in the texts of documents, many at a time.
 
-If a parser finds the text to be well-formed, a few bytes tell what there is: where tags begin and
+If a parser finds a text to be well-formed, a few bytes tell what there is: where tags begin and
 end, what they are called, and how deep they stand. That takes a fraction of the time of asking
 each element of the tree, and makes no object for each.
 """
@@ -11,7 +11,7 @@ each element of the tree, and makes no object for each.
 from __future__ import annotations
 
 from collections.abc import Iterable
-import re
+from collections.abc import Sequence
 from typing import NamedTuple
 from typing import TYPE_CHECKING
 from typing import TypeAlias
@@ -22,38 +22,18 @@ from sdf_pose_bridge.known_tags import KNOWN_TAGS
 from sdf_pose_bridge.tag_names import UNKNOWN
 from sdf_pose_bridge.tag_names import WIDTH
 from sdf_pose_bridge.tag_names import words_from_text
+from sdf_pose_bridge.tag_search import places
+from sdf_pose_bridge.tag_search import Positions
+from sdf_pose_bridge.tag_search import Tags
+from sdf_pose_bridge.tag_search import tags_from_texts
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-Positions: TypeAlias = 'npt.NDArray[np.intp]'
-
-COMMENT = '\x01'
-"""Stands for each character of a comment in the texts of elements."""
-
-_COMMENT = re.compile(b'<!--.*?-->', re.DOTALL)
-_BLANKED = bytes(byte if byte == ord('\n') else ord(COMMENT) for byte in range(256))
-
 _NAME_LENGTHS = np.array([1 + len(tag) for tag in KNOWN_TAGS.tags])
 _NAME_LENGTHS.setflags(write=False)
 
-_BLOCK = 1 << 18
-
 _Flags: TypeAlias = 'npt.NDArray[np.bool_]'
-
-
-class _Tags(NamedTuple):
-    """All tags of a text, in their order."""
-
-    begins: Positions
-    """Where each ``<`` stands."""
-    ends: Positions
-    """Where each ``>`` stands."""
-    is_closing: _Flags
-    is_empty: _Flags
-    """Whether each is start and end in one."""
-    depths: npt.NDArray[np.int16]
-    """How many elements are open before each."""
 
 
 class Spans(NamedTuple):
@@ -71,20 +51,15 @@ class Spans(NamedTuple):
 
 class Markup:
     """
-    The elements with known tags that a text has, in their order.
+    The elements with known tags that one or more texts have, in their order.
 
-    :param text: XML, with nothing in brackets but tags and comments.
-    :param plain: the same with :data:`COMMENT` in the place of each character of a comment.
-    :param tags: where the tags are.
+    :param tags: all tags of the texts.
     """
 
-    def __init__(self, text: bytes, plain: bytes, tags: _Tags) -> None:
-        begins, ends, is_closing, is_empty, depths = tags
-        self.text = text
-        """The text, as it is written."""
-        self._plain = plain
+    def __init__(self, tags: Tags) -> None:
+        _, self.starts, roots, begins, ends, is_closing, is_empty, depths = tags
         self._all_tags = tags
-        self._buffer = np.frombuffer(plain, np.uint8)
+        self._buffer = np.frombuffer(tags.text, np.uint8)
         self._words = words_from_text(self._buffer)
         starts = np.flatnonzero(~is_closing)
         numbers = KNOWN_TAGS.numbers_from_text(self._buffer, begins[starts] + 1)
@@ -97,14 +72,17 @@ class Markup:
         self._ends = ends[chosen]
         self._content_ends = self._ends - is_empty[chosen]
         # What follows is another tag, that of a child or of the end.
-        following = np.append(begins, len(plain))[chosen + 1]
+        following = np.append(begins, len(tags.text))[chosen + 1]
         self._text_ends = np.where(is_empty[chosen], self._ends + 1, following)
+        self.roots = np.searchsorted(chosen, roots)
+        """The outermost element of each text, where all of these have known tags."""
         self._by_number = np.argsort(self.numbers, kind='stable')
         self._firsts: list[int] = np.searchsorted(
             self.numbers[self._by_number], np.arange(len(KNOWN_TAGS.tags) + 1)).tolist()
         # The last one stands for all that are not there.
-        self._quotes = np.append(_places(self._buffer, '"'), 0)
-        self._newlines = _places(self._buffer, '\n')
+        self._quotes = np.append(places(self._buffer, '"'), 0)
+        self._newlines = places(self._buffer, '\n')
+        self._newlines_before = np.searchsorted(self._newlines, self.starts)
         # All elements in the order of their depths, and where each depth begins.
         self._by_depth = np.argsort(self._depths, kind='stable')
         self._depth_borders: list[int] = [0, *np.cumsum(np.bincount(self._depths)).tolist()]
@@ -124,19 +102,6 @@ class Markup:
     def begins(self) -> Positions:
         """Where the start tag of each element begins."""
         return self._begins
-
-    @property
-    def has_tail(self) -> bool:
-        """Whether anything follows the outermost element."""
-        return bool(self.text[self._all_tags.ends[-1] + 1:].strip())
-
-    def head(self) -> bytes:
-        """
-        Return what comes before the content of the outermost element.
-
-        :return: the text up to the end of its start tag, as that of an empty element.
-        """
-        return self.text[:self._all_tags.ends[0]].removesuffix(b'/') + b'/>'
 
     def spans(self, elements: Positions) -> Spans:
         """
@@ -191,7 +156,8 @@ class Markup:
         Return the first run of character data in elements, as it is written.
 
         :param elements: their indices.
-        :return: the text of each, up to the first tag, with :data:`COMMENT` for comments, and with
+        :return: the text of each, up to the first tag, with
+            :data:`~sdf_pose_bridge.tag_search.COMMENT` for comments, and with
             characters written as ``&...;`` left as they are.
         """
         return self._cut(self._ends[elements] + 1, self._text_ends[elements])
@@ -223,7 +189,11 @@ class Markup:
         :param elements: their indices.
         :return: the line in which the start tag of each ends, the first one being 1.
         """
-        return (np.searchsorted(self._newlines, self._ends[elements]) + 1).astype(np.int32)
+        lines = np.searchsorted(self._newlines, self._ends[elements]) + 1
+        if len(self.starts) > 1:
+            texts = np.searchsorted(self.starts, self._begins[elements], side='right') - 1
+            lines -= self._newlines_before[texts]
+        return lines.astype(np.int32)
 
     def first_values(self, elements: Positions) -> list[str]:
         """
@@ -255,8 +225,8 @@ class Markup:
 
     def _places_of_name(self, elements: Positions) -> Positions:
         """Return the last character of each tag's own name."""
-        places: Positions = self._begins[elements] + _NAME_LENGTHS[self.numbers[elements]] - 1
-        return places
+        ends: Positions = self._begins[elements] + _NAME_LENGTHS[self.numbers[elements]] - 1
+        return ends
 
     def _places_of_value(
         self, before: Positions, attribute: bytes,
@@ -308,67 +278,20 @@ class Markup:
     def _cut(self, begins: Positions, ends: Positions) -> list[str]:
         if not len(begins):
             return []
-        text = self._plain
+        text = self._all_tags.text
         pieces = [text[begin:end] for begin, end in zip(
             begins.tolist(), ends.tolist(), strict=True)]
         # To decode one long text is quicker than many short ones; XML has no zero bytes.
         return b'\0'.join(pieces).decode().split('\0')
 
 
-def markup_from_text(text: bytes) -> Markup | None:
+def markup_from_texts(texts: Sequence[bytes]) -> Markup | None:
     """
-    Find the elements of a text.
+    Find the elements of texts.
 
-    :param text: well-formed XML, in UTF-8.
-    :return: the elements; None if there is more in brackets than tags and comments.
+    :param texts: well-formed XML, in UTF-8.
+    :return: the elements; None if there is more in brackets than tags and comments, a bracket by
+        itself, or anything behind an outermost element.
     """
-    plain = _without_comments(text)
-    tags = _tags_from_text(plain)
-    return None if tags is None else Markup(text, plain, tags)
-
-
-def _without_comments(text: bytes) -> bytes:
-    """Replace comments, which may hold anything, by characters that can stand nowhere else."""
-    if text.find(b'!') < 0:
-        return text
-    return _COMMENT.sub(lambda comment: comment.group().translate(_BLANKED), text)
-
-
-def _tags_from_text(text: bytes) -> _Tags | None:
-    """Find all tags; None if there is anything else in brackets, or a bracket by itself."""
-    buffer = np.frombuffer(text, np.uint8)
-    brackets = _places(buffer, '>', also=ord('<') ^ ord('>'))
-    begins, ends = brackets[0::2].copy(), brackets[1::2].copy()
-    if len(begins) != len(ends) or not len(begins) or (
-            (buffer[begins] != ord('<')).any() or (buffer[ends] != ord('>')).any()):
-        return None
-    kinds = buffer[begins + 1]
-    if kinds[0] == ord('?'):
-        begins, ends, kinds = begins[1:], ends[1:], kinds[1:]
-    if (kinds == ord('!')).any() or (kinds == ord('?')).any():
-        return None
-    is_closing = kinds == ord('/')
-    is_empty = buffer[ends - 1] == ord('/')
-    steps = np.where(is_closing, np.int32(-1), np.int32(1))
-    steps[is_empty] = 0
-    depths = np.cumsum(steps, dtype=np.int32) - steps
-    # Nothing but one element, for what follows it is not in the tree.
-    if not len(depths) or depths[0] or depths[-1] > 1 or (depths[1:] < 1).any():
-        return None
-    return _Tags(begins, ends, is_closing, is_empty, depths.astype(np.int16))
-
-
-def _places(buffer: npt.NDArray[np.uint8], character: str, also: int = 0) -> Positions:
-    """
-    Find a character; block by block, so that what lies between stays in the processor.
-
-    :param buffer: where to look.
-    :param character: what to look for, which has all bits of ``also`` set.
-    :param also: bits without which it is another character that is looked for too.
-    :return: the places.
-    """
-    byte, bits = np.uint8(ord(character)), np.uint8(also)
-    blocks = [
-        np.flatnonzero((buffer[start:start + _BLOCK] | bits) == byte) + start
-        for start in range(0, len(buffer), _BLOCK)]
-    return np.concatenate(blocks)
+    tags = tags_from_texts(texts)
+    return None if tags is None else Markup(tags)

@@ -26,7 +26,7 @@ from sdf_pose_bridge.grammar import ValueType
 from sdf_pose_bridge.known_tags import HOLDERS_OF_POSES
 from sdf_pose_bridge.known_tags import KNOWN_TAGS
 from sdf_pose_bridge.markup import Markup
-from sdf_pose_bridge.markup import Positions
+from sdf_pose_bridge.tag_search import Positions
 
 # Patterns are left for `re` to compile when they are first needed, which for some is never.
 

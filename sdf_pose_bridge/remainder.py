@@ -5,23 +5,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from collections.abc import Sequence
 import itertools
 from typing import NamedTuple
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sdf_pose_bridge.element_rows import Columns
+from sdf_pose_bridge.element_rows import RowTree
 from sdf_pose_bridge.markup import Markup
-from sdf_pose_bridge.markup import Positions
 from sdf_pose_bridge.markup import Spans
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.plain_values import doubtful_elements
 from sdf_pose_bridge.row_extraction import columns_from_markup
+from sdf_pose_bridge.tag_search import Positions
 from sdf_pose_bridge.versions import Version
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
 
 _HOLDS_RUNS = np.zeros(256, dtype=bool)
 _HOLDS_RUNS[[Kind.WORLD, Kind.MODEL]] = True
@@ -29,27 +27,32 @@ _HOLDS_RUNS.setflags(write=False)
 
 
 class Remainder(NamedTuple):
-    """What is left of a text without its regular part, and what is known of that."""
+    """What is left of a text without its regular part, and what is known of the whole text."""
 
     text: bytes
     """What is left, with every element in the line in which it was."""
-    is_kept: npt.NDArray[np.bool_]
-    """Which elements are left."""
-    columns: Columns
-    """What is known of all elements that carry a pose."""
+    kept: Positions
+    """The elements that are left, in ascending order."""
     doubtful: Mapping[str, Positions]
     """For each tag the elements of which the values have to be looked at one by one; all of them
     are left."""
+    rows: RowTree
+    """All elements that carry a pose, of this text and maybe of others."""
+    first_row: int
+    """The first of them that is of this text."""
 
 
-def remainder_from_markup(markup: Markup, version: Version) -> Remainder:
+def remainders_from_markup(
+    markup: Markup, texts: Sequence[bytes], version: Version,
+) -> list[Remainder]:
     """
-    Take what is regular out of a text.
+    Take what is regular out of texts.
 
-    :param markup: the elements of the text, without any ``<include>``.
-    :param version: the version by whose rules it is written.
-    :return: what is left: all that does not carry a pose nor is held by something that does,
-        whatever has to be looked at one by one, and what holds these.
+    :param markup: the elements of the texts, without any ``<include>``.
+    :param texts: the texts.
+    :param version: the version by whose rules all of them are written.
+    :return: what is left of each: all that does not carry a pose nor is held by something that
+        does, whatever has to be looked at one by one, and what holds these.
     """
     columns = columns_from_markup(markup, markup.lines, version)
     doubtful = doubtful_elements(markup)
@@ -58,8 +61,18 @@ def remainder_from_markup(markup: Markup, version: Version) -> Remainder:
         [np.zeros(0, dtype=np.intp), *doubtful.values()])])
     begins, ends = _joined(spans)
     places = np.searchsorted(begins, markup.begins, side='right') - 1
-    is_kept = markup.begins >= np.append(ends, 0)[places]
-    return Remainder(_without(markup, begins, ends), is_kept, columns, doubtful)
+    kept = np.flatnonzero(markup.begins >= np.append(ends, 0)[places])
+    left = _texts_without(markup, texts, begins, ends)
+    rows = RowTree(columns)
+    first_rows = np.searchsorted(columns.elements, markup.roots).tolist()
+    if len(texts) == 1:
+        return [Remainder(left[0], kept, doubtful, rows, first_rows[0])]
+    all_kept = np.split(kept, np.searchsorted(kept, markup.roots[1:]))
+    all_doubtful = _doubtful_of_texts(markup, doubtful)
+    return [
+        Remainder(text, kept, doubtful, rows, first_row)
+        for text, kept, doubtful, first_row in zip(
+            left, all_kept, all_doubtful, first_rows, strict=True)]
 
 
 def _removable_rows(columns: Columns) -> Positions:
@@ -104,10 +117,31 @@ def _joined(spans: Spans) -> tuple[Positions, Positions]:
         :len(ends)]]
 
 
-def _without(markup: Markup, begins: Positions, ends: Positions) -> bytes:
+def _texts_without(
+    markup: Markup, texts: Sequence[bytes], begins: Positions, ends: Positions,
+) -> list[bytes]:
+    """Take parts out of texts, but leave the lines that they go over."""
     newlines = markup.newlines_between(begins, ends).tolist()
-    borders = [0, *np.stack((begins, ends), axis=1).ravel().tolist(), len(markup.text)]
-    pieces = [markup.text[begin:end] for begin, end in zip(
-        borders[0::2], borders[1::2], strict=True)]
-    return b''.join(itertools.chain.from_iterable(
-        (piece, b'\n' * count) for piece, count in zip(pieces, [*newlines, 0], strict=True)))
+    firsts = [*np.searchsorted(begins, markup.starts).tolist(), len(begins)]
+    left = []
+    for text, start, (first, last) in zip(
+            texts, markup.starts.tolist(), itertools.pairwise(firsts), strict=True):
+        borders = np.stack((begins[first:last], ends[first:last]), axis=1).ravel() - start
+        pieces = [text[begin:end] for begin, end in zip(
+            [0, *borders[1::2].tolist()], [*borders[0::2].tolist(), len(text)], strict=True)]
+        left.append(b''.join(itertools.chain.from_iterable(
+            (piece, b'\n' * count)
+            for piece, count in zip(pieces, [*newlines[first:last], 0], strict=True))))
+    return left
+
+
+def _doubtful_of_texts(
+    markup: Markup, doubtful: Mapping[str, Positions],
+) -> list[dict[str, Positions]]:
+    found: list[dict[str, Positions]] = [{} for _ in markup.roots]
+    for tag, elements in doubtful.items():
+        borders = np.searchsorted(elements, markup.roots[1:])
+        for of_text, part in zip(found, np.split(elements, borders), strict=True):
+            if len(part):
+                of_text[tag] = part
+    return found

@@ -19,7 +19,6 @@ from sdf_pose_bridge.element_rows import Facts
 from sdf_pose_bridge.elements import NOWHERE
 from sdf_pose_bridge.kind_facts import KindFacts
 from sdf_pose_bridge.markup import Markup
-from sdf_pose_bridge.markup import Positions
 from sdf_pose_bridge.names import FRAME_KINDS
 from sdf_pose_bridge.names import is_reserved
 from sdf_pose_bridge.names import Kind
@@ -31,6 +30,7 @@ from sdf_pose_bridge.row_table import LinesOf
 from sdf_pose_bridge.row_table import OUTSIDE
 from sdf_pose_bridge.row_table import Rows
 from sdf_pose_bridge.row_table import RowTable
+from sdf_pose_bridge.tag_search import Positions
 from sdf_pose_bridge.versions import has_frame_attributes
 from sdf_pose_bridge.versions import Version
 

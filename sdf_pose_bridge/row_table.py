@@ -18,11 +18,11 @@ from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.elements import NOWHERE
 from sdf_pose_bridge.elements import Reference
 from sdf_pose_bridge.known_tags import KNOWN_TAGS
-from sdf_pose_bridge.markup import COMMENT
 from sdf_pose_bridge.markup import Markup
-from sdf_pose_bridge.markup import Positions
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.names import ROOT_FRAME
+from sdf_pose_bridge.tag_search import COMMENT
+from sdf_pose_bridge.tag_search import Positions
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -112,7 +112,7 @@ class RowTable:
     def _number_rows(self, elements: Positions) -> None:
         self._row_of_element = np.full(len(self.markup.numbers) + 1, _NO_ROW, dtype=np.int32)
         self._row_of_element[elements] = np.arange(len(elements))
-        self._row_of_element[0] = NOWHERE  # the outermost one
+        self._row_of_element[self.markup.roots] = NOWHERE
 
     def rows_of(self, elements: Positions) -> Indices:
         """

@@ -9,6 +9,7 @@ and the sizes that libxml2 allows without its "huge" option.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 import threading
 
@@ -104,46 +105,49 @@ def root_from_text(
 
 class WellFormednessCheck:
     """
-    Finds out whether a text is well-formed XML, beside whatever else is done if it is long.
+    Finds out whether texts are well-formed XML, beside whatever else is done if they are long.
 
-    That takes a third of the time of making a tree of it, and no memory.
+    That takes a third of the time of making trees of them, and no memory.
 
-    :param text: the XML, in the encoding that it declares.
+    :param texts: the XML of each, in the encoding that it declares.
     """
 
-    def __init__(self, text: bytes) -> None:
-        self._text = text
-        self._is_well_formed = False
+    def __init__(self, texts: Sequence[bytes]) -> None:
+        self._texts = texts
+        self._are_well_formed = False
         self._thread: threading.Thread | None = None
-        if len(text) > _LONG:
+        if sum(map(len, texts)) > _LONG:
             # The parser leaves other threads alone.
             self._thread = threading.Thread(target=self._check, daemon=True)
             self._thread.start()
         else:
             self._check()
 
-    def is_well_formed(self) -> bool:
+    def are_well_formed(self) -> bool:
         """
         Return what was found.
 
-        :return: true if :func:`root_from_text` would find nothing wrong, as long as no element
-            stands deeper than 250 others and no text is longer than 9 MB.
+        :return: true if :func:`root_from_text` would find nothing wrong with any of the texts, as
+            long as no element stands deeper than 250 others and no text is longer than 9 MB.
         """
         if self._thread is not None:
             self._thread.join()
-        return self._is_well_formed
+        return self._are_well_formed
 
     def _check(self) -> None:
-        # The stubs ask for methods, each of which the parser would call.
-        parser = etree.XMLParser(  # type: ignore[call-overload]
-            target=_Nothing(), recover=True, resolve_entities=False, no_network=True,
-            load_dtd=False, huge_tree=False)
-        try:
-            etree.fromstring(self._text, parser)
-        except etree.XMLSyntaxError:
-            return
-        self._is_well_formed = all(
-            entry.type_name in _IGNORED_ERRORS for entry in parser.error_log)
+        self._are_well_formed = all(map(_is_well_formed, self._texts))
+
+
+def _is_well_formed(text: bytes) -> bool:
+    # The stubs ask for methods, each of which the parser would call.
+    parser = etree.XMLParser(  # type: ignore[call-overload]
+        target=_Nothing(), recover=True, resolve_entities=False, no_network=True,
+        load_dtd=False, huge_tree=False)
+    try:
+        etree.fromstring(text, parser)
+    except etree.XMLSyntaxError:
+        return False
+    return all(entry.type_name in _IGNORED_ERRORS for entry in parser.error_log)
 
 
 class _Nothing:

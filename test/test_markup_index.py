@@ -10,8 +10,10 @@ from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import text_of
 from sdf_pose_bridge.document_reading import document_from_text
 from sdf_pose_bridge.known_tags import KNOWN_TAGS
-from sdf_pose_bridge.markup import COMMENT
+from sdf_pose_bridge.markup import markup_from_texts
 from sdf_pose_bridge.markup_index import index_of_document
+from sdf_pose_bridge.markup_index import written_elements
+from sdf_pose_bridge.tag_search import COMMENT
 
 TAGS = KNOWN_TAGS.tags
 TEXTS = {
@@ -30,14 +32,9 @@ TEXTS = {
 }
 
 
-def index_of(text):
-    document = document_from_text(text, 'x.sdf')
-    return document.root, index_of_document(document)
-
-
 def found_in(text):
-    root, index = index_of(text)
-    return root, index.markup
+    document = document_from_text(text, 'x.sdf')
+    return document.root, written_elements(document).markup
 
 
 def sdf(content):
@@ -57,9 +54,9 @@ def test_tags_and_holders_are_those_of_the_tree(content):
 
 @pytest.mark.parametrize('content', TEXTS.values(), ids=TEXTS)
 def test_lines_are_those_of_the_tree(content):
-    root, index = index_of(sdf(content))
-    xmls = list(root.iter(*TAGS))
-    assert index.lines(np.arange(len(xmls))).tolist() == [xml.sourceline for xml in xmls]
+    document = document_from_text(sdf(content), 'x.sdf')
+    xmls = list(document.root.iter(*TAGS))
+    assert written_elements(document).lines_of(np.arange(len(xmls))).tolist() == [xml.sourceline for xml in xmls]
 
 
 @pytest.mark.parametrize('content', TEXTS.values(), ids=TEXTS)
@@ -109,15 +106,41 @@ def test_another_encoding():
 def test_a_tree_that_has_changed():
     root = etree.fromstring('<sdf>\n<link name="a"/>\n</sdf>')
     etree.SubElement(root, 'link', name='b')
-    index = index_of_document(Document('x.sdf', root, '1.9'))
-    links = index.markup.of('link')
-    assert index.markup.first_values(links) == ['a', 'b']
-    assert index.lines(links).tolist()[0] == 2
+    markup, lines_of, _ = written_elements(Document('x.sdf', root, '1.9'))
+    links = markup.of('link')
+    assert markup.first_values(links) == ['a', 'b']
+    assert lines_of(links).tolist()[0] == 2
 
 
 def test_xmls_of_some():
-    root, index = index_of(sdf('<link name="a"/><model/><link name="b"/>'))
-    links = index.markup.of('link')
-    assert [xml.get('name') for xml in index.xmls_of(('link',), links[1:])] == ['b']
-    assert index.xmls_of(('pose',), index.markup.of('pose')) == []
-    assert index.xmls_of(('link', 'model'), np.arange(1, 4)) == list(root)
+    document = document_from_text(
+        sdf('<link name="a"/><model/><link name="b"/>'), 'x.sdf')
+    index = index_of_document(document)
+    assert [xml.get('name') for xml in index.xmls_of(('link',), np.array([3]))] == ['b']
+    assert index.xmls_of(('pose',), np.arange(0)) == []
+    assert index.xmls_of(('link', 'model'), np.arange(1, 4)) == list(document.root)
+
+
+def test_many_texts_are_searched_together():
+    texts = [sdf(content).encode() for content in (
+        '<link name="a"/>\n<link name="b"/>', '', '\n<model><link name="c"/></model> <!-- -->')]
+    markup = markup_from_texts(texts)
+    links = markup.of('link')
+    assert markup.first_values(links) == ['a', 'b', 'c']
+    assert markup.lines(links).tolist() == [2, 3, 3]
+    assert markup.roots.tolist() == markup.of('sdf').tolist() == [0, 3, 4]
+    assert markup.holders(links).tolist() == [0, 0, 5]
+
+
+def test_texts_of_which_one_has_more_than_tags_are_not_searched_together():
+    texts = [sdf(content).encode() for content in ('<link/>', '<a><![CDATA[<b/>]]></a>')]
+    assert markup_from_texts(texts) is None
+
+
+def test_spans():
+    markup = markup_from_texts([b'<sdf><link/> <model><link> </link></model>.</sdf>'])
+    spans = markup.spans(np.arange(4))
+    assert spans.begins.tolist() == [0, 5, 13, 20]
+    assert spans.ends.tolist() == [49, 12, 42, 34]
+    assert spans.first_tags.tolist() == [0, 1, 2, 3]
+    assert spans.last_tags.tolist() == [6, 1, 5, 4]

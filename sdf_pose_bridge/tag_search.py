@@ -1,0 +1,127 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Find all tags of well-formed texts, in one or in many files at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import re
+from typing import NamedTuple
+from typing import TYPE_CHECKING
+from typing import TypeAlias
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+Positions: TypeAlias = 'npt.NDArray[np.intp]'
+_Flags: TypeAlias = 'npt.NDArray[np.bool_]'
+
+COMMENT = '\x01'
+"""Stands for each character of a comment in the texts of elements."""
+
+_COMMENT = re.compile(b'<!--.*?-->', re.DOTALL)
+_BLANKED = bytes(byte if byte == ord('\n') else ord(COMMENT) for byte in range(256))
+_DECLARATION = re.compile(rb'<\?xml[^>]*>')
+
+_BLANK = b' \t\n\r' + COMMENT.encode()
+
+_BLOCK = 1 << 18
+
+
+class Tags(NamedTuple):
+    """All tags of some texts, in their order."""
+
+    text: bytes
+    """The texts one after the other, without declarations, and with :data:`COMMENT` in the place
+    of each character of a comment."""
+    starts: Positions
+    """Where each of the texts begins."""
+    roots: Positions
+    """Which of the tags each text begins with."""
+    begins: Positions
+    """Where each ``<`` stands."""
+    ends: Positions
+    """Where each ``>`` stands."""
+    is_closing: _Flags
+    is_empty: _Flags
+    """Whether each is start and end in one."""
+    depths: npt.NDArray[np.int16]
+    """How many elements are open before each."""
+
+
+def tags_from_texts(texts: Sequence[bytes]) -> Tags | None:
+    """
+    Find all tags.
+
+    :param texts: well-formed XML, in UTF-8.
+    :return: the tags; None if there is more in brackets than tags and comments, a bracket by
+        itself, or anything behind an outermost element.
+    """
+    text = _joined(texts)
+    starts = np.cumsum([0, *map(len, texts[:-1])])
+    buffer = np.frombuffer(text, np.uint8)
+    brackets = places(buffer, '>', also=ord('<') ^ ord('>'))
+    begins, ends = brackets[0::2].copy(), brackets[1::2].copy()
+    if len(begins) != len(ends) or not len(begins) or (
+            (buffer[begins] != ord('<')).any() or (buffer[ends] != ord('>')).any()):
+        return None
+    kinds = buffer[begins + 1]
+    if kinds[0] == ord('?'):
+        begins, ends, kinds = begins[1:], ends[1:], kinds[1:]
+    if (kinds == ord('!')).any() or (kinds == ord('?')).any():
+        return None
+    is_closing = kinds == ord('/')
+    is_empty = buffer[ends - 1] == ord('/')
+    steps = np.where(is_closing, np.int32(-1), np.int32(1))
+    steps[is_empty] = 0
+    depths = np.cumsum(steps, dtype=np.int32) - steps
+    roots = np.flatnonzero(depths < 1)
+    if len(roots) != len(texts) or depths[-1] > 1 or (
+            np.searchsorted(starts, begins[roots], side='right') - 1 != np.arange(len(texts))
+            ).any():
+        return None
+    tags = Tags(text, starts, roots, begins, ends, is_closing, is_empty, depths.astype(np.int16))
+    return None if _have_tails(tags) else tags
+
+
+def places(buffer: npt.NDArray[np.uint8], character: str, also: int = 0) -> Positions:
+    """
+    Find a character; block by block, so that what lies between stays in the processor.
+
+    :param buffer: where to look.
+    :param character: what to look for, which has all bits of ``also`` set.
+    :param also: bits without which it is another character that is looked for too.
+    :return: the places.
+    """
+    byte, bits = np.uint8(ord(character)), np.uint8(also)
+    blocks = [
+        np.flatnonzero((buffer[start:start + _BLOCK] | bits) == byte) + start
+        for start in range(0, len(buffer), _BLOCK)]
+    return np.concatenate(blocks)
+
+
+def _joined(texts: Sequence[bytes]) -> bytes:
+    """Join texts; replace comments, which may hold anything, and declarations but the first."""
+    text = texts[0] if len(texts) == 1 else b''.join(map(_without_declaration, texts))
+    if text.find(b'!') < 0:
+        return text
+    return _COMMENT.sub(lambda comment: comment.group().translate(_BLANKED), text)
+
+
+def _without_declaration(text: bytes) -> bytes:
+    declaration = _DECLARATION.match(text)
+    if declaration is None:
+        return text
+    length = declaration.end()
+    return declaration.group().translate(_BLANKED) + text[length:]
+
+
+def _have_tails(tags: Tags) -> bool:
+    """Tell whether anything follows the outermost element of any text."""
+    last_tags = [*(tags.roots[1:] - 1).tolist(), len(tags.begins) - 1]
+    ends = [*tags.starts[1:].tolist(), len(tags.text)]
+    return any(
+        tags.text[begin + 1:end].strip(_BLANK)
+        for begin, end in zip(tags.ends[last_tags].tolist(), ends, strict=True))
