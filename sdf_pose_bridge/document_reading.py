@@ -36,9 +36,10 @@ from sdf_pose_bridge.xml_reading import WellFormednessCheck
 
 _UTF_8 = frozenset({None, 'UTF-8', 'utf-8', 'ASCII', 'US-ASCII'})
 
-_DECLARED_VERSION = re.compile(
-    rb'(?:<\?xml[^>]*\?>)?\s*(?:<!--(?:(?!--).)*-->\s*)*'
+_HEAD = re.compile(
+    rb'(?:<\?xml([^>]*)\?>)?\s*(?:<!--(?:(?!--).)*-->\s*)*'
     rb'<sdf\s(?:[^>]*\s)?version\s*=\s*["\']([0-9.]*)["\']', re.DOTALL)
+_ENCODING = rb'encoding\s*=\s*["\']([^"\']*)'
 
 _SEPARATOR = re.compile(SEPARATOR.encode())
 _LONGEST_SURE_NAME = 500
@@ -164,9 +165,14 @@ def _may_be_joined(content: bytes) -> bool:
 
 
 def _early_version(text: bytes) -> Version | None:
-    """Look for the version of a text that may not be well-formed; None where it is not sure."""
-    declared = _DECLARED_VERSION.match(text)
-    return None if declared is None else version_from_text(declared.group(1).decode('ascii'))
+    """Look for the version of a text, before it is parsed; None if it is not surely in UTF-8."""
+    head = _HEAD.match(text)
+    if head is None:
+        return None
+    encoding = re.search(_ENCODING, head.group(1) or b'')
+    if encoding and encoding.group(1).decode('latin-1') not in _UTF_8:
+        return None
+    return version_from_text(head.group(2).decode('ascii'))
 
 
 def _version(root: XmlElement, path: str) -> str:

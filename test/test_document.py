@@ -13,6 +13,7 @@ from sdf_texts import names_of
 from sdf_texts import only_error
 
 import sdf_pose_bridge
+from sdf_pose_bridge import document_reading
 from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import text_of
 from sdf_pose_bridge.document import value_of
@@ -23,6 +24,12 @@ POSED_LINK = '<link name="l"><pose>1 2 3 0 0 0</pose></link>'
 BILLION = ''.join(
     f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' if i else '<!ENTITY e0 "1 2 3 0 0 0 ">'
     for i in range(12))
+
+
+@pytest.fixture(autouse=True, params=[None, 0], ids=['whole', 'without regular part'])
+def _bytes_of_large_files(request, monkeypatch):
+    if request.param is not None:
+        monkeypatch.setattr(document_reading, '_LARGE', request.param)
 
 
 def pose_text(content):

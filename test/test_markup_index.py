@@ -56,7 +56,8 @@ def test_tags_and_holders_are_those_of_the_tree(content):
 def test_lines_are_those_of_the_tree(content):
     document = document_from_text(sdf(content), 'x.sdf')
     xmls = list(document.root.iter(*TAGS))
-    assert written_elements(document).lines_of(np.arange(len(xmls))).tolist() == [xml.sourceline for xml in xmls]
+    lines = written_elements(document).lines_of(np.arange(len(xmls)))
+    assert lines.tolist() == [xml.sourceline for xml in xmls]
 
 
 @pytest.mark.parametrize('content', TEXTS.values(), ids=TEXTS)
