@@ -15,21 +15,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 from typing import TYPE_CHECKING
-from typing import TypeAlias
 
 import numpy as np
 
 from sdf_pose_bridge.poses import PoseArray
+from sdf_pose_bridge.tf_texts import CHUNK
+from sdf_pose_bridge.tf_texts import Places
+from sdf_pose_bridge.tf_texts import Texts
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-_Places: TypeAlias = 'npt.NDArray[np.int64]'
-
 _ENCAPSULATION = 4
 _COUNT = 4
 _STAMP = 8
-_NUMBERS = 56
+_LENGTH = 4
+_NUMBERS = CHUNK
 _ORIGIN = 8
 """Where the first message begins to count in the buffer: behind its four bytes, and aligned."""
 
@@ -44,7 +45,7 @@ class StampedBytes:
     """
 
     def __init__(
-        self, buffer: npt.NDArray[np.uint8], stamps: _Places, bounds: Sequence[tuple[int, int]],
+        self, buffer: npt.NDArray[np.uint8], stamps: Places, bounds: Sequence[tuple[int, int]],
     ) -> None:
         self._buffer = buffer
         self._stamps = stamps
@@ -72,7 +73,7 @@ class StampedBytes:
 
 
 def tf_message_bytes(
-    parent_ids: Sequence[str], child_ids: Sequence[str], transforms: PoseArray,
+    parent_ids: Sequence[str] | Texts, child_ids: Sequence[str] | Texts, transforms: PoseArray,
 ) -> StampedBytes:
     """
     Lay out one tf2_msgs/TFMessage.
@@ -96,7 +97,7 @@ def tf_message_bytes(
 
 
 def transform_stamped_bytes(
-    parent_ids: Sequence[str], child_ids: Sequence[str], transforms: PoseArray,
+    parent_ids: Sequence[str] | Texts, child_ids: Sequence[str] | Texts, transforms: PoseArray,
 ) -> StampedBytes:
     """
     Lay out a geometry_msgs/TransformStamped for each transform.
@@ -111,7 +112,7 @@ def transform_stamped_bytes(
     return _single_messages([parent_ids, child_ids], transforms)
 
 
-def pose_stamped_bytes(frame_ids: Sequence[str], poses: PoseArray) -> StampedBytes:
+def pose_stamped_bytes(frame_ids: Sequence[str] | Texts, poses: PoseArray) -> StampedBytes:
     """
     Lay out a geometry_msgs/PoseStamped for each pose.
 
@@ -123,38 +124,32 @@ def pose_stamped_bytes(frame_ids: Sequence[str], poses: PoseArray) -> StampedByt
     return _single_messages([frame_ids], poses)
 
 
-class _Texts(NamedTuple):
-    """Texts one behind the other, each with its zero."""
-
-    data: npt.NDArray[np.uint8]
-    starts: _Places
-    lengths: _Places
-
-
 class _Records(NamedTuple):
     """A stamp, texts and seven numbers each; places count from where the alignment does."""
 
-    shifts: _Places
+    shifts: Places
     """Where each begins: its remainder by 8."""
-    texts: list[tuple[_Texts, _Places]]
+    texts: list[tuple[Texts, Places]]
     """The texts, and where each has its length."""
-    numbers: _Places
-    sizes: _Places
+    numbers: Places
+    sizes: Places
 
 
-def _records(columns: Sequence[Sequence[str]], shifts: _Places) -> _Records:
+def _records(columns: Sequence[Sequence[str] | Texts], shifts: Places) -> _Records:
     texts = []
     place = shifts + _STAMP
     for column in columns:
-        text = _joined(column)
-        place = _aligned(place, 4)
+        text = column if isinstance(column, Texts) else Texts.from_strings(column)
+        place = _aligned(place, _LENGTH)
         texts.append((text, place))
-        place = place + 4 + text.lengths
+        place = place + _LENGTH + text.lengths
     numbers = _aligned(place, 8)
     return _Records(shifts, texts, numbers, numbers + _NUMBERS - shifts)
 
 
-def _single_messages(columns: Sequence[Sequence[str]], numbers: PoseArray) -> StampedBytes:
+def _single_messages(
+    columns: Sequence[Sequence[str] | Texts], numbers: PoseArray,
+) -> StampedBytes:
     # Between them room for the next one's four bytes, and as much to keep it aligned.
     gap = _ORIGIN
     records = _records(columns, np.zeros(len(numbers), np.int64))
@@ -167,35 +162,46 @@ def _single_messages(columns: Sequence[Sequence[str]], numbers: PoseArray) -> St
 
 
 def _filled(
-    records: _Records, starts: _Places, end: int, numbers: PoseArray,
+    records: _Records, starts: Places, end: int, numbers: PoseArray,
 ) -> npt.NDArray[np.uint8]:
+    # Texts are copied in chunks. What is too much of one falls on what is written later: other
+    # texts, lengths, and the numbers, which take up a chunk behind all texts. Of the zeros behind
+    # a text there are enough for all that may be left out before the numbers.
     buffer = np.zeros((end + 7) // 8 * 8, np.uint8)
     words = buffer.view('<i4')
     bases = starts - records.shifts
+    chunks = _chunks(buffer.data, 4)
     for text, places in records.texts:
-        targets = bases + places
-        words[targets // 4] = text.lengths
-        moves = np.repeat(targets + 4 - text.starts, text.lengths)
-        moves += np.arange(len(moves))
-        buffer[moves] = text.data
-    first = (bases + records.numbers) // 8
-    buffer.view('<f8')[first[:, np.newaxis] + np.arange(7)] = numbers
+        firsts, lasts = text.starts, bases + places + _LENGTH
+        if text.lengths.max(initial=0) > CHUNK:
+            rows, steps = _steps(text.lengths)
+            firsts, lasts = firsts[rows] + steps, lasts[rows] + steps
+        chunks[lasts // 4] = _chunks(text.data, 1)[firsts]
+    for text, places in records.texts:
+        words[(bases + places) // 4] = text.lengths
+    _chunks(buffer.data, 8)[(bases + records.numbers) // 8] = _chunks(
+        np.ascontiguousarray(numbers, '<f8').data, CHUNK)
     return buffer
 
 
-def _joined(texts: Sequence[str]) -> _Texts:
-    data = np.frombuffer(''.join(['\0'.join(texts), '\0'[:len(texts)]]).encode(), np.uint8)
-    behind = np.flatnonzero(data == 0) + 1
-    if len(behind) != len(texts):
-        msg = 'a frame id holds a zero character, which no message can carry'
-        raise ValueError(msg)
-    starts = np.concatenate([[0], behind[:-1]])[:len(texts)]
-    return _Texts(data, starts, behind - starts)
+def _chunks(data: bytes | memoryview, distance: int) -> npt.NDArray[np.void]:
+    """Let chunks begin at every so many bytes, which may overlap."""
+    count = max(0, (memoryview(data).nbytes - CHUNK) // distance + 1)
+    chunks: npt.NDArray[np.void] = np.ndarray(
+        (count,), f'V{CHUNK}', data, strides=(distance,))
+    return chunks
 
 
-def _sums_before(sizes: _Places) -> _Places:
+def _steps(lengths: Places) -> tuple[npt.NDArray[np.intp], Places]:
+    """Return the rows of all chunks of texts, and how far behind its beginning each is."""
+    counts = (lengths + CHUNK - 1) // CHUNK
+    rows = np.repeat(np.arange(len(counts)), counts)
+    return rows, (np.arange(len(rows)) - _sums_before(counts)[rows]) * CHUNK
+
+
+def _sums_before(sizes: Places) -> Places:
     return np.cumsum(sizes) - sizes
 
 
-def _aligned(places: _Places, size: int) -> _Places:
-    return (places + size - 1) // size * size
+def _aligned(places: Places, size: int) -> Places:
+    return (places + (size - 1)) & -size

@@ -10,7 +10,9 @@ that may share a name with others have the kind before their name: ``robot/link/
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 import enum
+from operator import itemgetter
 from typing import NamedTuple
 from typing import TYPE_CHECKING
 
@@ -20,6 +22,7 @@ from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene import Scene
+from sdf_pose_bridge.tf_texts import Texts
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -30,8 +33,11 @@ OPTICAL_SUFFIX = '_optical'
 _KINDS_IN_NAMES = frozenset({
     Kind.VISUAL, Kind.COLLISION, Kind.LIGHT, Kind.PARTICLE_EMITTER, Kind.PROJECTOR, Kind.ACTOR})
 _HAS_KIND_IN_NAME = np.array([Kind(value) in _KINDS_IN_NAMES for value in range(len(Kind))])
+_ROOT = int(Kind.ROOT)
+"""A plain number, as numpy takes long to find out what an Enum is."""
 _END = '\0'
 """Stands between names that are changed together; XML has no such character."""
+_SLASH = ord('/')
 
 
 class FrameNames(enum.Enum):
@@ -58,7 +64,7 @@ class FrameNaming(NamedTuple):
     separator: str = '/'
     prefix: str = ''
 
-    def frame_ids_from_scene(self, scene: Scene, indices: Indices | None = None) -> list[str]:
+    def frame_ids_from_scene(self, scene: Scene, indices: Indices | None = None) -> Texts:
         """
         Name the frames of elements, as if no file gave any a frame id of its own.
 
@@ -69,9 +75,9 @@ class FrameNaming(NamedTuple):
         """
         if indices is None:
             indices = np.arange(len(scene.names), dtype=np.int32)
-        names = list(map(scene.names.__getitem__, indices.tolist()))
-        holders = scene.parents[indices]
-        for row in np.flatnonzero(_HAS_KIND_IN_NAME[scene.kinds[indices]]).tolist():
+        names = _taken(scene.names, indices.tolist())
+        holders = scene.parents.take(indices)
+        for row in np.flatnonzero(_HAS_KIND_IN_NAME.take(scene.kinds.take(indices))).tolist():
             holder = holders[row]
             is_at_top = scene.parents[holder] < 0
             start = 0 if is_at_top else len(scene.names[holder]) + len(SEPARATOR)
@@ -86,7 +92,7 @@ class FrameNaming(NamedTuple):
 
     def _is_any_relative(self, scene: Scene) -> bool:
         return self.names is FrameNames.RELATIVE or (
-            self.names is FrameNames.AUTO and bool((scene.kinds == Kind.ROOT).any()))
+            self.names is FrameNames.AUTO and bool((scene.kinds == _ROOT).any()))
 
     def _left_out(self, scene: Scene) -> npt.NDArray[np.int64]:
         """Return how many characters each name loses at its beginning."""
@@ -97,18 +103,22 @@ class FrameNaming(NamedTuple):
         lengths = lengths[tops]
         lengths[tops == np.arange(len(tops))] = 0
         if self.names is FrameNames.AUTO:
-            lengths[scene.kinds[scene.roots] != Kind.ROOT] = 0
+            lengths[scene.kinds[scene.roots] != _ROOT] = 0
         return lengths
 
-    def _frame_ids_from_names(self, names: list[str]) -> list[str]:
+    def _frame_ids_from_names(self, names: list[str]) -> Texts:
         # All at once, unless some of them need more than a replacement.
-        text = f'{_END}{_END.join(names)}{_END}'.replace(SEPARATOR, self.separator)
-        if text.count(_END) == len(names) + 1 and not (
-                f'{_END}/' in text or f'{_END}{_END}' in text or _END in self.prefix):
-            if self.prefix:
-                text = text.replace(_END, _END + self.prefix)
-            return text.split(_END)[1:-1]
-        return [self.frame_id_from_name(name) for name in names]
+        joined = _END.join(['', *names, '']).replace(SEPARATOR, self.separator).encode()
+        data = np.frombuffer(joined, np.uint8)
+        ends = np.flatnonzero(data == 0)
+        firsts = data.take(ends[:-1] + 1)
+        if len(firsts) != len(names) or _END in self.prefix or (
+                (firsts == _SLASH) | (firsts == 0)).any():
+            return Texts.from_strings([self.frame_id_from_name(name) for name in names])
+        if self.prefix:
+            end = _END.encode()
+            joined = joined[:-1].replace(end, end + self.prefix.encode()) + end
+        return Texts(joined[1:])
 
     def frame_id_from_name(self, name: str) -> str:
         """
@@ -119,6 +129,13 @@ class FrameNaming(NamedTuple):
         """
         rest = name.replace(SEPARATOR, self.separator).lstrip('/')
         return self.prefix + rest if rest else ''
+
+
+def _taken(names: Sequence[str], indices: list[int]) -> list[str]:
+    # Of a single index itemgetter would not return a tuple.
+    if len(indices) < 2:
+        return [names[index] for index in indices]
+    return list(itemgetter(*indices)(names))
 
 
 def _tops(holders: Indices) -> Indices:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
+from collections.abc import Sequence
 from typing import NamedTuple
 from typing import TYPE_CHECKING
 
@@ -26,6 +27,13 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
 NO_PARENT = -1
+
+# Arrays are compared with plain numbers: numpy takes long to find out what an Enum is.
+_MODEL = int(Kind.MODEL)
+_LINK = int(Kind.LINK)
+_JOINT = int(Kind.JOINT)
+_FRAME = int(Kind.FRAME)
+_SENSOR = int(Kind.SENSOR)
 
 _FIRST = 0
 _LAST = 4
@@ -62,29 +70,27 @@ class _Builder:
         self._scene = scene
         self._own = np.arange(len(scene.kinds), dtype=np.int32)
         # The body that carries each frame; for a static model its canonical link.
-        canonical = scene.canonical_links[scene.bodies]
+        canonical = scene.canonical_links.take(scene.bodies)
         self._nodes = np.where(canonical >= 0, canonical, scene.bodies)
-        elements, _, starts, ends = zip(*scene.joints, strict=True) if scene.joints else [()] * 4
-        self._joints = np.array(elements, np.int32)
-        self._ends = (
-            self._nodes[np.array(starts, np.int32)], self._nodes[np.array(ends, np.int32)])
+        _, _, starts, ends = zip(*scene.joints, strict=True) if scene.joints else [()] * 4
+        self._ends = (self._nodes.take(_places(starts)), self._nodes.take(_places(ends)))
 
     def parents(self) -> TfParents:
         scene = self._scene
         kinds, holders = scene.kinds, scene.parents
-        parents = np.where(kinds == Kind.FRAME, scene.attachments, holders)
-        parents = np.where(kinds == Kind.MODEL, scene.canonical_links, parents)
-        of_joints = np.flatnonzero((kinds == Kind.SENSOR) & (kinds[holders] == Kind.JOINT))
+        parents = np.where(kinds == _FRAME, scene.attachments, holders)
+        parents = np.where(kinds == _MODEL, scene.canonical_links, parents)
+        parents = np.where(kinds == _JOINT, self._nodes, parents)
+        sensors = np.flatnonzero(kinds == _SENSOR)
+        of_joints = sensors[kinds[holders[sensors]] == _JOINT]
         parents[of_joints] = self._nodes[holders[of_joints]]
-        parents[self._joints] = self._nodes[self._joints]
-        parents[kinds == Kind.LINK] = NO_PARENT
-        seeds = self._seeds()
-        movers = self._movers_if_trees_hang_on(seeds)
+        parents[kinds == _LINK] = NO_PARENT
+        bodies, ranks = self._ranked_bodies()
+        movers = self._movers_if_trees_hang_on_first(bodies, ranks)
         loops: list[Joint] = []
         if movers is None:
-            movers, loops = self._movers_of_any(seeds.tolist())
-        held = self._own[seeds]
-        held = held[(movers[held] == NO_PARENT) & (holders[held] >= 0)]
+            movers, loops = self._movers_of_any(bodies[np.argsort(ranks)].tolist())
+        held = bodies[(movers.take(bodies) == NO_PARENT) & (holders.take(bodies) >= 0)]
         fallbacks = self._fallbacks(held)
         moved = np.flatnonzero(movers != NO_PARENT)
         parents[moved] = movers[moved]
@@ -92,35 +98,43 @@ class _Builder:
         anchored = held[fallbacks == scene.roots[held]]
         return TfParents(parents, frozenset(anchored.tolist()), tuple(loops))
 
-    def _seeds(self) -> Indices:
-        """Return bodies, those first that the others should hang on; some more than once."""
+    def _ranked_bodies(self) -> tuple[Indices, npt.NDArray[np.int64]]:
+        """
+        Rank bodies by how much the others should hang on them.
+
+        :return: all bodies, some more than once; and their ranks, no two of which are the same.
+        """
         scene = self._scene
-        models = np.flatnonzero(scene.kinds == Kind.MODEL).astype(np.int32)
-        links = np.flatnonzero(scene.kinds == Kind.LINK).astype(np.int32)
+        models = np.flatnonzero(scene.kinds == _MODEL).astype(np.int32)
+        links = np.flatnonzero(scene.kinds == _LINK).astype(np.int32)
         roots = np.flatnonzero(scene.parents < 0).astype(np.int32)
-        canonical = scene.canonical_links[models]
+        canonical = scene.canonical_links.take(models)
         is_static = np.zeros(len(self._own), np.bool_)
         is_static[list(scene.static_models)] = True
         is_child = np.zeros(len(self._own), np.bool_)
         is_child[self._ends[1]] = True
-        is_top = scene.parents[models] == scene.roots[models]
-        is_static_top = is_top & is_static[models]
+        is_top = scene.parents.take(models) == scene.roots.take(models)
+        is_static_top = is_top & is_static.take(models)
         is_empty = ~is_static_top & (canonical < 0)
         models_in_classes = np.where(
             is_static_top, _FIRST, np.where(is_empty, _LAST, np.where(is_top, 1, 2)))
         classes = np.concatenate([
-            np.full(len(roots), _FIRST), models_in_classes, np.where(is_child[links], _LAST, 3)])
+            np.full(len(roots), _FIRST), models_in_classes,
+            np.where(is_child.take(links), _LAST, 3)])
         places = np.concatenate([roots, models, links])
         bodies = np.concatenate([roots, np.where(canonical >= 0, canonical, models), links])
-        return bodies[np.lexsort((places, classes))]
+        return bodies, classes * len(self._own) + places
 
-    def _movers_if_trees_hang_on(self, seeds: Indices) -> Indices | None:
+    def _movers_if_trees_hang_on_first(
+        self, bodies: Indices, ranks: npt.NDArray[np.int64],
+    ) -> Indices | None:
         """
         Let every joint move its child on its parent, if that is what a search would find.
 
-        It would if joints make trees, and of each tree the first of the seeds is the body that no
-        joint moves.
+        It would if joints make trees, and in each tree the body that no joint moves is the first.
 
+        :param bodies: all bodies, some more than once.
+        :param ranks: their ranks; the lowest one of a body counts.
         :return: the body that each one is moved on; None if only a search can tell.
         """
         starts, ends = self._ends
@@ -128,17 +142,18 @@ class _Builder:
         movers[ends] = starts
         if np.count_nonzero(movers != NO_PARENT) != len(ends):
             return None
-        tops = np.where(movers == NO_PARENT, self._own, movers)
-        for _ in range(len(tops).bit_length()):
-            higher = tops[tops]
-            if np.array_equal(higher, tops):
+        tops = self._own.copy()
+        tops[ends] = above = starts
+        for _ in range(len(ends).bit_length()):
+            higher = tops.take(above)
+            if np.array_equal(higher, above):
                 break
-            tops = higher
-        if (movers[tops] != NO_PARENT).any():
+            tops[ends] = above = higher
+        if (movers.take(above) != NO_PARENT).any():
             return None
-        first = np.full(len(tops), NO_PARENT, dtype=np.int32)
-        first[tops[seeds[::-1]]] = seeds[::-1]
-        return movers if np.array_equal(first[tops[ends]], tops[ends]) else None
+        lowest = np.full(len(tops), np.iinfo(np.int64).max)
+        np.minimum.at(lowest, bodies, ranks)
+        return movers if (lowest.take(above) < lowest.take(ends)).all() else None
 
     def _movers_of_any(self, seeds: list[int]) -> tuple[Indices, list[Joint]]:
         """Search from one seed after the other; return also the joints that close loops."""
@@ -214,3 +229,7 @@ class _Builder:
             around = holders[around]
             goes_on = around != roots[bodies[rows]]
             rows, around = rows[goes_on], around[goes_on]
+
+
+def _places(elements: Sequence[int]) -> npt.NDArray[np.intp]:
+    return np.fromiter(elements, np.intp, len(elements))

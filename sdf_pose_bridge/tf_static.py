@@ -4,9 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -18,14 +18,16 @@ from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge.poses import PoseArray
 from sdf_pose_bridge.tf_message_bytes import tf_message_bytes
+from sdf_pose_bridge.tf_texts import Texts
+from sdf_pose_bridge.tf_tree import NO_PARENT
 from sdf_pose_bridge.tf_tree import TfTree
 
 
 class Transforms(NamedTuple):
     """The transforms of a tree, which not every frame has."""
 
-    parent_ids: Sequence[str]
-    child_ids: Sequence[str]
+    parent_ids: Texts
+    child_ids: Texts
     poses: PoseArray
 
     @classmethod
@@ -36,12 +38,12 @@ class Transforms(NamedTuple):
         :param tree: a tree.
         :return: those that have a parent.
         """
-        if '' not in tree.parent_ids:
-            return cls(tree.parent_ids, tree.frame_ids, tree.transforms)
-        rows = [row for row, parent_id in enumerate(tree.parent_ids) if parent_id]
-        return cls(
-            [tree.parent_ids[row] for row in rows], [tree.frame_ids[row] for row in rows],
-            tree.transforms[rows])
+        rows = np.flatnonzero(tree.parents != NO_PARENT)
+        if len(rows) < len(tree.parents):
+            return cls(
+                tree.texts.taken(tree.parents[rows]), tree.texts.taken(rows),
+                tree.transforms[rows])
+        return cls(tree.texts.taken(tree.parents), tree.texts.taken(slice(-1)), tree.transforms)
 
 
 class TfStatic:

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import enum
+from functools import cached_property
 from typing import NamedTuple
 from typing import TYPE_CHECKING
 
@@ -31,6 +32,7 @@ from sdf_pose_bridge.tf_names import FrameNames
 from sdf_pose_bridge.tf_names import FrameNaming
 from sdf_pose_bridge.tf_names import OPTICAL_SUFFIX
 from sdf_pose_bridge.tf_parents import tf_parents_from_scene
+from sdf_pose_bridge.tf_texts import Texts
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -41,8 +43,10 @@ DEFAULT_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.FRAME, Kind.SENSOR})
 OPTICAL_POSE = Pose(0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
 """Pose of an optical frame (REP 103: z forward, x right, y down) in its camera (x forward)."""
 
-_NO_PARENT = -1
-_ROOT_PARENT = -2
+ON_ROOT = -1
+"""Parent of a frame that hangs on the root frame."""
+NO_PARENT = -2
+"""Parent of a frame that has no transform."""
 _NOT_THERE = -3
 
 
@@ -75,20 +79,14 @@ class TfOptions(NamedTuple):
     """Whether cameras get an optical frame beside their own."""
 
 
-class TfTree(NamedTuple):
-    """
-    Frames to publish; entry i of each sequence and array is about frame i.
-
-    Frames stand in the order of the file; the root frame is not among them.
-    """
-
+class _Frames(NamedTuple):
     root_frame: str
-    frame_ids: tuple[str, ...]
-    """Unique, not empty, without leading slashes."""
+    texts: Texts
+    """The frame ids, and one more text: the root frame."""
     poses: PoseArray
     """Shape (n, 7): pose of each in the root frame."""
-    parent_ids: tuple[str, ...]
-    """The frame that each hangs on; empty for one that has no transform."""
+    parents: Indices
+    """Which of the frames each hangs on; :data:`ON_ROOT` or :data:`NO_PARENT` if on none."""
     transforms: PoseArray
     """Shape (n, 7): pose of each in its parent; the identity where it has none."""
     elements: Indices
@@ -96,6 +94,26 @@ class TfTree(NamedTuple):
     world: str
     """The name of the world that they belong to; empty for a model file."""
     warnings: tuple[SdfWarning, ...]
+
+
+class TfTree(_Frames):
+    """
+    Frames to publish; entry i of each sequence and array is about frame i.
+
+    Frames stand in the order of the file; the root frame is not among them.
+    """
+
+    @cached_property
+    def frame_ids(self) -> tuple[str, ...]:
+        """Unique, not empty, without leading slashes."""
+        return self.texts.strings[:-1]
+
+    @cached_property
+    def parent_ids(self) -> tuple[str, ...]:
+        """The frame that each hangs on; empty for one that has no transform."""
+        # As NO_PARENT and ON_ROOT count from behind.
+        ids = (*self.frame_ids, '', self.root_frame)
+        return tuple(map(ids.__getitem__, self.parents.tolist()))
 
 
 def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree:
@@ -130,9 +148,8 @@ class _Builder:
             options.frame_names, options.frame_separator, options.frame_prefix)
         self._problems = Problems(scene.files)
         self._parents = tf_parents_from_scene(scene)
-        self._ids: list[str] = []
+        self._texts = Texts(b'')
         self._elements: Indices = np.empty(0, np.int32)
-        self._row_of_id: dict[str, int] = {}
         self._row_of_element = np.full(len(scene.kinds), _NOT_THERE, np.int32)
         self._optical: list[_OpticalFrame] = []
 
@@ -165,7 +182,7 @@ class _Builder:
             is_inside = self._scene.roots == 0
         wanted = np.array([kind in options.kinds for kind in Kind])
         return np.flatnonzero(
-            is_inside & wanted[self._scene.kinds] & (holders >= 0)).astype(np.int32)
+            is_inside & wanted.take(self._scene.kinds) & (holders >= 0)).astype(np.int32)
 
     def _is_inside(self, model: int) -> npt.NDArray[np.bool_]:
         """Tell of each element whether it is a model or something in it."""
@@ -190,28 +207,26 @@ class _Builder:
     # What frames are called
 
     def _name(self, published: Indices) -> None:
-        ids = self._naming.frame_ids_from_scene(self._scene, published)
+        texts = self._naming.frame_ids_from_scene(self._scene, published)
         same: dict[int, int] = {}
         lent: dict[int, str] = {}
         if any(facts.frame_id for facts in self._scene.sensors.values()):
+            ids = list(texts)
             same, lent = self._give_sensors_their_ids(published, ids)
             kept = [
                 row for row, index in enumerate(published.tolist())
                 if index not in same and index not in lent]
-            published, ids = published[kept], [ids[row] for row in kept]
-        self._ids, self._elements = ids, published
-        self._row_of_element[published] = np.arange(len(ids))
-        self._row_of_id = dict(zip(ids, range(len(ids)), strict=True))
-        if len(self._row_of_id) < len(ids):
-            # Of several with one id, the first counts.
-            self._row_of_id = dict(zip(reversed(ids), range(len(ids) - 1, -1, -1), strict=True))
-        if self._is_any_id_doubtful():
-            for row in range(len(ids)):
+            published, texts = published[kept], Texts.from_strings([ids[row] for row in kept])
+        texts = texts.with_one_more(self._options.root_frame)
+        self._texts, self._elements = texts, published
+        self._row_of_element[published] = np.arange(len(published))
+        if texts.lengths.min() == 1 or texts.has_repeats() or texts.has_white_space():
+            for row in range(len(published)):
                 self._judge(row)
         for index, other in same.items():
             self._row_of_element[index] = self._row_of_element[other]
         for index, frame_id in lent.items():
-            self._row_of_element[index] = self._row_of_id.get(frame_id, _ROOT_PARENT)
+            self._row_of_element[index] = self._row_of_id.get(frame_id, ON_ROOT)
 
     def _give_sensors_their_ids(
         self, published: Indices, ids: list[str],
@@ -222,7 +237,7 @@ class _Builder:
         :return: the sensors that share the frame of another sensor, with that; and those that are
             stamped with the id of a frame that exists by itself, with that id.
         """
-        is_sensor = self._scene.kinds[published] == Kind.SENSOR
+        is_sensor = self._scene.kinds[published] == int(Kind.SENSOR)
         existing = {ids[row] for row in np.flatnonzero(~is_sensor).tolist()}
         existing.add(self._options.root_frame)
         sensors: dict[str, int] = {}
@@ -250,11 +265,15 @@ class _Builder:
             scene.parents[sensor] == scene.parents[other]
             and (scene.poses[sensor] == scene.poses[other]).all())
 
-    def _is_any_id_doubtful(self) -> bool:
-        text = ''.join(self._ids)
-        return (
-            len(self._row_of_id) < len(self._ids) or '' in self._row_of_id
-            or self._options.root_frame in self._row_of_id or text.split(None, 1) != [text])
+    @cached_property
+    def _ids(self) -> list[str]:
+        """The frame ids, those of optical frames too."""
+        return list(self._texts.strings[:-1])
+
+    @cached_property
+    def _row_of_id(self) -> dict[str, int]:
+        """The row of each id; of several with one id, the first."""
+        return dict(zip(reversed(self._ids), range(len(self._ids) - 1, -1, -1), strict=True))
 
     def _judge(self, row: int) -> None:
         frame_id, element = self._ids[row], self._element(row)
@@ -288,7 +307,7 @@ class _Builder:
         camera = int(self._row_of_element[index])
         if facts.optical_frame_id:
             frame_id = self._naming.frame_id_from_name(facts.optical_frame_id)
-        elif camera == _ROOT_PARENT:
+        elif camera == ON_ROOT:
             frame_id = self._options.root_frame + OPTICAL_SUFFIX
         else:
             frame_id = self._ids[camera] + OPTICAL_SUFFIX
@@ -315,28 +334,26 @@ class _Builder:
     def _parent_rows(self) -> Indices:
         """Climb to the next element that is published; what is not stands in no one's way."""
         holders, parents = self._scene.parents, self._parents.parents
+        self._row_of_element[holders < 0] = ON_ROOT
         lasts = self._elements.copy()
-        above = parents[lasts]
-        climbing = np.arange(len(lasts))
-        while len(climbing):
-            stands = above[climbing]
-            climbing = climbing[
-                (self._row_of_element[stands] == _NOT_THERE) & (holders[stands] >= 0)]
+        above = parents.take(lasts)
+        rows: Indices = self._row_of_element.take(above)
+        while len(climbing := np.flatnonzero(rows == _NOT_THERE)):
             lasts[climbing] = above[climbing]
             above[climbing] = parents[above[climbing]]
+            rows[climbing] = self._row_of_element[above[climbing]]
+        if self._options.anchor_models is AnchorModels.ALL:
+            return rows
         is_on_root = holders[above] < 0
-        rows = np.where(is_on_root, _ROOT_PARENT, self._row_of_element[above])
         is_adrift = np.zeros(len(holders), np.bool_)
         for last in set(lasts[is_on_root].tolist()):
             is_adrift[last] = not self._is_anchored(last)
-        rows[is_on_root & is_adrift[lasts]] = _NO_PARENT
+        rows[is_on_root & is_adrift[lasts]] = NO_PARENT
         return rows
 
     def _is_anchored(self, element: int) -> bool:
         """Tell whether what hangs on the root directly gets a transform from it."""
         scene = self._scene
-        if self._options.anchor_models is AnchorModels.ALL:
-            return True
         if scene.kinds[element] not in (Kind.LINK, Kind.MODEL):
             return True
         if self._options.anchor_models is AnchorModels.NONE:
@@ -347,9 +364,6 @@ class _Builder:
             element = int(scene.parents[element])
         return element in scene.static_models
 
-    def _is_world(self) -> bool:
-        return len(self._scene.kinds) > 0 and bool(self._scene.kinds[0] == Kind.WORLD)
-
     def _warn_loop(self, joint: Joint) -> None:
         names = self._scene.names
         msg = (f'joint "{names[joint.element]}" closes a loop between "{names[joint.parent]}" and '
@@ -358,28 +372,28 @@ class _Builder:
 
     def _laid_out(self, parents: Indices) -> TfTree:
         optical = self._optical
-        poses = np.concatenate([
-            self._scene.poses[self._elements],
-            np.array([frame.pose for frame in optical], np.float64).reshape(-1, 7)])
+        # The last two rows serve the constants for no parent and for the root.
+        places = np.array([*(frame.pose for frame in optical), Pose(), Pose()])
+        places = np.concatenate([self._scene.poses.take(self._elements, axis=0), places])
+        poses = places[:-2]
         parents = np.concatenate(
             [parents, np.array([frame.parent for frame in optical], np.int32)])
-        # The last two rows serve the constants for no parent and for the root.
-        origins = np.concatenate([poses, [Pose(), Pose()]]).take(parents, axis=0)
-        transforms = relative_poses(origins, poses)
-        transforms[parents == _NO_PARENT] = Pose()
+        transforms = relative_poses(places.take(parents, axis=0), poses)
+        transforms[parents == NO_PARENT] = Pose()
         transforms[:, 3:] = canonical_quaternion(transforms[:, 3:])
-        transforms[:, :3] += 0.0  # no negative zeros
+        transforms += 0.0  # no negative zeros
         elements = np.concatenate([self._elements, np.full(len(optical), -1, np.int32)])
-        for array in (elements, poses, transforms):
+        for array in (elements, poses, parents, transforms):
             array.setflags(write=False)
-        ids = (*self._ids, self._options.root_frame, '')
+        if optical:
+            self._texts = Texts.from_strings([*self._ids, self._options.root_frame])
         return TfTree(
             root_frame=self._options.root_frame,
-            frame_ids=ids[:-2],
+            texts=self._texts,
             poses=poses,
-            parent_ids=tuple(map(ids.__getitem__, parents.tolist())),
+            parents=parents,
             transforms=transforms,
             elements=elements,
-            world=next(iter(self._scene.world_names.values()), '') if self._is_world() else '',
+            world=self._scene.world_names.get(0, ''),
             warnings=self._problems.warnings,
         )

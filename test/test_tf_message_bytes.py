@@ -18,6 +18,7 @@ import pytest
 from sdf_pose_bridge.tf_message_bytes import pose_stamped_bytes
 from sdf_pose_bridge.tf_message_bytes import tf_message_bytes
 from sdf_pose_bridge.tf_message_bytes import transform_stamped_bytes
+from sdf_pose_bridge.tf_texts import Texts
 
 STAMPS = st.tuples(st.integers(0, 2**31 - 1), st.integers(0, 999_999_999))
 NAMES = st.text(st.characters(codec='utf-8', exclude_characters='\0'), max_size=20)
@@ -149,6 +150,23 @@ def test_names_of_every_length_are_read_back(serialized, rows):
     from tf2_msgs.msg import TFMessage
     (ours,) = tf_message_bytes(*columns(rows)).at(12, 34)
     assert deserialize_message(ours, TFMessage) == tf_message(rows, (12, 34))
+
+
+def test_texts_around_the_size_of_a_chunk_have_the_bytes_of_the_serializer(serialized):
+    lengths = [0, 1, 3, *range(50, 64), *range(108, 116), 1000]
+    rows = [('p' * first, 'c' * second, [1.0] * 7) for first in lengths for second in lengths]
+    mask = mask_of_list([row[:2] for row in rows])
+    (ours,) = tf_message_bytes(*columns(rows)).at(1, 2)
+    assert meant(ours, mask) == meant(serialized(tf_message(rows, (1, 2))), mask)
+    assert not any(byte for byte, counts in zip(ours, mask, strict=True) if not counts)
+
+
+def test_texts_that_are_taken_are_written_like_strings():
+    texts = Texts.from_strings(['a', 'größe', 'world'])
+    numbers = np.arange(21.0).reshape(3, 7)
+    taken = tf_message_bytes(texts.taken(np.array([-1, 0, 0])), texts, numbers).at(1, 2)
+    strings = tf_message_bytes(['world', 'a', 'a'], ['a', 'größe', 'world'], numbers).at(1, 2)
+    assert taken == strings
 
 
 @given(rows=ROWS)

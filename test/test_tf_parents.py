@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parents in TF: what a frame is fixed to, or what a joint moves it on."""
 
+import itertools
+
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
@@ -288,15 +290,15 @@ def test_what_is_found_at_once_is_what_a_search_finds(edges, static):
         (start, end) for start, end in edges
         if start != end and (start[0] != end[0] or end[0] not in static)]
     builder = builder_of_joints(pairs, static)
-    seeds = builder._seeds()
-    movers = builder._movers_if_trees_hang_on(seeds)
-    found, loops = builder._movers_of_any(seeds.tolist())
+    bodies, ranks = builder._ranked_bodies()
+    movers = builder._movers_if_trees_hang_on_first(bodies, ranks)
+    found, loops = builder._movers_of_any(bodies[ranks.argsort()].tolist())
     assert movers is None or (movers.tolist(), []) == (found.tolist(), loops)
 
 
 def test_a_tree_below_the_first_link_is_found_at_once():
     builder = builder_of_joints([('p::a', 'p::b'), ('p::b', 'p::c'), ('p::a', 'q::a')])
-    assert builder._movers_if_trees_hang_on(builder._seeds()) is not None
+    assert builder._movers_if_trees_hang_on_first(*builder._ranked_bodies()) is not None
 
 
 @pytest.mark.parametrize('pairs', [
@@ -307,4 +309,17 @@ def test_a_tree_below_the_first_link_is_found_at_once():
 ])
 def test_loops_two_parents_and_other_tops_need_a_search(pairs):
     builder = builder_of_joints(pairs)
-    assert builder._movers_if_trees_hang_on(builder._seeds()) is None
+    assert builder._movers_if_trees_hang_on_first(*builder._ranked_bodies()) is None
+
+
+@pytest.mark.parametrize('count', [1, 2, 3, 4, 5, 8, 9, 31, 33])
+def test_a_chain_of_any_length_is_found_at_once(count):
+    links = [f'l{number}' for number in range(count)]
+    text = model_file(
+        ''.join(f'<link name="{link}"/>' for link in links)
+        + joints(*reversed(list(itertools.pairwise(links)))))
+    builder = _Builder(sdf_pose_bridge.load_text(text))
+    movers = builder._movers_if_trees_hang_on_first(*builder._ranked_bodies())
+    names = builder._scene.names
+    assert {names[end]: names[start] for end, start in enumerate(movers) if start >= 0} == {
+        f'm::{end}': f'm::{start}' for start, end in itertools.pairwise(links)}

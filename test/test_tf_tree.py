@@ -82,6 +82,18 @@ def test_two_elements_would_share_an_id(text, options, frame_id):
     assert f'"{frame_id}"' in error.message
 
 
+@pytest.mark.parametrize(('name', 'root_frame', 'code'), [
+    ('m7/l', 'world', 'DUPLICATE_NAME'), ('map', 'map', 'DUPLICATE_NAME'),
+    ('//', 'world', 'ELEMENT_INVALID')])
+def test_one_bad_id_among_many(name, root_frame, code):
+    models = ''.join(model(f'm{number}', LINK) for number in range(1000))
+    scene = sdf_pose_bridge.load_text(world_file(f'{models}<frame name="{name}"/>'))
+    with pytest.raises(sdf_pose_bridge.SdfError) as caught:
+        tf_tree_from_scene(scene, TfOptions(root_frame=root_frame))
+    assert [(error.code, f'"{name}"' in error.message) for error in caught.value.errors] == [
+        (code, True)]
+
+
 def test_a_clash_names_both_and_their_lines():
     error = only_tree_error(
         '<sdf version="1.9"><model name="m">\n<link name="a/b"/>\n'
@@ -242,7 +254,7 @@ def test_an_empty_file():
 
 def test_arrays_cannot_be_written():
     tree = tree_of(model_file(LINK))
-    for array in (tree.poses, tree.transforms):
+    for array in (tree.poses, tree.parents, tree.transforms, tree.elements):
         with pytest.raises(ValueError, match='read-only'):
             array[0] = 1.0
 
