@@ -41,6 +41,8 @@ class Document(NamedTuple):
     """What is wrong with its XML, but does not stand in the way."""
     origins: Mapping[XmlElement, Document] = MappingProxyType({})
     """For what was put into its tree from elsewhere: the file that it stands in."""
+    is_large: bool = False
+    """Whether it is worth while to look at many of its elements at a time."""
     text: bytes | None = None
     """Its content in UTF-8; None if that is in another encoding, or the tree has changed."""
     elements: MarkupIndex | None = None

@@ -5,19 +5,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import text_of
 from sdf_pose_bridge.document import WHITE_SPACE
 from sdf_pose_bridge.document import XmlElement
-from sdf_pose_bridge.element_rows import ElementRows
-from sdf_pose_bridge.element_rows import Run
 from sdf_pose_bridge.elements import Elements
 from sdf_pose_bridge.elements import NOWHERE
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import ElementInvalidError
-from sdf_pose_bridge.markup_index import MarkupIndex
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import scoped_name
@@ -26,6 +24,11 @@ from sdf_pose_bridge.pose_text import PoseText
 from sdf_pose_bridge.pose_text import PoseTextError
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.reading import Reading
+
+if TYPE_CHECKING:
+    from sdf_pose_bridge.element_rows import ElementRows
+    from sdf_pose_bridge.element_rows import Run
+    from sdf_pose_bridge.markup_index import MarkupIndex
 
 _NO_POSE = PoseText('', False, False)
 

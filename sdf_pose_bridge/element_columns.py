@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sdf_pose_bridge.element_rows import Columns
 from sdf_pose_bridge.elements import element_path
 from sdf_pose_bridge.elements import Elements
 from sdf_pose_bridge.elements import FrameFacts
@@ -25,6 +24,8 @@ from sdf_pose_bridge.pose_text import PoseText
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+
+    from sdf_pose_bridge.element_rows import Columns
 
 
 class ElementColumns:

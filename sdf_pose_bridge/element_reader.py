@@ -26,7 +26,6 @@ from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import MergeIncludeError
 from sdf_pose_bridge.inclusions import DocumentSet
 from sdf_pose_bridge.joint_reader import joint_facts_from_xml
-from sdf_pose_bridge.markup_index import MarkupIndex
 from sdf_pose_bridge.name_claims import NameClaims
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.names import MODEL_FRAME
@@ -38,6 +37,7 @@ from sdf_pose_bridge.sensor_facts import sensor_facts_from_xml
 if TYPE_CHECKING:
     from sdf_pose_bridge.include_reader import Include
     from sdf_pose_bridge.inclusion import Inclusion
+    from sdf_pose_bridge.markup_index import MarkupIndex
 
 _TOP_KINDS = {'model': Kind.MODEL, 'light': Kind.LIGHT, 'actor': Kind.ACTOR}
 _LINK_CHILD_KINDS = {

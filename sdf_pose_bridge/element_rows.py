@@ -9,7 +9,6 @@ Such elements are told here from odd ones, which have to be looked at one by one
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from collections.abc import Iterator
 from collections.abc import Sequence
 from functools import cached_property
@@ -24,6 +23,9 @@ import numpy as np
 from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.elements import NOWHERE
+from sdf_pose_bridge.row_kinds import ROW_TAGS
+from sdf_pose_bridge.row_kinds import TOP_TAGS
+from sdf_pose_bridge.tree_elements import TreeElements
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -161,28 +163,16 @@ class ElementRows:
     """
     The rows of one document, and the elements of its tree that they are about.
 
-    :param tree: its rows, and maybe those of others.
+    :param rows: its rows, and maybe those of others.
     :param first: the first of its rows.
-    :param root: its outermost element.
-    :param top_tags: the tags of rows that stand at the top.
-    :param xmls_of_rows: returns the elements of the tree that rows are about, as far as it has
-        them, and which rows these are.
+    :param tree: the elements of its tree.
     """
 
-    def __init__(
-        self,
-        tree: RowTree,
-        first: int,
-        root: XmlElement,
-        top_tags: Sequence[str],
-        xmls_of_rows: Callable[[], tuple[_Rows, list[XmlElement]]],
-    ) -> None:
-        self.columns = tree.columns
-        self._tree = tree
+    def __init__(self, rows: RowTree, first: int, tree: TreeElements) -> None:
+        self.columns = rows.columns
+        self._rows = rows
         self._first = first
-        self._root = root
-        self._top_tags = top_tags
-        self._xmls_of_rows = xmls_of_rows
+        self._tree = tree
 
     def row_of(self, xml: XmlElement) -> int:
         """
@@ -191,10 +181,11 @@ class ElementRows:
         :param xml: an element of the document.
         :return: its row.
         """
-        if xml.getparent() is self._root:
+        root = self._tree.root
+        if xml.getparent() is root:
             # Much quicker than to make an object for each element of the tree.
-            place = list(self._root.iterchildren(*self._top_tags)).index(xml)
-            tops = self._tree.children(NOWHERE)
+            place = list(root.iterchildren(*TOP_TAGS)).index(xml)
+            tops = self._rows.children(NOWHERE)
             return int(tops[np.searchsorted(tops, self._first) + place])
         return self._rows_of_xmls[xml]
 
@@ -214,12 +205,15 @@ class ElementRows:
         :param xml: a model or world of the document.
         :return: as :meth:`RowTree.runs` does.
         """
-        return self._tree.runs(self.row_of(xml))
+        return self._rows.runs(self.row_of(xml))
 
     @cached_property
     def _xmls(self) -> dict[int, XmlElement]:
-        rows, xmls = self._xmls_of_rows()
-        return dict(zip(rows.tolist(), xmls, strict=True))
+        elements, of_rows = self._tree.elements, self.columns.elements
+        rows = np.searchsorted(of_rows, elements)
+        is_row = np.append(of_rows, -1)[rows] == elements
+        xmls = self._tree.xmls_of(ROW_TAGS, elements[is_row])
+        return dict(zip(rows[is_row].tolist(), xmls, strict=True))
 
     @cached_property
     def _rows_of_xmls(self) -> dict[XmlElement, int]:

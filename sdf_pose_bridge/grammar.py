@@ -250,6 +250,9 @@ AXES = frozenset({('axis', 'xyz'), ('axis2', 'xyz')})
 MATERIAL_TAGS = ('script', 'shader')
 """Tags of what has to be whole in a material."""
 
+HOLDERS_OF_POSES = ('waypoint', 'camera', 'audio_source', 'population')
+"""Tags of elements whose poses are no frames' poses."""
+
 REQUIRED_ATTRIBUTES = {
     'actor': 'name',
     'battery': 'name',
@@ -264,3 +267,7 @@ REQUIRED_ATTRIBUTES = {
     'shader': 'type',
 }
 """Attributes that must be there, besides the names of elements that have a pose."""
+
+CHECKED_TAGS = tuple(dict.fromkeys((
+    *VALUE_TAGS, *REQUIRED_ATTRIBUTES, *MATERIAL_TAGS, *HOLDERS_OF_POSES, 'state')))
+"""Tags of all elements with values that are listed here."""

@@ -23,11 +23,11 @@ from sdf_pose_bridge.elements import SensorFacts
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import ROOT_FRAME
+from sdf_pose_bridge.row_kinds import OUTSIDE
 from sdf_pose_bridge.row_table import attributes_from_tag
 from sdf_pose_bridge.row_table import CHANGED_BY_PARSER
 from sdf_pose_bridge.row_table import firsts_of_rows
 from sdf_pose_bridge.row_table import Flags
-from sdf_pose_bridge.row_table import OUTSIDE
 from sdf_pose_bridge.row_table import Rows
 from sdf_pose_bridge.row_table import RowTable
 from sdf_pose_bridge.tag_search import COMMENT

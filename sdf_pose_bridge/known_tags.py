@@ -4,18 +4,9 @@
 
 from __future__ import annotations
 
-from sdf_pose_bridge.grammar import MATERIAL_TAGS
-from sdf_pose_bridge.grammar import REQUIRED_ATTRIBUTES
-from sdf_pose_bridge.grammar import VALUE_TAGS
+from sdf_pose_bridge.grammar import CHECKED_TAGS
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.tag_names import TagNames
-
-HOLDERS_OF_POSES = ('waypoint', 'camera', 'audio_source', 'population')
-"""Tags of elements whose poses are no frames' poses."""
-
-CHECKED_TAGS = tuple(dict.fromkeys((
-    *VALUE_TAGS, *REQUIRED_ATTRIBUTES, *MATERIAL_TAGS, *HOLDERS_OF_POSES, 'state')))
-"""Tags of elements that have values which no stage reads for itself."""
 
 KNOWN_TAGS = TagNames(tuple(dict.fromkeys((
     'sdf', 'include', *(kind.label for kind in Kind if kind is not Kind.ROOT),

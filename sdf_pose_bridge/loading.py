@@ -11,6 +11,7 @@ import contextlib
 import enum
 import gc
 import os
+from typing import TYPE_CHECKING
 
 from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import XmlElement
@@ -20,13 +21,14 @@ from sdf_pose_bridge.element_reader import elements_from_documents
 from sdf_pose_bridge.frame_graph import frame_graph_from_elements
 from sdf_pose_bridge.inclusions import document_set
 from sdf_pose_bridge.inclusions import DocumentSet
-from sdf_pose_bridge.markup_index import index_of_document
-from sdf_pose_bridge.markup_index import MarkupIndex
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.resources import resource_finder
 from sdf_pose_bridge.scene import Scene
 from sdf_pose_bridge.scene_assembly import scene_from_graph
 from sdf_pose_bridge.value_checks import check_values
+
+if TYPE_CHECKING:
+    from sdf_pose_bridge.markup_index import MarkupIndex
 
 
 class MissingInclude(enum.Enum):
@@ -111,11 +113,9 @@ def _resolved_scene(
 ) -> Scene:
     documents = document_set(document, resource_finder(resource_paths, os.environ))
     problems = Problems(documents.files)
-    indices = {
-        each.root: index_of_document(each, is_changed=each.root in documents.changed)
-        for each in documents.all_documents()}
+    indices = _indices(documents)
     for each in documents.all_documents():
-        check_values(each, indices[each.root], problems)
+        check_values(each, indices.get(each.root), problems)
     skips_missing = on_missing_include is MissingInclude.SKIP
     broken = _broken_documents(documents, indices, problems, skips_missing=skips_missing)
     table = elements_from_documents(
@@ -123,6 +123,18 @@ def _resolved_scene(
     graph = frame_graph_from_elements(table, problems)
     problems.raise_any()
     return scene_from_graph(documents, table, graph, problems.warnings)
+
+
+def _indices(documents: DocumentSet) -> dict[XmlElement, MarkupIndex]:
+    """Find the elements of documents of which many are to be looked at at a time."""
+    chosen = [each for each in documents.all_documents() if each.is_large or each.elements]
+    if not chosen:
+        return {}
+    # Small files need not wait for this.
+    from sdf_pose_bridge.markup_index import index_of_document
+    return {
+        each.root: index_of_document(each, is_changed=each.root in documents.changed)
+        for each in chosen}
 
 
 def _broken_documents(

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from collections.abc import Sequence
 from typing import NamedTuple
 
 from lxml import etree
@@ -22,66 +21,22 @@ from sdf_pose_bridge.plain_values import doubtful_elements
 from sdf_pose_bridge.remainder import Remainder
 from sdf_pose_bridge.row_extraction import columns_from_markup
 from sdf_pose_bridge.row_table import LinesOf
-from sdf_pose_bridge.row_table import ROW_TAGS
-from sdf_pose_bridge.row_table import TOP_TAGS
 from sdf_pose_bridge.tag_search import Positions
+from sdf_pose_bridge.tree_elements import TreeElements
 from sdf_pose_bridge.versions import NEWEST
 from sdf_pose_bridge.versions import Version
 from sdf_pose_bridge.versions import version_of
 
 
-class MarkupIndex:
-    """
-    The elements of a document that have known tags.
+class MarkupIndex(NamedTuple):
+    """What is known of a document of which many elements are looked at at a time."""
 
-    :param root: the outermost element of its tree; none of these elements may be added to it or
-        removed as long as this is used.
-    :param markup: what was found in texts, one of which is that of the document.
-    :param elements: the elements of its tree, in the order of the file.
-    :param rows: the elements of the texts that may carry a pose.
-    :param first_row: the first of them that is of this document.
-    :param doubtful: for each tag the elements of which the values have to be looked at.
-    """
-
-    def __init__(
-        self,
-        root: XmlElement,
-        markup: Markup,
-        elements: Positions,
-        rows: RowTree,
-        first_row: int,
-        doubtful: Mapping[str, Positions],
-    ) -> None:
-        self._root = root
-        self._markup = markup
-        self._elements = elements
-        self.rows = ElementRows(rows, first_row, root, TOP_TAGS, self._xmls_of_rows)
-        """The elements that may carry a pose."""
-        self.doubtful = doubtful
-        """For each tag the elements of which the values have to be looked at one by one."""
-
-    def xmls_of(self, tags: Sequence[str], elements: Positions) -> list[XmlElement]:
-        """
-        Return some elements of the tree.
-
-        :param tags: the tags that they have.
-        :param elements: their indices.
-        :return: the elements.
-        """
-        if not len(elements):
-            return []
-        is_wanted = np.zeros(len(KNOWN_TAGS.tags), dtype=bool)
-        is_wanted[[KNOWN_TAGS.number_of[tag] for tag in tags]] = True
-        candidates = self._elements[is_wanted[self._markup.numbers[self._elements]]]
-        xmls = list(self._root.iter(*tags))
-        assert len(xmls) == len(candidates), 'text and tree differ'
-        return [xmls[place] for place in np.searchsorted(candidates, elements).tolist()]
-
-    def _xmls_of_rows(self) -> tuple[Positions, list[XmlElement]]:
-        elements = self.rows.columns.elements
-        rows = np.searchsorted(elements, self._elements)
-        is_row = np.append(elements, -1)[rows] == self._elements
-        return rows[is_row], self.xmls_of(ROW_TAGS, self._elements[is_row])
+    tree: TreeElements
+    """The elements of its tree."""
+    rows: ElementRows
+    """The elements that may carry a pose."""
+    doubtful: Mapping[str, Positions]
+    """For each tag the elements of which the values have to be looked at one by one."""
 
 
 class WrittenElements(NamedTuple):
@@ -106,8 +61,8 @@ def index_of_document(document: Document, *, is_changed: bool = False) -> Markup
         return document.elements
     markup, lines_of, version = written_elements(document, is_changed=is_changed)
     rows = RowTree(columns_from_markup(markup, lines_of, version))
-    return MarkupIndex(
-        document.root, markup, np.arange(len(markup.numbers)), rows, 0, doubtful_elements(markup))
+    tree = TreeElements(document.root, markup.numbers, np.arange(len(markup.numbers)))
+    return MarkupIndex(tree, ElementRows(rows, 0, tree), doubtful_elements(markup))
 
 
 def written_elements(document: Document, *, is_changed: bool = False) -> WrittenElements:
@@ -142,5 +97,6 @@ def index_from_remainder(
     :param remainder: what the tree was made from.
     :return: its elements.
     """
-    _, kept, doubtful, rows, first_row = remainder
-    return MarkupIndex(root, markup, kept, rows, first_row, doubtful)
+    tree = TreeElements(root, markup.numbers, remainder.kept)
+    return MarkupIndex(
+        tree, ElementRows(remainder.rows, remainder.first_row, tree), remainder.doubtful)

@@ -5,11 +5,10 @@
 from __future__ import annotations
 
 import itertools
+from typing import TYPE_CHECKING
 
 from sdf_pose_bridge.document import WHITE_SPACE
 from sdf_pose_bridge.document import XmlElement
-from sdf_pose_bridge.element_rows import ElementRows
-from sdf_pose_bridge.element_rows import Run
 from sdf_pose_bridge.elements import step
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import AttributeMissingError
@@ -22,6 +21,10 @@ from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.reading import Reading
 from sdf_pose_bridge.versions import renames_clashes
+
+if TYPE_CHECKING:
+    from sdf_pose_bridge.element_rows import ElementRows
+    from sdf_pose_bridge.element_rows import Run
 
 _PROXY = '_merged__'
 _ARTICLE = {Kind.ACTOR: 'an', Kind.INERTIAL: 'an'}

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sdf_pose_bridge.grammar import AXES
+from sdf_pose_bridge.grammar import HOLDERS_OF_POSES
 from sdf_pose_bridge.grammar import LARGEST_VALUES
 from sdf_pose_bridge.grammar import MATERIAL_TAGS
 from sdf_pose_bridge.grammar import REQUIRED_ATTRIBUTES
@@ -23,7 +24,6 @@ from sdf_pose_bridge.grammar import SMALLEST_VALUES
 from sdf_pose_bridge.grammar import VALUE_TAGS
 from sdf_pose_bridge.grammar import VALUE_TYPES
 from sdf_pose_bridge.grammar import ValueType
-from sdf_pose_bridge.known_tags import HOLDERS_OF_POSES
 from sdf_pose_bridge.known_tags import KNOWN_TAGS
 from sdf_pose_bridge.markup import Markup
 from sdf_pose_bridge.tag_search import Positions

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from collections.abc import Mapping
 import contextlib
+from typing import TYPE_CHECKING
 
 from lxml import etree
 
@@ -15,7 +16,6 @@ from sdf_pose_bridge.document import is_data
 from sdf_pose_bridge.document import WHITE_SPACE
 from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.element_columns import ElementColumns
-from sdf_pose_bridge.element_rows import ElementRows
 from sdf_pose_bridge.elements import NOWHERE
 from sdf_pose_bridge.elements import step
 from sdf_pose_bridge.errors import ElementInvalidError
@@ -24,12 +24,15 @@ from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.inclusions import DEEPEST
-from sdf_pose_bridge.markup_index import MarkupIndex
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.versions import may_hold_flat_names
 from sdf_pose_bridge.versions import Version
 from sdf_pose_bridge.versions import version_of
+
+if TYPE_CHECKING:
+    from sdf_pose_bridge.element_rows import ElementRows
+    from sdf_pose_bridge.markup_index import MarkupIndex
 
 _NAMES_WITH_SEPARATOR = etree.XPath('//*[contains(@name, "::")]')
 
@@ -59,11 +62,10 @@ class Reading:
         """
         Take all elements out of the file that is being read.
 
-        :return: its rows; None if parts of it stand in other files.
+        :return: its rows; None if it is small, or parts of it stand in other files.
         """
-        if self._document.origins:
-            return None
-        return self._indices[self._document.root].rows
+        index = self._indices.get(self._document.root)
+        return None if index is None or self._document.origins else index.rows
 
     def version_of_element(self, index: int) -> Version:
         """

@@ -22,12 +22,12 @@ from sdf_pose_bridge.markup import Markup
 from sdf_pose_bridge.names import FRAME_KINDS
 from sdf_pose_bridge.names import is_reserved
 from sdf_pose_bridge.names import Kind
+from sdf_pose_bridge.row_kinds import INCLUDE
+from sdf_pose_bridge.row_kinds import OUTSIDE
 from sdf_pose_bridge.row_table import attributes_from_tag
 from sdf_pose_bridge.row_table import CHANGED_BY_PARSER
 from sdf_pose_bridge.row_table import firsts_of_rows
-from sdf_pose_bridge.row_table import INCLUDE
 from sdf_pose_bridge.row_table import LinesOf
-from sdf_pose_bridge.row_table import OUTSIDE
 from sdf_pose_bridge.row_table import Rows
 from sdf_pose_bridge.row_table import RowTable
 from sdf_pose_bridge.tag_search import Positions

@@ -19,8 +19,12 @@ from sdf_pose_bridge.elements import NOWHERE
 from sdf_pose_bridge.elements import Reference
 from sdf_pose_bridge.known_tags import KNOWN_TAGS
 from sdf_pose_bridge.markup import Markup
-from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.names import ROOT_FRAME
+from sdf_pose_bridge.row_kinds import CHILDREN
+from sdf_pose_bridge.row_kinds import INCLUDE
+from sdf_pose_bridge.row_kinds import KINDS_OF_TAGS
+from sdf_pose_bridge.row_kinds import NO_KIND
+from sdf_pose_bridge.row_kinds import OUTSIDE
 from sdf_pose_bridge.tag_search import COMMENT
 from sdf_pose_bridge.tag_search import Positions
 
@@ -32,32 +36,14 @@ Rows: TypeAlias = 'npt.NDArray[np.intp]'
 LinesOf: TypeAlias = Callable[[Positions], 'npt.NDArray[np.int32]']
 """Tells which lines elements stand in."""
 
-INCLUDE = 253
-"""Stands for a kind that only rows have, until what is included is read."""
-OUTSIDE = 255
-"""Stands for the kind of the document itself."""
-_NO_KIND = 254
-_KINDS = {kind.label: int(kind) for kind in Kind if kind is not Kind.ROOT} | {'include': INCLUDE}
-_CHILDREN = {
-    OUTSIDE: (Kind.WORLD, Kind.MODEL, Kind.LIGHT, Kind.ACTOR, INCLUDE),
-    Kind.WORLD: (Kind.MODEL, Kind.FRAME, Kind.JOINT, Kind.LIGHT, Kind.ACTOR, INCLUDE),
-    Kind.MODEL: (Kind.LINK, Kind.JOINT, Kind.FRAME, Kind.MODEL, INCLUDE),
-    Kind.LINK: (
-        Kind.VISUAL, Kind.COLLISION, Kind.SENSOR, Kind.LIGHT, Kind.INERTIAL,
-        Kind.PARTICLE_EMITTER, Kind.PROJECTOR),
-    Kind.JOINT: (Kind.SENSOR,),
-}
-ROW_TAGS = tuple(_KINDS)
-"""The tags of all elements that may have rows."""
-TOP_TAGS = tuple(tag for tag, kind in _KINDS.items() if kind in _CHILDREN[OUTSIDE])
-"""Those of them that may stand at the top of a document."""
 _MAY_HOLD = np.zeros((256, 256), dtype=bool)
-for _holder, _held in _CHILDREN.items():
+for _holder, _held in CHILDREN.items():
     _MAY_HOLD[_holder, list(_held)] = True
 _MAY_HOLD.setflags(write=False)
 
-_KIND_OF_NUMBER = np.full(len(KNOWN_TAGS.tags), _NO_KIND, dtype=np.uint8)
-_KIND_OF_NUMBER[[KNOWN_TAGS.number_of[tag] for tag in _KINDS]] = list(_KINDS.values())
+_KIND_OF_NUMBER = np.full(len(KNOWN_TAGS.tags), NO_KIND, dtype=np.uint8)
+for _tag, _kind in KINDS_OF_TAGS.items():
+    _KIND_OF_NUMBER[KNOWN_TAGS.number_of[_tag]] = _kind
 _KIND_OF_NUMBER.setflags(write=False)
 _NO_ROW = -2
 
@@ -91,7 +77,7 @@ class RowTable:
         self.markup = markup
         self.lines_of = lines_of
         kinds = _KIND_OF_NUMBER[markup.numbers]
-        elements = np.flatnonzero(kinds != _NO_KIND)
+        elements = np.flatnonzero(kinds != NO_KIND)
         kinds = kinds[elements]
         holders = markup.holders(elements)
         self._number_rows(elements)
@@ -103,7 +89,7 @@ class RowTable:
         """Which of the elements of the markup each row is about, in ascending order."""
         self.kinds = kinds
         """The kind of each."""
-        self._padded_kinds = np.append(kinds, np.array([_NO_KIND, OUTSIDE], dtype=np.uint8))
+        self._padded_kinds = np.append(kinds, np.array([NO_KIND, OUTSIDE], dtype=np.uint8))
         self.parents = self.rows_of(holders)
         """The row that holds each; -1 for what stands at the top."""
         self.is_odd: Flags = kinds == INCLUDE

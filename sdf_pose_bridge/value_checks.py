@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 import re
+from typing import TYPE_CHECKING
 
 from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import Document
@@ -25,6 +26,8 @@ from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.grammar import AXES
+from sdf_pose_bridge.grammar import CHECKED_TAGS
+from sdf_pose_bridge.grammar import HOLDERS_OF_POSES
 from sdf_pose_bridge.grammar import LARGEST_VALUES
 from sdf_pose_bridge.grammar import MATERIAL_TAGS
 from sdf_pose_bridge.grammar import REQUIRED_ATTRIBUTES
@@ -32,12 +35,13 @@ from sdf_pose_bridge.grammar import SMALLEST_VALUES
 from sdf_pose_bridge.grammar import VALUE_TAGS
 from sdf_pose_bridge.grammar import VALUE_TYPES
 from sdf_pose_bridge.grammar import ValueType
-from sdf_pose_bridge.known_tags import HOLDERS_OF_POSES
-from sdf_pose_bridge.markup_index import MarkupIndex
 from sdf_pose_bridge.pose_text import pose_from_text
 from sdf_pose_bridge.pose_text import PoseText
 from sdf_pose_bridge.pose_text import PoseTextError
 from sdf_pose_bridge.problems import Problems
+
+if TYPE_CHECKING:
+    from sdf_pose_bridge.markup_index import MarkupIndex
 
 # What C's strtod takes: a number, and then whatever follows it.
 _NUMBER = r'[+-]?(?:[0-9]|\.[0-9]|inf|nan)'
@@ -50,17 +54,21 @@ _SMALLEST_AXIS = 1e-6
 _SHADERS = frozenset({'pixel', 'vertex', 'normal_map_object_space', 'normal_map_tangent_space'})
 
 
-def check_values(document: Document, index: MarkupIndex, problems: Problems) -> None:
+def check_values(document: Document, index: MarkupIndex | None, problems: Problems) -> None:
     """
     Check what no other stage reads.
 
     :param document: a file in the newest grammar; what it includes is not looked at.
-    :param index: its elements.
+    :param index: its elements; None to look at all of them one by one.
     :param problems: takes what is wrong.
     """
     check = _Check(document, problems)
+    if index is None:
+        for xml in document.root.iter(*CHECKED_TAGS):
+            check.all_of(xml)
+        return
     for tag, elements in index.doubtful.items():
-        for xml in index.xmls_of((tag,), elements):
+        for xml in index.tree.xmls_of((tag,), elements):
             check.all_of(xml)
 
 

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Read XML into a tree, or only find out whether it is well-formed.
+Read XML into a tree, with care.
 
 A file is hostile until it is read: no external entities, no expansion, no network, and the depth
 and the sizes that libxml2 allows without its "huge" option.
@@ -9,9 +9,7 @@ and the sizes that libxml2 allows without its "huge" option.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
-import threading
 
 from lxml import etree
 
@@ -21,7 +19,7 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 
-_IGNORED_ERRORS = frozenset({
+IGNORED_ERRORS = frozenset({
     'NS_ERR_UNDEFINED_NAMESPACE', 'NS_ERR_QNAME', 'NS_ERR_COLON', 'DTD_ID_REDEFINED'})
 """Prefixes that are not declared are common in SDF files, and only libxml2 minds them; nor has
 ``xml:id`` a meaning in SDFormat."""
@@ -32,8 +30,8 @@ _FORGIVEN_ERRORS = frozenset({'ERR_HYPHEN_IN_COMMENT', 'ERR_DOCUMENT_END'})
 _DECLARATION_ERROR = 'ERR_RESERVED_XML_NAME'
 """A declaration that is not at the start; only white space before it is forgiven."""
 
-_LONG = 1 << 18
-"""Bytes of a text for which another thread is worth while."""
+UTF_8_NAMES = frozenset({None, 'UTF-8', 'utf-8', 'ASCII', 'US-ASCII'})
+"""What a file may declare, or lxml say, if it is in UTF-8."""
 
 
 def bytes_from_file(path: str) -> bytes:
@@ -90,7 +88,7 @@ def root_from_text(
         is_early = entry.type_name == _DECLARATION_ERROR and text.lstrip().startswith(b'<?xml')
         if is_early or (entry.type_name in _FORGIVEN_ERRORS and root is not None):
             warnings.append(SdfWarning('WARNING', msg, Place(path, entry.line)))
-        elif entry.type_name not in _IGNORED_ERRORS:
+        elif entry.type_name not in IGNORED_ERRORS:
             raise FileReadError(msg, Place(path, entry.line)) from None
     if failure is not None:
         raise failure
@@ -101,60 +99,6 @@ def root_from_text(
     if b'xmlns' in text:
         _forget_default_namespaces(root)
     return root, tuple(warnings)
-
-
-class WellFormednessCheck:
-    """
-    Finds out whether texts are well-formed XML, beside whatever else is done if they are long.
-
-    That takes a third of the time of making trees of them, and no memory.
-
-    :param texts: the XML of each, in the encoding that it declares.
-    """
-
-    def __init__(self, texts: Sequence[bytes]) -> None:
-        self._texts = texts
-        self._are_well_formed = False
-        self._thread: threading.Thread | None = None
-        if sum(map(len, texts)) > _LONG:
-            # The parser leaves other threads alone.
-            self._thread = threading.Thread(target=self._check, daemon=True)
-            self._thread.start()
-        else:
-            self._check()
-
-    def are_well_formed(self) -> bool:
-        """
-        Return what was found.
-
-        :return: true if :func:`root_from_text` would find nothing wrong with any of the texts, as
-            long as no element stands deeper than 250 others and no text is longer than 9 MB.
-        """
-        if self._thread is not None:
-            self._thread.join()
-        return self._are_well_formed
-
-    def _check(self) -> None:
-        self._are_well_formed = all(map(_is_well_formed, self._texts))
-
-
-def _is_well_formed(text: bytes) -> bool:
-    # The stubs ask for methods, each of which the parser would call.
-    parser = etree.XMLParser(  # type: ignore[call-overload]
-        target=_Nothing(), recover=True, resolve_entities=False, no_network=True,
-        load_dtd=False, huge_tree=False)
-    try:
-        etree.fromstring(text, parser)
-    except etree.XMLSyntaxError:
-        return False
-    return all(entry.type_name in _IGNORED_ERRORS for entry in parser.error_log)
-
-
-class _Nothing:
-    """What a parser makes that is asked for nothing but its errors."""
-
-    def close(self) -> None:
-        """Return what was made."""
 
 
 def _refuse_what_hides_text(root: XmlElement, text: bytes, path: str) -> None:

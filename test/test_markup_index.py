@@ -116,10 +116,10 @@ def test_a_tree_that_has_changed():
 def test_xmls_of_some():
     document = document_from_text(
         sdf('<link name="a"/><model/><link name="b"/>'), 'x.sdf')
-    index = index_of_document(document)
-    assert [xml.get('name') for xml in index.xmls_of(('link',), np.array([3]))] == ['b']
-    assert index.xmls_of(('pose',), np.arange(0)) == []
-    assert index.xmls_of(('link', 'model'), np.arange(1, 4)) == list(document.root)
+    tree = index_of_document(document).tree
+    assert [xml.get('name') for xml in tree.xmls_of(('link',), np.array([3]))] == ['b']
+    assert tree.xmls_of(('pose',), np.arange(0)) == []
+    assert tree.xmls_of(('link', 'model'), np.arange(1, 4)) == list(document.root)
 
 
 def test_many_texts_are_searched_together():

@@ -7,6 +7,7 @@ Reading one by one knows all rules; reading many at a time has to leave to it wh
 """
 
 from pathlib import Path
+import sys
 
 from hypothesis import given
 from hypothesis import HealthCheck
@@ -19,9 +20,7 @@ from sdf_texts import world_file
 
 import sdf_pose_bridge
 from sdf_pose_bridge import document_reading
-from sdf_pose_bridge import markup_index
-from sdf_pose_bridge.known_tags import CHECKED_TAGS
-from sdf_pose_bridge.reading import Reading
+from sdf_pose_bridge import regular_part
 
 HERE = Path(__file__).parent
 FILES = sorted([*HERE.glob('semantics/*.sdf'), *HERE.parent.glob('examples/**/*.sdf')])
@@ -121,17 +120,18 @@ def outcome(text):
             *(array.tolist() for array in arrays))
 
 
+def outcome_if_large_from(size, text):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(document_reading, '_LARGE', size)
+        return outcome(text)
+
+
 def assert_same_one_by_one(text):
-    whole = outcome(text)
+    one_by_one = outcome_if_large_from(sys.maxsize, text)
+    without_regular_part = outcome_if_large_from(0, text)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(document_reading, '_LARGE', 0)
-        without_regular_part = outcome(text)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Reading, 'rows', lambda _reading: None)
-        patch.setattr(
-            markup_index, 'doubtful_elements',
-            lambda markup: {tag: markup.of(tag) for tag in markup.present(CHECKED_TAGS)})
-        one_by_one = outcome(text)
+        patch.setattr(regular_part, 'documents_without_regular_part', lambda contents: {})
+        whole = outcome_if_large_from(0, text)
     assert whole == one_by_one
     assert without_regular_part == one_by_one
 
