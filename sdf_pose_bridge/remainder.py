@@ -21,6 +21,8 @@ from sdf_pose_bridge.row_extraction import columns_from_markup
 from sdf_pose_bridge.tag_search import Positions
 from sdf_pose_bridge.versions import Version
 
+_MANY_LINES = 1_000_000
+
 _HOLDS_RUNS = np.zeros(256, dtype=bool)
 _HOLDS_RUNS[[Kind.WORLD, Kind.MODEL]] = True
 _HOLDS_RUNS.setflags(write=False)
@@ -130,9 +132,15 @@ def _texts_without(
         pieces = [text[begin:end] for begin, end in zip(
             [0, *borders[1::2].tolist()], [*borders[0::2].tolist(), len(text)], strict=True)]
         left.append(b''.join(itertools.chain.from_iterable(
-            (piece, b'\n' * count)
+            (piece, _empty_lines(count))
             for piece, count in zip(pieces, [*newlines[first:last], 0], strict=True))))
     return left
+
+
+def _empty_lines(count: int) -> bytes:
+    """Write line ends, with comments between them where a parser would find them too many."""
+    whole, rest = divmod(count, _MANY_LINES)
+    return whole * (b'\n' * _MANY_LINES + b'<!---->') + b'\n' * rest
 
 
 def _doubtful_of_texts(

@@ -58,6 +58,13 @@ def test_what_is_odd_is_left_in_its_line_with_what_holds_it():
         ('w', 2), ('m', 4), ('c', 7)]
 
 
+def test_more_lines_may_be_left_out_than_a_parser_takes_in_one_text():
+    root = left_of(f'<model name="m">{LINK.format("a")}<link name="b">'
+                   + 11 * ('<!--' + 1_000_000 * '\n' + '-->')
+                   + f'</link>{LINK.format("c")}<plugin name="p"/></model>')
+    assert [xml.tag for xml in root.iter(etree.Element)] == ['sdf', 'model', 'plugin']
+
+
 def test_where_a_name_is_odd_its_siblings_are_left():
     assert names_left(f'<model name="m">{REGULAR}<link name=" c "/></model>') == [
         'm', 'a', 'b', ' c ']
