@@ -32,7 +32,6 @@ from sdf_pose_bridge.grammar import LARGEST_VALUES
 from sdf_pose_bridge.grammar import MATERIAL_TAGS
 from sdf_pose_bridge.grammar import REQUIRED_ATTRIBUTES
 from sdf_pose_bridge.grammar import SMALLEST_VALUES
-from sdf_pose_bridge.grammar import VALUE_TAGS
 from sdf_pose_bridge.grammar import VALUE_TYPES
 from sdf_pose_bridge.grammar import ValueType
 from sdf_pose_bridge.pose_text import pose_from_text
@@ -46,12 +45,14 @@ if TYPE_CHECKING:
 # What C's strtod takes: a number, and then whatever follows it.
 _NUMBER = r'[+-]?(?:[0-9]|\.[0-9]|inf|nan)'
 _INTEGER = r'[+-]?[0-9]'
+_DIGITS = '0123456789'
 _TRUTH = 'true|false'
 """Goes for a number, too."""
 _COUNTS = {ValueType.TWO_NUMBERS: 2, ValueType.THREE_NUMBERS: 3}
 _LEADING_NUMBER = r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?'
 _SMALLEST_AXIS = 1e-6
 _SHADERS = frozenset({'pixel', 'vertex', 'normal_map_object_space', 'normal_map_tangent_space'})
+_NOT_ONLY_VALUES = frozenset((*REQUIRED_ATTRIBUTES, *MATERIAL_TAGS, *HOLDERS_OF_POSES, 'state'))
 
 
 def check_values(document: Document, index: MarkupIndex | None, problems: Problems) -> None:
@@ -79,9 +80,10 @@ class _Check:
         self._problems = problems
 
     def all_of(self, xml: XmlElement) -> None:
+        self._value(xml)
         tag = str(xml.tag)
-        if tag in VALUE_TAGS:
-            self._value(xml)
+        if tag not in _NOT_ONLY_VALUES:
+            return
         if tag in REQUIRED_ATTRIBUTES:
             self._attribute(xml)
         if tag in MATERIAL_TAGS:
@@ -184,7 +186,9 @@ def _is_of_type(text: str, value_type: ValueType) -> bool:
     count = _COUNTS.get(value_type, 1)
     words = text.split()[:count]
     number = _INTEGER if value_type is ValueType.INTEGER else _NUMBER
-    if len(words) == count and all(re.match(number, word, re.IGNORECASE) for word in words):
+    # Mostly a look at the first character is enough.
+    if len(words) == count and all(
+            word[0] in _DIGITS or re.match(number, word, re.IGNORECASE) for word in words):
         return True
     return count == 1 and re.match(_TRUTH, text, re.IGNORECASE) is not None
 
