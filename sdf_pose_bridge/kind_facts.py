@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from collections.abc import Mapping
+import itertools
 
 import numpy as np
 
@@ -97,23 +99,32 @@ class KindFacts:
         """
         table = self._table
         rows = table.of_kind(Kind.JOINT)
-        parents = table.references('parent', Kind.JOINT)
-        children = table.references('child', Kind.JOINT)
+        parents = self._joint_ends('parent', rows)
+        children = self._joint_ends('child', rows)
         expressed_in = self._expressed_in()
         types = [value.lower() for value in table.second_values(rows, 'type')]
-        facts = list(map(
-            JointFacts, types,
-            (parents.get(row, _NO_REFERENCE) for row in rows.tolist()),
-            (children.get(row, _NO_REFERENCE) for row in rows.tolist()),
-            (expressed_in.get(row, ()) for row in rows.tolist())))
-        if not JOINT_TYPES.issuperset(types) or not len(parents) == len(children) == len(rows):
-            table.mark_odd(
-                row for row, joint in zip(rows.tolist(), facts, strict=True)
-                if joint.type not in JOINT_TYPES or _NO_REFERENCE in joint)
-        for ends in (parents, children):
-            table.mark_odd_references(
-                np.fromiter(ends, np.intp, len(ends)), [name for name, _ in ends.values()])
-        return Facts(rows, facts)
+        axes: Iterable[tuple[Reference, ...]] = (
+            [expressed_in.get(row, ()) for row in rows.tolist()] if expressed_in
+            else itertools.repeat(()))
+        if not JOINT_TYPES.issuperset(types):
+            table.mark_odd(row for row, joint_type in zip(rows.tolist(), types, strict=True)
+                           if joint_type not in JOINT_TYPES)
+        return Facts(rows, list(map(JointFacts, types, parents, children, axes)))
+
+    def _joint_ends(self, tag: str, joints: Rows) -> list[Reference]:
+        """Read what joints join; mark those that do not say it in the usual way."""
+        table = self._table
+        rows, elements, _ = table.children(tag, Kind.JOINT)
+        names, lines = self._markup.texts(elements), table.lines_of(elements).tolist()
+        table.mark_odd_references(rows, names)
+        ends = list(map(Reference, names, lines))
+        if len(rows) == len(joints):
+            return ends
+        is_there = np.zeros(len(table.kinds), dtype=bool)
+        is_there[rows] = True
+        table.mark_odd(joints[~is_there[joints]].tolist())
+        end_of = dict(zip(rows.tolist(), ends, strict=True))
+        return [end_of.get(row, _NO_REFERENCE) for row in joints.tolist()]
 
     def _expressed_in(self) -> Mapping[int, tuple[Reference, ...]]:
         """Return the frames that axes of joints are given in, where one is named."""

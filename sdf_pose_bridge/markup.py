@@ -22,6 +22,7 @@ from sdf_pose_bridge.known_tags import KNOWN_TAGS
 from sdf_pose_bridge.tag_names import UNKNOWN
 from sdf_pose_bridge.tag_names import WIDTH
 from sdf_pose_bridge.tag_names import words_from_text
+from sdf_pose_bridge.tag_search import COMMENT
 from sdf_pose_bridge.tag_search import places
 from sdf_pose_bridge.tag_search import Positions
 from sdf_pose_bridge.tag_search import Tags
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 
 _NAME_LENGTHS = np.array([1 + len(tag) for tag in KNOWN_TAGS.tags])
 _NAME_LENGTHS.setflags(write=False)
+
+_PIECES = 1 << 13
 
 _Flags: TypeAlias = 'npt.NDArray[np.bool_]'
 
@@ -173,6 +176,31 @@ class Markup:
         is_digit: _Flags = (first >= ord('0')) & (first <= ord('9'))
         return is_digit
 
+    def counts_of_numbers(self, elements: Positions) -> Positions:
+        """
+        Count the words in the texts of elements, as far as all of them begin with digits.
+
+        :param elements: their indices.
+        :return: the number of words in each; 0 where a word begins otherwise, or there is a
+            comment.
+        """
+        # With the bracket that follows each text, which ends its last word.
+        begins = self._ends[elements] + 1
+        lengths = np.maximum(self._text_ends[elements] + 1 - begins, 1)
+        firsts = np.cumsum(lengths) - lengths
+        if not len(firsts):
+            return firsts
+        characters = self._buffer[
+            np.repeat(begins - firsts, lengths) + np.arange(int(lengths.sum()))]
+        is_gap = (characters <= ord(' ')) | (characters == ord('<'))
+        is_first = ~is_gap
+        is_first[1:] &= is_gap[:-1]
+        is_odd = (is_first & ((characters < ord('0')) | (characters > ord('9')))) | (
+            characters == ord(COMMENT))
+        counts: Positions = np.add.reduceat(is_first, firsts, dtype=np.intp)
+        counts[np.logical_or.reduceat(is_odd, firsts)] = 0
+        return counts
+
     def tags(self, elements: Positions) -> list[str]:
         """
         Return start tags.
@@ -276,13 +304,16 @@ class Markup:
         return result
 
     def _cut(self, begins: Positions, ends: Positions) -> list[str]:
-        if not len(begins):
-            return []
         text = self._all_tags.text
-        pieces = [text[begin:end] for begin, end in zip(
-            begins.tolist(), ends.tolist(), strict=True)]
-        # To decode one long text is quicker than many short ones; XML has no zero bytes.
-        return b'\0'.join(pieces).decode().split('\0')
+        cut: list[str] = []
+        # Some at a time, so that memory is used again while it is still near to the processor.
+        for start in range(0, len(begins), _PIECES):
+            pieces = [text[begin:end] for begin, end in zip(
+                begins[start:start + _PIECES].tolist(), ends[start:start + _PIECES].tolist(),
+                strict=True)]
+            # To decode one long text is quicker than many short ones; XML has no zero bytes.
+            cut += b'\0'.join(pieces).decode().split('\0')
+        return cut
 
 
 def markup_from_texts(texts: Sequence[bytes]) -> Markup | None:

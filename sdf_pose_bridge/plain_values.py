@@ -88,6 +88,8 @@ def _with_doubtful_value(tag: str, markup: Markup) -> Positions:
         return elements
     if rule.value_type in _PLAIN_IF_BEGUN:
         elements = elements[~markup.begins_with_digit(elements)]
+    elif rule.value_type in _COUNTS and not rule.is_axis:
+        elements = elements[markup.counts_of_numbers(elements) < _COUNTS[rule.value_type]]
     texts = markup.texts(elements)
     pattern = _pattern(rule)
     if not texts or pattern.fullmatch(_END.join(set(texts)) + _END):
@@ -112,6 +114,10 @@ def _with_doubtful_pose(tag: str, markup: Markup) -> Positions:
     found: Positions = holders[
         markup.has_attributes(poses) | np.array(is_doubtful, dtype=bool)]
     return found
+
+
+_COUNTS = {ValueType.TWO_NUMBERS: 2, ValueType.THREE_NUMBERS: 3}
+"""Types of values that are good if they have so many words, all of which begin with digits."""
 
 
 class _PlainRule(NamedTuple):

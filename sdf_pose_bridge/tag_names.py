@@ -29,6 +29,7 @@ _BELOW = ord(' ') + 1
 _ONES = np.uint64(0x0101010101010101)
 _TOPS = np.uint64(0x8080808080808080)
 _SLOT_BITS = 16
+_BLOCK = 1 << 15
 _SPREADING = np.uint64(0x9E3779B97F4A7C15)
 
 
@@ -76,6 +77,12 @@ class TagNames:
         """
         # Behind each name there are at least the end of its tag and that of the outermost element.
         words = words_from_text(text)
+        # Some at a time, so that what is worked with stays near to the processor.
+        numbers = [self._numbers(words, places[start:start + _BLOCK])
+                   for start in range(0, len(places), _BLOCK)]
+        return np.concatenate([np.zeros(0, dtype=np.int16), *numbers])
+
+    def _numbers(self, words: _Words, places: npt.NDArray[np.intp]) -> _Numbers:
         numbers = np.full(len(places), UNKNOWN, dtype=np.int16)
         rest = np.arange(len(places))
         states = np.zeros(len(places), dtype=np.int16)

@@ -51,6 +51,13 @@ class Tags(NamedTuple):
     """How many elements are open before each."""
 
 
+class _Brackets(NamedTuple):
+    begins: Positions
+    ends: Positions
+    is_closing: _Flags
+    is_empty: _Flags
+
+
 def tags_from_texts(texts: Sequence[bytes]) -> Tags | None:
     """
     Find all tags.
@@ -61,19 +68,10 @@ def tags_from_texts(texts: Sequence[bytes]) -> Tags | None:
     """
     text = _joined(texts)
     starts = np.cumsum([0, *map(len, texts[:-1])])
-    buffer = np.frombuffer(text, np.uint8)
-    brackets = places(buffer, '>', also=ord('<') ^ ord('>'))
-    begins, ends = brackets[0::2].copy(), brackets[1::2].copy()
-    if len(begins) != len(ends) or not len(begins) or (
-            (buffer[begins] != ord('<')).any() or (buffer[ends] != ord('>')).any()):
+    found = _brackets_from_text(text)
+    if found is None:
         return None
-    kinds = buffer[begins + 1]
-    if kinds[0] == ord('?'):
-        begins, ends, kinds = begins[1:], ends[1:], kinds[1:]
-    if (kinds == ord('!')).any() or (kinds == ord('?')).any():
-        return None
-    is_closing = kinds == ord('/')
-    is_empty = buffer[ends - 1] == ord('/')
+    begins, ends, is_closing, is_empty = found
     steps = np.where(is_closing, np.int32(-1), np.int32(1))
     steps[is_empty] = 0
     depths = np.cumsum(steps, dtype=np.int32) - steps
@@ -86,18 +84,50 @@ def tags_from_texts(texts: Sequence[bytes]) -> Tags | None:
     return None if _have_tails(tags) else tags
 
 
-def places(buffer: npt.NDArray[np.uint8], character: str, also: int = 0) -> Positions:
+def _brackets_from_text(text: bytes) -> _Brackets | None:
+    """Find brackets; None if they enclose anything but tags, or do not stand in pairs."""
+    buffer = np.frombuffer(text, np.uint8)
+    blocks = []
+    start = text.find(b'<', 1 if text.startswith(b'<?') else 0)
+    if start < 0:
+        return None
+    while start < len(text):
+        # Block by block, so that what is worked with stays near to the processor.
+        end = text.find(b'<', start + _BLOCK)
+        end = len(text) if end < 0 else end
+        block = _brackets(buffer[start:end])
+        if block is None:
+            return None
+        begins, ends, is_closing, is_empty = block
+        blocks.append(_Brackets(begins + start, ends + start, is_closing, is_empty))
+        start = end
+    return _Brackets(*map(np.concatenate, zip(*blocks, strict=True)))
+
+
+def _brackets(buffer: npt.NDArray[np.uint8]) -> _Brackets | None:
+    bits = np.uint8(ord('<') ^ ord('>'))
+    brackets = np.flatnonzero((buffer | bits) == np.uint8(ord('>')))
+    begins, ends = brackets[0::2], brackets[1::2]
+    if len(begins) != len(ends) or (
+            (buffer[begins] != ord('<')).any() or (buffer[ends] != ord('>')).any()):
+        return None
+    kinds = buffer[begins + 1]
+    if (kinds == ord('!')).any() or (kinds == ord('?')).any():
+        return None
+    return _Brackets(begins, ends, kinds == ord('/'), buffer[ends - 1] == ord('/'))
+
+
+def places(buffer: npt.NDArray[np.uint8], character: str) -> Positions:
     """
     Find a character; block by block, so that what lies between stays in the processor.
 
     :param buffer: where to look.
-    :param character: what to look for, which has all bits of ``also`` set.
-    :param also: bits without which it is another character that is looked for too.
+    :param character: what to look for.
     :return: the places.
     """
-    byte, bits = np.uint8(ord(character)), np.uint8(also)
+    byte = np.uint8(ord(character))
     blocks = [
-        np.flatnonzero((buffer[start:start + _BLOCK] | bits) == byte) + start
+        np.flatnonzero(buffer[start:start + _BLOCK] == byte) + start
         for start in range(0, len(buffer), _BLOCK)]
     return np.concatenate(blocks)
 

@@ -145,3 +145,17 @@ def test_spans():
     assert spans.ends.tolist() == [49, 12, 42, 34]
     assert spans.first_tags.tolist() == [0, 1, 2, 3]
     assert spans.last_tags.tolist() == [6, 1, 5, 4]
+
+
+@pytest.mark.parametrize(('text', 'count'), [
+    ('1 2 3', 3), (' 1\n2.5\t3 ', 3), ('1', 1), ('', 0), (' ', 0), ('1 -2 3', 0), ('1 x', 0),
+    ('1 <!-- --> 2', 0), ('1 .5', 0), ('1 2<b/> 3', 2)])
+def test_counts_of_numbers(text, count):
+    markup = markup_from_texts([f'<sdf><size>{text}</size><size>7</size></sdf>'.encode()])
+    assert markup.counts_of_numbers(markup.of('size')).tolist() == [count, 1]
+
+
+def test_counts_of_numbers_of_nothing_and_of_empty_elements():
+    markup = markup_from_texts([b'<sdf><size/><size>1</size></sdf>'])
+    assert markup.counts_of_numbers(markup.of('size')).tolist() == [0, 1]
+    assert markup.counts_of_numbers(markup.of('mass')).tolist() == []
