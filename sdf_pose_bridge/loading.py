@@ -56,8 +56,9 @@ def load(
     :return: the scene.
     :raises SdfError: if the file is not valid; ``errors`` on it has all that was found.
     """
-    return _scene_from_document(
-        document_from_file(path), resource_paths, MissingInclude(on_missing_include))
+    with _collection_paused():
+        return _resolved_scene(
+            document_from_file(path), resource_paths, MissingInclude(on_missing_include))
 
 
 def load_text(
@@ -77,17 +78,9 @@ def load_text(
     :return: the scene.
     :raises SdfError: as for :func:`load`.
     """
-    return _scene_from_document(
-        document_from_text(text, name), resource_paths, MissingInclude(on_missing_include))
-
-
-def _scene_from_document(
-    document: Document,
-    resource_paths: Iterable[str | os.PathLike[str]],
-    on_missing_include: MissingInclude,
-) -> Scene:
     with _collection_paused():
-        return _resolved_scene(document, resource_paths, on_missing_include)
+        return _resolved_scene(
+            document_from_text(text, name), resource_paths, MissingInclude(on_missing_include))
 
 
 @contextlib.contextmanager
