@@ -35,6 +35,7 @@ _NUMBER = r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?'
 _NOT_ZERO = r'[^eE]*[1-9]'
 _MARK = '|'
 _LONGEST_PLAIN = 200
+_SOME = 1 << 12
 _TINY = re.compile(r'[eE]-0*[1-9][0-9][0-9]')
 """A number without this, and of no more than 200 characters, is not too small for a double."""
 _NUMBER_CHARACTERS = b'0123456789+-.eE \t\n\r|'
@@ -89,7 +90,7 @@ def poses_from_texts(
             texts[index] for index in indices.tolist()]
         if '' in form_texts:
             form_texts = [text or _IDENTITY_TEXTS[width] for text in form_texts]
-        table = _table_from_texts(form_texts, width)
+        table = _table_from_many_texts(form_texts, width)
         if table is None:
             is_plain = [
                 len(text) <= _LONGEST_PLAIN and re.fullmatch(_PLAIN[width], text) is not None
@@ -156,6 +157,19 @@ def _marked(count: int, indices: Sequence[int]) -> npt.NDArray[np.bool_]:
     marks = np.zeros(count, dtype=bool)
     marks[np.array(indices, dtype=np.intp)] = True
     return marks
+
+
+def _table_from_many_texts(
+    texts: Sequence[str], width: int,
+) -> npt.NDArray[np.float64] | None:
+    """Do as the next function does, some at a time: the texts of all numbers take much memory."""
+    tables = []
+    for start in range(0, len(texts), _SOME):
+        table = _table_from_texts(texts[start:start + _SOME], width)
+        if table is None:
+            return None
+        tables.append(table)
+    return np.concatenate(tables)
 
 
 def _table_from_texts(texts: Sequence[str], width: int) -> npt.NDArray[np.float64] | None:

@@ -28,10 +28,6 @@ IS_FRAME_KIND[list(FRAME_KINDS)] = True
 IS_FRAME_KIND.setflags(write=False)
 """For each kind whether others may refer to elements of it."""
 
-_MAY_HOLD = np.zeros(len(Kind), dtype=bool)
-_MAY_HOLD[[Kind.MODEL, Kind.LINK, Kind.JOINT]] = True
-_MAY_HOLD.setflags(write=False)
-
 
 class Scopes:
     """
@@ -176,11 +172,14 @@ def _absolute_names(table: Elements) -> list[str]:
     prefixes = dict.fromkeys(np.flatnonzero(table.parents < 0).tolist(), '')
     for index in prefixes:
         names[index] = WORLD_FRAME if table.kinds[index] == Kind.WORLD else ROOT_FRAME
+    is_top = table.parents < 0
+    holds = np.zeros(len(names), dtype=bool)
+    holds[table.parents[~is_top]] = True
     # Holders come before what they hold.
-    for index in np.flatnonzero(_MAY_HOLD[table.kinds] & (table.parents >= 0)).tolist():
+    for index in np.flatnonzero(holds & ~is_top).tolist():
         name = names[index] = prefixes[parents[index]] + names[index]
         prefixes[index] = name + SEPARATOR
-    for index in np.flatnonzero(~_MAY_HOLD[table.kinds] & (table.parents >= 0)).tolist():
+    for index in np.flatnonzero(~holds & ~is_top).tolist():
         names[index] = prefixes[parents[index]] + names[index]
     return names
 
