@@ -60,7 +60,7 @@ class Markup:
     """
 
     def __init__(self, tags: Tags) -> None:
-        _, self.starts, roots, begins, ends, is_closing, is_empty, depths = tags
+        _, self.starts, roots, begins, ends, is_closing, _, depths = tags
         self._all_tags = tags
         self._buffer = np.frombuffer(tags.text, np.uint8)
         self._words = words_from_text(self._buffer)
@@ -73,10 +73,6 @@ class Markup:
         self._tags = chosen = starts[self._ordinals]
         self._begins = begins[chosen]
         self._ends = ends[chosen]
-        self._content_ends = self._ends - is_empty[chosen]
-        # What follows is another tag, that of a child or of the end.
-        following = np.append(begins, len(tags.text))[chosen + 1]
-        self._text_ends = np.where(is_empty[chosen], self._ends + 1, following)
         self.roots = np.searchsorted(chosen, roots)
         """The outermost element of each text, where all of these have known tags."""
         self._by_number = np.argsort(self.numbers, kind='stable')
@@ -163,7 +159,7 @@ class Markup:
             :data:`~sdf_pose_bridge.tag_search.COMMENT` for comments, and with
             characters written as ``&...;`` left as they are.
         """
-        return self._cut(self._ends[elements] + 1, self._text_ends[elements])
+        return self._cut(self._ends[elements] + 1, self._text_ends(elements))
 
     def begins_with_digit(self, elements: Positions) -> _Flags:
         """
@@ -186,7 +182,7 @@ class Markup:
         """
         # With the bracket that follows each text, which ends its last word.
         begins = self._ends[elements] + 1
-        lengths = np.maximum(self._text_ends[elements] + 1 - begins, 1)
+        lengths = np.maximum(self._text_ends(elements) + 1 - begins, 1)
         firsts = np.cumsum(lengths) - lengths
         if not len(firsts):
             return firsts
@@ -242,7 +238,7 @@ class Markup:
         :return: its value for each, as it is written; empty where there is only a name; and
             whether there may be anything else.
         """
-        ends = self._content_ends[elements]
+        ends = self._content_ends(elements)
         _, name_ends = self._places_of_value(self._places_of_name(elements), b'name')
         is_only_name = name_ends + 1 == ends
         if is_only_name.all():
@@ -250,6 +246,18 @@ class Markup:
         begins, value_ends = self._places_of_value(name_ends, attribute)
         is_plain = is_only_name | (value_ends + 1 == ends)
         return self._cut(begins, value_ends), ~is_plain
+
+    def _text_ends(self, elements: Positions) -> Positions:
+        """Return where the first run of character data in elements ends."""
+        tags, first_tags = self._all_tags, self._tags[elements]
+        # What follows is another tag, that of a child or of the end; in an empty element nothing.
+        following = tags.begins.take(first_tags + 1, mode='clip')
+        return np.where(tags.is_empty[first_tags], self._ends[elements] + 1, following)
+
+    def _content_ends(self, elements: Positions) -> Positions:
+        """Return where what is written in the start tags of elements ends."""
+        ends: Positions = self._ends[elements] - self._all_tags.is_empty[self._tags[elements]]
+        return ends
 
     def _places_of_name(self, elements: Positions) -> Positions:
         """Return the last character of each tag's own name."""
@@ -280,7 +288,7 @@ class Markup:
         :return: false for those whose tag has nothing but its name.
         """
         lengths = _NAME_LENGTHS[self.numbers[elements]]
-        is_longer: _Flags = self._begins[elements] + lengths < self._content_ends[elements]
+        is_longer: _Flags = self._begins[elements] + lengths < self._content_ends(elements)
         return is_longer
 
     def holders(self, elements: Positions) -> Positions:
