@@ -252,7 +252,9 @@ class Markup:
         tags, first_tags = self._all_tags, self._tags[elements]
         # What follows is another tag, that of a child or of the end; in an empty element nothing.
         following = tags.begins.take(first_tags + 1, mode='clip')
-        return np.where(tags.is_empty[first_tags], self._ends[elements] + 1, following)
+        is_empty = tags.is_empty[first_tags]
+        ends: Positions = np.where(is_empty, self._ends[elements] + 1, following)
+        return ends
 
     def _content_ends(self, elements: Positions) -> Positions:
         """Return where what is written in the start tags of elements ends."""
