@@ -275,11 +275,11 @@ class _ElementReader:
 
     def _children(self, xml: XmlElement, scope: _Scope) -> Iterator[XmlElement]:
         """Add what is regular; return the rest, which has to be looked at one by one."""
-        rows = None if scope.proxy else self._table.rows()
-        if rows is None:
+        parts = None if scope.proxy else self._table.rows()
+        if parts is None:
             yield from xml.iterchildren(etree.Element)
             return
-        for run in rows.runs(xml):
+        for rows, run in ((part, run) for part in parts for run in part.runs(xml)):
             if run.is_regular and self._names.claim_run(rows, run, scope.holder):
                 self._table.add_run(rows, run, xml, scope.holder)
             else:

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from collections.abc import Sequence
-from functools import cached_property
 import itertools
 from typing import Any
 from typing import NamedTuple
@@ -23,7 +22,6 @@ import numpy as np
 from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.elements import Indices
 from sdf_pose_bridge.elements import NOWHERE
-from sdf_pose_bridge.row_kinds import ROW_TAGS
 from sdf_pose_bridge.row_kinds import TOP_TAGS
 from sdf_pose_bridge.tree_elements import TreeElements
 
@@ -161,9 +159,9 @@ class RowTree:
 
 class ElementRows:
     """
-    The rows of one document, and the elements of its tree that they are about.
+    Rows of one document, and the elements of its tree that they are about.
 
-    :param rows: its rows, and maybe those of others.
+    :param rows: some or all of its rows, and maybe those of others.
     :param first: the first of its rows.
     :param tree: the elements of its tree.
     """
@@ -179,15 +177,17 @@ class ElementRows:
         Find the row of an element.
 
         :param xml: an element of the document.
-        :return: its row.
+        :return: its row; -1 if it is not among these.
         """
-        root = self._tree.root
+        root, elements = self._tree.root, self.columns.elements
         if xml.getparent() is root:
             # Much quicker than to make an object for each element of the tree.
             place = list(root.iterchildren(*TOP_TAGS)).index(xml)
             tops = self._rows.children(NOWHERE)
             return int(tops[np.searchsorted(tops, self._first) + place])
-        return self._rows_of_xmls[xml]
+        element = self._tree.element_of_row_xml[xml]
+        row = int(np.searchsorted(elements, element))
+        return row if row < len(elements) and elements[row] == element else NOWHERE
 
     def xmls(self, rows: _Rows) -> list[XmlElement]:
         """
@@ -196,25 +196,14 @@ class ElementRows:
         :param rows: some rows.
         :return: the elements.
         """
-        return [self._xmls[row] for row in rows.tolist()]
+        return [self._tree.row_xmls[element] for element in self.columns.elements[rows].tolist()]
 
     def runs(self, xml: XmlElement) -> Iterator[Run]:
         """
         Go through what a model or a world holds.
 
         :param xml: a model or world of the document.
-        :return: as :meth:`RowTree.runs` does.
+        :return: as :meth:`RowTree.runs` does; nothing if none of it is among these rows.
         """
-        return self._rows.runs(self.row_of(xml))
-
-    @cached_property
-    def _xmls(self) -> dict[int, XmlElement]:
-        elements, of_rows = self._tree.elements, self.columns.elements
-        rows = np.searchsorted(of_rows, elements)
-        is_row = np.append(of_rows, -1)[rows] == elements
-        xmls = self._tree.xmls_of(ROW_TAGS, elements[is_row])
-        return dict(zip(rows[is_row].tolist(), xmls, strict=True))
-
-    @cached_property
-    def _rows_of_xmls(self) -> dict[XmlElement, int]:
-        return {xml: row for row, xml in self._xmls.items()}
+        row = self.row_of(xml)
+        return iter(()) if row == NOWHERE else self._rows.runs(row)

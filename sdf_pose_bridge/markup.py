@@ -60,7 +60,7 @@ class Markup:
     """
 
     def __init__(self, tags: Tags) -> None:
-        _, self.starts, roots, begins, ends, is_closing, _, depths = tags
+        _, self.starts, roots, begins, ends, is_closing, _, depths, part, _ = tags
         self._all_tags = tags
         self._buffer = np.frombuffer(tags.text, np.uint8)
         self._words = words_from_text(self._buffer)
@@ -78,29 +78,32 @@ class Markup:
         self._by_number = np.argsort(self.numbers, kind='stable')
         self._firsts: list[int] = np.searchsorted(
             self.numbers[self._by_number], np.arange(len(KNOWN_TAGS.tags) + 1)).tolist()
+        # What stands around a part of the text stands before it.
+        head = self._buffer[:min(part.start, int(ends[min(1, len(ends) - 1)]) + 1)]
+        rest = self._buffer[part]
         # The last one stands for all that are not there.
-        self._quotes = np.append(places(self._buffer, '"'), 0)
-        self._newlines = places(self._buffer, '\n')
+        self._quotes = np.concatenate([places(head, '"'), places(rest, '"') + part.start, [0]])
+        self._newlines = np.append(places(head, '\n'), places(rest, '\n') + part.start)
         self._newlines_before = np.searchsorted(self._newlines, self.starts)
+        self._newlines_between = tags.newlines_before - len(places(head, '\n'))
         # All elements in the order of their depths, and where each depth begins.
         self._by_depth = np.argsort(self._depths, kind='stable')
         self._depth_borders: list[int] = [0, *np.cumsum(np.bincount(self._depths)).tolist()]
 
     @property
-    def deepest(self) -> int:
-        """How many elements stand around the one that stands deepest."""
-        return int(self._depths.max())
-
-    @property
-    def longest_text(self) -> int:
-        """Length of the longest run of characters between two tags, in bytes."""
-        tags = self._all_tags
-        return int((tags.begins[1:] - tags.ends[:-1]).max(initial=0))
-
-    @property
     def begins(self) -> Positions:
         """Where the start tag of each element begins."""
         return self._begins
+
+    def are_in_part(self, elements: Positions) -> _Flags:
+        """
+        Tell which elements do not stand around the part of the text that these tags are of.
+
+        :param elements: their indices.
+        :return: true for those that stand in the part.
+        """
+        is_inside: _Flags = self._begins[elements] >= self._all_tags.part.start
+        return is_inside
 
     def spans(self, elements: Positions) -> Spans:
         """
@@ -183,7 +186,7 @@ class Markup:
         # With the bracket that follows each text, which ends its last word.
         begins = self._ends[elements] + 1
         lengths = np.maximum(self._text_ends(elements) + 1 - begins, 1)
-        firsts = np.cumsum(lengths) - lengths
+        firsts: Positions = np.cumsum(lengths) - lengths
         if not len(firsts):
             return firsts
         characters = self._buffer[
@@ -217,6 +220,9 @@ class Markup:
         if len(self.starts) > 1:
             texts = np.searchsorted(self.starts, self._begins[elements], side='right') - 1
             lines -= self._newlines_before[texts]
+        elif self._newlines_between:
+            lines += self._newlines_between * (
+                self._begins[elements] >= self._all_tags.part.start)
         return lines.astype(np.int32)
 
     def first_values(self, elements: Positions) -> list[str]:
@@ -331,8 +337,8 @@ def markup_from_texts(texts: Sequence[bytes]) -> Markup | None:
     Find the elements of texts.
 
     :param texts: well-formed XML, in UTF-8.
-    :return: the elements; None if there is more in brackets than tags and comments, a bracket by
-        itself, or anything behind an outermost element.
+    :return: the elements; None where :func:`~sdf_pose_bridge.tag_search.tags_from_texts` finds
+        something else.
     """
     tags = tags_from_texts(texts)
     return None if tags is None else Markup(tags)

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from lxml import etree
@@ -33,8 +34,8 @@ class MarkupIndex(NamedTuple):
 
     tree: TreeElements
     """The elements of its tree."""
-    rows: ElementRows
-    """The elements that may carry a pose."""
+    rows: Sequence[ElementRows]
+    """The elements that may carry a pose, part by part."""
     doubtful: Mapping[str, Positions]
     """For each tag the elements of which the values have to be looked at one by one."""
 
@@ -61,8 +62,8 @@ def index_of_document(document: Document, *, is_changed: bool = False) -> Markup
         return document.elements
     markup, lines_of, version = written_elements(document, is_changed=is_changed)
     rows = RowTree(columns_from_markup(markup, lines_of, version))
-    tree = TreeElements(document.root, markup.numbers, np.arange(len(markup.numbers)))
-    return MarkupIndex(tree, ElementRows(rows, 0, tree), doubtful_elements(markup))
+    tree = TreeElements(document.root, np.arange(len(markup.numbers)), markup.numbers)
+    return MarkupIndex(tree, [ElementRows(rows, 0, tree)], doubtful_elements(markup))
 
 
 def written_elements(document: Document, *, is_changed: bool = False) -> WrittenElements:
@@ -86,17 +87,15 @@ def written_elements(document: Document, *, is_changed: bool = False) -> Written
     return WrittenElements(markup, np.array(lines, dtype=np.int32).__getitem__, NEWEST)
 
 
-def index_from_remainder(
-    root: XmlElement, markup: Markup, remainder: Remainder,
-) -> MarkupIndex:
+def index_from_remainder(root: XmlElement, remainder: Remainder) -> MarkupIndex:
     """
     Put together what is known of a document of which only a part is in its tree.
 
     :param root: the outermost element of its tree.
-    :param markup: what was found in its text, and maybe in others.
     :param remainder: what the tree was made from.
     :return: its elements.
     """
-    tree = TreeElements(root, markup.numbers, remainder.kept)
+    tree = TreeElements(root, remainder.kept, remainder.numbers)
     return MarkupIndex(
-        tree, ElementRows(remainder.rows, remainder.first_row, tree), remainder.doubtful)
+        tree, [ElementRows(rows, remainder.first_row, tree) for rows in remainder.rows],
+        remainder.doubtful)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from collections.abc import Mapping
+from collections.abc import Sequence
 import contextlib
 from typing import TYPE_CHECKING
 
@@ -58,11 +59,11 @@ class Reading:
         self._open_files = [0]
         self.columns = ElementColumns()
 
-    def rows(self) -> ElementRows | None:
+    def rows(self) -> Sequence[ElementRows] | None:
         """
         Take all elements out of the file that is being read.
 
-        :return: its rows; None if it is small, or parts of it stand in other files.
+        :return: its rows, part by part; None if it is small, or parts of it stand in other files.
         """
         index = self._indices.get(self._document.root)
         return None if index is None or self._document.origins else index.rows

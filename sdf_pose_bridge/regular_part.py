@@ -10,16 +10,14 @@ element by element.
 from __future__ import annotations
 
 from collections.abc import Mapping
-import contextlib
+from collections.abc import Sequence
 import re
 
-import numpy as np
-
 from sdf_pose_bridge.document import Document
-from sdf_pose_bridge.markup import Markup
-from sdf_pose_bridge.markup import markup_from_texts
 from sdf_pose_bridge.markup_index import index_from_remainder
-from sdf_pose_bridge.remainder import remainders_from_markup
+from sdf_pose_bridge.remainder import Remainder
+from sdf_pose_bridge.remainder import remainders_from_tags
+from sdf_pose_bridge.tag_search import tags_from_texts
 from sdf_pose_bridge.versions import has_frame_attributes
 from sdf_pose_bridge.versions import turns_axes_with_model
 from sdf_pose_bridge.versions import Version
@@ -36,6 +34,9 @@ _ENCODING = rb'encoding\s*=\s*["\']([^"\']*)'
 # Deeper and longer ones are for the parser to judge.
 _DEEPEST = 250
 _LONGEST_TEXT = 9_000_000
+
+_PART = 1 << 23
+"""So many bytes of a file are looked at at a time."""
 
 
 def documents_without_regular_part(contents: Mapping[str, bytes]) -> dict[str, Document]:
@@ -72,26 +73,33 @@ def may_be_joined(content: bytes) -> bool:
 def _documents_of_one_grammar(contents: Mapping[str, bytes]) -> dict[str, Document]:
     texts = list(contents.values())
     check = WellFormednessCheck(texts)
-    markup: Markup | None = None
-    # What happens with a text that is not well-formed does not matter.
-    with contextlib.suppress(ValueError, IndexError):
-        markup = markup_from_texts(texts)
-    version = _early_version(texts[0])
-    if not check.are_well_formed() or version is None or markup is None or (
-            len(markup.of('include')) or not np.array_equal(markup.roots, markup.of('sdf'))
-            or markup.deepest > _DEEPEST or markup.longest_text > _LONGEST_TEXT):
+    try:
+        remainders = _remainders(texts)
+    except Exception:
+        # What happens with a text that is not well-formed does not matter.
+        if check.are_well_formed():
+            raise
+        return {}
+    if remainders is None or not check.are_well_formed():
         return {}
     found = {}
-    for (path, content), remainder in zip(
-            contents.items(), remainders_from_markup(markup, texts, version), strict=True):
+    for (path, content), remainder in zip(contents.items(), remainders, strict=True):
         root, warnings = root_from_text(remainder.text, path)
         declared = root.get('version', '')
         if version_from_text(declared) == _early_version(content):
             found[path] = Document(
                 path, root, declared, warnings, is_large=True, text=content,
-                may_hold_separators=False,
-                elements=index_from_remainder(root, markup, remainder))
+                may_hold_separators=False, elements=index_from_remainder(root, remainder))
     return found
+
+
+def _remainders(texts: Sequence[bytes]) -> list[Remainder] | None:
+    """Take out what is regular; None if there is something that needs a whole tree."""
+    tags, version = tags_from_texts(texts), _early_version(texts[0])
+    if tags is None or version is None or tags.deepest > _DEEPEST or (
+            tags.longest_text > _LONGEST_TEXT):
+        return None
+    return remainders_from_tags(tags, texts, version, _PART)
 
 
 def _early_version(text: bytes) -> Version | None:

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from collections.abc import Sequence
 import itertools
 from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,10 +19,15 @@ from sdf_pose_bridge.markup import Spans
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.plain_values import doubtful_elements
 from sdf_pose_bridge.row_extraction import columns_from_markup
+from sdf_pose_bridge.tag_search import parts_from_tags
 from sdf_pose_bridge.tag_search import Positions
+from sdf_pose_bridge.tag_search import Tags
 from sdf_pose_bridge.versions import Version
 
-_MANY_LINES = 1_000_000
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+_MANY_LINES = 10_000
 
 _HOLDS_RUNS = np.zeros(256, dtype=bool)
 _HOLDS_RUNS[[Kind.WORLD, Kind.MODEL]] = True
@@ -35,27 +41,71 @@ class Remainder(NamedTuple):
     """What is left, with every element in the line in which it was."""
     kept: Positions
     """The elements that are left, in ascending order."""
+    numbers: npt.NDArray[np.int16]
+    """The tag of each of these, as a number of the known tags."""
     doubtful: Mapping[str, Positions]
     """For each tag the elements of which the values have to be looked at one by one; all of them
     are left."""
-    rows: RowTree
-    """All elements that carry a pose, of this text and maybe of others."""
+    rows: Sequence[RowTree]
+    """All elements that carry a pose, part by part; maybe also those of other texts."""
     first_row: int
     """The first of them that is of this text."""
 
 
-def remainders_from_markup(
-    markup: Markup, texts: Sequence[bytes], version: Version,
-) -> list[Remainder]:
+class _Part(NamedTuple):
+    """What is found in a part of a text, or in several texts."""
+
+    begins: Positions
+    """Where what is taken out begins."""
+    ends: Positions
+    newlines: Positions
+    """How many lines each piece that is taken out goes over."""
+    kept: Positions
+    numbers: npt.NDArray[np.int16]
+    doubtful: Mapping[str, Positions]
+    columns: Columns
+    roots: Positions
+
+
+def remainders_from_tags(
+    tags: Tags, texts: Sequence[bytes], version: Version, part_size: int,
+) -> list[Remainder] | None:
     """
     Take what is regular out of texts.
 
-    :param markup: the elements of the texts, without any ``<include>``.
+    :param tags: the tags of the texts.
     :param texts: the texts.
     :param version: the version by whose rules all of them are written.
+    :param part_size: about how many bytes of a long text to look at at a time.
     :return: what is left of each: all that does not carry a pose nor is held by something that
-        does, whatever has to be looked at one by one, and what holds these.
+        does, whatever has to be looked at one by one, and what holds these. None if there is an
+        ``<include>``, or an outermost element that is no ``<sdf>``.
     """
+    parts: list[_Part] = []
+    count = 0
+    for some_tags in parts_from_tags(tags, part_size):
+        markup = Markup(some_tags)
+        if len(markup.of('include')) or not np.array_equal(markup.roots, markup.of('sdf')):
+            return None
+        parts.append(_part_from_markup(markup, version, count))
+        count += len(markup.numbers)
+    if len(parts) > 1 and not _are_apart([part.columns for part in parts]):
+        return remainders_from_tags(tags, texts, version, len(tags.text))
+    kept = np.concatenate([part.kept for part in parts])
+    numbers = np.concatenate([part.numbers for part in parts])
+    rows = [RowTree(part.columns) for part in parts]
+    roots = parts[0].roots
+    borders = np.searchsorted(kept, roots[1:])
+    return [
+        Remainder(text, kept, numbers, doubtful, rows, first_row)
+        for text, kept, numbers, doubtful, first_row in zip(
+            _texts_without(tags, texts, parts), np.split(kept, borders),
+            np.split(numbers, borders),
+            _doubtful_of_texts([part.doubtful for part in parts], roots),
+            np.searchsorted(parts[0].columns.elements, roots).tolist(), strict=True)]
+
+
+def _part_from_markup(markup: Markup, version: Version, first_element: int) -> _Part:
     columns = columns_from_markup(markup, markup.lines, version)
     doubtful = doubtful_elements(markup)
     spans = markup.spans(columns.elements[_removable_rows(columns)])
@@ -64,17 +114,33 @@ def remainders_from_markup(
     begins, ends = _joined(spans)
     places = np.searchsorted(begins, markup.begins, side='right') - 1
     kept = np.flatnonzero(markup.begins >= np.append(ends, 0)[places])
-    left = _texts_without(markup, texts, begins, ends)
-    rows = RowTree(columns)
-    first_rows = np.searchsorted(columns.elements, markup.roots).tolist()
-    if len(texts) == 1:
-        return [Remainder(left[0], kept, doubtful, rows, first_rows[0])]
-    all_kept = np.split(kept, np.searchsorted(kept, markup.roots[1:]))
-    all_doubtful = _doubtful_of_texts(markup, doubtful)
-    return [
-        Remainder(text, kept, doubtful, rows, first_row)
-        for text, kept, doubtful, first_row in zip(
-            left, all_kept, all_doubtful, first_rows, strict=True)]
+    kept = kept[markup.are_in_part(kept)]
+    return _Part(
+        begins, ends, markup.newlines_between(begins, ends), kept + first_element,
+        markup.numbers[kept],
+        {tag: elements[markup.are_in_part(elements)] + first_element
+         for tag, elements in doubtful.items()},
+        columns._replace(elements=columns.elements + first_element), markup.roots)
+
+
+def _are_apart(parts: Sequence[Columns]) -> bool:
+    """
+    Tell whether what one element holds can be looked at part by part.
+
+    :param parts: the rows of each part, of which the first is the element itself.
+    :return: false if some name needs a closer look, or is that of several elements.
+    """
+    keys = []
+    for columns in parts:
+        if not len(columns.names) or not _HOLDS_RUNS[columns.kinds[0]]:
+            return False
+        rows = np.flatnonzero(columns.parents == 0)
+        if columns.has_odd_name[rows].any():
+            return False
+        names = map(columns.names.__getitem__, rows.tolist())
+        keys.append(np.fromiter(map(hash, names), np.int64, len(rows)))
+    in_order = np.sort(np.concatenate(keys))
+    return not (in_order[1:] == in_order[:-1]).any()
 
 
 def _removable_rows(columns: Columns) -> Positions:
@@ -119,21 +185,21 @@ def _joined(spans: Spans) -> tuple[Positions, Positions]:
         :len(ends)]]
 
 
-def _texts_without(
-    markup: Markup, texts: Sequence[bytes], begins: Positions, ends: Positions,
-) -> list[bytes]:
-    """Take parts out of texts, but leave the lines that they go over."""
-    newlines = markup.newlines_between(begins, ends).tolist()
-    firsts = [*np.searchsorted(begins, markup.starts).tolist(), len(begins)]
+def _texts_without(tags: Tags, texts: Sequence[bytes], parts: Sequence[_Part]) -> list[bytes]:
+    """Take pieces out of texts, but leave the lines that they go over."""
+    begins = np.concatenate([part.begins for part in parts])
+    ends = np.concatenate([part.ends for part in parts])
+    counts = [count for part in parts for count in part.newlines.tolist()]
+    firsts = [*np.searchsorted(begins, tags.starts).tolist(), len(begins)]
     left = []
     for text, start, (first, last) in zip(
-            texts, markup.starts.tolist(), itertools.pairwise(firsts), strict=True):
+            texts, tags.starts.tolist(), itertools.pairwise(firsts), strict=True):
         borders = np.stack((begins[first:last], ends[first:last]), axis=1).ravel() - start
         pieces = [text[begin:end] for begin, end in zip(
             [0, *borders[1::2].tolist()], [*borders[0::2].tolist(), len(text)], strict=True)]
         left.append(b''.join(itertools.chain.from_iterable(
             (piece, _empty_lines(count))
-            for piece, count in zip(pieces, [*newlines[first:last], 0], strict=True))))
+            for piece, count in zip(pieces, [*counts[first:last], 0], strict=True))))
     return left
 
 
@@ -144,12 +210,13 @@ def _empty_lines(count: int) -> bytes:
 
 
 def _doubtful_of_texts(
-    markup: Markup, doubtful: Mapping[str, Positions],
+    parts: Sequence[Mapping[str, Positions]], roots: Positions,
 ) -> list[dict[str, Positions]]:
-    found: list[dict[str, Positions]] = [{} for _ in markup.roots]
-    for tag, elements in doubtful.items():
-        borders = np.searchsorted(elements, markup.roots[1:])
-        for of_text, part in zip(found, np.split(elements, borders), strict=True):
-            if len(part):
-                of_text[tag] = part
+    found: list[dict[str, Positions]] = [{} for _ in roots]
+    for tag in dict.fromkeys(tag for part in parts for tag in part):
+        elements = np.concatenate([part[tag] for part in parts if tag in part])
+        borders = np.searchsorted(elements, roots[1:])
+        for of_text, of_tag in zip(found, np.split(elements, borders), strict=True):
+            if len(of_tag):
+                of_text[tag] = of_tag
     return found

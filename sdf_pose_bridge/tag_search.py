@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from collections.abc import Sequence
+import itertools
 import re
 from typing import NamedTuple
 from typing import TYPE_CHECKING
@@ -49,6 +51,20 @@ class Tags(NamedTuple):
     """Whether each is start and end in one."""
     depths: npt.NDArray[np.int16]
     """How many elements are open before each."""
+    part: slice
+    """The part of the text in which these tags stand, but for those around the part."""
+    newlines_before: int = 0
+    """How many line ends there are before the part."""
+
+    @property
+    def deepest(self) -> int:
+        """How many elements stand around the one that stands deepest."""
+        return int(self.depths.max())
+
+    @property
+    def longest_text(self) -> int:
+        """Length of the longest run of characters between two tags, in bytes."""
+        return int((self.begins[1:] - self.ends[:-1]).max(initial=0))
 
 
 class _Brackets(NamedTuple):
@@ -80,8 +96,42 @@ def tags_from_texts(texts: Sequence[bytes]) -> Tags | None:
             np.searchsorted(starts, begins[roots], side='right') - 1 != np.arange(len(texts))
             ).any():
         return None
-    tags = Tags(text, starts, roots, begins, ends, is_closing, is_empty, depths.astype(np.int16))
+    tags = Tags(
+        text, starts, roots, begins, ends, is_closing, is_empty, depths.astype(np.int16),
+        slice(0, len(text)))
     return None if _have_tails(tags) else tags
+
+
+def parts_from_tags(tags: Tags, size: int) -> Iterator[Tags]:
+    """
+    Divide the tags of a long text, so that what is made of a part stays near to the processor.
+
+    :param tags: all tags of some texts.
+    :param size: about how many bytes of the text a part has.
+    :return: the parts, each with the tags of the outermost element and of the only one in it
+        around what that holds; all tags where there are several such elements.
+    """
+    inner = np.flatnonzero((tags.depths == 1) & ~tags.is_closing)
+    last = len(tags.begins) - 2
+    if len(tags.starts) > 1 or len(tags.text) < 2 * size or len(inner) != 1 or (
+            inner[0] != 1 or tags.is_empty[1]):
+        yield tags
+        return
+    held = np.flatnonzero((tags.depths == 2) & ~tags.is_closing)
+    chosen = np.searchsorted(tags.begins[held], np.arange(size, len(tags.text), size))
+    borders = [2, *dict.fromkeys(held[chosen[chosen < len(held)]].tolist()), last]
+    newlines = 0
+    for first, end in itertools.pairwise(borders):
+        if first == end:
+            continue
+        begin = 0 if first == 2 else int(tags.begins[first])
+        part = slice(begin, len(tags.text) if end == last else int(tags.begins[end]))
+        chosen = np.concatenate(([0, 1], np.arange(first, end), [last, last + 1]))
+        yield tags._replace(
+            begins=tags.begins[chosen], ends=tags.ends[chosen],
+            is_closing=tags.is_closing[chosen], is_empty=tags.is_empty[chosen],
+            depths=tags.depths[chosen], part=part, newlines_before=newlines)
+        newlines += tags.text.count(b'\n', part.start, part.stop)
 
 
 def _brackets_from_text(text: bytes) -> _Brackets | None:
@@ -128,7 +178,7 @@ def places(buffer: npt.NDArray[np.uint8], character: str) -> Positions:
     byte = np.uint8(ord(character))
     blocks = [
         np.flatnonzero(buffer[start:start + _BLOCK] == byte) + start
-        for start in range(0, len(buffer), _BLOCK)]
+        for start in range(0, max(len(buffer), 1), _BLOCK)]
     return np.concatenate(blocks)
 
 

@@ -9,15 +9,17 @@ from sdf_texts import model_file
 
 import sdf_pose_bridge
 from sdf_pose_bridge import document_reading
+from sdf_pose_bridge import regular_part
 from sdf_pose_bridge.document_reading import document_from_text
 from sdf_pose_bridge.document_reading import documents_from_files
 from sdf_pose_bridge.document_reading import whole_document
 from sdf_pose_bridge.known_tags import KNOWN_TAGS
-from sdf_pose_bridge.markup import markup_from_texts
-from sdf_pose_bridge.remainder import remainders_from_markup
+from sdf_pose_bridge.remainder import remainders_from_tags
+from sdf_pose_bridge.tag_search import tags_from_texts
 from sdf_pose_bridge.versions import NEWEST
 
 LINK = '<link name="{}"><pose>1 2 3 0 0 0</pose></link>'
+ONE_PART = 1 << 40
 REGULAR = LINK.format('a') + '\n' + LINK.format('b')
 
 
@@ -32,7 +34,7 @@ def sdf(content):
 
 def left_of(content):
     text = sdf(content)
-    (remainder,) = remainders_from_markup(markup_from_texts([text]), [text], NEWEST)
+    (remainder,) = remainders_from_tags(tags_from_texts([text]), [text], NEWEST, ONE_PART)
     return etree.fromstring(remainder.text)
 
 
@@ -103,10 +105,9 @@ def test_a_pose_of_a_camera(pose, is_regular):
 def test_what_is_kept_are_the_elements_of_the_tree():
     texts = [sdf(content) for content in (
         f'<model name="m">{REGULAR}<link/></model>', f'<model name="n">{REGULAR}</model>')]
-    markup = markup_from_texts(texts)
-    for remainder in remainders_from_markup(markup, texts, NEWEST):
+    for remainder in remainders_from_tags(tags_from_texts(texts), texts, NEWEST, ONE_PART):
         xmls = etree.fromstring(remainder.text).iter(*KNOWN_TAGS.tags)
-        tags = [KNOWN_TAGS.tags[number] for number in markup.numbers[remainder.kept]]
+        tags = [KNOWN_TAGS.tags[number] for number in remainder.numbers]
         assert tags == [xml.tag for xml in xmls]
 
 
@@ -159,3 +160,25 @@ def test_a_text_so_long_that_it_is_checked_beside(ending):
             sdf_pose_bridge.load_text(text)
     else:
         assert_at(sdf_pose_bridge.load_text(text), 'm::l_5999', (1, 2, 3))
+
+
+@pytest.mark.parametrize('size', [50, 200, 1000])
+def test_a_long_text_is_looked_at_part_by_part(size, monkeypatch):
+    monkeypatch.setattr(regular_part, '_PART', size)
+    models = [
+        f'<model name="m{i}"><pose>{i} 0 0 0 0 0</pose>\n{REGULAR}</model>\n' for i in range(20)]
+    text = sdf(f'<world name="w"><frame name="f"/>{"".join(models)}<frame name="g"/></world>')
+    scene = sdf_pose_bridge.load_text(text)
+    assert_at(scene, 'm19::b', (20, 2, 3))
+    assert scene.lines[scene.index('m19::b')] == 2 + 3 * 19 + 2
+    assert scene.lines[scene.index('g')] == 2 + 3 * 20
+
+
+@pytest.mark.parametrize('name', ['a', ' a '])
+def test_names_in_different_parts_are_compared(name, monkeypatch):
+    monkeypatch.setattr(regular_part, '_PART', 50)
+    links = ''.join(LINK.format(f'l{i}') for i in range(20))
+    with pytest.raises(sdf_pose_bridge.SdfError) as refusal:
+        sdf_pose_bridge.load_text(
+            sdf(f'<model name="m">{LINK.format("a")}{links}{LINK.format(name)}</model>'))
+    assert [error.code for error in refusal.value.errors] == ['DUPLICATE_NAME']
