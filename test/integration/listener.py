@@ -15,6 +15,9 @@ from rclpy.qos import QoSProfile
 from rclpy.qos import ReliabilityPolicy
 from tf2_msgs.msg import TFMessage
 
+LOST_S = 2.0
+"""After so long an answer is taken for lost."""
+
 
 def latched(depth):
     return QoSProfile(
@@ -34,6 +37,7 @@ class Listener:
         self.tf_messages = []
         self.transforms = {}
         self.poses = {}
+        self._callers = {}
 
     def listen_to_frames(self, bridge='/sdf_pose_bridge'):
         self.node.create_subscription(
@@ -63,14 +67,25 @@ class Listener:
             lambda: collection.keys() >= set(keys), lambda: sorted(set(keys) - set(collection)))
 
     def call(self, service_type, name, request):
-        client = self.node.create_client(service_type, name)
-        try:
-            self.wait(client.service_is_ready, lambda: name)
-            future = client.call_async(request)
-            self.wait(future.done, lambda: f'an answer from {name}')
-            return future.result()
-        finally:
-            self.node.destroy_client(client)
+        # Kept, as programs do.
+        is_new = name not in self._callers
+        if is_new:
+            self._callers[name] = self.node.create_client(service_type, name)
+        client = self._callers[name]
+        self.wait(client.service_is_ready, lambda: name)
+        futures = [client.call_async(request)]
+        asked_at = time.monotonic()
+
+        def is_answered():
+            nonlocal asked_at
+            # The middleware may lose the first answer to a client that the server hardly knows.
+            if is_new and time.monotonic() > asked_at + LOST_S:
+                futures.append(client.call_async(request))
+                asked_at = time.monotonic()
+            return any(future.done() for future in futures)
+
+        self.wait(is_answered, lambda: f'an answer from {name}')
+        return next(future.result() for future in futures if future.done())
 
     def end(self):
         self._executor.shutdown()
