@@ -244,6 +244,9 @@ for _value_type, _table in (
 VALUE_TAGS = tuple(dict.fromkeys(_tag for _types in VALUE_TYPES.values() for _tag in _types))
 """Tags of elements whose value has a type, at least in some parents."""
 
+COUNTS_OF_NUMBERS = {ValueType.TWO_NUMBERS: 2, ValueType.THREE_NUMBERS: 3}
+"""How many numbers a value has, where that is more than one."""
+
 AXES = frozenset({('axis', 'xyz'), ('axis2', 'xyz')})
 """Elements that hold a direction, by the parent's tag and their own."""
 

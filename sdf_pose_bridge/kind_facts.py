@@ -30,9 +30,9 @@ from sdf_pose_bridge.row_table import attributes_from_tag
 from sdf_pose_bridge.row_table import CHANGED_BY_PARSER
 from sdf_pose_bridge.row_table import firsts_of_rows
 from sdf_pose_bridge.row_table import Flags
+from sdf_pose_bridge.row_table import REPLACED_BY_PARSER
 from sdf_pose_bridge.row_table import Rows
 from sdf_pose_bridge.row_table import RowTable
-from sdf_pose_bridge.tag_search import COMMENT
 from sdf_pose_bridge.tag_search import Positions
 from sdf_pose_bridge.versions import has_frame_attributes
 from sdf_pose_bridge.versions import turns_axes_with_model
@@ -163,7 +163,8 @@ class KindFacts:
         flagged = markup.holders(flags)
         texts = markup.texts(flags)
         is_true = np.array([bool(boolean_from_text(text)) for text in texts], dtype=bool)
-        is_odd = np.array(['&' in text or COMMENT in text for text in texts], dtype=bool)
+        is_odd = np.array(
+            [not REPLACED_BY_PARSER.isdisjoint(text) for text in texts], dtype=bool)
         is_turned = self._marked_elements(flagged[is_true])[axes]
         has_flag = self._marked_elements(flagged)[axes]
         table.mark_odd(joints[is_repeated | self._marked_elements(flagged[is_odd])[axes]].tolist())
@@ -194,7 +195,7 @@ class KindFacts:
         if not len(rows):
             return Facts(rows, [])
         types = table.second_values(rows, 'type')
-        table.mark_changed(rows, types)
+        table.mark_holding(CHANGED_BY_PARSER, rows, types)
         cameras = table.children('camera', Kind.SENSOR)
         optical = self._optical_frame_ids(cameras.rows, cameras.elements)
         gz_ids = self._values('gz_frame_id')
@@ -227,5 +228,5 @@ class KindFacts:
 
     def _values_of(self, rows: Rows, elements: Positions) -> dict[int, str]:
         texts = self._markup.texts(elements)
-        self._table.mark_replaced(rows, texts)
+        self._table.mark_holding(REPLACED_BY_PARSER, rows, texts)
         return dict(zip(rows.tolist(), map(value_from_text, texts), strict=True))

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sdf_pose_bridge.grammar import AXES
+from sdf_pose_bridge.grammar import COUNTS_OF_NUMBERS
 from sdf_pose_bridge.grammar import HOLDERS_OF_POSES
 from sdf_pose_bridge.grammar import LARGEST_VALUES
 from sdf_pose_bridge.grammar import MATERIAL_TAGS
@@ -88,8 +89,10 @@ def _with_doubtful_value(tag: str, markup: Markup) -> Positions:
         return elements
     if rule.value_type in _PLAIN_IF_BEGUN:
         elements = elements[~markup.begins_with_digit(elements)]
-    elif rule.value_type in _COUNTS and not rule.is_axis:
-        elements = elements[markup.counts_of_numbers(elements) < _COUNTS[rule.value_type]]
+    elif rule.value_type in COUNTS_OF_NUMBERS and not rule.is_axis:
+        # They are good if all words begin with digits, and there are enough of them.
+        count = COUNTS_OF_NUMBERS[rule.value_type]
+        elements = elements[markup.counts_of_numbers(elements) < count]
     texts = markup.texts(elements)
     pattern = _pattern(rule)
     if not texts or pattern.fullmatch(_END.join(set(texts)) + _END):
@@ -114,10 +117,6 @@ def _with_doubtful_pose(tag: str, markup: Markup) -> Positions:
     found: Positions = holders[
         markup.has_attributes(poses) | np.array(is_doubtful, dtype=bool)]
     return found
-
-
-_COUNTS = {ValueType.TWO_NUMBERS: 2, ValueType.THREE_NUMBERS: 3}
-"""Types of values that are good if they have so many words, all of which begin with digits."""
 
 
 class _PlainRule(NamedTuple):

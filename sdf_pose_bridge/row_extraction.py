@@ -28,6 +28,7 @@ from sdf_pose_bridge.row_table import attributes_from_tag
 from sdf_pose_bridge.row_table import CHANGED_BY_PARSER
 from sdf_pose_bridge.row_table import firsts_of_rows
 from sdf_pose_bridge.row_table import LinesOf
+from sdf_pose_bridge.row_table import REPLACED_BY_PARSER
 from sdf_pose_bridge.row_table import Rows
 from sdf_pose_bridge.row_table import RowTable
 from sdf_pose_bridge.tag_search import Positions
@@ -177,7 +178,7 @@ class _Extraction:
 
     def _pose_texts(self, posed: Rows, poses: Positions) -> list[str]:
         texts = self._markup.texts(poses)
-        self._table.mark_replaced(posed, texts)
+        self._table.mark_holding(REPLACED_BY_PARSER, posed, texts)
         return texts
 
 

@@ -50,8 +50,10 @@ _NO_ROW = -2
 _ATTRIBUTE = r'([^\s=\'"]+)\s*=\s*(?:"([^"]*)"|\'([^\']*)\')'
 """Left for `re` to compile when it is first needed."""
 _ODD_IN_REFERENCES = (*WHITE_SPACE.replace('\n', ''), '\n\n', '&', COMMENT, f'\n{ROOT_FRAME}\n')
-CHANGED_BY_PARSER = frozenset('&\t\n\r' + COMMENT)
-"""Characters of which an XML parser makes something else."""
+REPLACED_BY_PARSER = frozenset('&' + COMMENT)
+"""Characters in the value of an element of which an XML parser makes something else."""
+CHANGED_BY_PARSER = REPLACED_BY_PARSER | frozenset('\t\n\r')
+"""Characters in an attribute of which it makes something else."""
 
 
 class Held(NamedTuple):
@@ -151,30 +153,18 @@ class RowTable:
                 if not name or '\n' in name or (
                     any(text in f'\n{name}\n' for text in _ODD_IN_REFERENCES)))
 
-    def mark_replaced(self, rows: Rows, texts: list[str]) -> None:
+    def mark_holding(self, characters: frozenset[str], rows: Rows, texts: list[str]) -> None:
         """
-        Mark rows as odd in which a value holds a comment, or characters written as ``&...;``.
+        Mark rows as odd about which something with certain characters is written.
 
-        :param rows: some rows.
-        :param texts: a value of each.
-        """
-        joined = ''.join(texts)
-        if '&' in joined or COMMENT in joined:
-            self.mark_odd(
-                row for row, text in zip(rows.tolist(), texts, strict=True)
-                if '&' in text or COMMENT in text)
-
-    def mark_changed(self, rows: Rows, texts: list[str]) -> None:
-        """
-        Mark rows as odd about which something is written that an XML parser changes.
-
+        :param characters: such as :data:`REPLACED_BY_PARSER`.
         :param rows: some rows.
         :param texts: what is written about each.
         """
         joined = ''.join(texts)
-        if any(character in joined for character in CHANGED_BY_PARSER):
+        if any(character in joined for character in characters):
             self.mark_odd(row for row, text in zip(rows.tolist(), texts, strict=True)
-                          if not CHANGED_BY_PARSER.isdisjoint(text))
+                          if not characters.isdisjoint(text))
 
     def attributes(self, rows: Rows) -> list[dict[str, str]]:
         """
@@ -184,7 +174,7 @@ class RowTable:
         :return: the attributes of each.
         """
         tags = self.markup.tags(self.elements[rows])
-        self.mark_changed(rows, tags)
+        self.mark_holding(CHANGED_BY_PARSER, rows, tags)
         return [attributes_from_tag(tag) for tag in tags]
 
     def second_values(self, rows: Rows, attribute: str) -> list[str]:

@@ -27,6 +27,7 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.grammar import AXES
 from sdf_pose_bridge.grammar import CHECKED_TAGS
+from sdf_pose_bridge.grammar import COUNTS_OF_NUMBERS
 from sdf_pose_bridge.grammar import HOLDERS_OF_POSES
 from sdf_pose_bridge.grammar import LARGEST_VALUES
 from sdf_pose_bridge.grammar import MATERIAL_TAGS
@@ -48,7 +49,6 @@ _INTEGER = r'[+-]?[0-9]'
 _DIGITS = '0123456789'
 _TRUTH = 'true|false'
 """Goes for a number, too."""
-_COUNTS = {ValueType.TWO_NUMBERS: 2, ValueType.THREE_NUMBERS: 3}
 _LEADING_NUMBER = r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?'
 _SMALLEST_AXIS = 1e-6
 _SHADERS = frozenset({'pixel', 'vertex', 'normal_map_object_space', 'normal_map_tangent_space'})
@@ -183,7 +183,7 @@ def _is_of_type(text: str, value_type: ValueType) -> bool:
         values = [float(number.group()) for number in numbers if number]
         return (len(values) == len(numbers) and len(values) in (3, 4)
                 and all(0.0 <= value <= 1.0 for value in values))
-    count = _COUNTS.get(value_type, 1)
+    count = COUNTS_OF_NUMBERS.get(value_type, 1)
     words = text.split()[:count]
     number = _INTEGER if value_type is ValueType.INTEGER else _NUMBER
     # Mostly a look at the first character is enough.

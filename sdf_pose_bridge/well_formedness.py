@@ -9,6 +9,7 @@ import threading
 
 from lxml import etree
 
+from sdf_pose_bridge.xml_reading import careful_parser
 from sdf_pose_bridge.xml_reading import IGNORED_ERRORS
 
 _LONG = 1 << 18
@@ -48,10 +49,7 @@ class WellFormednessCheck:
         return self._are_well_formed
 
     def _check(self) -> None:
-        # The stubs ask for methods, each of which the parser would call.
-        parser = etree.XMLParser(  # type: ignore[call-overload]
-            target=_Nothing(), recover=True, resolve_entities=False, no_network=True,
-            load_dtd=False, huge_tree=False)
+        parser = careful_parser(target=_Nothing())
         self._are_well_formed = all(_is_well_formed(text, parser) for text in self._texts)
 
 

@@ -60,6 +60,20 @@ def root_from_file(path: str) -> XmlElement:
     return root_from_text(bytes_from_file(path), path)[0]
 
 
+def careful_parser(encoding: str | None = None, target: object = None) -> etree.XMLParser:
+    """
+    Make a parser that can be given anything.
+
+    :param encoding: encoding of the text; None for the one that it declares.
+    :param target: takes what is found, instead of a tree.
+    :return: the parser, whose log of errors tells what is wrong with a text.
+    """
+    # The stubs ask for a target with methods, each of which the parser would call.
+    return etree.XMLParser(  # type: ignore[call-overload,no-any-return]
+        encoding=encoding, target=target, recover=True, resolve_entities=False, no_network=True,
+        load_dtd=False, huge_tree=False, remove_blank_text=True)
+
+
 def root_from_text(
     text: bytes, path: str, encoding: str | None = None,
 ) -> tuple[XmlElement, tuple[SdfWarning, ...]]:
@@ -74,9 +88,7 @@ def root_from_text(
     :raises FileReadError: if it is not XML.
     """
     warnings = []
-    parser = etree.XMLParser(
-        encoding=encoding, recover=True, resolve_entities=False, no_network=True, load_dtd=False,
-        huge_tree=False, remove_blank_text=True)
+    parser = careful_parser(encoding)
     root: XmlElement | None = None
     failure: SdfError | None = None
     try:

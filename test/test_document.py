@@ -13,7 +13,6 @@ from sdf_texts import names_of
 from sdf_texts import only_error
 
 import sdf_pose_bridge
-from sdf_pose_bridge import document_reading
 from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import text_of
 from sdf_pose_bridge.document import value_of
@@ -26,10 +25,7 @@ BILLION = ''.join(
     for i in range(12))
 
 
-@pytest.fixture(autouse=True, params=[None, 0], ids=['whole', 'without regular part'])
-def _bytes_of_large_files(request, monkeypatch):
-    if request.param is not None:
-        monkeypatch.setattr(document_reading, '_LARGE', request.param)
+pytestmark = pytest.mark.usefixtures('size_of_large_files')
 
 
 def pose_text(content):

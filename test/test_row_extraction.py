@@ -81,6 +81,22 @@ ODDITIES = (
         '</joint>', '<axis><xyz expressed_in="k">0 0 1</xyz></axis></joint>'),
     '<link name="k"/>' + JOINT.replace(
         '</joint>', '<axis><xyz expressed_in=" x ">0 0 1</xyz></axis></joint>'),
+    '<link name="k"/>' + JOINT.replace(
+        '</joint>', '<axis><xyz>0 0 1</xyz>'
+        '<use_parent_model_frame>true</use_parent_model_frame></axis></joint>'),
+    '<link name="k"/>' + JOINT.replace(
+        '</joint>', '<axis><use_parent_model_frame>0</use_parent_model_frame>'
+        '<xyz expressed_in="x">0 0 1</xyz></axis><axis2><xyz>0 1 0</xyz></axis2></joint>'),
+    '<link name="k"/>' + JOINT.replace(
+        '</joint>', '<axis><use_parent_model_frame>tr<!-- -->ue</use_parent_model_frame>'
+        '<xyz expressed_in="x">0 0 1</xyz></axis></joint>'),
+    '<link name="k"/>' + JOINT.replace(
+        '</joint>', '<axis><xyz>0 0 1</xyz><xyz expressed_in="x">0 0 1</xyz></axis></joint>'),
+    '<link name="k"><sensor name="s" type="a&amp;b"><gz_frame_id>i</gz_frame_id></sensor></link>',
+    ('<link name="k"><sensor name="s" type="imu"><ignition_frame_id>j</ignition_frame_id>'
+     '<gz_frame_id/><gz_frame_id>i</gz_frame_id></sensor></link>'),
+    ('<link name="k"><sensor name="s" type=" camera "><gz_frame_id>a&amp;b</gz_frame_id><camera/>'
+     '<camera><optical_frame_id>o</optical_frame_id></camera></sensor></link>'),
     '<frame name="f"/>', '<frame name="f" attached_to="l"/>', '<frame name="f" attached_to=""/>',
     '<frame attached_to="l" name="f"/>', '<frame name="f" attached_to=" l"/>',
     '<frame name="f" attached_to="f"/>', '<frame name="f" attached_to="__root__"/>',
