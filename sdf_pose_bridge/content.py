@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """From settings to what the node serves: find the file, read it, lay out its frames."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 import time

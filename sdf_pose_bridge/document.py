@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """One SDFormat file as it was read, and how to read values from its elements."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 import re
 from types import MappingProxyType
@@ -39,18 +37,18 @@ class Document(NamedTuple):
     """Value of its ``version`` attribute, as written."""
     warnings: tuple[SdfWarning, ...] = ()
     """What is wrong with its XML, but does not stand in the way."""
-    origins: Mapping[XmlElement, Document] = MappingProxyType({})
+    origins: Mapping[XmlElement, 'Document'] = MappingProxyType({})
     """For what was put into its tree from elsewhere: the file that it stands in."""
     is_large: bool = False
     """Whether it is worth while to look at many of its elements at a time."""
     text: bytes | None = None
     """Its content in UTF-8; None if that is in another encoding, or the tree has changed."""
-    elements: MarkupIndex | None = None
+    elements: 'MarkupIndex | None' = None
     """All its elements, if the tree has only the part of them that is not regular."""
     may_hold_separators: bool = True
     """False if it is certain that no name in it holds ``::``."""
 
-    def origin(self, element: XmlElement) -> Document:
+    def origin(self, element: XmlElement) -> 'Document':
         """
         Tell which file an element stands in.
 

@@ -23,6 +23,7 @@ from sdf_pose_bridge.xml_reading import UTF_8_NAMES
 
 _SEPARATOR = re.compile(SEPARATOR.encode())
 _LONGEST_SURE_NAME = 500
+_PLUGIN = tuple(b'<plugin' + white for white in (b' ', b'\t', b'\n', b'\r'))
 
 _LARGE = 1 << 15
 """Bytes of files of which it is worth while to look at many elements at a time."""
@@ -129,6 +130,8 @@ def _may_hold_separators(text: bytes) -> bool:
     for found in _SEPARATOR.finditer(text):
         place = found.start()
         before = text[max(place - _LONGEST_SURE_NAME, 0):place]
+        if before[before.rfind(b'<'):].startswith(_PLUGIN):
+            continue  # which mostly bear the name of a class, and which SDFormat does not read
         quotes = [quote for quote in (before.rfind(b'"'), before.rfind(b"'")) if quote >= 0]
         if not quotes or any(
                 before[:quote].rstrip(b' \t\r\n=').endswith(b'name') for quote in quotes):

@@ -2,13 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The typed form of a file: a table of its elements that carry a pose, with their references."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from collections.abc import Sequence
 from typing import Any
 from typing import NamedTuple
-from typing import TYPE_CHECKING
 from typing import TypeAlias
 
 import numpy as np
@@ -16,15 +13,12 @@ import numpy as np
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.names import Kind
 
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
 NOWHERE = -1
 """Stands for an index where there is none."""
 
-Indices: TypeAlias = 'npt.NDArray[np.int32]'
+Indices: TypeAlias = np.ndarray[Any, np.dtype[np.int32]]
 
-_Integers: TypeAlias = 'Sequence[int] | npt.NDArray[Any]'
+_Integers: TypeAlias = Sequence[int] | np.ndarray[Any, np.dtype[Any]]
 
 CAMERA_TYPES = frozenset({
     'boundingbox', 'boundingbox_camera', 'camera', 'depth', 'depth_camera', 'multicamera', 'rgbd',
@@ -98,7 +92,7 @@ class Elements(NamedTuple):
     Entry i of each sequence and array is about element i.
     """
 
-    kinds: npt.NDArray[np.uint8]
+    kinds: np.ndarray[Any, np.dtype[np.uint8]]
     """Values of :class:`~sdf_pose_bridge.names.Kind`."""
     names: Sequence[str]
     """Their own names, without their scopes."""
@@ -111,7 +105,7 @@ class Elements(NamedTuple):
     lines: Indices
     pose_lines: Indices
     """The line of each one's pose; 0 where none is written."""
-    poses: npt.NDArray[np.float64]
+    poses: np.ndarray[Any, np.dtype[np.float64]]
     """Shape (n, 7): the pose of each as written, x y z in metres, unit quaternion x y z w, in the
     frame that it is relative to; the identity where none is written."""
     relative_to: Mapping[int, str]

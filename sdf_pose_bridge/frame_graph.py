@@ -6,8 +6,6 @@ The frame graph: what each pose is relative to, and which body carries each fram
 Every reference is looked up and checked here; what comes out has no ring and no loose end.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from collections.abc import Sequence
 from typing import NamedTuple

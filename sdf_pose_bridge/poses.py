@@ -8,19 +8,13 @@ unit quaternion x y z w of its axes, both expressed in the parent. Poses chain a
 ``pose of c in a = product(pose of b in a, pose of c in b)``.
 """
 
-from __future__ import annotations
-
 from typing import Any
 from typing import NamedTuple
-from typing import TYPE_CHECKING
 from typing import TypeAlias
 
 import numpy as np
 
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
-PoseArray: TypeAlias = 'npt.NDArray[np.float64]'
+PoseArray: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
 """Poses as rows: shape (n, 7), x y z in metres, unit quaternion x y z w."""
 
 

@@ -10,8 +10,6 @@ from collections.abc import Sequence
 import contextlib
 from typing import TYPE_CHECKING
 
-from lxml import etree
-
 from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import is_data
 from sdf_pose_bridge.document import WHITE_SPACE
@@ -34,8 +32,6 @@ from sdf_pose_bridge.versions import version_of
 if TYPE_CHECKING:
     from sdf_pose_bridge.element_rows import ElementRows
     from sdf_pose_bridge.markup_index import MarkupIndex
-
-_NAMES_WITH_SEPARATOR = etree.XPath('//*[contains(@name, "::")]')
 
 
 class Reading:
@@ -114,7 +110,7 @@ class Reading:
         """
         if not document.may_hold_separators or self.allows_flat_names():
             return
-        found: list[XmlElement] = _NAMES_WITH_SEPARATOR(document.root)
+        found: list[XmlElement] = document.root.xpath('//*[contains(@name, "::")]')
         for xml in found:
             if is_data(xml):
                 msg = f'the name "{xml.get("name")}" holds "{SEPARATOR}", which sets scopes apart'

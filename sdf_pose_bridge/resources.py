@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Find the files that includes name: search paths, ROS packages, the local Fuel cache."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from collections.abc import Iterator
 from collections.abc import Mapping

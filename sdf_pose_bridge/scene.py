@@ -2,10 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The resolved, immutable content of a file: names, kinds, parents and poses as arrays."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-import dataclasses
 from functools import cached_property
 from typing import NamedTuple
 from typing import TYPE_CHECKING
@@ -41,14 +38,15 @@ class Joint(NamedTuple):
     """The frame that is the child."""
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
 class Scene:
     """
     Everything in a file that has a pose.
 
     Entry i of each sequence and array is about element i. Elements stand in file order, each after
-    the one that holds it. Arrays are read-only.
+    the one that holds it. Arrays are read-only, and what a scene holds cannot be exchanged.
     """
+
+    # By hand what a dataclass would do, as a start would have to wait for dataclasses.
 
     path: str
     """The file, as it was opened."""
@@ -56,7 +54,7 @@ class Scene:
     """All files that were read, the first one included."""
     names: tuple[str, ...]
     """Absolute names such as ``robot::arm::hand``; ``world`` for a world's own frame."""
-    kinds: npt.NDArray[np.uint8]
+    kinds: 'npt.NDArray[np.uint8]'
     """Values of :class:`~sdf_pose_bridge.names.Kind`."""
     parents: Indices
     """The element that holds each one in the file; -1 for a world and the implicit root."""
@@ -84,6 +82,31 @@ class Scene:
     """The name of each world; a model file has none."""
     warnings: tuple[SdfWarning, ...]
     """What libsdformat would accept but its author should know of, in file order."""
+
+    def __init__(
+        self, *,
+        path: str, files: tuple[str, ...], names: tuple[str, ...], kinds: 'npt.NDArray[np.uint8]',
+        parents: Indices, roots: Indices, poses: PoseArray, attachments: Indices, bodies: Indices,
+        canonical_links: Indices, static_models: frozenset[int], joints: tuple[Joint, ...],
+        sensors: Mapping[int, SensorFacts], lines: Indices, file_indices: Indices,
+        world_names: Mapping[int, str], warnings: tuple[SdfWarning, ...],
+    ) -> None:
+        vars(self).update(
+            path=path, files=files, names=names, kinds=kinds, parents=parents, roots=roots,
+            poses=poses, attachments=attachments, bodies=bodies, canonical_links=canonical_links,
+            static_models=static_models, joints=joints, sensors=sensors, lines=lines,
+            file_indices=file_indices, world_names=world_names, warnings=warnings)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        msg = f'{name} cannot be set: a scene is never changed'
+        raise AttributeError(msg)
+
+    def __delattr__(self, name: str) -> None:
+        msg = f'{name} cannot be deleted: a scene is never changed'
+        raise AttributeError(msg)
+
+    def __repr__(self) -> str:
+        return f'<Scene of {self.path}: {len(self.names)} elements>'
 
     def pose(self, frame: str, relative_to: str = '', *, world: str = '') -> Pose:
         """

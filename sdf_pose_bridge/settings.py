@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the node is set to do: values judged before they are taken, free of ROS."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from collections.abc import Mapping
 import enum

@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tree of TF frames that stands for a scene: ids, parents and transforms, free of ROS."""
 
-from __future__ import annotations
-
 import enum
 from functools import cached_property
 from typing import NamedTuple
@@ -184,7 +182,7 @@ class _Builder:
         return np.flatnonzero(
             is_inside & wanted.take(self._scene.kinds) & (holders >= 0)).astype(np.int32)
 
-    def _is_inside(self, model: int) -> npt.NDArray[np.bool_]:
+    def _is_inside(self, model: int) -> 'npt.NDArray[np.bool_]':
         """Tell of each element whether it is a model or something in it."""
         around = self._scene.parents.copy()
         around[model] = model

@@ -9,6 +9,8 @@ published as if it did; so numbers have to be numbers, and materials whole.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from collections.abc import Sequence
 import math
 import re
 from typing import TYPE_CHECKING
@@ -50,7 +52,12 @@ _DIGITS = '0123456789'
 _TRUTH = 'true|false'
 """Goes for a number, too."""
 _LEADING_NUMBER = r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?'
+_ODD_IN_NUMBERS = frozenset('_nN')
 _SMALLEST_AXIS = 1e-6
+_NO_TYPES: Mapping[str, ValueType] = {}
+# An enum takes its time to hand out its members.
+_BOOLEAN, _COLOR = ValueType.BOOLEAN, ValueType.COLOR
+_ONE_NUMBER, _ONE_INTEGER = ValueType.NUMBER, ValueType.INTEGER
 _SHADERS = frozenset({'pixel', 'vertex', 'normal_map_object_space', 'normal_map_tangent_space'})
 _NOT_ONLY_VALUES = frozenset((*REQUIRED_ATTRIBUTES, *MATERIAL_TAGS, *HOLDERS_OF_POSES, 'state'))
 
@@ -80,8 +87,8 @@ class _Check:
         self._problems = problems
 
     def all_of(self, xml: XmlElement) -> None:
-        self._value(xml)
         tag = str(xml.tag)
+        self._value(xml, tag)
         if tag not in _NOT_ONLY_VALUES:
             return
         if tag in REQUIRED_ATTRIBUTES:
@@ -95,11 +102,13 @@ class _Check:
             for pose in xml.iter('pose'):
                 self._pose(pose)
 
-    def _value(self, xml: XmlElement) -> None:
+    def _value(self, xml: XmlElement, tag: str) -> None:
         holder = xml.getparent()
-        types = None if holder is None else VALUE_TYPES.get(str(holder.tag))
-        value_type = None if types is None else types.get(str(xml.tag))
-        if holder is None or value_type is None:
+        if holder is None:
+            return
+        holder_tag = str(holder.tag)
+        value_type = VALUE_TYPES.get(holder_tag, _NO_TYPES).get(tag)
+        if value_type is None:
             return
         text = text_of(xml).strip()
         if not text:
@@ -108,16 +117,15 @@ class _Check:
             msg = f'"{text[:80]}" is not {value_type.value}'
             self._error(ElementInvalidError, xml, msg)
             return
-        key = (str(holder.tag), str(xml.tag))
+        key = (holder_tag, tag)
         if key in SMALLEST_VALUES:
             self._check_range(xml, text, key)
         if key in AXES:
             self._check_axis(xml, text)
 
     def _check_range(self, xml: XmlElement, text: str, key: tuple[str, str]) -> None:
-        number = re.match(_LEADING_NUMBER, text)
         smallest, largest = SMALLEST_VALUES[key], LARGEST_VALUES.get(key, math.inf)
-        if number and not smallest <= float(number.group()) <= largest:
+        if any(not smallest <= number <= largest for number in _numbers(text)[:1]):
             rule = f'at least {smallest:g}' if largest == math.inf else (
                 f'from {smallest:g} to {largest:g}')
             self._error(ElementInvalidError, xml, f'"{text}" must be {rule}')
@@ -160,8 +168,7 @@ class _Check:
             self._error(ElementMissingError, shader, msg)
 
     def _check_axis(self, xml: XmlElement, text: str) -> None:
-        numbers = [re.match(_LEADING_NUMBER, word) for word in text.split()]
-        if math.hypot(*(float(number.group()) for number in numbers if number)) <= _SMALLEST_AXIS:
+        if math.hypot(*_numbers(text)) <= _SMALLEST_AXIS:
             self._error(ElementInvalidError, xml, f'"{text}" is no axis: its length is zero')
 
     def _error(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
@@ -176,19 +183,38 @@ class _Check:
 
 
 def _is_of_type(text: str, value_type: ValueType) -> bool:
-    if value_type is ValueType.BOOLEAN:
-        return boolean_from_text(text) is not None
-    if value_type is ValueType.COLOR:
-        numbers = [re.match(_LEADING_NUMBER, word) for word in text.split()]
-        values = [float(number.group()) for number in numbers if number]
-        return (len(values) == len(numbers) and len(values) in (3, 4)
-                and all(0.0 <= value <= 1.0 for value in values))
-    count = COUNTS_OF_NUMBERS.get(value_type, 1)
-    words = text.split()[:count]
-    number = _INTEGER if value_type is ValueType.INTEGER else _NUMBER
+    is_single = value_type is _ONE_NUMBER or value_type is _ONE_INTEGER
     # Mostly a look at the first character is enough.
-    if len(words) == count and all(
-            word[0] in _DIGITS or re.match(number, word, re.IGNORECASE) for word in words):
+    if is_single and text[0] in _DIGITS:
         return True
-    return count == 1 and re.match(_TRUTH, text, re.IGNORECASE) is not None
+    if value_type is _BOOLEAN:
+        return boolean_from_text(text) is not None
+    words = text.split()
+    numbers = _numbers(text)
+    if value_type is _COLOR:
+        return len(numbers) == len(words) and len(words) in (3, 4) and all(
+            0.0 <= number <= 1.0 for number in numbers)
+    count = COUNTS_OF_NUMBERS.get(value_type, 1)
+    if value_type is not _ONE_INTEGER and len(words) == len(numbers) >= count:
+        return True
+    start = _INTEGER if value_type is _ONE_INTEGER else _NUMBER
+    if len(words) >= count and all(
+            re.match(start, word, re.IGNORECASE) for word in words[:count]):
+        return True
+    return is_single and re.match(_TRUTH, text, re.IGNORECASE) is not None
 
+
+def _numbers(text: str) -> list[float]:
+    """Return the number that each word begins with, without those of words that have none."""
+    words = text.split()
+    # Of such words Python and C think alike, if they are numbers as a whole.
+    is_plain = _ODD_IN_NUMBERS.isdisjoint(text) and text.isascii()
+    try:
+        return list(map(float, words)) if is_plain else _leading_numbers(words)
+    except ValueError:
+        return _leading_numbers(words)
+
+
+def _leading_numbers(words: Sequence[str]) -> list[float]:
+    matches = (re.match(_LEADING_NUMBER, word) for word in words)
+    return [float(number.group()) for number in matches if number]
