@@ -39,6 +39,9 @@ def main(args: Sequence[str] | None = None) -> int:
     gc.disable()
     # numpy's threads for large matrices, which there are none of here, would spin for a while.
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
+    # Functions of ROS's libraries are looked up when they are called, as in programs in C++; most
+    # never are.
+    sys.setdlopenflags(os.RTLD_LAZY)
     try:
         from sdf_pose_bridge.running import run
         return run(list(sys.argv if args is None else args), stop)
