@@ -151,6 +151,31 @@ def test_one_file_that_is_not_well_formed_does_not_spoil_others(tmp_path):
     assert {error.code for error in refusal.value.errors} == {'FILE_READ'}
 
 
+def test_each_file_is_read_by_the_rules_of_its_version(tmp_path):
+    for name, version in (('old', '1.6'), ('new', '1.9')):
+        links = LINK.format('a') + '<link name="b"><pose frame="a">0 0 1 0 0 0</pose></link>'
+        (tmp_path / f'{name}.sdf').write_text(
+            f'<sdf version="{version}"><model name="{name}">{links}</model></sdf>')
+    includes = ''.join(f'<include><uri>{name}.sdf</uri></include>' for name in ('old', 'new'))
+    (tmp_path / 'world.sdf').write_bytes(sdf(f'<world name="w">{includes}</world>'))
+    scene = sdf_pose_bridge.load(tmp_path / 'world.sdf')
+    assert_at(scene, 'old::b', (1, 2, 4))
+    assert_at(scene, 'new::b', (0, 0, 1))
+
+
+@pytest.mark.parametrize(('element', 'has_whole_tree'), [
+    ('<plugin name="gz::sim::systems::Physics" filename="f"/>', False),
+    ('<plugin\n filename="f" name="gz::sim::systems::Physics"/>', False),
+    ('<frame name="f" attached_to="m::l"/>', False),
+    ('<plugins name="a::b"/>', True),
+    ('<plugin name="p" filename="f"><frame name="a::b"/></plugin>', True),
+    ('<plugin name="p" filename="f"/><frame name="a::b"/>', True),
+])
+def test_only_names_with_a_separator_need_the_whole_tree(element, has_whole_tree):
+    text = sdf(f'<world name="w">{element}<model name="m">{REGULAR}</model></world>')
+    assert (document_from_text(text, 'file.sdf').elements is None) == has_whole_tree
+
+
 @pytest.mark.parametrize('ending', ['', '<', '<link>'])
 def test_a_text_so_long_that_it_is_checked_beside(ending):
     links = ''.join(LINK.format(f'l_{number}') for number in range(6_000))

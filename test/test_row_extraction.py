@@ -97,6 +97,17 @@ ODDITIES = (
      '<gz_frame_id/><gz_frame_id>i</gz_frame_id></sensor></link>'),
     ('<link name="k"><sensor name="s" type=" camera "><gz_frame_id>a&amp;b</gz_frame_id><camera/>'
      '<camera><optical_frame_id>o</optical_frame_id></camera></sensor></link>'),
+    ('<link name="k"><sensor name="s" type="x"><camera/><camera><optical_frame_id>o'
+     '</optical_frame_id></camera></sensor></link>'),
+    '<link name="k"/>' + JOINT.replace(
+        '</joint>', '<axis><xyz>0 0 1</xyz><use_parent_model_frame>1<plugin name="p"/>'
+        '</use_parent_model_frame></axis></joint>'),
+    '<link name="k"><visual name="v"><uri>&bogus;</uri></visual></link>',
+    '<link name="k"><visual name="v"><uri>\1</uri></visual></link>',
+    '<link name="k"><visual name="v"><uri a=1/></visual></link>',
+    '<link name="k"><visual name="v"><uri a="1" a="2"/></visual></link>',
+    '<link name="k"><visual name="v"><uri></url></visual></link>',
+    '<link name="k"><visual name="v" xml:id="i"/><visual name="w" xml:id="i"/></link>',
     '<frame name="f"/>', '<frame name="f" attached_to="l"/>', '<frame name="f" attached_to=""/>',
     '<frame attached_to="l" name="f"/>', '<frame name="f" attached_to=" l"/>',
     '<frame name="f" attached_to="f"/>', '<frame name="f" attached_to="__root__"/>',
