@@ -201,7 +201,6 @@ class KindFacts:
         gz_ids = self._values('gz_frame_id')
         ignition_ids = self._values('ignition_frame_id')
         has_camera = set(cameras.rows.tolist())
-        table.mark_odd(cameras.rows[cameras.counts > 1].tolist())
         facts = [
             SensorFacts(
                 sensor_type, gz_ids.get(row, '') or ignition_ids.get(row, ''),

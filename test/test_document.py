@@ -140,8 +140,8 @@ def test_nothing_is_asked_for_over_the_network():
 
 @pytest.mark.parametrize('content', [
     '<model name="m">' * 1000 + '</model>' * 1000,
-    f'<model name="m">{LINK}<plugin filename="f">{"<a>" * 300}{"</a>" * 300}</plugin></model>',
-    f'<model name="m">{LINK}<plugin filename="f">{"a" * 10_500_000}</plugin></model>',
+    f'<model name="m"><link name="l"><a>{"<a>" * 300}{"</a>" * 300}</a></link></model>',
+    f'<model name="m"><link name="l"><a>{"a" * 10_500_000}</a></link></model>',
 ], ids=['models', 'other elements', 'a text'])
 def test_bottomless_files_are_refused(content):
     assert codes_of(f'<sdf version="1.9">{content}</sdf>') == ['FILE_READ']

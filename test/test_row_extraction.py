@@ -102,6 +102,7 @@ ODDITIES = (
     '<link name="k"/>' + JOINT.replace(
         '</joint>', '<axis><xyz>0 0 1</xyz><use_parent_model_frame>1<plugin name="p"/>'
         '</use_parent_model_frame></axis></joint>'),
+    *(f'<link name="k">{"<a>" * depth}{"</a>" * depth}</link>' for depth in (252, 253, 254)),
     '<link name="k"><visual name="v"><uri>&bogus;</uri></visual></link>',
     '<link name="k"><visual name="v"><uri>\1</uri></visual></link>',
     '<link name="k"><visual name="v"><uri a=1/></visual></link>',
