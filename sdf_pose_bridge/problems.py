@@ -70,12 +70,12 @@ class Problems:
 
     @property
     def errors(self) -> tuple[SdfError, ...]:
-        """All errors, each once, in the order of the files."""
+        """All errors, each once however often its file is included, in the order of the files."""
         return tuple(self._in_order(self._errors))
 
     @property
     def warnings(self) -> tuple[SdfWarning, ...]:
-        """All warnings, each once, in the order of the files."""
+        """All warnings, as for :attr:`errors`."""
         return tuple(self._in_order(self._warnings))
 
     def raise_any(self) -> None:
@@ -88,7 +88,13 @@ class Problems:
             raise LoadError(self.errors, self.warnings)
 
     def _in_order(self, problems: Sequence[_AnyProblem]) -> list[_AnyProblem]:
-        once = {(problem.code, problem.message, problem.place): problem for problem in problems}
+        once: dict[tuple[str, str, Place], _AnyProblem] = {}
         last = len(self._ranks)
+        for problem in problems:
+            place = problem.place
+            if self._ranks.get(place.file, last):
+                # What is included many times is another element each time.
+                place = place._replace(element='')
+            once.setdefault((problem.code, problem.message, place), problem)
         return sorted(once.values(), key=lambda problem: (
             self._ranks.get(problem.place.file, last), problem.place.line))

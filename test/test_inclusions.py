@@ -49,6 +49,23 @@ def test_an_error_in_an_included_file_names_that_file(world, tmp_path):
     assert (error.code, error.file) == ('POSE_RELATIVE_TO_INVALID', str(tmp_path / 'm.sdf'))
 
 
+def test_an_error_in_a_file_that_is_included_twice_is_told_once(world, tmp_path):
+    (tmp_path / 'm.sdf').write_text(model_file('<link name="l"><pose>1 2</pose></link>'))
+    (error,) = errors_of(world(''.join(include('m.sdf', f'<name>{name}</name>') for name in 'ab')))
+    assert error.element == '/sdf/world[@name="w"]/model[@name="a"]/link[@name="l"]/pose'
+
+
+def test_two_errors_in_an_included_file_are_told_both(world, tmp_path):
+    links = ''.join(f'<link name="{pose}"><pose>{pose}</pose></link>' for pose in ('1 2', '3 4'))
+    (tmp_path / 'm.sdf').write_text(model_file(links))
+    assert len(errors_of(world(include('m.sdf')))) == 2
+
+
+def test_the_same_error_twice_in_one_line_is_told_twice(world):
+    links = ''.join(f'<link name="{name}"><pose>1 2</pose></link>' for name in 'ab')
+    assert len(errors_of(world(f'<model name="m">{links}</model>'))) == 2
+
+
 def test_urdf_is_told_from_sdf(world, tmp_path):
     (tmp_path / 'm.urdf').write_text('<robot name="r"/>')
     (error,) = errors_of(world(include('m.urdf')))
