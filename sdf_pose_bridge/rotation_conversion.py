@@ -55,7 +55,9 @@ def converted_rotation(
     :raises RotationError: an unknown value of ``given``, numbers not finite, or a zero quaternion.
     """
     if given == Given.RPY:
-        check_rpy(rpy)
+        # The numbers as they were given, not as radians; numpy takes its time over three of them.
+        if not all(map(math.isfinite, rpy)):
+            check_rpy(rpy)
         rpy_rad = _radians(rpy) if degrees else rpy
         unit = quaternion_from_rpy(rpy_rad)
         lock = near_gimbal_lock(unit)
