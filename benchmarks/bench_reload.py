@@ -87,8 +87,9 @@ class RunningBridge:
         except LookupError:
             msg = 'sdf_pose_bridge is not installed'
             raise Unavailable(msg) from None
-        self.start(stack, prefix / 'lib/sdf_pose_bridge/bridge', '--ros-args', '-p',
-                   f'sdf_file:={file}', stderr=subprocess.DEVNULL)
+        self.process = self.start(
+            stack, prefix / 'lib/sdf_pose_bridge/bridge', '--ros-args', '-p', f'sdf_file:={file}',
+            stderr=subprocess.DEVNULL)
         self.client = Client(self.domain)
         stack.callback(self.client.close)
 

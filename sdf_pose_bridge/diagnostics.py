@@ -15,8 +15,12 @@ from rclpy.node import Node
 
 from sdf_pose_bridge.content import Content
 
-PERIOD_S = 1.0
-"""Seconds between two messages, the pace at which monitors expect them."""
+PERIOD_S = 2.0
+"""
+Seconds between two messages.
+
+Monitors call a state stale after five. To wake the executor is most of what an idle node costs.
+"""
 
 
 class State(NamedTuple):
