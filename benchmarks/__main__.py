@@ -5,28 +5,18 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
-import importlib
+from concurrent.futures import ProcessPoolExecutor
+import multiprocessing
 import os
-import pkgutil
 import platform
 import sys
 
 import numpy as np
 
-import benchmarks
-from benchmarks.harness import Benchmark
-from benchmarks.harness import result_of
+from benchmarks.catalogue import all_benchmarks
+from benchmarks.catalogue import result_of_number
 from benchmarks.harness import RUNS
 from benchmarks.harness import table
-
-
-def all_benchmarks() -> Iterator[Benchmark]:
-    """Find the benchmarks of all modules ``bench_*`` of this package, in order."""
-    for module in pkgutil.iter_modules(benchmarks.__path__):
-        if module.name.startswith('bench_'):
-            contents = vars(importlib.import_module(f'benchmarks.{module.name}'))
-            yield from (value for value in contents.values() if isinstance(value, Benchmark))
 
 
 def main() -> int:
@@ -38,16 +28,19 @@ def main() -> int:
     )
     only = parser.parse_args().only.lower()
     chosen = [
-        bench for bench in all_benchmarks()
+        (number, bench) for number, bench in enumerate(all_benchmarks())
         if only in bench.what.lower() or only in bench.counterpart.lower()
     ]
     if not chosen:
         print(f'no benchmark has {only!r} in its description', file=sys.stderr)
         return 2
     results = []
-    for number, bench in enumerate(chosen, start=1):
-        print(f'{number}/{len(chosen)} {bench.what} / {bench.counterpart}', file=sys.stderr)
-        results.append(result_of(bench))
+    # None shall find the memory as another has left it.
+    spawning = multiprocessing.get_context('spawn')
+    for turn, (number, bench) in enumerate(chosen, start=1):
+        print(f'{turn}/{len(chosen)} {bench.what} / {bench.counterpart}', file=sys.stderr)
+        with ProcessPoolExecutor(1, mp_context=spawning) as process:
+            results.append(process.submit(result_of_number, number).result())
     print(
         f'Python {platform.python_version()}, numpy {np.__version__}, {os.cpu_count()} cores;'
         f' medians of {RUNS} runs of each, in turns'
