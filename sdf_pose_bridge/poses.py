@@ -8,6 +8,7 @@ unit quaternion x y z w of its axes, both expressed in the parent. Poses chain a
 ``pose of c in a = product(pose of b in a, pose of c in b)``.
 """
 
+from collections.abc import Iterator
 from typing import Any
 from typing import NamedTuple
 from typing import TypeAlias
@@ -16,6 +17,9 @@ import numpy as np
 
 PoseArray: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
 """Poses as rows: shape (n, 7), x y z in metres, unit quaternion x y z w."""
+
+_BLOCK = 4096
+"""How many rows are worked on at a time."""
 
 
 class Pose(NamedTuple):
@@ -74,10 +78,11 @@ def pose_products(a: PoseArray, b: PoseArray) -> PoseArray:
         of theirs.
     """
     product = np.empty(np.broadcast_shapes(a.shape, b.shape))
-    # The same formula serves columns: every operation is between arrays of n.
-    columns = pose_product(Pose(*a.T), Pose(*b.T))
-    for target, column in zip(product.T, columns, strict=True):
-        target[:] = column
+    for rows in _blocks(len(product)):
+        # The same formula serves columns: every operation is between arrays of as many.
+        columns = pose_product(Pose(*(a if len(a) == 1 else a[rows]).T), Pose(*b[rows].T))
+        for target, column in zip(product[rows].T, columns, strict=True):
+            target[:] = column
     return product
 
 
@@ -90,10 +95,21 @@ def relative_poses(references: PoseArray, poses: PoseArray) -> PoseArray:
     :return: poses of frames C in frames B, shape (n, 7): to the last bit the products of
         :func:`pose_inverse` and the poses.
     """
-    x, y, z, qx, qy, qz, qw = np.ascontiguousarray(references.T)
-    # As in pose_inverse and pose_product, on columns.
-    inverses = pose_product(_columns(0.0, 0.0, 0.0, -qx, -qy, -qz, qw), _columns(-x, -y, -z))
-    return np.stack(pose_product(inverses, Pose(*np.ascontiguousarray(poses.T))), axis=1)
+    relative = np.empty(poses.shape)
+    for rows in _blocks(len(relative)):
+        x, y, z, qx, qy, qz, qw = np.ascontiguousarray(references[rows].T)
+        # As in pose_inverse and pose_product, on columns.
+        inverses = pose_product(_columns(0.0, 0.0, 0.0, -qx, -qy, -qz, qw), _columns(-x, -y, -z))
+        np.stack(
+            pose_product(inverses, Pose(*np.ascontiguousarray(poses[rows].T))), axis=1,
+            out=relative[rows])
+    return relative
+
+
+def _blocks(count: int) -> Iterator[slice]:
+    """Divide rows, so that what is worked out between stays near to the processor."""
+    for start in range(0, count, _BLOCK):
+        yield slice(start, start + _BLOCK)
 
 
 def _columns(*columns: Any) -> Pose:

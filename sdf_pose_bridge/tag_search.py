@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from collections.abc import Sequence
 import itertools
 import re
+from typing import Any
 from typing import NamedTuple
 from typing import TYPE_CHECKING
 from typing import TypeAlias
@@ -117,18 +118,23 @@ def parts_from_tags(tags: Tags, size: int) -> Iterator[Tags]:
     held = np.flatnonzero((tags.depths == 2) & ~tags.is_closing)
     chosen = np.searchsorted(tags.begins[held], np.arange(size, len(tags.text), size))
     borders = [2, *dict.fromkeys(held[chosen[chosen < len(held)]].tolist()), last]
+    buffer = np.frombuffer(tags.text, np.uint8)
     newlines = 0
     for first, end in itertools.pairwise(borders):
         if first == end:
             continue
         begin = 0 if first == 2 else int(tags.begins[first])
         part = slice(begin, len(tags.text) if end == last else int(tags.begins[end]))
-        chosen = np.concatenate(([0, 1], np.arange(first, end), [last, last + 1]))
+        rows = slice(2), slice(first, end), slice(last, None)
         yield tags._replace(
-            begins=tags.begins[chosen], ends=tags.ends[chosen],
-            is_closing=tags.is_closing[chosen], is_empty=tags.is_empty[chosen],
-            depths=tags.depths[chosen], part=part, newlines_before=newlines)
-        newlines += tags.text.count(b'\n', part.start, part.stop)
+            begins=_chosen(tags.begins, rows), ends=_chosen(tags.ends, rows),
+            is_closing=_chosen(tags.is_closing, rows), is_empty=_chosen(tags.is_empty, rows),
+            depths=_chosen(tags.depths, rows), part=part, newlines_before=newlines)
+        newlines += int(np.count_nonzero(buffer[part] == ord('\n')))
+
+
+def _chosen(values: Any, rows: Sequence[slice]) -> Any:
+    return np.concatenate([values[some] for some in rows])
 
 
 def _brackets_from_text(text: bytes) -> _Brackets | None:

@@ -36,7 +36,7 @@ def assert_near(a, b, tolerance=1e-10):
 
 
 def rows(poses):
-    return np.array(poses, dtype=float).reshape(-1, 7)
+    return np.array(list(poses), dtype=float).reshape(-1, 7)
 
 
 def test_a_quarter_turn_carries_x_to_y():
@@ -107,6 +107,32 @@ def test_many_relative_poses_are_as_one_by_one(pairs):
     relative = relative_poses(rows([a for a, _ in pairs]), rows([b for _, b in pairs]))
     np.testing.assert_array_equal(
         relative, rows([pose_product(pose_inverse(a), b) for a, b in pairs]))
+
+
+def more_than_are_worked_on_at_a_time():
+    generator = np.random.default_rng(1)
+    poses = generator.uniform(-1.0, 1.0, (2, 9001, 7))
+    poses[..., 3:] /= np.linalg.norm(poses[..., 3:], axis=-1, keepdims=True)
+    return poses
+
+
+def test_very_many_products_are_as_one_by_one():
+    first, second = more_than_are_worked_on_at_a_time()
+    expected = rows(map(pose_product, map(Pose._make, first), map(Pose._make, second)))
+    np.testing.assert_array_equal(pose_products(first, second), expected)
+
+
+def test_one_pose_before_very_many():
+    (first, *_), second = more_than_are_worked_on_at_a_time()
+    expected = rows(pose_product(Pose(*first), Pose(*each)) for each in second)
+    np.testing.assert_array_equal(pose_products(first[np.newaxis], second), expected)
+
+
+def test_very_many_relative_poses_are_as_one_by_one():
+    first, second = more_than_are_worked_on_at_a_time()
+    expected = rows(
+        pose_product(pose_inverse(Pose(*a)), Pose(*b)) for a, b in zip(first, second, strict=True))
+    np.testing.assert_array_equal(relative_poses(first, second), expected)
 
 
 @pytest.mark.parametrize('count', [1, 5])
