@@ -41,7 +41,8 @@ def main(args: Sequence[str] | None = None) -> int:
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     # Functions of ROS's libraries are looked up when they are called, as in programs in C++; most
     # never are.
-    sys.setdlopenflags(os.RTLD_LAZY)
+    if sys.platform != 'win32':
+        sys.setdlopenflags(os.RTLD_LAZY)
     try:
         from sdf_pose_bridge.running import run
         return run(list(sys.argv if args is None else args), stop)
