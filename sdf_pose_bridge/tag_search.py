@@ -28,6 +28,8 @@ _COMMENT = re.compile(b'<!--.*?-->', re.DOTALL)
 _BLANKED = bytes(byte if byte == ord('\n') else ord(COMMENT) for byte in range(256))
 _DECLARATION = re.compile(rb'<\?xml[^>]*>')
 
+_BLANK = b' \t\n\r' + COMMENT.encode()
+
 _BLOCK = 1 << 18
 
 
@@ -78,8 +80,8 @@ def tags_from_texts(texts: Sequence[bytes]) -> Tags | None:
     Find all tags.
 
     :param texts: well-formed XML, in UTF-8.
-    :return: the tags; None if there is more in brackets than tags and comments, or a bracket
-        by itself.
+    :return: the tags; None if there is more in brackets than tags and comments, a bracket by
+        itself, or anything behind an outermost element.
     """
     text = _joined(texts)
     starts = np.cumsum([0, *map(len, texts[:-1])])
@@ -95,9 +97,10 @@ def tags_from_texts(texts: Sequence[bytes]) -> Tags | None:
             np.searchsorted(starts, begins[roots], side='right') - 1 != np.arange(len(texts))
             ).any():
         return None
-    return Tags(
+    tags = Tags(
         text, starts, roots, begins, ends, is_closing, is_empty, depths.astype(np.int16),
         slice(0, len(text)))
+    return None if _have_tails(tags) else tags
 
 
 def parts_from_tags(tags: Tags, size: int) -> Iterator[Tags]:
@@ -199,3 +202,16 @@ def _without_declaration(text: bytes) -> bytes:
         return text
     length = declaration.end()
     return declaration.group().translate(_BLANKED) + text[length:]
+
+
+def _have_tails(tags: Tags) -> bool:
+    """
+    Tell whether anything follows the outermost element of any text.
+
+    The parser says so too, but not of a text that holds a prefix which is not declared.
+    """
+    last_tags = [*(tags.roots[1:] - 1).tolist(), len(tags.begins) - 1]
+    ends = [*tags.starts[1:].tolist(), len(tags.text)]
+    return any(
+        tags.text[begin + 1:end].strip(_BLANK)
+        for begin, end in zip(tags.ends[last_tags].tolist(), ends, strict=True))

@@ -183,6 +183,13 @@ def test_something_odd_in_a_file_without_double_quotes(oddity):
     assert_same_one_by_one(model_file(LINK + oddity).replace('"', "'"))
 
 
+@pytest.mark.parametrize('tail', [
+    ' \n', 'x', '<!-- c -->', '<!-- c -->x', '<x/>', '<link name="k"/>'])
+@pytest.mark.parametrize('content', ['', '<undeclared:element/>'])
+def test_something_behind_the_outermost_element(tail, content):
+    assert_same_one_by_one(model_file(f'<link name="l">{content}</link>') + tail)
+
+
 @pytest.mark.parametrize('path', FILES, ids=lambda path: path.name)
 def test_files(path):
     assert_same_one_by_one(path.read_bytes())
