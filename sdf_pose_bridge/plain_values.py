@@ -148,4 +148,5 @@ def _pattern(rule: _PlainRule) -> re.Pattern[str]:
     """Make the pattern of a run of good values."""
     conditions = (_NOT_NEGATIVE if rule.is_not_negative else '') + (
         _NOT_ALL_ZERO if rule.is_axis else '')
-    return re.compile(rf'(?:\s*{conditions}{_PLAIN_PATTERNS[rule.value_type]}\0)*')
+    # Conditions look far ahead, and so only where white space has ended.
+    return re.compile(rf'(?:\s*(?=\S){conditions}{_PLAIN_PATTERNS[rule.value_type]}\0)*')

@@ -47,7 +47,7 @@ for _tag, _kind in KINDS_OF_TAGS.items():
 _KIND_OF_NUMBER.setflags(write=False)
 _NO_ROW = -2
 
-_ATTRIBUTE = r'([^\s=\'"]+)\s*=\s*(?:"([^"]*)"|\'([^\']*)\')'
+_ATTRIBUTE = r'(?<![^\s=\'"])([^\s=\'"]+)\s*=\s*(?:"([^"]*)"|\'([^\']*)\')'
 """Left for `re` to compile when it is first needed."""
 _ODD_IN_REFERENCES = (*WHITE_SPACE.replace('\n', ''), '\n\n', '&', COMMENT, f'\n{ROOT_FRAME}\n')
 REPLACED_BY_PARSER = frozenset('&' + COMMENT)

@@ -24,7 +24,7 @@ _Flags: TypeAlias = 'npt.NDArray[np.bool_]'
 COMMENT = '\x01'
 """Stands for each character of a comment in the texts of elements."""
 
-_COMMENT = re.compile(b'<!--.*?-->', re.DOTALL)
+_COMMENT = re.compile(rb'<!--.*?(?:-->|\Z)', re.DOTALL)
 _BLANKED = bytes(byte if byte == ord('\n') else ord(COMMENT) for byte in range(256))
 _DECLARATION = re.compile(rb'<\?xml[^>]*>')
 

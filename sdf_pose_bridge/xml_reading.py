@@ -9,14 +9,15 @@ and the sizes that libxml2 allows without its "huge" option.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+import re
 
 from lxml import etree
 
 from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 
 IGNORED_ERRORS = frozenset({
@@ -24,8 +25,14 @@ IGNORED_ERRORS = frozenset({
 """Prefixes that are not declared are common in SDF files, and only libxml2 minds them; nor has
 ``xml:id`` a meaning in SDFormat."""
 
-_FORGIVEN_ERRORS = frozenset({'ERR_HYPHEN_IN_COMMENT', 'ERR_DOCUMENT_END'})
-"""Two hyphens in a comment, something after the outermost element: libsdformat reads on."""
+_FORGIVEN_ERRORS = frozenset({'ERR_DOCUMENT_END'})
+"""Something after the outermost element: libsdformat reads on."""
+
+_HYPHENS_ERROR = 'ERR_HYPHEN_IN_COMMENT'
+"""Two hyphens in a comment, behind which libxml2 may miss the end of the comment."""
+
+_COMMENT_OR_VERBATIM = re.compile(
+    rb'<!--(?:(.*?)-->|.*)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)', re.DOTALL)
 
 _DECLARATION_ERROR = 'ERR_RESERVED_XML_NAME'
 """A declaration that is not at the start; only white space before it is forgiven."""
@@ -88,14 +95,15 @@ def root_from_text(
     :raises FileReadError: if it is not XML.
     """
     warnings = []
-    parser = careful_parser(encoding)
-    root: XmlElement | None = None
-    failure: SdfError | None = None
-    try:
-        root = etree.fromstring(text, parser)
-    except etree.XMLSyntaxError as error:
-        failure = FileReadError(f'this is not XML: {error.msg}', Place(path, error.lineno or 0))
-    for entry in parser.error_log:
+    root, failure, log = _parsed(text, encoding)
+    if any(entry.type_name == _HYPHENS_ERROR for entry in log):
+        text, line, number = _text_without_hyphens_in_comments(text)
+        if number:
+            what = 'a comment holds' if number == 1 else f'{number} comments hold'
+            msg = f'this is not well-formed XML: {what} two hyphens in a row'
+            warnings.append(SdfWarning('WARNING', msg, Place(path, line)))
+        root, failure, log = _parsed(text, encoding)
+    for entry in log:
         msg = f'this is not well-formed XML: {entry.message.strip()}'
         is_early = entry.type_name == _DECLARATION_ERROR and text.lstrip().startswith(b'<?xml')
         if is_early or (entry.type_name in _FORGIVEN_ERRORS and root is not None):
@@ -103,7 +111,8 @@ def root_from_text(
         elif entry.type_name not in IGNORED_ERRORS:
             raise FileReadError(msg, Place(path, entry.line)) from None
     if failure is not None:
-        raise failure
+        msg = f'this is not XML: {failure.msg}'
+        raise FileReadError(msg, Place(path, failure.lineno or 0))
     if root is None:
         msg = 'this is not XML: it has no element'
         raise FileReadError(msg, Place(path))
@@ -111,6 +120,39 @@ def root_from_text(
     if b'xmlns' in text:
         _forget_default_namespaces(root)
     return root, tuple(warnings)
+
+
+def _parsed(
+    text: bytes, encoding: str | None,
+) -> tuple[XmlElement | None, etree.XMLSyntaxError | None, Sequence[etree._LogEntry]]:
+    """Return the outermost element, or what kept it from being read; and the log of errors."""
+    parser = careful_parser(encoding)
+    try:
+        return etree.fromstring(text, parser), None, list(parser.error_log)
+    except etree.XMLSyntaxError as error:
+        return None, error, list(parser.error_log)
+
+
+def _text_without_hyphens_in_comments(text: bytes) -> tuple[bytes, int, int]:
+    """
+    Put spaces in the place of hyphens, for a parser that minds them.
+
+    Comments end where libsdformat's parser (TinyXML-2) lets them end: with the first ``-->``.
+
+    :return: a text of the same length, the line of the first comment that holds two in a row, and
+        the number of such comments.
+    """
+    starts = []
+
+    def spaced(found: re.Match[bytes]) -> bytes:
+        comment = found[1]
+        if comment is None:
+            return found[0]
+        if b'--' in comment or comment.endswith(b'-'):
+            starts.append(found.start())
+        return b'<!--%b-->' % comment.replace(b'-', b' ')
+    text = _COMMENT_OR_VERBATIM.sub(spaced, text)
+    return text, text.count(b'\n', 0, min(starts, default=0)) + 1, len(starts)
 
 
 def _refuse_what_hides_text(root: XmlElement, text: bytes, path: str) -> None:

@@ -34,6 +34,14 @@ def pose_text(content):
         f'<sdf version="1.9"><pose>{content}</pose></sdf>'.encode(), 'f').root[0])
 
 
+def errors_if_any(text):
+    try:
+        sdf_pose_bridge.load_text(text)
+    except sdf_pose_bridge.SdfError as error:
+        return error.errors
+    return ()
+
+
 # Files that cannot be read
 
 def test_a_missing_file_is_named(tmp_path):
@@ -147,6 +155,19 @@ def test_bottomless_files_are_refused(content):
     assert codes_of(f'<sdf version="1.9">{content}</sdf>') == ['FILE_READ']
 
 
+@pytest.mark.parametrize(('text', 'codes'), [
+    (model_file(LINK) + '<!--' * 20_000, ['FILE_READ']),
+    (model_file(LINK + '<!-- -- -->' + '<!--' * 20_000), ['FILE_READ']),
+    (model_file(LINK, attributes='a' * 100_000), ['FILE_READ']),
+    (model_file(f'<link name="l"><inertial><mass>{" " * 100_000}</mass></inertial></link>'), []),
+    (model_file('<link name="l"/><joint name="j" type="fixed"><parent>world</parent>'
+                f'<child>l</child><axis><xyz>{" " * 100_000}1 0 0</xyz></axis></joint>'), []),
+], ids=['comments', 'comments and hyphens', 'an attribute', 'a number', 'an axis'])
+def test_long_runs_of_one_thing_do_not_take_for_ever(text, codes):
+    # What looked at the rest of a run from each place in it took minutes for these.
+    assert [error.code for error in errors_if_any(text)] == codes
+
+
 def test_deep_models_are_read():
     depth = 200
     text = ('<sdf version="1.9">'
@@ -198,6 +219,43 @@ def test_a_prefix_of_the_outermost_element_makes_it_another():
 def test_what_follows_the_root_is_not_read():
     scene = sdf_pose_bridge.load_text(model_file(LINK) + '<sdf version="1.9"/>')
     assert names_of(scene) == ['m', 'm::l']
+
+
+@pytest.mark.parametrize('comment', [
+    '<!-- a -- b -->', '<!-- a --->', '<!------- a ------->', '<!------ a ------>', '<!----->',
+    '<!-- a\n---\nb --->', '<!--> a --->', '<!-- <!-- a -->', '<!-- <?a -- ?> -->',
+    '<!-- <![CDATA[ -- ]]> -->',
+])
+def test_comments_end_where_libsdformat_lets_them_end(comment):
+    scene = sdf_pose_bridge.load_text(
+        model_file(f'{comment}\n<link name="a"/>{comment}<link name="b"/>'))
+    assert names_of(scene) == ['m', 'm::a', 'm::b']
+
+
+def test_hyphens_in_comments_are_told_once():
+    scene = sdf_pose_bridge.load_text(
+        model_file('\n<!-- fine -->\n<!--- a --->' + LINK + '<!-- b --->\n'))
+    (warning,) = scene.warnings
+    assert (warning.message, warning.place.line) == (
+        'this is not well-formed XML: 2 comments hold two hyphens in a row', 3)
+
+
+def test_hyphens_in_one_comment_are_told():
+    (warning,) = sdf_pose_bridge.load_text(model_file('<!-- a ---- b --->' + LINK)).warnings
+    assert warning.message == 'this is not well-formed XML: a comment holds two hyphens in a row'
+
+
+@pytest.mark.parametrize('verbatim', ['<![CDATA[{}]]>', '<![CDATA[<!--{}-->]]>'])
+def test_only_hyphens_in_comments_are_passed_over(verbatim):
+    assert pose_text(verbatim.format('1-2') + '<!-- - --- -->') == (
+        verbatim.format('1-2').removeprefix('<![CDATA[').removesuffix(']]>'))
+
+
+def test_hyphens_in_comments_of_utf_16_are_refused():
+    text = '<?xml version="1.0" encoding="UTF-16"?>' + model_file('<!-- a ---><!-- -->' + LINK)
+    with pytest.raises(sdf_pose_bridge.SdfError) as caught:
+        sdf_pose_bridge.load_text(text.encode('UTF-16'))
+    assert caught.value.code == 'FILE_READ'
 
 
 def test_a_document_type_by_itself_does_no_harm():
