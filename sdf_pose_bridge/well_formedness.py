@@ -10,7 +10,9 @@ import threading
 from lxml import etree
 
 from sdf_pose_bridge.xml_reading import careful_parser
+from sdf_pose_bridge.xml_reading import fault_beyond_log
 from sdf_pose_bridge.xml_reading import IGNORED_ERRORS
+from sdf_pose_bridge.xml_reading import is_full
 
 _LONG = 1 << 18
 """Bytes of texts for which another thread is worth while."""
@@ -58,7 +60,9 @@ def _is_well_formed(text: bytes, parser: etree.XMLParser) -> bool:
         etree.fromstring(text, parser)
     except etree.XMLSyntaxError:
         return False
-    return all(entry.type_name in IGNORED_ERRORS for entry in parser.error_log)
+    log = list(parser.error_log)
+    return all(entry.type_name in IGNORED_ERRORS for entry in log) and (
+        not is_full(log) or fault_beyond_log(text) is None)
 
 
 class _Nothing:

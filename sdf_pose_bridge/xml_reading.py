@@ -12,9 +12,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 import re
+from typing import NamedTuple
 
 from lxml import etree
 
+from sdf_pose_bridge.document import WHITE_SPACE
 from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import Place
@@ -27,6 +29,9 @@ IGNORED_ERRORS = frozenset({
 
 _FORGIVEN_ERRORS = frozenset({'ERR_DOCUMENT_END'})
 """Something after the outermost element: libsdformat reads on."""
+
+_MOST_ENTRIES = 100
+"""Releases 2.11 to 2.13 of libxml2 tell no more errors than so many."""
 
 _HYPHENS_ERROR = 'ERR_HYPHEN_IN_COMMENT'
 """Two hyphens in a comment, behind which libxml2 may miss the end of the comment."""
@@ -96,13 +101,13 @@ def root_from_text(
     """
     warnings = []
     root, failure, log = _parsed(text, encoding)
-    if any(entry.type_name == _HYPHENS_ERROR for entry in log):
+    if is_full(log) or any(entry.type_name == _HYPHENS_ERROR for entry in log):
         text, line, number = _text_without_hyphens_in_comments(text)
         if number:
             what = 'a comment holds' if number == 1 else f'{number} comments hold'
             msg = f'this is not well-formed XML: {what} two hyphens in a row'
             warnings.append(SdfWarning('WARNING', msg, Place(path, line)))
-        root, failure, log = _parsed(text, encoding)
+            root, failure, log = _parsed(text, encoding)
     for entry in log:
         msg = f'this is not well-formed XML: {entry.message.strip()}'
         is_early = entry.type_name == _DECLARATION_ERROR and text.lstrip().startswith(b'<?xml')
@@ -116,10 +121,54 @@ def root_from_text(
     if root is None:
         msg = 'this is not XML: it has no element'
         raise FileReadError(msg, Place(path))
+    fault = fault_beyond_log(text, encoding) if is_full(log) else None
+    if fault is not None:
+        msg = f'this is not well-formed XML: {fault.message}'
+        raise FileReadError(msg, Place(path, fault.line))
     _refuse_what_hides_text(root, text, path)
     if b'xmlns' in text:
         _forget_default_namespaces(root)
     return root, tuple(warnings)
+
+
+def is_full(log: Sequence[etree._LogEntry]) -> bool:
+    """
+    Tell whether there may be more errors than those in a log.
+
+    :param log: the errors in a text, those that are ignored among them.
+    :return: whether some releases of libxml2 would have kept further ones to themselves.
+    """
+    return len(log) >= _MOST_ENTRIES
+
+
+class Fault(NamedTuple):
+    """What keeps a text from being well-formed XML."""
+
+    message: str
+    line: int
+
+
+def fault_beyond_log(text: bytes, encoding: str | None = None) -> Fault | None:
+    """
+    Find out with another parser, which knows no namespaces, whether a text is well-formed XML.
+
+    :param text: the text.
+    :param encoding: its encoding; None for the one that it declares.
+    :return: the first thing that is wrong but for what is forgiven; None if there is none, or the
+        parser does not know the encoding.
+    """
+    from xml.parsers import expat
+    stripped = text.lstrip(WHITE_SPACE.encode())
+    try:
+        expat.ParserCreate(encoding).Parse(stripped, True)
+    except expat.ExpatError as error:
+        message = expat.ErrorString(error.code)
+        if message not in (
+                expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT,
+                expat.errors.XML_ERROR_UNKNOWN_ENCODING):
+            lines_before = text[:len(text) - len(stripped)].count(b'\n')
+            return Fault(message, error.lineno + lines_before)
+    return None
 
 
 def _parsed(

@@ -70,6 +70,28 @@ def test_what_is_not_well_formed_is_refused(content):
     assert caught.value.code == 'FILE_READ'
 
 
+MANY_PREFIXES = LINK + '<undeclared:element/>\n' * 150
+
+
+@pytest.mark.parametrize('content', [
+    '<link name="k"><pose>1 2 3 0 0 0</poze></link>', '<link name="k" name="h"/>', '&undeclared;',
+    '<link name=k/>'])
+def test_faults_behind_many_undeclared_prefixes_are_told(content):
+    error = only_error('\n' + model_file(f'{MANY_PREFIXES}{content}'))
+    assert (error.code, error.line) == ('FILE_READ', 152)
+
+
+def test_many_undeclared_prefixes_by_themselves_do_no_harm():
+    scene = sdf_pose_bridge.load_text(f' \n<?xml version="1.0"?>{model_file(MANY_PREFIXES)}x')
+    assert names_of(scene) == ['m', 'm::l']
+
+
+def test_comments_with_hyphens_behind_many_undeclared_prefixes():
+    scene = sdf_pose_bridge.load_text(
+        model_file(MANY_PREFIXES + '<!-- a ---><link name="k"/><!-- -->'))
+    assert names_of(scene) == ['m', 'm::l', 'm::k']
+
+
 def test_the_line_of_broken_xml_is_told():
     error = only_error('<sdf version="1.9">\n<model name="m">\n</sdf>')
     assert (error.file, error.line) == ('file.sdf', 3)
