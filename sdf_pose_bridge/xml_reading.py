@@ -121,11 +121,11 @@ def root_from_text(
     if root is None:
         msg = 'this is not XML: it has no element'
         raise FileReadError(msg, Place(path))
+    _refuse_what_hides_text(root, text, path)
     fault = fault_beyond_log(text, encoding) if is_full(log) else None
     if fault is not None:
         msg = f'this is not well-formed XML: {fault.message}'
         raise FileReadError(msg, Place(path, fault.line))
-    _refuse_what_hides_text(root, text, path)
     if b'xmlns' in text:
         _forget_default_namespaces(root)
     return root, tuple(warnings)
@@ -161,6 +161,8 @@ def fault_beyond_log(text: bytes, encoding: str | None = None) -> Fault | None:
     stripped = text.lstrip(WHITE_SPACE.encode())
     try:
         expat.ParserCreate(encoding).Parse(stripped, True)
+    except (LookupError, ValueError):
+        return None  # an encoding that it does not know, or one with characters of several bytes
     except expat.ExpatError as error:
         message = expat.ErrorString(error.code)
         if message not in (
