@@ -6,15 +6,11 @@ from collections.abc import Mapping
 import re
 from types import MappingProxyType
 from typing import NamedTuple
-from typing import TYPE_CHECKING
 from typing import TypeAlias
 
 from lxml import etree
 
 from sdf_pose_bridge.errors import SdfWarning
-
-if TYPE_CHECKING:
-    from sdf_pose_bridge.markup_index import MarkupIndex
 
 XmlElement: TypeAlias = etree._Element  # noqa: SLF001  # lxml has no public name for it
 
@@ -39,12 +35,6 @@ class Document(NamedTuple):
     """What is wrong with its XML, but does not stand in the way."""
     origins: Mapping[XmlElement, 'Document'] = MappingProxyType({})
     """For what was put into its tree from elsewhere: the file that it stands in."""
-    is_large: bool = False
-    """Whether it is worth while to look at many of its elements at a time."""
-    text: bytes | None = None
-    """Its content in UTF-8; None if that is in another encoding, or the tree has changed."""
-    elements: 'MarkupIndex | None' = None
-    """All its elements, if the tree has only the part of them that is not regular."""
     may_hold_separators: bool = True
     """False if it is certain that no name in it holds ``::``."""
 

@@ -1,11 +1,9 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Read an SDFormat file: a small one into a tree, of a large one only what is not regular."""
+"""Read an SDFormat file into a tree."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-import contextlib
 import os
 import re
 
@@ -14,19 +12,13 @@ from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.versions import upgrade
 from sdf_pose_bridge.xml_reading import bytes_from_file
 from sdf_pose_bridge.xml_reading import root_from_text
-from sdf_pose_bridge.xml_reading import UTF_8_NAMES
 
 _SEPARATOR = re.compile(SEPARATOR.encode())
 _LONGEST_SURE_NAME = 500
 _PLUGIN = tuple(b'<plugin' + white for white in (b' ', b'\t', b'\n', b'\r'))
-
-_LARGE = 1 << 15
-"""Bytes of files of which it is worth while to look at many elements at a time."""
 
 
 def document_from_file(path: str | os.PathLike[str]) -> Document:
@@ -52,55 +44,11 @@ def document_from_text(text: bytes | str, path: str) -> Document:
     :raises SdfError: as for :func:`document_from_file`.
     """
     content = text.encode(errors='surrogatepass') if isinstance(text, str) else text
-    is_large = len(content) >= _LARGE
-    may_hold_separators = _may_hold_separators(content)
-    if is_large and not may_hold_separators:
-        # Small files need not wait for this.
-        from sdf_pose_bridge.regular_part import documents_without_regular_part
-        found = documents_without_regular_part({path: content})
-        if path in found:
-            return found[path]
     # The encoding of text is known; that of bytes is whatever they declare.
     root, warnings = root_from_text(content, path, 'utf-8' if isinstance(text, str) else None)
     return Document(
-        path, root, _version(root, path), warnings, is_large=is_large,
-        text=content if root.getroottree().docinfo.encoding in UTF_8_NAMES else None,
-        may_hold_separators=may_hold_separators)
-
-
-def documents_from_files(paths: Iterable[str]) -> dict[str, Document]:
-    """
-    Read many files together, which is quicker than one by one.
-
-    :param paths: paths of SDFormat files.
-    :return: what they hold, by their paths; without those in which anything is unusual, which have
-        to be read alone.
-    """
-    contents = {}
-    for path in paths:
-        with contextlib.suppress(SdfError):
-            contents[path] = bytes_from_file(path)
-    if sum(map(len, contents.values())) < _LARGE:
-        return {}
-    from sdf_pose_bridge.regular_part import documents_without_regular_part
-    from sdf_pose_bridge.regular_part import may_be_joined
-    return documents_without_regular_part({
-        path: content for path, content in contents.items()
-        if may_be_joined(content) and not _may_hold_separators(content)})
-
-
-def whole_document(document: Document) -> Document:
-    """
-    Read a document again, with all of it in its tree.
-
-    :param document: a file that has only a part of it in its tree.
-    :return: the same file, with a tree of its own; in the newest grammar.
-    """
-    assert document.text is not None
-    root, _ = root_from_text(document.text, document.path)
-    whole = document._replace(root=root, elements=None)
-    upgrade(whole)
-    return whole
+        path, root, _version(root, path), warnings,
+        may_hold_separators=_may_hold_separators(content))
 
 
 def _version(root: XmlElement, path: str) -> str:

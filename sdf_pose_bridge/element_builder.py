@@ -4,9 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
 from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import text_of
@@ -25,11 +22,6 @@ from sdf_pose_bridge.pose_text import PoseTextError
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.reading import Reading
 
-if TYPE_CHECKING:
-    from sdf_pose_bridge.element_rows import ElementRows
-    from sdf_pose_bridge.element_rows import Run
-    from sdf_pose_bridge.markup_index import MarkupIndex
-
 _NO_POSE = PoseText('', False, False)
 
 
@@ -38,14 +30,11 @@ class ElementBuilder(Reading):
     The table while it is being filled.
 
     :param document: the file that elements are read from at first.
-    :param indices: the elements of each file, by its root.
     :param problems: takes what is wrong with names, attributes and values.
     """
 
-    def __init__(
-        self, document: Document, indices: Mapping[XmlElement, MarkupIndex], problems: Problems,
-    ) -> None:
-        super().__init__(document, indices, problems)
+    def __init__(self, document: Document, problems: Problems) -> None:
+        super().__init__(document, problems)
         self._missing: dict[int, dict[str, str]] = {}
 
     def elements(self) -> Elements:
@@ -81,18 +70,6 @@ class ElementBuilder(Reading):
         if poses:
             self.columns.set_pose(index, self._pose(poses[0], index))
         return index
-
-    def add_run(self, rows: ElementRows, run: Run, xml: XmlElement, holder: int) -> None:
-        """
-        Add a run of rows, whose names and attributes are known to be good.
-
-        :param rows: those of the file that is being read.
-        :param run: the run.
-        :param xml: the model or world that holds the run.
-        :param holder: the element that this is.
-        """
-        self.columns.append_run(
-            rows.columns, run.start, run.end, rows.row_of(xml), holder, self._file)
 
     def first_link_name(self, start: int, holder: int) -> str:
         """

@@ -1,13 +1,12 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The table of elements while it grows: one at a time, or a run of many at once."""
+"""The table of elements while it grows: one at a time."""
 
 from __future__ import annotations
 
 from array import array
 from collections.abc import Mapping
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,11 +20,6 @@ from sdf_pose_bridge.elements import SensorFacts
 from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.pose_text import poses_from_texts
 from sdf_pose_bridge.pose_text import PoseText
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
-    from sdf_pose_bridge.element_rows import Columns
 
 
 class ElementColumns:
@@ -130,42 +124,6 @@ class ElementColumns:
         self._posed.append(index)
         self._texts.append(pose.text)
 
-    def append_run(
-        self, rows: Columns, start: int, end: int, scope: int, holder: int, file: int,
-    ) -> None:
-        """
-        Add a run of rows: children of one model or world, and all that they hold.
-
-        :param rows: those of a document.
-        :param start: the first row.
-        :param end: the row after the last.
-        :param scope: the row of the model or world, -1 for the document itself.
-        :param holder: the element that this is.
-        :param file: index of the file that they stand in.
-        """
-        run = slice(start, end)
-        offset = len(self.names) - start
-        self.names += rows.names[run]
-        self._kinds.frombytes(rows.kinds[run].tobytes())
-        _extend(self._lines, rows.lines[run])
-        _extend(self._pose_lines, rows.pose_lines[run])
-        _extend(self._files, np.full(end - start, file))
-        for column, pointers in ((self._parents, rows.parents), (self._scopes, rows.scopes)):
-            old = pointers[run]
-            _extend(column, np.where(old == scope, holder, old + offset))
-        for target, facts in (
-            (self.relative_to, rows.relative_to), (self.models, rows.models),
-            (self.frames, rows.frames), (self.joints, rows.joints), (self.sensors, rows.sensors),
-        ):
-            facts.copy_to(target, start, end, offset)
-        first, last = np.searchsorted(rows.posed, (start, end)).tolist()
-        offset_of_text = len(self._texts) - first
-        _extend(self._posed, rows.posed[first:last] + offset)
-        self._texts += rows.texts[first:last]
-        for texts, forms in ((self._quaternions, rows.quaternions), (self._degrees, rows.degrees)):
-            here = forms[np.searchsorted(forms, first):np.searchsorted(forms, last)]
-            _extend(texts, here + offset_of_text)
-
     def elements(
         self, files: Sequence[str], missing: Mapping[int, Mapping[str, str]],
     ) -> tuple[Elements, list[tuple[int, str]]]:
@@ -190,10 +148,6 @@ class ElementColumns:
             models=self.models, frames=self.frames, joints=self.joints, sensors=self.sensors,
             files=files, missing=missing)
         return table, [(self._posed[text], reason) for text, reason in failures]
-
-
-def _extend(column: array[int], values: npt.NDArray[np.integer]) -> None:
-    column.frombytes(values.astype(np.int32).tobytes())
 
 
 def _indices(column: array[int]) -> Indices:

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from collections.abc import Mapping
 from typing import NamedTuple
 from typing import TYPE_CHECKING
@@ -37,7 +36,6 @@ from sdf_pose_bridge.sensor_facts import sensor_facts_from_xml
 if TYPE_CHECKING:
     from sdf_pose_bridge.include_reader import Include
     from sdf_pose_bridge.inclusion import Inclusion
-    from sdf_pose_bridge.markup_index import MarkupIndex
 
 _TOP_KINDS = {'model': Kind.MODEL, 'light': Kind.LIGHT, 'actor': Kind.ACTOR}
 _LINK_CHILD_KINDS = {
@@ -66,7 +64,6 @@ class _Scope(NamedTuple):
 
 def elements_from_documents(
     documents: DocumentSet,
-    indices: Mapping[XmlElement, MarkupIndex],
     problems: Problems,
     *,
     broken: frozenset[str] = frozenset(),
@@ -76,7 +73,6 @@ def elements_from_documents(
     Read all elements that carry a pose.
 
     :param documents: a file and what it includes, in the newest grammar.
-    :param indices: the elements of each of them, by its root.
     :param problems: takes what is wrong with names, values and structure; references are not
         looked up here.
     :param broken: paths of files that are known not to be valid, which are not merged.
@@ -84,7 +80,7 @@ def elements_from_documents(
     :return: the elements. Where something is wrong the element is kept if it can be, so that
         other errors are found and none follows from the first.
     """
-    table = ElementBuilder(documents.document, indices, problems)
+    table = ElementBuilder(documents.document, problems)
     _ElementReader(table, documents.inclusions, broken, skips_missing).read(documents.document)
     return table.elements()
 
@@ -218,7 +214,7 @@ class _ElementReader:
         if name is None:
             return
         scope = _Scope(self._table.add(Kind.WORLD, xml, name, NOWHERE, NOWHERE))
-        for child in self._children(xml, scope):
+        for child in xml.iterchildren(etree.Element):
             tag = child.tag
             if tag == 'model':
                 self._model(child, scope)
@@ -255,7 +251,7 @@ class _ElementReader:
     def _model_children(
         self, xml: XmlElement, scope: _Scope, *, is_in_world: bool = False,
     ) -> None:
-        for child in self._children(xml, scope):
+        for child in xml.iterchildren(etree.Element):
             tag = child.tag
             if tag == 'link':
                 if is_in_world:
@@ -272,18 +268,6 @@ class _ElementReader:
                 self._model(child, scope)
             elif tag == 'include':
                 self._include(child, scope)
-
-    def _children(self, xml: XmlElement, scope: _Scope) -> Iterator[XmlElement]:
-        """Add what is regular; return the rest, which has to be looked at one by one."""
-        parts = None if scope.proxy else self._table.rows()
-        if parts is None:
-            yield from xml.iterchildren(etree.Element)
-            return
-        for rows, run in ((part, run) for part in parts for run in part.runs(xml)):
-            if run.is_regular and self._names.claim_run(rows, run, scope.holder):
-                self._table.add_run(rows, run, xml, scope.holder)
-            else:
-                yield from rows.xmls(run.children)
 
     def _hang_on_proxy(self, index: int, scope: _Scope) -> None:
         """Place what a merge brings in the frame that stands for the merged model's own."""

@@ -20,7 +20,6 @@ from sdf_pose_bridge.document import set_line
 from sdf_pose_bridge.document import value_of
 from sdf_pose_bridge.document import WHITE_SPACE
 from sdf_pose_bridge.document import XmlElement
-from sdf_pose_bridge.document_reading import whole_document
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.inclusion import Inclusion
@@ -70,15 +69,13 @@ class _Expander:
         self._inclusions = inclusions
 
     def copy_of(self, document: Document) -> Document:
-        root = copy.deepcopy(document.root) if document.elements is None else (
-            whole_document(document).root)
+        root = copy.deepcopy(document.root)
         if document.origins:
             for old, new in zip(document.root.iter(), root.iter(), strict=True):
                 if old in document.origins:
                     self.origins[new] = document.origins[old]
         result = document._replace(
-            root=root, origins=self.origins, text=None, elements=None,
-            may_hold_separators=True)
+            root=root, origins=self.origins, may_hold_separators=True)
         # Listed first, for the copy changes on the way.
         pairs = list(zip(document.root.iter('include'), root.iter('include'), strict=True))
         for old, new in pairs:

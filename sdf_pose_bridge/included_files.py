@@ -14,8 +14,6 @@ from sdf_pose_bridge.document import is_data
 from sdf_pose_bridge.document import value_of
 from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.document_reading import document_from_file
-from sdf_pose_bridge.document_reading import documents_from_files
-from sdf_pose_bridge.document_reading import whole_document
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
@@ -24,7 +22,6 @@ from sdf_pose_bridge.expansion import expanded
 from sdf_pose_bridge.include_params import apply_params
 from sdf_pose_bridge.include_params import params_of
 from sdf_pose_bridge.inclusion import Inclusion
-from sdf_pose_bridge.inclusion import is_merge
 from sdf_pose_bridge.inclusions import DEEPEST
 from sdf_pose_bridge.manifest import model_file_from_directory
 from sdf_pose_bridge.resources import ResourceFinder
@@ -47,8 +44,7 @@ class IncludedFiles:
     What a document includes, each file read once and upgraded by its own version.
 
     ``inclusions`` has what each ``<include>`` stands for, those in included files among them;
-    ``files`` are all paths that were read, in this order, with manifests; ``changed`` has the
-    roots of the documents whose trees differ from their texts.
+    ``files`` are all paths that were read, in this order, with manifests.
 
     :param document: a file in the newest grammar.
     :param finder: finds what includes name.
@@ -57,11 +53,9 @@ class IncludedFiles:
     def __init__(self, document: Document, finder: ResourceFinder) -> None:
         self.inclusions: dict[XmlElement, Inclusion] = {}
         self.files: dict[str, None] = {}
-        self.changed: set[XmlElement] = set()
         self._has_copies = False
         self._finder = finder
         self._known: dict[str, Inclusion] = {}
-        self._documents: dict[str, Document] = {}
         self._located_paths: dict[str, _Located | Inclusion] = {}
         self._read_new_includes(document, document, (os.path.realpath(document.path),))
         if self._has_copies:
@@ -72,11 +66,6 @@ class IncludedFiles:
     ) -> None:
         includes = [each for each in _includes_of(document) if each not in self.inclusions]
         located = [self._located(include, source) for include in includes]
-        new = dict.fromkeys(
-            place.path for place in located
-            if isinstance(place, _Located) and place.path not in self._documents
-            and os.path.realpath(place.path) not in self._known)
-        self._documents.update(documents_from_files(new))
         for include, place in zip(includes, located, strict=True):
             # What is included inside comes first in the mapping, for it is read first.
             self.inclusions[include] = place if isinstance(place, Inclusion) else (
@@ -111,10 +100,6 @@ class IncludedFiles:
         if real not in self._known:
             self._known[real] = self._read(path, (*chain, real))
         known = self._known[real]
-        read = known.document
-        if read is not None and read.elements is not None and is_merge(include):
-            # Its elements come into another scope, where none can be told to be regular.
-            known = self._known[real] = known._replace(document=whole_document(read))
         inclusion = known._replace(warnings=(*known.warnings, *warnings))
         params = params_of(include)
         if params is None or inclusion.document is None:
@@ -149,9 +134,8 @@ class IncludedFiles:
     def _read(self, path: str, chain: tuple[str, ...]) -> Inclusion:
         self.files[path] = None
         try:
-            document = self._documents.pop(path, None) or document_from_file(path)
-            if upgrade(document):
-                self.changed.add(document.root)
+            document = document_from_file(path)
+            upgrade(document)
             self._read_new_includes(document, document, chain)
         except SdfError as failure:
             return Inclusion(None, error=failure)

@@ -29,8 +29,6 @@ class DocumentSet(NamedTuple):
     """What each ``<include>`` of any of the documents stands for."""
     files: Sequence[str]
     """All files that were read, manifests among them."""
-    changed: frozenset[XmlElement] = frozenset()
-    """The roots of documents whose trees differ from their texts."""
 
     def all_documents(self) -> list[Document]:
         """
@@ -70,12 +68,10 @@ def document_set(document: Document, finder: ResourceFinder) -> DocumentSet:
     :return: the documents; what cannot be read is told by its inclusion.
     :raises ConversionError: if the document itself cannot be brought to the newest version.
     """
-    changed = [document.root] if upgrade(document) else []
+    upgrade(document)
     if next(document.root.iter('include'), None) is None:
-        return DocumentSet(document, {}, [document.path], frozenset(changed))
+        return DocumentSet(document, {}, [document.path])
     # Many files include nothing, and what reads others takes long to import.
     from sdf_pose_bridge.included_files import IncludedFiles
     included = IncludedFiles(document, finder)
-    return DocumentSet(
-        document, included.inclusions, [document.path, *included.files],
-        frozenset(included.changed.union(changed)))
+    return DocumentSet(document, included.inclusions, [document.path, *included.files])

@@ -6,15 +6,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from collections.abc import Iterator
-from collections.abc import Mapping
 import contextlib
 import enum
 import gc
 import os
-from typing import TYPE_CHECKING
 
 from sdf_pose_bridge.document import Document
-from sdf_pose_bridge.document import XmlElement
 from sdf_pose_bridge.document_reading import document_from_file
 from sdf_pose_bridge.document_reading import document_from_text
 from sdf_pose_bridge.element_reader import elements_from_documents
@@ -26,9 +23,6 @@ from sdf_pose_bridge.resources import resource_finder
 from sdf_pose_bridge.scene import Scene
 from sdf_pose_bridge.scene_assembly import scene_from_graph
 from sdf_pose_bridge.value_checks import check_values
-
-if TYPE_CHECKING:
-    from sdf_pose_bridge.markup_index import MarkupIndex
 
 
 class MissingInclude(enum.Enum):
@@ -106,40 +100,26 @@ def _resolved_scene(
 ) -> Scene:
     documents = document_set(document, resource_finder(resource_paths, os.environ))
     problems = Problems(documents.files)
-    indices = _indices(documents)
     for each in documents.all_documents():
-        check_values(each, indices.get(each.root), problems)
+        check_values(each, problems)
     skips_missing = on_missing_include is MissingInclude.SKIP
-    broken = _broken_documents(documents, indices, problems, skips_missing=skips_missing)
+    broken = _broken_documents(documents, problems, skips_missing=skips_missing)
     table = elements_from_documents(
-        documents, indices, problems, broken=broken, skips_missing=skips_missing)
+        documents, problems, broken=broken, skips_missing=skips_missing)
     graph = frame_graph_from_elements(table, problems)
     problems.raise_any()
     return scene_from_graph(documents, table, graph, problems.warnings)
 
 
-def _indices(documents: DocumentSet) -> dict[XmlElement, MarkupIndex]:
-    """Find the elements of documents of which many are to be looked at at a time."""
-    chosen = [each for each in documents.all_documents() if each.is_large or each.elements]
-    if not chosen:
-        return {}
-    # Small files need not wait for this.
-    from sdf_pose_bridge.markup_index import index_of_document
-    return {
-        each.root: index_of_document(each, is_changed=each.root in documents.changed)
-        for each in chosen}
-
-
 def _broken_documents(
-    documents: DocumentSet, indices: Mapping[XmlElement, MarkupIndex], problems: Problems, *,
-    skips_missing: bool,
+    documents: DocumentSet, problems: Problems, *, skips_missing: bool,
 ) -> frozenset[str]:
     """Check what is merged on its own, where it cannot use names of what it is merged into."""
     broken: set[str] = set()
     for document in documents.merged():
         own_problems = Problems(documents.files)
         table = elements_from_documents(
-            documents._replace(document=document), indices, own_problems,
+            documents._replace(document=document), own_problems,
             broken=frozenset(broken), skips_missing=skips_missing)
         frame_graph_from_elements(table, own_problems)
         if own_problems.errors:

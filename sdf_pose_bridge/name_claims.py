@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING
 
 from sdf_pose_bridge.document import WHITE_SPACE
 from sdf_pose_bridge.document import XmlElement
@@ -21,10 +20,6 @@ from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.reading import Reading
 from sdf_pose_bridge.versions import renames_clashes
-
-if TYPE_CHECKING:
-    from sdf_pose_bridge.element_rows import ElementRows
-    from sdf_pose_bridge.element_rows import Run
 
 _PROXY = '_merged__'
 _ARTICLE = {Kind.ACTOR: 'an', Kind.INERTIAL: 'an'}
@@ -72,26 +67,6 @@ class NameClaims:
                f'scope already, {self._place_of_claim(index)}')
         self._reading.error(DuplicateNameError, xml, msg, parent, step(kind.label, judged))
         return None
-
-    def claim_run(self, rows: ElementRows, run: Run, parent: int) -> bool:
-        """
-        Claim the names of the siblings of a run.
-
-        :param rows: those of the file that is being read.
-        :param run: the run, which is to be added next.
-        :param parent: index of the element that holds the siblings.
-        :return: whether none of the names was taken; if one was, none is claimed.
-        """
-        children: list[int] = run.children.tolist()
-        kinds: list[int] = rows.columns.kinds[run.children].tolist()
-        keys = [(parent, Kind.FRAME if kind in FRAME_KINDS else kind, rows.columns.names[row])
-                for row, kind in zip(children, kinds, strict=True)]
-        if not self._claims.keys().isdisjoint(keys):
-            return False
-        offset = len(self._reading.columns) - run.start
-        indices = [row + offset for row in children]
-        self._claims.update(zip(keys, zip(kinds, indices, strict=True), strict=True))
-        return True
 
     def _renames_clashes(self, kind: Kind, parent: int) -> bool:
         if parent < 0 or kind not in FRAME_KINDS or kind is Kind.MODEL:

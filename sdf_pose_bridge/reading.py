@@ -5,10 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from collections.abc import Mapping
-from collections.abc import Sequence
 import contextlib
-from typing import TYPE_CHECKING
 
 from sdf_pose_bridge.document import Document
 from sdf_pose_bridge.document import is_data
@@ -29,24 +26,16 @@ from sdf_pose_bridge.versions import may_hold_flat_names
 from sdf_pose_bridge.versions import Version
 from sdf_pose_bridge.versions import version_of
 
-if TYPE_CHECKING:
-    from sdf_pose_bridge.element_rows import ElementRows
-    from sdf_pose_bridge.markup_index import MarkupIndex
-
 
 class Reading:
     """
     Which file is being read at the moment, and what is wrong with what is read.
 
     :param document: the file that is read at first.
-    :param indices: the elements of each file, by its root.
     :param problems: takes what is wrong.
     """
 
-    def __init__(
-        self, document: Document, indices: Mapping[XmlElement, MarkupIndex], problems: Problems,
-    ) -> None:
-        self._indices = indices
+    def __init__(self, document: Document, problems: Problems) -> None:
         self._problems = problems
         self._files = [document.path]
         self._versions = [version_of(document)]
@@ -54,15 +43,6 @@ class Reading:
         self._file = 0
         self._open_files = [0]
         self.columns = ElementColumns()
-
-    def rows(self) -> Sequence[ElementRows] | None:
-        """
-        Take all elements out of the file that is being read.
-
-        :return: its rows, part by part; None if it is small, or parts of it stand in other files.
-        """
-        index = self._indices.get(self._document.root)
-        return None if index is None or self._document.origins else index.rows
 
     def version_of_element(self, index: int) -> Version:
         """

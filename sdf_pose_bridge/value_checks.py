@@ -13,7 +13,6 @@ from collections.abc import Mapping
 from collections.abc import Sequence
 import math
 import re
-from typing import TYPE_CHECKING
 
 from sdf_pose_bridge.document import boolean_from_text
 from sdf_pose_bridge.document import Document
@@ -42,9 +41,6 @@ from sdf_pose_bridge.pose_text import PoseText
 from sdf_pose_bridge.pose_text import PoseTextError
 from sdf_pose_bridge.problems import Problems
 
-if TYPE_CHECKING:
-    from sdf_pose_bridge.markup_index import MarkupIndex
-
 # What C's strtod takes: a number, and then whatever follows it.
 _NUMBER = r'[+-]?(?:[0-9]|\.[0-9]|inf|nan)'
 _INTEGER = r'[+-]?[0-9]'
@@ -62,22 +58,16 @@ _SHADERS = frozenset({'pixel', 'vertex', 'normal_map_object_space', 'normal_map_
 _NOT_ONLY_VALUES = frozenset((*REQUIRED_ATTRIBUTES, *MATERIAL_TAGS, *HOLDERS_OF_POSES, 'state'))
 
 
-def check_values(document: Document, index: MarkupIndex | None, problems: Problems) -> None:
+def check_values(document: Document, problems: Problems) -> None:
     """
     Check what no other stage reads.
 
     :param document: a file in the newest grammar; what it includes is not looked at.
-    :param index: its elements; None to look at all of them one by one.
     :param problems: takes what is wrong.
     """
     check = _Check(document, problems)
-    if index is None:
-        for xml in document.root.iter(*CHECKED_TAGS):
-            check.all_of(xml)
-        return
-    for tag, elements in index.doubtful.items():
-        for xml in index.tree.xmls_of((tag,), elements):
-            check.all_of(xml)
+    for xml in document.root.iter(*CHECKED_TAGS):
+        check.all_of(xml)
 
 
 class _Check:

@@ -67,12 +67,11 @@ def version_from_text(text: str) -> Version | None:
     return None
 
 
-def upgrade(document: Document) -> bool:
+def upgrade(document: Document) -> None:
     """
     Convert a document in place, by the rules of the version that it declares.
 
     :param document: a file as it was read; afterwards it has the meaning of version 1.12.
-    :return: whether names in its tree may differ from those in its text now.
     :raises ConversionError: if its version is unknown, or names in it cannot be converted.
     """
     version = version_of(document)
@@ -82,12 +81,11 @@ def upgrade(document: Document) -> bool:
         _rename_frame_attributes(document.root)
         _express_axes_in_model(document.root)
     if not may_hold_flat_names(version) or not document.may_hold_separators:
-        return False
+        return
     # Few old files hold such names.
     from sdf_pose_bridge.unflattening import unflatten_model
     for model in document.root.iterfind('world/model'):
         unflatten_model(model, document.path)
-    return True
 
 
 def turns_axes_with_model(version: Version) -> bool:
@@ -156,5 +154,4 @@ def _express_axes_in_model(root: XmlElement) -> None:
         xyz = axis.find('xyz')
         if boolean_from_text(text_of(flag)) and xyz is not None:
             xyz.set('expressed_in', MODEL_FRAME)
-        if not len(flag):  # what has no place in it stays where it is
-            axis.remove(flag)
+        axis.remove(flag)

@@ -42,9 +42,6 @@ _COMMENT_OR_VERBATIM = re.compile(
 _DECLARATION_ERROR = 'ERR_RESERVED_XML_NAME'
 """A declaration that is not at the start; only white space before it is forgiven."""
 
-UTF_8_NAMES = frozenset({None, 'UTF-8', 'utf-8', 'ASCII', 'US-ASCII'})
-"""What a file may declare, or lxml say, if it is in UTF-8."""
-
 
 def bytes_from_file(path: str) -> bytes:
     """

@@ -1,16 +1,9 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Fixtures: of tests that read files, and of tests with ROS."""
+"""Fixtures of tests with ROS."""
 
 import pytest
 from ros_domain import claimed_domain
-
-
-@pytest.fixture(params=[None, 0], ids=['small', 'large'])
-def size_of_large_files(request, monkeypatch):
-    """Lets files be read as small ones are, and then as if they were large."""
-    if request.param is not None:
-        monkeypatch.setattr('sdf_pose_bridge.document_reading._LARGE', request.param)
 
 
 @pytest.fixture

@@ -26,7 +26,6 @@ BILLION = ''.join(
     for i in range(12))
 
 
-pytestmark = pytest.mark.usefixtures('size_of_large_files')
 
 
 def pose_text(content):

@@ -19,8 +19,6 @@ from sdf_texts import world_file
 import sdf_pose_bridge
 from sdf_pose_bridge import Kind
 
-pytestmark = pytest.mark.usefixtures('size_of_large_files')
-
 LINK = '<link name="l"/>'
 LINK_CHILDREN = [
     'visual', 'collision', 'sensor', 'light', 'particle_emitter', 'projector']

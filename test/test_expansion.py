@@ -9,8 +9,6 @@ from sdf_pose_bridge.expansion import expanded
 from sdf_pose_bridge.inclusions import document_set
 from sdf_pose_bridge.resources import resource_finder
 
-pytestmark = pytest.mark.usefixtures('size_of_large_files')
-
 LEAF = """<sdf version="1.9">
 <model name="leaf">
 <pose>0 0 1 0 0 0</pose>

@@ -16,8 +16,6 @@ from sdf_texts import world_file
 import sdf_pose_bridge
 from sdf_pose_bridge import Kind
 
-pytestmark = pytest.mark.usefixtures('size_of_large_files')
-
 A = '<link name="a"/>'
 B = posed('link', 'b', '1 0 0 0 0 1.5707963267948966')
 NESTED = '<model name="n"><pose>0 0 1 0 0 0</pose><link name="k"/></model>'

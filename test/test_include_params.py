@@ -8,8 +8,6 @@ from sdf_texts import names_of
 
 import sdf_pose_bridge
 
-pytestmark = pytest.mark.usefixtures('size_of_large_files')
-
 BOX = '<geometry><box><size>1 1 1</size></box></geometry>'
 ARM = f"""<sdf version="1.9"><model name="arm">
 <link name="base"><pose>1 0 0 0 0 0</pose>

@@ -9,8 +9,6 @@ from sdf_texts import world_file
 import sdf_pose_bridge
 from sdf_pose_bridge import SdfError
 
-pytestmark = pytest.mark.usefixtures('size_of_large_files')
-
 
 def include(uri, inside=''):
     return f'<include><uri>{uri}</uri>{inside}</include>'

@@ -14,8 +14,6 @@ from sdf_texts import world_file
 
 import sdf_pose_bridge
 
-pytestmark = pytest.mark.usefixtures('size_of_large_files')
-
 FRAMES = ('<frame name="on_a" attached_to="a"/><frame name="also_on_a" attached_to="on_a"/>'
           '<model name="n"><link name="k"/></model>')
 

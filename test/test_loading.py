@@ -12,8 +12,6 @@ from sdf_texts import model_file
 import sdf_pose_bridge
 from sdf_pose_bridge.errors import LoadError
 
-pytestmark = pytest.mark.usefixtures('size_of_large_files')
-
 MANY_WRONG = """<?xml version="1.0"?>
 <sdf version="1.9">
   <model name="m" canonical_link="no_link">

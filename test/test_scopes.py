@@ -13,8 +13,6 @@ from sdf_texts import world_file
 
 import sdf_pose_bridge
 
-pytestmark = pytest.mark.usefixtures('size_of_large_files')
-
 NEST = (
     posed('link', 'l', '1 0 0 0 0 0')
     + '<model name="n"><pose>0 1 0 0 0 0</pose>'

@@ -21,8 +21,6 @@ import sdf_pose_bridge
 from sdf_pose_bridge import Kind
 from sdf_pose_bridge import SdfError
 
-pytestmark = pytest.mark.usefixtures('size_of_large_files')
-
 FOLDER = Path(__file__).parent / 'semantics'
 CASES = {
     path.stem: json.loads(path.with_suffix('.json').read_text())

@@ -7,8 +7,6 @@ from sdf_texts import codes_of
 
 import sdf_pose_bridge
 
-pytestmark = pytest.mark.usefixtures('size_of_large_files')
-
 
 def world(content, version='1.7'):
     return (f'<sdf version="{version}"><world name="w"><model name="m">{content}</model></world>'

@@ -8,8 +8,6 @@ from sdf_texts import model_file
 
 import sdf_pose_bridge
 
-pytestmark = pytest.mark.usefixtures('size_of_large_files')
-
 
 def link(content):
     return model_file(f'<link name="l">{content}</link>')

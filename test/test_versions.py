@@ -7,8 +7,6 @@ from sdf_texts import codes_of
 
 import sdf_pose_bridge
 
-pytestmark = pytest.mark.usefixtures('size_of_large_files')
-
 
 def file_of(version, content):
     return f'<sdf version="{version}">{content}</sdf>'
