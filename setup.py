@@ -79,8 +79,8 @@ setup(
     cmdclass={'install_scripts': InstallScripts},
     entry_points={
         'console_scripts': [
-            'bridge = sdf_pose_bridge.bridge:main',
-            'sdf_pose = sdf_pose_bridge.command_line:main',
+            'bridge = sdf_pose_bridge.ros.bridge:main',
+            'sdf_pose = sdf_pose_bridge.cli.main:main',
         ],
     },
     zip_safe=True,

@@ -25,7 +25,7 @@ from benchmarks.harness import Held
 from benchmarks.harness import TimesAsFast
 from benchmarks.harness import Took
 from benchmarks.harness import Unavailable
-from sdf_pose_bridge.loading import load
+from sdf_pose_bridge.scene.loading import load
 
 UNITS = 10_000
 """About 22,000 poses."""
@@ -44,7 +44,7 @@ RELEASES = ('sdformat14', 'sdformat13', 'sdformat12')
 PEAK = """
 import sys
 from lxml import etree
-from sdf_pose_bridge.loading import load
+from sdf_pose_bridge.scene.loading import load
 
 def peak_kb():
     with open('/proc/self/status') as status:

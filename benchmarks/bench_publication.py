@@ -18,12 +18,12 @@ from benchmarks.harness import benchmark
 from benchmarks.harness import Function
 from benchmarks.harness import TimesAsFast
 import sdf_pose_bridge
+from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.poses import Pose
-from sdf_pose_bridge.scene import Scene
-from sdf_pose_bridge.tf_tree import DEFAULT_KINDS
-from sdf_pose_bridge.tf_tree import tf_tree_from_scene
-from sdf_pose_bridge.tf_tree import TfTree
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfTree
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -137,8 +137,8 @@ class Bench:
     def __init__(self, ros: Node) -> None:
         from tf2_msgs.msg import TFMessage
 
-        from sdf_pose_bridge.publications import Publications
-        from sdf_pose_bridge.tf_static import TfStatic
+        from sdf_pose_bridge.ros.publishers import Publications
+        from sdf_pose_bridge.ros.tf_static import TfStatic
         self.ros = ros
         self.scene = scene_of(MODELS)
         self.tree = tf_tree_from_scene(self.scene)
@@ -222,8 +222,8 @@ def transforms_one_by_one() -> Iterator[tuple[Function, Function | None]]:
 def topics_of_poses() -> Iterator[tuple[Function, Function | None]]:
     from geometry_msgs.msg import PoseStamped
 
-    from sdf_pose_bridge.publications import Publications
-    from sdf_pose_bridge.tf_static import TfStatic
+    from sdf_pose_bridge.ros.publishers import Publications
+    from sdf_pose_bridge.ros.tf_static import TfStatic
     tree = tf_tree_from_scene(scene_of(TOPICS // 10))
     assert len(tree.frame_ids) == TOPICS
     with node() as ros:

@@ -11,11 +11,11 @@ import numpy as np
 from benchmarks.harness import AtMostTimes
 from benchmarks.harness import benchmark
 from benchmarks.harness import TimesAsFast
-from sdf_pose_bridge.pose_formats import converted_poses
-from sdf_pose_bridge.rotation import matrix_from_quaternion
-from sdf_pose_bridge.rotation import quaternion_from_matrix
-from sdf_pose_bridge.rotation import quaternion_from_rpy
-from sdf_pose_bridge.rotation import rpy_from_quaternion
+from sdf_pose_bridge.geometry.formats import converted_poses
+from sdf_pose_bridge.geometry.rotation import matrix_from_quaternion
+from sdf_pose_bridge.geometry.rotation import quaternion_from_matrix
+from sdf_pose_bridge.geometry.rotation import quaternion_from_rpy
+from sdf_pose_bridge.geometry.rotation import rpy_from_quaternion
 
 MANY = 1_000_000
 ONE_RPY = (0.1, -0.2, 2.3)

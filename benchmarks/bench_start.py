@@ -179,7 +179,7 @@ def report_imports(starter: Starter) -> None:
     seconds = []
     for _ in range(RUNS):
         common = starter.imports(program)
-        ours = starter.imports('import sdf_pose_bridge.running, sdf_pose_bridge.node')
+        ours = starter.imports('import sdf_pose_bridge.ros.process, sdf_pose_bridge.ros.node')
         seconds.append(sum(each for name, each in ours.items() if name not in common))
     print(
         f'    imports of the bridge beyond those of the minimal node: median '

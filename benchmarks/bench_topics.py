@@ -28,9 +28,9 @@ from benchmarks.bench_publication import latched_publisher
 from benchmarks.bench_publication import node
 from benchmarks.bench_publication import scene_of
 from geometry_msgs.msg import PoseStamped
-from sdf_pose_bridge.publications import Publications
-from sdf_pose_bridge.tf_static import TfStatic
-from sdf_pose_bridge.tf_tree import tf_tree_from_scene
+from sdf_pose_bridge.ros.publishers import Publications
+from sdf_pose_bridge.ros.tf_static import TfStatic
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 def memory_kb():
     with open('/proc/self/status') as status:

@@ -30,7 +30,7 @@ from rclpy.qos import QoSProfile
 from rclpy.qos import ReliabilityPolicy
 from tf2_msgs.msg import TFMessage
 
-from sdf_pose_bridge.topic_names import topic_name_from_frame_id
+from sdf_pose_bridge.ros.topic_names import topic_name_from_frame_id
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
 
 WIDTH = 99

@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from sdf_pose_bridge.errors import SdfError
     from sdf_pose_bridge.errors import SdfWarning
     from sdf_pose_bridge.errors import UnknownFrameError
-    from sdf_pose_bridge.loading import load
-    from sdf_pose_bridge.loading import load_text
+    from sdf_pose_bridge.geometry.poses import Pose
     from sdf_pose_bridge.names import Kind
-    from sdf_pose_bridge.poses import Pose
-    from sdf_pose_bridge.scene import Scene
+    from sdf_pose_bridge.scene.loading import load
+    from sdf_pose_bridge.scene.loading import load_text
+    from sdf_pose_bridge.scene.scene import Scene
 
 __all__ = [
     'Kind',
@@ -41,13 +41,13 @@ __all__ = [
 _HOMES = {
     'Kind': 'names',
     'Place': 'errors',
-    'Pose': 'poses',
-    'Scene': 'scene',
+    'Pose': 'geometry.poses',
+    'Scene': 'scene.scene',
     'SdfError': 'errors',
     'SdfWarning': 'errors',
     'UnknownFrameError': 'errors',
-    'load': 'loading',
-    'load_text': 'loading',
+    'load': 'scene.loading',
+    'load_text': 'scene.loading',
 }
 
 

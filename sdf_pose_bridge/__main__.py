@@ -4,7 +4,7 @@
 
 import sys
 
-from sdf_pose_bridge.command_line import main
+from sdf_pose_bridge.cli.main import main
 
 if __name__ == '__main__':
     sys.exit(main())

@@ -11,8 +11,8 @@ pytest.importorskip('yaml', reason='PyYAML is not installed')
 
 import yaml
 
-from sdf_pose_bridge.parameters import PARAMETERS
-from sdf_pose_bridge.parameters import settings_from_node
+from sdf_pose_bridge.ros.parameters import PARAMETERS
+from sdf_pose_bridge.ros.parameters import settings_from_node
 
 FILE = Path(__file__).resolve().parents[1] / 'config/bridge.yaml'
 DEFAULTS = {parameter.name: parameter.default for parameter in PARAMETERS}

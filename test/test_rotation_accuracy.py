@@ -16,7 +16,7 @@ from rotation_sets import random_quaternions
 from rotation_sets import random_rpy
 from rotation_sets import RPY_SETS
 
-from sdf_pose_bridge import rotation
+from sdf_pose_bridge.geometry import rotation
 
 all_sets = pytest.mark.parametrize('rpy_set', RPY_SETS.values(), ids=RPY_SETS)
 needs_long_double = pytest.mark.skipif(

@@ -15,7 +15,7 @@ from rotation_sets import random_quaternions
 from rotation_sets import random_rpy
 from rotation_sets import tiny_rpy
 
-from sdf_pose_bridge import rotation
+from sdf_pose_bridge.geometry import rotation
 
 # The other libraries' rounding adds to ours.
 TURN = 4e-15

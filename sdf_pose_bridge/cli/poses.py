@@ -1,0 +1,138 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``sdf_pose poses``: print every pose of files, as a table or as JSON."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+import json
+import sys
+from typing import Any
+
+from sdf_pose_bridge.cli.check import print_problems
+from sdf_pose_bridge.cli.files import add_file_arguments
+from sdf_pose_bridge.cli.files import load_file
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.errors import UnknownFrameError
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.names import Kind
+from sdf_pose_bridge.scene.scene import Scene
+
+_SHOWN_KINDS = tuple(kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD))
+_SHOWN_BY_NAME = {kind.label: kind for kind in _SHOWN_KINDS}
+_KIND_NAMES = ', '.join(_SHOWN_BY_NAME)
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """
+    Declare the command.
+
+    :param subparsers: where the commands are declared.
+    """
+    parser = subparsers.add_parser(
+        'poses', help='print every pose of files',
+        description='Print the pose of every element of files: x y z in metres and the quaternion '
+                    'x y z w, in the world or in the implicit root of a model file. The exit code '
+                    'is 1 if a file has an error.')
+    add_file_arguments(parser)
+    parser.add_argument(
+        '--json', action='store_true', help='print one JSON object for each file, a line each')
+    parser.add_argument(
+        '--relative-to', metavar='FRAME', default='',
+        help='print poses relative to this frame, such as robot::arm::hand')
+    parser.add_argument(
+        '--kinds', metavar='KIND[,KIND...]', type=_kinds_from_text, default=_SHOWN_KINDS,
+        help=f'print only these kinds: {_KIND_NAMES}')
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """
+    Print the poses of files; a bad file does not stop the next one.
+
+    :param options: what was parsed.
+    :return: 0 if all are valid, else 1.
+    """
+    is_valid = True
+    for path in options.files:
+        loaded = load_file(path, options)
+        errors = loaded.errors
+        rows: list[dict[str, Any]] = []
+        if loaded.scene is not None:
+            try:
+                rows = _rows(loaded.scene, options)
+            except UnknownFrameError as error:
+                errors = error.errors
+        is_valid = is_valid and not errors
+        if options.json:
+            print(json.dumps({
+                'file': path,
+                'ok': not errors,
+                'errors': [_problem(error) for error in errors],
+                'warnings': [_problem(warning) for warning in loaded.warnings],
+                'elements': rows,
+            }, ensure_ascii=False))
+            continue
+        sys.stdout.flush()
+        print_problems(errors, loaded.warnings, sys.stderr)
+        if not errors:
+            _print_table(rows, path if len(options.files) > 1 else '')
+    return 0 if is_valid else 1
+
+
+def _kinds_from_text(text: str) -> tuple[Kind, ...]:
+    kinds = []
+    for name in text.split(','):
+        if name not in _SHOWN_BY_NAME:
+            msg = f'"{name}" is no kind of element; known are {_KIND_NAMES}'
+            raise argparse.ArgumentTypeError(msg)
+        kinds.append(_SHOWN_BY_NAME[name])
+    return tuple(kinds)
+
+
+def _rows(scene: Scene, options: argparse.Namespace) -> list[dict[str, Any]]:
+    rows = []
+    for index, name in enumerate(scene.names):
+        kind = Kind(scene.kinds[index])
+        if kind in options.kinds:
+            root = int(scene.roots[index])
+            rows.append({
+                'kind': kind.label,
+                'name': name,
+                'world': scene.world_names.get(root, ''),
+                'pose': list(_pose(scene, index, options.relative_to)),
+            })
+    return rows
+
+
+def _pose(scene: Scene, index: int, relative_to: str) -> Pose:
+    if not relative_to:
+        return scene.pose_of(index)
+    reference = scene.index(relative_to, world=scene.world_of(index))
+    return scene.relative_pose_of(index, reference)
+
+
+def _problem(problem: SdfError | SdfWarning) -> dict[str, Any]:
+    return {
+        'code': problem.code,
+        'message': problem.message,
+        'file': problem.place.file,
+        'line': problem.place.line,
+        'element': problem.place.element,
+    }
+
+
+def _print_table(rows: Sequence[dict[str, Any]], title: str) -> None:
+    if title:
+        print(title)
+    has_worlds = len({row['world'] for row in rows}) > 1
+    names = [f'{row["world"]}: {row["name"]}' if has_worlds else row['name'] for row in rows]
+    width = max(map(len, names), default=0)
+    kind_width = max((len(row['kind']) for row in rows), default=0)
+    print(f'{"kind":{kind_width}}  {"name":{width}}  '
+          + ' '.join(f'{label:>10}' for label in ('x', 'y', 'z', 'qx', 'qy', 'qz', 'qw')))
+    for row, name in zip(rows, names, strict=True):
+        print(f'{row["kind"]:{kind_width}}  {name:{width}}  '
+              + ' '.join(f'{value + 0.0:10.6f}' for value in row['pose']))

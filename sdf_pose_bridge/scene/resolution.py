@@ -1,0 +1,85 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Resolve poses: from each in the frame that it is relative to, to all in the root."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import pose_inverse
+from sdf_pose_bridge.geometry.poses import pose_product
+from sdf_pose_bridge.geometry.poses import pose_products
+from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.geometry.rotation import canonical_quaternion
+from sdf_pose_bridge.scene.frame_graph import FrameGraph
+from sdf_pose_bridge.sdformat.elements import Indices
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+
+def root_poses_from_graph(poses: PoseArray, graph: FrameGraph) -> PoseArray:
+    """
+    Resolve all poses.
+
+    :param poses: shape (n, 7), row i that of element i in the frame that it is relative to, or of
+        its placement frame.
+    :param graph: what each is relative to; without rings.
+    :return: shape (n, 7), row i the pose of element i in its world or implicit root; unit
+        quaternions with w >= 0.
+    """
+    edges = _solved_placements(poses, graph)
+    references = graph.references
+    is_referred_to = np.zeros(len(references), dtype=bool)
+    is_referred_to[references[references >= 0]] = True
+    resolved = _followed(edges, references, np.flatnonzero(is_referred_to))
+    others = np.flatnonzero(~is_referred_to & (references >= 0))
+    resolved[others] = pose_products(resolved[references[others]], edges[others])
+    resolved[:, 3:] = canonical_quaternion(resolved[:, 3:])
+    resolved[:, :3] += 0.0  # no negative zeros
+    return resolved
+
+
+def _followed(edges: PoseArray, references: Indices, indices: npt.NDArray[np.intp]) -> PoseArray:
+    """
+    Follow the chains of some poses to their ends.
+
+    Each round doubles the length of what has been followed, so a chain of a thousand takes ten.
+
+    :param edges: the pose of each element in the one that it is relative to.
+    :param references: the element that each is relative to; -1 at the end of a chain.
+    :param indices: the elements whose chains are followed; chains stay among them.
+    :return: a copy of the poses, in which those of these elements are in the ends of their chains.
+    """
+    followed: PoseArray = edges.copy()
+    targets = references.copy()
+    active = indices[references[indices] >= 0]
+    while len(active):
+        next_targets = targets[targets[active]]
+        active = active[next_targets >= 0]
+        followed[active] = pose_products(followed[targets[active]], followed[active])
+        targets[active] = next_targets[next_targets >= 0]
+    return followed
+
+
+def _solved_placements(poses: PoseArray, graph: FrameGraph) -> PoseArray:
+    """
+    Replace the pose of each placement frame by that of its model frame.
+
+    With R what the pose is relative to, P the placement frame and M the model frame,
+    ``X_RM = X_RP inverse(X_MP)``. The innermost models, which are last, come first.
+    """
+    if not graph.placements:
+        return poses
+    edges: PoseArray = poses.copy()
+    for model in sorted(graph.placements, reverse=True):
+        frame = graph.placements[model]
+        in_model = Pose()
+        while frame != model:
+            in_model = pose_product(Pose(*edges[frame].tolist()), in_model)
+            frame = int(graph.references[frame])
+        edges[model] = pose_product(Pose(*edges[model].tolist()), pose_inverse(in_model))
+    return edges

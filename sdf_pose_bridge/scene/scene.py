@@ -1,0 +1,230 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The resolved, immutable content of a file: names, kinds, parents and poses as arrays."""
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import NamedTuple
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sdf_pose_bridge.errors import hint_from_names
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.errors import UnknownFrameError
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import pose_inverse
+from sdf_pose_bridge.geometry.poses import pose_product
+from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.names import FRAME_KINDS
+from sdf_pose_bridge.names import Kind
+from sdf_pose_bridge.sdformat.elements import Indices
+from sdf_pose_bridge.sdformat.elements import SensorFacts
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+
+class Joint(NamedTuple):
+    """A joint and what it joins, all as indices into the scene."""
+
+    element: int
+    type: str
+    """As SDFormat spells it: ``revolute``, ``fixed``, ..."""
+    parent: int
+    """The frame that is the parent; a world or implicit root for ``world``."""
+    child: int
+    """The frame that is the child."""
+
+
+class Scene:
+    """
+    Everything in a file that has a pose.
+
+    Entry i of each sequence and array is about element i. Elements stand in file order, each after
+    the one that holds it. Arrays are read-only, and what a scene holds cannot be exchanged.
+    """
+
+    # By hand what a dataclass would do, as a start would have to wait for dataclasses.
+
+    path: str
+    """The file, as it was opened."""
+    files: tuple[str, ...]
+    """All files that were read, the first one included."""
+    names: tuple[str, ...]
+    """Absolute names such as ``robot::arm::hand``; ``world`` for a world's own frame."""
+    kinds: 'npt.NDArray[np.uint8]'
+    """Values of :class:`~sdf_pose_bridge.names.Kind`."""
+    parents: Indices
+    """The element that holds each one in the file; -1 for a world and the implicit root."""
+    roots: Indices
+    """The world or implicit root that each belongs to: each of them is a tree of its own."""
+    poses: PoseArray
+    """Shape (n, 7): pose of each in its root, x y z in metres, unit quaternion x y z w, w >= 0."""
+    attachments: Indices
+    """The frame that each frame is fixed to; -1 for links, static models and roots."""
+    bodies: Indices
+    """The link, static model or root that carries each frame; -1 for what is no frame."""
+    canonical_links: Indices
+    """The canonical link of each model; -1 for one without links and for other kinds."""
+    static_models: frozenset[int]
+    """The models that are static."""
+    joints: tuple[Joint, ...]
+    """All joints, in file order."""
+    sensors: Mapping[int, SensorFacts]
+    """What is known of each sensor."""
+    lines: Indices
+    """The line that each stands in; 0 where none can be named."""
+    file_indices: Indices
+    """Which of the files each stands in."""
+    world_names: Mapping[int, str]
+    """The name of each world; a model file has none."""
+    warnings: tuple[SdfWarning, ...]
+    """What libsdformat would accept but its author should know of, in file order."""
+
+    def __init__(
+        self, *,
+        path: str, files: tuple[str, ...], names: tuple[str, ...], kinds: 'npt.NDArray[np.uint8]',
+        parents: Indices, roots: Indices, poses: PoseArray, attachments: Indices, bodies: Indices,
+        canonical_links: Indices, static_models: frozenset[int], joints: tuple[Joint, ...],
+        sensors: Mapping[int, SensorFacts], lines: Indices, file_indices: Indices,
+        world_names: Mapping[int, str], warnings: tuple[SdfWarning, ...],
+    ) -> None:
+        vars(self).update(
+            path=path, files=files, names=names, kinds=kinds, parents=parents, roots=roots,
+            poses=poses, attachments=attachments, bodies=bodies, canonical_links=canonical_links,
+            static_models=static_models, joints=joints, sensors=sensors, lines=lines,
+            file_indices=file_indices, world_names=world_names, warnings=warnings)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        msg = f'{name} cannot be set: a scene is never changed'
+        raise AttributeError(msg)
+
+    def __delattr__(self, name: str) -> None:
+        msg = f'{name} cannot be deleted: a scene is never changed'
+        raise AttributeError(msg)
+
+    def __repr__(self) -> str:
+        return f'<Scene of {self.path}: {len(self.names)} elements>'
+
+    def pose(self, frame: str, relative_to: str = '', *, world: str = '') -> Pose:
+        """
+        Return the pose of one element in the frame of another.
+
+        :param frame: absolute name such as ``robot::arm::hand``.
+        :param relative_to: absolute name; empty for the world or the implicit root.
+        :param world: the world to look in, for a file that holds several.
+        :return: pose of ``frame`` in ``relative_to``: x y z in metres, unit quaternion x y z w
+            with w >= 0.
+        :raises UnknownFrameError: if there is no such name, or more than one.
+        """
+        index = self.index(frame, world=world)
+        if not relative_to:
+            return self.pose_of(index)
+        reference = self.index(relative_to, world=world or self.world_of(index))
+        if self._root_of[reference] != self._root_of[index]:
+            msg = (f'"{frame}" and "{relative_to}" have nothing in common: one is in a world, the '
+                   'other is the model beside it')
+            raise UnknownFrameError(msg, Place(self.path))
+        return self.relative_pose_of(index, reference)
+
+    def pose_of(self, index: int) -> Pose:
+        """
+        Return the pose of an element in its root.
+
+        :param index: its index.
+        :return: its pose in its world or implicit root.
+        """
+        return Pose(*self.poses[index].tolist())
+
+    def relative_pose_of(self, index: int, reference: int) -> Pose:
+        """
+        Return the pose of an element in the frame of another.
+
+        :param index: its index.
+        :param reference: index of the other, of the same root.
+        :return: pose of the first in the second; unit quaternion with w >= 0.
+        """
+        x, y, z, qx, qy, qz, qw = pose_product(
+            pose_inverse(self.pose_of(reference)), self.pose_of(index))
+        sign = -1.0 if qw < 0.0 else 1.0
+        # To add zero leaves no negative zeros.
+        return Pose(
+            x, y, z, sign * qx + 0.0, sign * qy + 0.0, sign * qz + 0.0, sign * qw + 0.0)
+
+    def world_of(self, index: int) -> str:
+        """
+        Name the world that an element belongs to.
+
+        :param index: its index.
+        :return: the world's name; empty in a model file.
+        """
+        return self.world_names.get(self._root_of[index], '')
+
+    def has(self, name: str) -> bool:
+        """
+        Tell whether a name is that of an element, in whichever world.
+
+        :param name: absolute name such as ``robot::arm::hand``.
+        :return: whether there is such an element.
+        """
+        return name in self._indices
+
+    def index(self, name: str, *, world: str = '') -> int:
+        """
+        Find an element by its name.
+
+        Where a frame and something else share a name, the frame is meant.
+
+        :param name: absolute name such as ``robot::arm::hand``.
+        :param world: the world to look in, for a file that holds several.
+        :return: its index.
+        :raises UnknownFrameError: if there is no such name, or more than one.
+        """
+        found = self._indices.get(name, [])
+        if len(found) == 1 and (not world or self.world_of(found[0]) == world):
+            return found[0]
+        if world:
+            found = [i for i in found if self.world_of(i) == world]
+        frames = [i for i in found if self.kinds[i] in _FRAMES_AND_ROOTS]
+        for candidates in (frames, found):
+            if len(candidates) == 1:
+                return candidates[0]
+        raise self._unknown(name, world, frames or found)
+
+    def place(self, index: int) -> Place:
+        """
+        Tell where an element stands.
+
+        :param index: its index.
+        :return: its file and line.
+        """
+        return Place(self.files[self.file_indices[index]], int(self.lines[index]))
+
+    @cached_property
+    def _root_of(self) -> list[int]:
+        roots: list[int] = self.roots.tolist()
+        return roots
+
+    @cached_property
+    def _indices(self) -> dict[str, list[int]]:
+        indices: dict[str, list[int]] = {}
+        for index, name in enumerate(self.names):
+            indices.setdefault(name, []).append(index)
+        return indices
+
+    def _unknown(self, name: str, world: str, found: list[int]) -> UnknownFrameError:
+        place = Place(self.path)
+        if found:
+            kinds = ', '.join(
+                f'a {Kind(self.kinds[i]).label} in {self.world_of(i) or "the file"}'
+                for i in found)
+            msg = f'"{name}" is the name of more than one element: {kinds}'
+        else:
+            where = f'world "{world}"' if world else 'the file'
+            msg = f'"{name}" names nothing in {where}{hint_from_names(name, self._indices)}'
+        return UnknownFrameError(msg, place)
+
+
+_FRAMES_AND_ROOTS = FRAME_KINDS | {Kind.WORLD, Kind.ROOT}

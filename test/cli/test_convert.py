@@ -1,0 +1,234 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``sdf_pose convert``: what it refuses, what it prints, and lines from standard input."""
+
+import argparse
+import io
+import math
+import sys
+
+import pytest
+
+from sdf_pose_bridge.cli import convert as convert_command
+from sdf_pose_bridge.geometry.formats import converted_poses
+from sdf_pose_bridge.geometry.formats import POSE_FORMATS
+from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
+
+
+@pytest.fixture
+def convert(capsys, monkeypatch):
+    """Run the command as a command line would; return exit code, output and complaints."""
+    def run(*arguments, lines='', stdin=None):
+        parser = argparse.ArgumentParser(prog='sdf_pose')
+        convert_command.add_parser(parser.add_subparsers(required=True))
+        monkeypatch.setattr('sys.stdin', stdin or io.StringIO(lines))
+        try:
+            args = parser.parse_args(['convert', *arguments])
+            code = args.run(args)
+        except SystemExit as stop:
+            code = stop.code
+        out, err = capsys.readouterr()
+        return code, out, err
+    return run
+
+
+def numbers(text):
+    return [float(word) for word in text.split()]
+
+
+# What is refused.
+
+@pytest.mark.parametrize('option', ['--from', '--to'])
+def test_an_unknown_format_is_refused_with_the_known_ones(convert, option):
+    given = {'--from': 'rpy', '--to': 'rpy', option: 'euler'}
+    code, out, err = convert(*[word for pair in given.items() for word in pair], '0', '0', '0')
+    assert code == 2
+    assert not out
+    assert "'euler'" in err
+    assert all(name in err for name in (*ROTATION_FORMATS, *POSE_FORMATS))
+
+
+def test_from_has_to_be_said(convert):
+    code, _, err = convert('0', '0', '0')
+    assert code == 2
+    assert '--from' in err
+
+
+@pytest.mark.parametrize(('source', 'target'), [('rpy', 'sdf_rpy'), ('sdf_rpy', 'quaternion')])
+def test_poses_and_rotations_do_not_convert_to_each_other(convert, source, target):
+    code, out, err = convert('--from', source, '--to', target, '0', '0', '0')
+    assert code == 2
+    assert not out
+    assert source in err
+    assert target in err
+
+
+@pytest.mark.parametrize(('arguments', 'complaint'), [
+    (('rpy', '1', '2'), 'rpy has 3 numbers (roll pitch yaw in radians), but 2 are given'),
+    (('rpy', '1'), 'but 1 is given'),
+    (('rpy', '1', '2', '3', '4'), 'but 4 are given'),
+    (('rpy', '1', 'two', '3'), "'two' is no number"),
+    (('rpy', '1', '1_000', '3'), "'1_000' is no number"),
+    (('rpy', '1', '1,5', '3'), "'1,5' is no number"),
+    (('rpy', '1', 'nan', '3'), 'value 1 is nan'),
+    (('rpy', '1', '2', '-inf'), 'value 2 is -inf'),
+    (('quaternion', '0', '0', '0', '0'), 'zero'),
+    (('matrix', '1', '0', '0', '0', '1', '0', '0', '0', '-1'), 'determinant -1'),
+])
+def test_bad_numbers_are_named_and_nothing_is_printed(convert, arguments, complaint):
+    code, out, err = convert('--from', *arguments)
+    assert code == 1
+    assert not out
+    assert complaint in err
+    assert len(err.splitlines()) == 1
+
+
+# What is printed.
+
+def test_a_quarter_turn(convert):
+    code, out, err = convert('--from', 'rpy_degrees', '--to', 'quaternion', '0', '0', '90')
+    assert (code, err) == (0, '')
+    assert numbers(out) == pytest.approx([0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5)])
+
+
+def test_options_may_follow_the_numbers(convert):
+    assert convert('0', '0', '90', '--from', 'rpy_degrees', '--to', 'quaternion') == convert(
+        '--from', 'rpy_degrees', '--to', 'quaternion', '0', '0', '90'
+    )
+
+
+@pytest.mark.parametrize('given', [
+    ['-1', '0', '0'], ['--', '-1', '0', '0'], ['-1e0', '-.0', '0'], ['-1.', '-0', '-0e-3'],
+    ['-1 0 0'], ['-10.0E-1', '0', '0'],
+])
+def test_negative_numbers_are_no_options(convert, given):
+    code, out, err = convert('--from', 'rpy', '--to', 'rpy', *given)
+    assert (code, err) == (0, '')
+    assert out == '-1.0 0.0 0.0\n'
+
+
+def test_without_a_target_all_formats_are_printed(convert):
+    code, out, _ = convert('--from', 'quaternion_wxyz', '2', '0', '0', '2')
+    lines = dict(line.split(maxsplit=1) for line in out.splitlines())
+    assert code == 0
+    assert list(lines) == list(ROTATION_FORMATS)
+    assert numbers(lines['rpy_degrees']) == [0.0, 0.0, 90.0]
+    assert numbers(lines['matrix']) == pytest.approx([0, -1, 0, 1, 0, 0, 0, 0, 1], abs=1e-15)
+    code, out, _ = convert('--from', 'sdf_rpy', '1', '2', '3', '0', '0', '0')
+    assert code == 0
+    assert [line.split()[0] for line in out.splitlines()] == list(POSE_FORMATS)
+
+
+def test_numbers_are_printed_so_that_they_read_back_exactly(convert):
+    row = [0.1, 1 / 3, -2e-7, 0.3, -0.2, 1e-9]
+    _, out, _ = convert('--from', 'sdf_rpy', '--to', 'franka_matrix', *map(repr, row))
+    assert numbers(out) == converted_poses(row, 'sdf_rpy', 'franka_matrix').tolist()
+    assert '-0.0 ' not in out
+
+
+# Standard input.
+
+def test_lines_are_converted_one_by_one(convert):
+    code, out, err = convert(
+        '--from', 'rpy_degrees', '--to', 'rpy', lines='0 0 0\n\t0  0\t90 \r\n-0.0 0 -180'
+    )
+    assert (code, err) == (0, '')
+    assert len(out.splitlines()) == 3
+    assert numbers(out) == pytest.approx(
+        [0.0, 0.0, 0.0, 0.0, 0.0, math.pi / 2, 0.0, 0.0, -math.pi], abs=1e-15
+    )
+
+
+def test_blank_lines_and_comments_are_skipped(convert):
+    code, out, err = convert('--from', 'rpy', '--to', 'rpy', lines='# a b\n\n  \n 0 0 1\n  #\n')
+    assert (code, out, err) == (0, '0.0 0.0 1.0\n', '')
+
+
+def test_no_lines_are_no_error(convert):
+    assert convert('--from', 'rpy', '--to', 'rpy', lines='') == (0, '', '')
+
+
+def test_bad_lines_are_reported_and_the_others_converted(convert):
+    code, out, err = convert(
+        '--from', 'quaternion', '--to', 'quaternion',
+        lines='0 0 0 1\n# note\n0 0 0\n0 0 0 0\n0 0 inf 0\n0 0 x 0\n0 3 0 0\n',
+    )
+    assert code == 1
+    assert out.splitlines() == [
+        '0.0 0.0 0.0 1.0',
+        '# line 3 is not converted', '# line 4 is not converted',
+        '# line 5 is not converted', '# line 6 is not converted',
+        '0.0 1.0 0.0 0.0',
+    ]
+    complaints = err.splitlines()
+    assert [complaint.split(':')[1] for complaint in complaints] == [
+        f' line {number}' for number in (3, 4, 5, 6)
+    ]
+    assert 'but 3 are given' in complaints[0]
+    assert 'zero' in complaints[1]
+    assert 'inf' in complaints[2]
+    assert "'x'" in complaints[3]
+
+
+def test_bytes_that_are_no_text_make_a_bad_line(convert):
+    stdin = io.TextIOWrapper(io.BytesIO(b'0 0 1\n0 \xff 1\n0 0 2\n'), encoding='utf-8')
+    code, out, err = convert('--from', 'rpy', '--to', 'rpy', stdin=stdin)
+    assert code == 1
+    assert out.splitlines() == ['0.0 0.0 1.0', '# line 2 is not converted', '0.0 0.0 2.0']
+    assert 'xff' in err
+
+
+def test_a_person_at_a_terminal_gets_each_answer_at_once(convert, monkeypatch):
+    answers_before_line = []
+
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+        def __next__(self):
+            answers_before_line.append(sys.stdout.getvalue().count('\n'))
+            return super().__next__()
+
+    monkeypatch.setattr('sys.stdout', io.StringIO())
+    convert('--from', 'rpy', '--to', 'rpy', stdin=Terminal('0 0 1\n0 0 2\n0 0 3\n'))
+    assert answers_before_line[:4] == [0, 1, 2, 3]
+
+
+def test_the_output_is_input_again(convert):
+    _, there, _ = convert('--from', 'sdf_rpy', '--to', 'franka_matrix',
+                          lines='1 2 3 0 0 0\nbad\n4 5 6 0 0 1\n')
+    code, back, err = convert('--from', 'franka_matrix', '--to', 'sdf_rpy', lines=there)
+    assert (code, err) == (0, '')
+    assert numbers(back) == pytest.approx([1, 2, 3, 0, 0, 0, 4, 5, 6, 0, 0, 1], abs=1e-15)
+
+
+def test_without_a_target_each_line_has_a_block(convert):
+    _, out, _ = convert('--from', 'rpy', lines='0 0 0\n0 0 1\n')
+    blocks = out.strip().split('\n\n')
+    assert [len(block.splitlines()) for block in blocks] == [len(ROTATION_FORMATS)] * 2
+
+
+def test_many_lines_keep_their_order_and_every_bad_one_is_found(convert, monkeypatch):
+    monkeypatch.setattr(convert_command, 'LINES_AT_A_TIME', 700)
+    rows = [f'0 0 {0.001 * number}' for number in range(3000)]
+    bad = (0, 699, 700, 1234, 1235, 2999)
+    for number in bad:
+        rows[number] = '0 0 nan'
+    code, out, err = convert('--from', 'rpy', '--to', 'rpy', lines='\n'.join(rows))
+    answers = out.splitlines()
+    assert code == 1
+    assert len(answers) == 3000
+    assert tuple(n for n, line in enumerate(answers) if line.startswith('#')) == bad
+    assert len(err.splitlines()) == len(bad)
+    good = [number for number in range(3000) if number not in bad]
+    assert [numbers(answers[number])[2] for number in good] == pytest.approx(
+        [0.001 * number for number in good], abs=1e-15
+    )
+
+
+def test_the_help_lists_the_formats_with_their_units(convert):
+    code, out, _ = convert('--help')
+    assert code == 0
+    for entry in (*ROTATION_FORMATS.values(), *POSE_FORMATS.values()):
+        assert entry.name in out
+        assert entry.meaning in out

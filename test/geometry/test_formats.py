@@ -1,0 +1,359 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Pose formats: what is refused, what each one means, and that all convert to all."""
+
+import array
+import itertools
+import math
+import re
+
+from hypothesis import given
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+from rotation_sets import half_turns
+from rotation_sets import LARGEST_TURN
+from rotation_sets import largest_turn
+from rotation_sets import lock_rpy
+from rotation_sets import random_quaternions
+
+from sdf_pose_bridge.geometry.formats import converted_poses
+from sdf_pose_bridge.geometry.formats import converted_rotations
+from sdf_pose_bridge.geometry.formats import POSE_FORMATS
+from sdf_pose_bridge.geometry.formats import PoseFormatError
+from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
+from sdf_pose_bridge.geometry.rotation import quaternion_from_rpy
+
+LENGTHS = {
+    'sdf_rpy': 6, 'sdf_rpy_degrees': 6, 'sdf_quat_xyzw': 7,
+    'matrix_row_major': 16, 'franka_matrix': 16, 'franka_measured': 6,
+}
+IDENTITY_MATRIX = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+GOOD = {
+    'sdf_rpy': (1.0, 2.0, 3.0, 0.1, 0.2, 0.3),
+    'sdf_rpy_degrees': (1.0, 2.0, 3.0, 10.0, 20.0, 30.0),
+    'sdf_quat_xyzw': (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0),
+    'matrix_row_major': IDENTITY_MATRIX,
+    'franka_matrix': IDENTITY_MATRIX,
+    'franka_measured': (1000.0, 2000.0, 3000.0, 10.0, 20.0, 30.0),
+}
+
+every_format = pytest.mark.parametrize('name', LENGTHS)
+matrix_formats = pytest.mark.parametrize('name', ['matrix_row_major', 'franka_matrix'])
+
+
+def poses(quats):
+    xyz = np.random.default_rng(7).uniform(-2.0, 2.0, (len(quats), 3))
+    return np.concatenate((xyz, quats), axis=1)
+
+
+def changed(values, **places):
+    row = list(values)
+    for place, value in places.items():
+        row[int(place[1:])] = value
+    return row
+
+
+# What is refused.
+
+@pytest.mark.parametrize('unknown', ['', 'SDF_RPY', 'sdf-rpy', 'rpy', None, 3, ['sdf_rpy']])
+def test_unknown_formats_are_refused_with_the_known_ones(unknown):
+    known = '.*'.join(LENGTHS)
+    message = rf'there is no pose format {re.escape(repr(unknown))}; known are {known}'
+    with pytest.raises(PoseFormatError, match=message):
+        converted_poses(GOOD['sdf_rpy'], unknown, 'sdf_rpy')
+    with pytest.raises(PoseFormatError, match=message):
+        converted_poses(GOOD['sdf_rpy'], 'sdf_rpy', unknown)
+
+
+@every_format
+def test_lengths_must_be_whole_poses(name):
+    length = LENGTHS[name]
+    for count in (1, length - 1, length + 1, 10 * length - 1):
+        with pytest.raises(PoseFormatError, match=rf'{count} values.*each {name} has {length}'):
+            converted_poses([0.0] * count, name, 'sdf_rpy')
+    for shape in ((), (2, length - 1), (1, 2, length)):
+        with pytest.raises(PoseFormatError, match=rf'each {name} has {length}'):
+            converted_poses(np.zeros(shape), name, 'sdf_rpy')
+
+
+def test_values_must_be_numbers():
+    with pytest.raises(PoseFormatError, match="'x'"):
+        converted_poses([0.0, 0.0, 0.0, 0.0, 0.0, 'x'], 'sdf_rpy', 'sdf_rpy')
+    with pytest.raises(PoseFormatError, match='must be numbers'):
+        converted_poses([[0.0] * 6, [0.0] * 5], 'sdf_rpy', 'sdf_rpy')
+
+
+@every_format
+@pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
+def test_values_must_be_finite(name, bad):
+    for place in range(LENGTHS[name]):
+        row = changed(GOOD[name], **{f'_{place}': bad})
+        with pytest.raises(PoseFormatError, match=rf'{name}: value {place} is {bad}.*finite'):
+            converted_poses(row, name, 'sdf_rpy')
+        with pytest.raises(PoseFormatError, match=rf'{name}: row 2, value {place} is {bad}'):
+            converted_poses([GOOD[name], GOOD[name], row], name, 'sdf_rpy')
+
+
+def test_a_zero_quaternion_is_refused_with_its_row():
+    good = GOOD['sdf_quat_xyzw']
+    zero = changed(good, _6=0.0)
+    with pytest.raises(PoseFormatError, match=r'sdf_quat_xyzw: quaternion \(0\.0.*zero'):
+        converted_poses(zero, 'sdf_quat_xyzw', 'sdf_rpy')
+    with pytest.raises(PoseFormatError, match=r'sdf_quat_xyzw: row 5000: .*zero'):
+        converted_poses([good] * 5000 + [zero], 'sdf_quat_xyzw', 'sdf_rpy')
+
+
+@pytest.mark.parametrize(('places', 'rule'), [
+    ({'_0': 2.0}, r'not orthonormal: column 0 has norm 2\.0'),
+    ({'_0': 1.0 + 2e-5}, 'not orthonormal: column 0 has norm 1.00002'),
+    ({'_0': 0.0}, r'not orthonormal: column 0 has norm 0\.0'),
+    ({'_0': -1.0}, 'determinant -1'),
+    ({'_0': -1.0, '_5': -1.0, '_10': -1.0}, 'determinant -1'),
+    ({'_15': 0.0}, r'last row of the matrix is \(0\.0, 0\.0, 0\.0, 0\.0\)'),
+    ({'_15': 1.0 + 1e-15}, r'last row of the matrix is .*exactly \(0\.0, 0\.0, 0\.0, 1\.0\)'),
+])
+@matrix_formats
+def test_matrices_must_be_poses(name, places, rule):
+    bad = changed(IDENTITY_MATRIX, **places)
+    with pytest.raises(PoseFormatError, match=f'{name}: [^:]*{rule}'):
+        converted_poses(bad, name, 'sdf_rpy')
+    with pytest.raises(PoseFormatError, match=f'{name}: row 3: .*{rule}'):
+        converted_poses([IDENTITY_MATRIX] * 3 + [bad], name, 'sdf_rpy')
+
+
+@pytest.mark.parametrize(('name', 'places'), [
+    ('matrix_row_major', (12, 13, 14)), ('franka_matrix', (3, 7, 11)),
+])
+def test_the_last_row_of_matrices_must_be_exact(name, places):
+    for place in places:
+        with pytest.raises(PoseFormatError, match=r'last row of the matrix is .*1e-300'):
+            converted_poses(changed(IDENTITY_MATRIX, **{f'_{place}': 1e-300}), name, 'sdf_rpy')
+        minus_zero = changed(IDENTITY_MATRIX, **{f'_{place}': -0.0})
+        assert converted_poses(minus_zero, name, 'sdf_rpy').tolist() == [0.0] * 6
+
+
+@matrix_formats
+def test_matrices_are_judged_as_libfranka_judges_them(name):
+    coarse = changed(IDENTITY_MATRIX, _0=0.707, _1=-0.707, _4=0.707, _5=0.707)
+    with pytest.raises(PoseFormatError, match='not orthonormal'):
+        converted_poses(coarse, name, 'sdf_rpy')
+    fine = changed(IDENTITY_MATRIX, _0=0.7071, _1=-0.7071, _4=0.7071, _5=0.7071)
+    yaw = converted_poses(fine, name, 'sdf_rpy')[5]
+    assert abs(yaw) == pytest.approx(math.pi / 4, abs=1e-15)
+
+
+def test_what_does_not_fit_into_a_format_is_refused():
+    with pytest.raises(PoseFormatError, match=r'1e\+306.*too large a number for franka_measured'):
+        converted_poses(changed(GOOD['sdf_rpy'], _1=1e306), 'sdf_rpy', 'franka_measured')
+
+
+def test_a_bad_row_in_another_format_does_not_go_unnoticed_in_a_long_batch():
+    rows = np.tile(GOOD['sdf_rpy'], (100_000, 1))
+    rows[77_777, 4] = math.nan
+    with pytest.raises(PoseFormatError, match='row 77777, value 4 is nan'):
+        converted_poses(rows, 'sdf_rpy', 'franka_matrix')
+
+
+# What the formats mean.
+
+def test_the_formats_and_their_lengths():
+    assert {name: entry.row_length for name, entry in POSE_FORMATS.items()} == LENGTHS
+    assert all(entry.name == name and entry.meaning for name, entry in POSE_FORMATS.items())
+
+
+@every_format
+def test_one_pose_in_all_formats(name):
+    # 90 degrees of yaw, then 30 degrees of roll on the child's own x: by hand.
+    half, root = 0.5, math.sqrt(0.75)
+    same = {
+        'sdf_rpy': (1, 2, 3, math.pi / 6, 0, math.pi / 2),
+        'sdf_rpy_degrees': (1, 2, 3, 30, 0, 90),
+        'sdf_quat_xyzw': (
+            1, 2, 3,
+            math.sqrt(half) * math.sin(math.pi / 12), math.sqrt(half) * math.sin(math.pi / 12),
+            math.sqrt(half) * math.cos(math.pi / 12), math.sqrt(half) * math.cos(math.pi / 12),
+        ),
+        'matrix_row_major': (
+            0, -root, half, 1,
+            1, 0, 0, 2,
+            0, half, root, 3,
+            0, 0, 0, 1,
+        ),
+        'franka_matrix': (
+            0, 1, 0, 0,
+            -root, 0, half, 0,
+            half, 0, root, 0,
+            1, 2, 3, 1,
+        ),
+        'franka_measured': (1000, 2000, 3000, 30, 0, 90),
+    }
+    for target, expected in same.items():
+        answer = converted_poses(same[name], name, target)
+        assert answer == pytest.approx(expected, abs=3e-14), target
+
+
+def test_measured_rotations_come_back_as_x_y_z_and_not_as_z_y_x():
+    # A widespread formula from quaternion to these angles has x and z exchanged.
+    measured = (100.0, 200.0, 300.0, 10.0, 20.0, 30.0)
+    quat = converted_poses(measured, 'franka_measured', 'sdf_quat_xyzw')
+    assert quat[3:] == pytest.approx(quaternion_from_rpy(np.radians((10, 20, 30)).tolist()))
+    again = converted_poses(quat, 'sdf_quat_xyzw', 'franka_measured')
+    assert again == pytest.approx(measured, abs=1e-12)
+
+
+@matrix_formats
+def test_half_turns_in_matrices_keep_their_axes(name):
+    # A widespread formula takes signs from differences that are zero for half turns.
+    about_x_minus_y = (0, -1, 0, 0, -1, 0, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1)
+    quat = converted_poses(about_x_minus_y, name, 'sdf_quat_xyzw')
+    half = math.sqrt(0.5)
+    assert quat == pytest.approx((0, 0, 0, half, -half, 0, 0), abs=2e-16)
+
+
+@matrix_formats
+def test_all_half_turns_come_back_from_matrices(name):
+    given_poses = poses(half_turns())
+    matrices = converted_poses(given_poses, 'sdf_quat_xyzw', name)
+    again = converted_poses(matrices, name, 'sdf_quat_xyzw')
+    assert largest_turn(again[:, 3:], given_poses[:, 3:]) <= LARGEST_TURN
+
+
+def test_libfranka_accepts_the_matrices():
+    quats = np.concatenate((random_quaternions(5000), half_turns(), 1e-200 * half_turns(1e-9)))
+    matrices = converted_poses(poses(quats), 'sdf_quat_xyzw', 'franka_matrix')
+    assert (matrices[:, [3, 7, 11]] == 0.0).all()
+    assert (matrices[:, 15] == 1.0).all()
+    square = matrices.reshape(-1, 4, 4)[:, :3, :3]
+    assert np.abs(np.linalg.norm(square, axis=1) - 1.0).max() < 1e-12
+    assert np.abs(np.linalg.norm(square, axis=2) - 1.0).max() < 1e-12
+
+
+@matrix_formats
+def test_the_rotation_nearest_to_a_matrix_is_used(name):
+    rng = np.random.default_rng(3)
+    given_poses = poses(random_quaternions(200))
+    matrices = converted_poses(given_poses, 'sdf_quat_xyzw', name).reshape(-1, 4, 4)
+    matrices[:, :3, :3] += rng.uniform(-2e-6, 2e-6, (200, 3, 3))
+    cleaned = converted_poses(matrices.reshape(-1, 16), name, name).reshape(-1, 4, 4)
+    left, _, right = np.linalg.svd(matrices[:, :3, :3])
+    assert np.abs(cleaned[:, :3, :3] - left @ right).max() <= 1e-14
+
+
+def test_translations_stay_as_they_are():
+    row = changed(GOOD['sdf_rpy'], _0=1e-300, _1=-123456.789, _2=1e300)
+    for target in ('sdf_quat_xyzw', 'sdf_rpy_degrees'):
+        assert converted_poses(row, 'sdf_rpy', target)[:3].tolist() == row[:3]
+    metres = converted_poses((1.1, 2.2, 3.3, 0, 0, 0), 'franka_measured', 'sdf_rpy')
+    assert metres[:3].tolist() == [0.0011, 0.0022, 0.0033]
+
+
+@pytest.mark.parametrize(('source', 'target'), [*itertools.product(LENGTHS, repeat=2)])
+def test_every_format_converts_to_every_other_and_back(source, target):
+    quats = np.concatenate(
+        (random_quaternions(200), half_turns()[::5], quaternion_from_rpy(lock_rpy(200)))
+    )
+    rows = converted_poses(poses(quats), 'sdf_quat_xyzw', source)
+    again = converted_poses(converted_poses(rows, source, target), target, source)
+    common = converted_poses(rows, source, 'sdf_quat_xyzw')
+    common_again = converted_poses(again, source, 'sdf_quat_xyzw')
+    assert np.abs(common - common_again)[:, :3].max() <= 1e-15
+    assert largest_turn(common[:, 3:], common_again[:, 3:]) <= 8 * LARGEST_TURN
+
+
+@every_format
+def test_no_negative_zeros_come_out(name):
+    row = (-0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -1.0)
+    answer = converted_poses(row, 'sdf_quat_xyzw', name)
+    assert not np.signbit(answer[answer == 0.0]).any()
+
+
+@given(st.lists(st.floats(-1e9, 1e9), min_size=6, max_size=6))
+def test_whole_turns_of_degrees_do_not_matter(row):
+    turned = [*row[:3], *(math.fmod(angle, 360.0) for angle in row[3:])]
+    assert np.array_equal(
+        converted_poses(row, 'sdf_rpy_degrees', 'sdf_quat_xyzw'),
+        converted_poses(turned, 'sdf_rpy_degrees', 'sdf_quat_xyzw'),
+    )
+
+
+@given(st.floats(-180.0, 180.0), st.floats(-89.9, 89.9), st.floats(-180.0, 180.0))
+def test_angles_in_their_ranges_keep_their_digits(roll, pitch, yaw):
+    angles = [roll, pitch, yaw]
+    row = [1.0, 2.0, 3.0, *angles]
+    assert converted_poses(row, 'sdf_rpy_degrees', 'franka_measured')[3:].tolist() == angles
+    assert converted_poses(row, 'sdf_rpy_degrees', 'sdf_rpy')[3:].tolist() == [
+        angle * math.pi / 180.0 for angle in angles
+    ]
+
+
+@pytest.mark.parametrize(('angles', 'expected'), [
+    ((0.0, 0.0, 190.0), (0.0, 0.0, -170.0)),
+    ((-181.0, 0.0, 0.0), (179.0, 0.0, 0.0)),
+    ((10.0, 100.0, 20.0), (-170.0, 80.0, -160.0)),
+    ((10.0, 90.0, 20.0), (-10.0, 90.0, 0.0)),
+    ((10.0, -90.0, 20.0), (30.0, -90.0, 0.0)),
+])
+def test_other_angles_come_back_in_their_ranges(angles, expected):
+    answer = converted_rotations([*angles, 1.0, 2.0, 3.0], 'rpy_degrees', 'rpy_degrees')
+    assert answer[:3] == pytest.approx(expected, abs=1e-13)
+    assert answer[3:].tolist() == [1.0, 2.0, 3.0]
+
+
+# Shapes.
+
+@every_format
+def test_flat_stays_flat_and_rows_stay_rows(name):
+    rows = np.tile(GOOD[name], (5, 1))
+    for target, length in LENGTHS.items():
+        answer = converted_poses(rows, name, target)
+        flat = converted_poses(rows.ravel(), name, target)
+        assert answer.shape == (5, length)
+        assert flat.shape == (5 * length,)
+        assert np.array_equal(flat, answer.ravel())
+        assert flat.flags.c_contiguous
+
+
+@every_format
+def test_no_poses_are_no_poses(name):
+    assert converted_poses([], name, 'franka_matrix').shape == (0,)
+    assert converted_poses(np.empty((0, LENGTHS[name])), name, 'sdf_rpy').shape == (0, 6)
+
+
+@pytest.mark.parametrize('kind', [tuple, list, np.array, lambda row: array.array('d', row)])
+def test_any_sequence_is_taken(kind):
+    row = GOOD['sdf_rpy']
+    assert np.array_equal(
+        converted_poses(kind(row), 'sdf_rpy', 'sdf_quat_xyzw'),
+        converted_poses(np.array(row), 'sdf_rpy', 'sdf_quat_xyzw'),
+    )
+
+
+@every_format
+def test_the_answer_shares_no_memory_with_what_is_given(name):
+    rows = np.tile(GOOD[name], (3, 1))
+    before = rows.copy()
+    converted_poses(rows, name, name)[:] = -1.0
+    assert np.array_equal(rows, before)
+
+
+# Rotations alone.
+
+@pytest.mark.parametrize(
+    ('source', 'target'), [*itertools.product(ROTATION_FORMATS, repeat=2)]
+)
+def test_rotations_convert_between_all_formats(source, target):
+    quarter = {
+        'rpy': (0, 0, math.pi / 2),
+        'rpy_degrees': (0, 0, 90),
+        'quaternion': (0, 0, math.sqrt(0.5), math.sqrt(0.5)),
+        'quaternion_wxyz': (math.sqrt(0.5), 0, 0, math.sqrt(0.5)),
+        'matrix': (0, -1, 0, 1, 0, 0, 0, 0, 1),
+    }
+    answer = converted_rotations(quarter[source], source, target)
+    assert answer == pytest.approx(quarter[target], abs=3e-14)
+
+
+def test_rotations_and_poses_are_not_taken_for_each_other():
+    with pytest.raises(PoseFormatError, match="no rotation format 'sdf_rpy'; known are rpy"):
+        converted_rotations((0.0, 0.0, 0.0), 'rpy', 'sdf_rpy')

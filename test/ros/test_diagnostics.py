@@ -1,0 +1,71 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What diagnostics say of a state: its level, its sentence and its values."""
+
+import datetime
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from diagnostic_msgs.msg import DiagnosticStatus
+
+from sdf_pose_bridge.ros.diagnostics import State
+from sdf_pose_bridge.ros.diagnostics import status_from_state
+from sdf_pose_bridge.ros.loaded_scene import content_from_settings
+from sdf_pose_bridge.ros.settings import settings_from_values
+
+LOADED_AT = datetime.datetime(2026, 1, 2, 3, 4, 5, tzinfo=datetime.timezone.utc)
+GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
+LIGHT = '<light name="i" type="point"><pose relative_to="x"/></light>'
+VALUES = {
+    'root_frame': 'map', 'anchor_models': 'all', 'model': '', 'frame_names': 'auto',
+    'frame_separator': '/', 'frame_prefix': '', 'kinds': ['model', 'link'], 'pose_topics': [],
+    'optical_frames': True, 'resource_paths': [], 'on_missing_include': 'error',
+    'publish_rate': 0.0, 'watch': True,
+}
+
+
+@pytest.fixture
+def status_of(tmp_path):
+    def status(text, *failure):
+        path = tmp_path / 'cell.sdf'
+        path.write_text(text, encoding='utf-8')
+        content = content_from_settings(settings_from_values({**VALUES, 'sdf_file': str(path)}))
+        return status_from_state(State(content, 2, LOADED_AT, failure), 'left/bridge')
+    return status
+
+
+def with_lights(count):
+    lights = ''.join(LIGHT.replace('"i"', f'"i{number}"') for number in range(count))
+    return GOOD.replace('<link name="l"/>', f'<link name="l">{lights}</link>')
+
+
+def test_a_good_load_is_ok(status_of):
+    status = status_of(GOOD)
+    assert status.level == DiagnosticStatus.OK
+    assert (status.name, status.message) == ('left/bridge: file', 'serving cell.sdf')
+
+
+@pytest.mark.parametrize(('count', 'words'), [(1, '1 warning'), (2, '2 warnings')])
+def test_warnings_of_what_is_served_are_counted(status_of, count, words):
+    status = status_of(with_lights(count))
+    assert status.level == DiagnosticStatus.WARN
+    assert status.message == f'serving cell.sdf with {words}'
+
+
+def test_a_failed_load_is_an_error_whatever_is_served(status_of):
+    status = status_of(with_lights(1), 'cell.sdf:3: first', 'cell.sdf:4: second')
+    assert status.level == DiagnosticStatus.ERROR
+    assert status.message == (
+        'the last load failed, what was loaded before is served: cell.sdf:3: first')
+
+
+def test_the_values_tell_what_is_served_and_what_is_wrong(status_of, tmp_path):
+    status = status_of(GOOD, 'first', 'second')
+    values = {value.key: value.value for value in status.values}
+    assert values.pop('time to load').endswith(' ms')
+    assert values == {
+        'file': str(tmp_path / 'cell.sdf'), 'root frame': 'map', 'frames': '2', 'transforms': '2',
+        'files read': '1', 'last good load': '2026-01-02T03:04:05+00:00', 'warnings': '0',
+        'first warning': '', 'last error': 'first\nsecond'}

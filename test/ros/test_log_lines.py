@@ -1,0 +1,58 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What goes to the log: one line for each thing, whatever names a file holds."""
+
+import pytest
+
+from sdf_pose_bridge.errors import LoadError
+from sdf_pose_bridge.errors import ParsingError
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.ros.log_lines import lines_from_error
+from sdf_pose_bridge.ros.log_lines import lines_from_warnings
+from sdf_pose_bridge.ros.log_lines import MOST_ERRORS
+from sdf_pose_bridge.ros.log_lines import MOST_WARNINGS
+from sdf_pose_bridge.ros.settings import Problem
+from sdf_pose_bridge.ros.settings import SettingsError
+
+
+def test_each_error_of_a_file_has_its_line_with_its_place():
+    errors = [ParsingError(f'fact {line}', Place('a.sdf', line)) for line in (3, 7)]
+    assert lines_from_error(LoadError(errors)) == [
+        'a.sdf:3: PARSING_ERROR: fact 3', 'a.sdf:7: PARSING_ERROR: fact 7']
+
+
+def test_a_flood_of_errors_ends_with_its_size():
+    errors = [ParsingError('fact', Place('a.sdf', line)) for line in range(MOST_ERRORS + 1)]
+    lines = lines_from_error(LoadError(errors))
+    assert len(lines) == MOST_ERRORS + 1
+    assert lines[-1] == '1 more error is not shown; "sdf_pose check" shows all of them'
+
+
+def test_each_problem_of_the_settings_has_its_line():
+    error = SettingsError([Problem('a', 'first'), Problem('b', 'second')])
+    assert lines_from_error(error) == ['first', 'second']
+
+
+def test_a_flood_of_problems_of_the_settings_ends_with_its_size():
+    error = SettingsError([Problem('kinds', 'wrong')] * (MOST_ERRORS + 2))
+    lines = lines_from_error(error)
+    assert len(lines) == MOST_ERRORS + 1
+    assert lines[-1] == '2 more errors are not shown'
+
+
+@pytest.mark.parametrize(('name', 'shown'), [
+    ('a\nb', r'a\nb'), ('a\r\x1b[31mb', r'a\r\x1b[31mb'), ('a\u2028b', r'a\u2028b'),
+    ('größe 1', 'größe 1'),
+])
+def test_a_name_cannot_write_a_line_of_its_own(name, shown):
+    assert lines_from_error(ParsingError(name, Place('f'))) == [f'f: PARSING_ERROR: {shown}']
+
+
+def test_few_warnings_are_all_written():
+    assert lines_from_warnings(['one', 'two']) == ['one', 'two']
+
+
+def test_a_flood_of_warnings_ends_with_its_size():
+    lines = lines_from_warnings([f'warning {number}' for number in range(MOST_WARNINGS + 7)])
+    assert len(lines) == MOST_WARNINGS + 1
+    assert lines[-1] == '7 more warnings are not shown'

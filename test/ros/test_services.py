@@ -1,0 +1,101 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Answers of the conversion services: refused with a sentence, or converted, and never raised."""
+
+import array
+import math
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from rclpy.logging import get_logger
+
+from sdf_pose_bridge.ros.services import answer_to_convert_poses
+from sdf_pose_bridge.ros.services import answer_to_convert_rotation
+from sdf_pose_bridge.ros.services import never_raising
+from sdf_pose_bridge_interfaces.srv import ConvertPoses
+from sdf_pose_bridge_interfaces.srv import ConvertRotation
+
+
+def convert_rotation(given=0, rpy=(0.0, 0.0, 0.0), quat_xyzw=(0.0, 0.0, 0.0, 1.0), degrees=False):
+    request = ConvertRotation.Request(given=given, degrees=degrees)
+    request.rpy.x, request.rpy.y, request.rpy.z = rpy
+    turn = request.quaternion
+    turn.x, turn.y, turn.z, turn.w = quat_xyzw
+    return answer_to_convert_rotation(request, ConvertRotation.Response())
+
+
+def convert_poses(values, from_format='sdf_rpy', to_format='sdf_quat_xyzw'):
+    request = ConvertPoses.Request(from_format=from_format, to_format=to_format)
+    request.values = array.array('d', values)
+    return answer_to_convert_poses(request, ConvertPoses.Response())
+
+
+@pytest.mark.parametrize(('request_fields', 'word'), [
+    ({'given': 2}, '2'),
+    ({'rpy': (0.0, math.nan, 0.0)}, 'nan'),
+    ({'rpy': (math.inf, 0.0, 0.0)}, 'inf'),
+    ({'given': 1, 'quat_xyzw': (0.0, 0.0, 0.0, 0.0)}, '0'),
+    ({'given': 1, 'quat_xyzw': (0.0, math.nan, 0.0, 1.0)}, 'nan'),
+])
+def test_a_bad_rotation_is_refused_with_the_value(request_fields, word):
+    response = convert_rotation(**request_fields)
+    assert not response.success
+    assert word in response.message
+
+
+@pytest.mark.parametrize(('request_fields', 'word'), [
+    ({'values': [0.0] * 6, 'from_format': 'rpy'}, 'sdf_rpy_degrees'),
+    ({'values': [0.0] * 6, 'to_format': ''}, 'franka_matrix'),
+    ({'values': [0.0] * 7}, '7'),
+    ({'values': [0.0, 0.0, 0.0, 0.0, 0.0, math.nan]}, 'nan'),
+    ({'values': [0.0] * 7, 'from_format': 'sdf_quat_xyzw'}, 'zero'),
+    ({'values': [1.0] * 16, 'from_format': 'matrix_row_major'}, 'row'),
+])
+def test_bad_poses_are_refused_with_the_rule(request_fields, word):
+    response = convert_poses(**request_fields)
+    assert not response.success
+    assert word in response.message
+    assert len(response.values) == 0
+
+
+def test_both_representations_are_answered():
+    response = convert_rotation(rpy=(0.0, 0.0, 90.0), degrees=True)
+    assert (response.success, response.message) == (True, '')
+    turn = response.quaternion
+    half = math.sqrt(0.5)
+    assert (turn.x, turn.y, turn.z, turn.w) == pytest.approx((0.0, 0.0, half, half))
+    assert (response.rpy.x, response.rpy.y, response.rpy.z) == (0.0, 0.0, 90.0)
+    assert not response.gimbal_lock
+
+
+def test_gimbal_lock_is_told():
+    assert convert_rotation(rpy=(0.0, math.pi / 2, 0.0)).gimbal_lock
+
+
+def test_no_poses_are_no_values():
+    response = convert_poses([])
+    assert response.success
+    assert len(response.values) == 0
+
+
+def test_poses_are_converted_row_by_row():
+    response = convert_poses([1, 2, 3, 0, 0, math.pi, 4, 5, 6, 0, 0, 0])
+    assert (response.success, response.message) == (True, '')
+    assert response.values == pytest.approx(
+        [1, 2, 3, 0, 0, 1, 0, 4, 5, 6, 0, 0, 0, 1])
+
+
+def test_a_defect_is_answered_and_logged(capfd):
+    def defective(request, response):
+        response.success = True
+        msg = 'the moon is full'
+        raise KeyError(msg)
+
+    callback = never_raising(defective, get_logger('bridge'))
+    response = callback(ConvertPoses.Request(), ConvertPoses.Response())
+    assert not response.success
+    assert response.message.startswith('internal error')
+    assert 'the moon is full' in response.message
+    assert 'Traceback' in capfd.readouterr().err

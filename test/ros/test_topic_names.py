@@ -1,0 +1,180 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Names of topics: legal, visible, readable where they can be, and never shared."""
+
+import re
+
+from hypothesis import given
+from hypothesis import strategies as st
+import pytest
+
+from sdf_pose_bridge.ros.topic_names import is_everything_too_much
+from sdf_pose_bridge.ros.topic_names import LONGEST_NAME
+from sdf_pose_bridge.ros.topic_names import SHORTEST_LIMIT
+from sdf_pose_bridge.ros.topic_names import topic_name_from_frame_id
+from sdf_pose_bridge.ros.topic_names import topics_from_patterns
+
+# Letters that the escapes themselves are made of, so that look-alikes are common.
+ESCAPE_LIKE_TEXT = st.text(alphabet='xab0235_ /-hé', max_size=24)
+ANY_TEXT = st.one_of(ESCAPE_LIKE_TEXT, st.text(max_size=60))
+LEGAL_LEVEL = re.compile(r'[A-Za-z][A-Za-z0-9_]*')
+ESCAPE = re.compile(r'_x((?:[0-9a-f]{2})+)_')
+FIRST_ESCAPE = re.compile(r'x((?:[0-9a-f]{2})+)_')
+
+
+def frame_id_from_topic_name(name):
+    """Read a name back by the documented rule; written apart from the code under test."""
+    return '/'.join(text_from_level(level) for level in name.split('/'))
+
+
+def text_from_level(level):
+    if level == 'x_':
+        return ''
+    parts = []
+    place = 0
+    while place < len(level):
+        escape = (ESCAPE if place else FIRST_ESCAPE).match(level, place)
+        if escape:
+            parts.append(bytes.fromhex(escape[1]).decode('utf-8', 'surrogatepass'))
+            place = escape.end()
+        else:
+            parts.append(level[place])
+            place += 1
+    return ''.join(parts)
+
+
+def test_a_limit_without_room_for_a_name_is_refused():
+    with pytest.raises(ValueError, match=f'at least {SHORTEST_LIMIT} are needed'):
+        topic_name_from_frame_id('robot', SHORTEST_LIMIT - 1)
+
+
+@pytest.mark.parametrize('frame_id', [
+    'robot', 'robot/arm_2/tool', 'Camera_1_optical', 'x', 'x_axis', 'x2', 'trailing_',
+])
+def test_ordinary_frame_ids_are_their_own_topic_names(frame_id):
+    assert topic_name_from_frame_id(frame_id) == frame_id
+
+
+@pytest.mark.parametrize(('frame_id', 'name'), [
+    ('left camera', 'left_x20_camera'),
+    ('link-1', 'link_x2d_1'),
+    ('v1.2/tool', 'v1_x2e_2/tool'),
+    ('a::b', 'a_x3a3a_b'),
+    ('a__b', 'a_x5f5f_b'),
+    ('a_ b', 'a_x5f20_b'),
+    ('3d_map', 'x33_d_map'),
+    ('3', 'x33_'),
+    ('_hidden', 'x5f_hidden'),
+    ('größe', 'gr_xc3b6c39f_e'),
+    ('', 'x_'),
+    ('/a//b/', 'x_/a/x_/b/x_'),
+    ('x_', 'x785f_'),
+    ('a_x20_b', 'a_x5f_x20_b'),
+    ('x20_b', 'x78_20_b'),
+    ('a_x20 b', 'a_x5f_x20_x20_b'),
+    ('{node}~', 'x7b_node_x7d7e_'),
+])
+def test_the_documented_rule(frame_id, name):
+    assert topic_name_from_frame_id(frame_id) == name
+
+
+@given(ANY_TEXT)
+def test_every_level_is_legal_and_visible(frame_id):
+    name = topic_name_from_frame_id(frame_id)
+    assert len(name) <= LONGEST_NAME
+    for level in name.split('/'):
+        assert LEGAL_LEVEL.fullmatch(level)
+        assert '__' not in level
+
+
+@given(ANY_TEXT)
+def test_rclpy_takes_every_name_and_shows_it(frame_id):
+    pytest.importorskip('rclpy', reason='needs ROS 2')
+    from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
+    from rclpy.validate_full_topic_name import validate_full_topic_name
+    from rclpy.validate_topic_name import validate_topic_name
+    name = topic_name_from_frame_id(frame_id)
+    assert validate_topic_name(f'~/poses/{name}')
+    assert validate_full_topic_name(f'/robot_1/sdf_pose_bridge/poses/{name}')
+    assert not topic_or_service_is_hidden(f'/sdf_pose_bridge/poses/{name}')
+
+
+@given(ESCAPE_LIKE_TEXT)
+def test_a_name_says_which_frame_id_it_stands_for(frame_id):
+    name = topic_name_from_frame_id(frame_id, limit=1000)
+    assert frame_id_from_topic_name(name) == frame_id
+
+
+@given(st.lists(ANY_TEXT, unique=True, max_size=30))
+def test_no_two_frame_ids_share_a_name(frame_ids):
+    names = {topic_name_from_frame_id(frame_id, SHORTEST_LIMIT) for frame_id in frame_ids}
+    assert len(names) == len(frame_ids)
+
+
+@given(st.text(min_size=200, max_size=400), st.integers(SHORTEST_LIMIT, LONGEST_NAME))
+def test_long_names_are_cut_and_stay_legal(frame_id, limit):
+    name = topic_name_from_frame_id(frame_id, limit)
+    assert len(name) <= limit
+    assert re.search(r'[^_/]_xh[0-9a-f]{32}_$', name)
+    assert all(LEGAL_LEVEL.fullmatch(level) for level in name.split('/'))
+
+
+def test_a_frame_id_that_reads_as_a_cut_name_does_not_take_its_place():
+    cut = topic_name_from_frame_id('a' * 500)
+    assert topic_name_from_frame_id(cut) != cut
+
+
+@pytest.mark.parametrize(('count', 'patterns', 'is_too_much'), [
+    (1000, ['*'], False),
+    (1001, ['*'], True),
+    (1001, ['?*'], False),
+    (1001, ['a/*', '*'], False),
+    (1001, [], False),
+])
+def test_the_default_pattern_does_not_mean_thousands_of_topics(count, patterns, is_too_much):
+    frame_ids = [f'f{number}' for number in range(count)]
+    assert is_everything_too_much(frame_ids, patterns) is is_too_much
+
+
+def topics(frame_ids, patterns, limit=LONGEST_NAME):
+    """Take all steps."""
+    steps = topics_from_patterns(frame_ids, patterns, limit)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return end.value
+
+
+@pytest.mark.parametrize(('patterns', 'chosen'), [
+    (['*'], ['a/b c', 'a/d', 'e']),
+    (['a/*', 'e', 'e'], ['a/b c', 'a/d', 'e']),
+    (['e', '?/d'], ['a/d', 'e']),
+    (['[ae]'], ['e']),
+    (['E', 'a'], []),
+    ([], []),
+])
+def test_patterns_choose_whole_frame_ids_in_their_order(patterns, chosen):
+    names = topics(['a/b c', 'a/d', 'e'], patterns).names
+    assert list(names) == chosen
+    assert all(name == topic_name_from_frame_id(frame_id) for frame_id, name in names.items())
+
+
+def test_patterns_that_match_nothing_are_found():
+    assert topics(['a/b', 'c'], ['a::*', 'a/*', '*', 'C']).idle == ['a::*', 'C']
+
+
+def test_an_empty_pattern_is_no_mistake():
+    assert topics(['a'], ['', 'b']).idle == ['b']
+
+
+def test_a_limit_that_leaves_no_room_is_refused():
+    with pytest.raises(ValueError, match='limit is 9'):
+        topics(['a'], ['*'], 9)
+
+
+@pytest.mark.parametrize(('frames', 'patterns'), [(30_000, 1), (5, 3000), (2000, 50)])
+def test_many_frames_or_patterns_are_chosen_in_many_steps(frames, patterns):
+    steps = topics_from_patterns(
+        [f'f{number}' for number in range(frames)], [f'f*{number}' for number in range(patterns)])
+    assert sum(1 for _ in steps) >= 10

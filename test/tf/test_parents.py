@@ -1,0 +1,325 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Parents in TF: what a frame is fixed to, or what a joint moves it on."""
+
+import itertools
+
+from hypothesis import given
+from hypothesis import strategies as st
+import pytest
+from sdf_texts import element
+from sdf_texts import fixed_joint
+from sdf_texts import model_file
+from sdf_texts import posed
+from sdf_texts import world_file
+
+import sdf_pose_bridge
+from sdf_pose_bridge.tf.parents import _Builder
+from sdf_pose_bridge.tf.parents import tf_parents_from_scene
+
+LINKS = '<link name="a"/><link name="b"/><link name="c"/>'
+
+
+def parents_of(text):
+    """Return the name of each element's parent by its own name, and the whole answer."""
+    scene = sdf_pose_bridge.load_text(text)
+    answer = tf_parents_from_scene(scene)
+    assert len(answer.parents) == len(scene.names)
+    return {
+        name: scene.names[parent]
+        for name, parent in zip(scene.names, answer.parents, strict=True) if parent >= 0
+    }
+
+
+def names_of(text, part):
+    scene = sdf_pose_bridge.load_text(text)
+    answer = tf_parents_from_scene(scene)
+    if part == 'anchored':
+        return {scene.names[index] for index in answer.anchored}
+    return [scene.names[joint.element] for joint in answer.loop_joints]
+
+
+def model(name, content):
+    return f'<model name="{name}">{content}</model>'
+
+
+def joints(*pairs):
+    return ''.join(
+        fixed_joint(f'{parent}_{child}'.replace('::', '_'), parent, child)
+        for parent, child in pairs)
+
+
+# One row of the table each
+
+@pytest.mark.parametrize('tag', [
+    'visual', 'collision', 'sensor', 'light', 'particle_emitter', 'projector'])
+def test_children_of_a_link_hang_on_it(tag):
+    text = model_file('<link name="a"/><link name="b">' + posed(tag, 'x', '', 'a') + '</link>')
+    assert parents_of(text)['m::b::x'] == 'm::b'
+
+
+def test_an_inertial_hangs_on_its_link():
+    assert parents_of(model_file('<link name="a"><inertial/></link>'))['m::a::inertial'] == 'm::a'
+
+
+def test_a_sensor_of_a_joint_hangs_on_the_child_link():
+    text = model_file(LINKS + fixed_joint('j', 'a', 'b', element('sensor', 's')))
+    assert parents_of(text)['m::j::s'] == 'm::b'
+
+
+def test_a_sensor_of_a_joint_whose_child_is_a_frame_hangs_on_the_link():
+    text = model_file(
+        LINKS + '<frame name="f" attached_to="b"/>'
+        + fixed_joint('j', 'a', 'f', element('sensor', 's')))
+    assert parents_of(text)['m::j::s'] == 'm::b'
+
+
+@pytest.mark.parametrize(('attached_to', 'parent'), [
+    ('b', 'm::b'), ('g', 'm::g'), ('j', 'm::j'), ('n', 'm::n'), ('n::k', 'm::n::k'), ('', 'm'),
+    ('__model__', 'm'),
+])
+def test_a_frame_hangs_on_what_it_is_attached_to(attached_to, parent):
+    text = model_file(
+        LINKS + joints(('a', 'b')).replace('a_b', 'j') + '<frame name="g" attached_to="c"/>'
+        + model('n', '<link name="k"/>')
+        + f'<frame name="f" attached_to="{attached_to}"><pose relative_to="a"/></frame>')
+    assert parents_of(text)['m::f'] == parent
+
+
+@pytest.mark.parametrize(('attached_to', 'parent'), [
+    ('m', 'm'), ('m::a', 'm::a'), ('', 'world'), ('world', 'world'), ('g', 'g')])
+def test_a_frame_of_a_world(attached_to, parent):
+    text = world_file(
+        model('m', LINKS) + '<frame name="g"/>'
+        f'<frame name="f" attached_to="{attached_to}"><pose relative_to="m"/></frame>')
+    assert parents_of(text)['f'] == parent
+
+
+def test_a_joint_hangs_on_its_child_link():
+    text = model_file(
+        LINKS + '<frame name="f" attached_to="c"/>' + joints(('a', 'b'), ('b', 'f')))
+    assert parents_of(text)['m::a_b'] == 'm::b'
+    assert parents_of(text)['m::b_f'] == 'm::c'
+
+
+@pytest.mark.parametrize(('canonical', 'link'), [('', 'm::a'), ('b', 'm::b'), ('n::k', 'm::n::k')])
+def test_a_model_hangs_on_its_canonical_link(canonical, link):
+    text = model_file(
+        LINKS + model('n', '<link name="k"/>'), attributes=f'canonical_link="{canonical}"')
+    assert parents_of(text)['m'] == link
+    assert parents_of(text)['m::n'] == 'm::n::k'
+
+
+def test_a_model_of_models_hangs_on_the_first_link_below():
+    text = model_file(model('n', '<link name="k"/>'))
+    assert parents_of(text)['m'] == 'm::n::k'
+    assert parents_of(text)['m::n::k'] == '__root__'
+
+
+def test_a_link_that_a_joint_moves_hangs_on_the_other_side():
+    parents = parents_of(model_file(LINKS + joints(('a', 'b'), ('b', 'c'))))
+    assert (parents['m::c'], parents['m::b'], parents['m::a']) == ('m::b', 'm::a', '__root__')
+
+
+def test_joints_are_followed_in_both_directions_from_the_canonical_link():
+    parents = parents_of(model_file(
+        LINKS + '<link name="d"/>' + joints(('a', 'b'), ('b', 'c'), ('c', 'd')),
+        attributes='canonical_link="c"'))
+    assert {name[-1]: parents[f'm::{name}'] for name in 'abcd'} == {
+        'a': 'm::b', 'b': 'm::c', 'c': '__root__', 'd': 'm::c'}
+
+
+def test_a_link_without_a_joint_hangs_on_the_canonical_link():
+    parents = parents_of(model_file(LINKS, attributes='canonical_link="b"'))
+    assert (parents['m::a'], parents['m::b'], parents['m::c']) == ('m::b', '__root__', 'm::b')
+
+
+def test_the_first_of_joined_links_without_a_way_to_the_canonical_link_hangs_on_it():
+    parents = parents_of(model_file(LINKS + '<link name="d"/>' + joints(('c', 'b'), ('b', 'd'))))
+    assert (parents['m::c'], parents['m::b'], parents['m::d']) == ('m::a', 'm::c', 'm::b')
+
+
+def test_a_nested_model_without_a_joint_hangs_on_the_canonical_link_around_it():
+    parents = parents_of(model_file(
+        LINKS + model('n', '<link name="k"/><link name="k2"/>' + model('o', '<link name="p"/>'))))
+    assert parents['m::n::k'] == 'm::a'
+    assert parents['m::n::k2'] == 'm::n::k'
+    assert parents['m::n::o::p'] == 'm::n::k'
+
+
+def test_a_nested_model_hangs_on_what_a_joint_holds_it_to():
+    parents = parents_of(model_file(
+        LINKS + model('n', '<link name="k"/><link name="k2"/>') + joints(('b', 'n::k2'))))
+    assert parents['m::n::k2'] == 'm::b'
+    assert parents['m::n'] == 'm::n::k'
+    assert parents['m::n::k'] != 'm::n::k'
+
+
+def test_lights_and_actors_of_a_world_hang_on_it():
+    parents = parents_of(world_file(
+        model('m', LINKS) + posed('light', 'sun', '', 'm') + element('actor', 'man')))
+    assert (parents['sun'], parents['man']) == ('world', 'world')
+
+
+# Static models
+
+def test_a_static_model_without_links():
+    parents = parents_of(world_file(
+        model('m', '<static>1</static><frame name="f"/>')
+        + '<frame name="g" attached_to="m"/>'))
+    assert (parents['m'], parents['m::f'], parents['g']) == ('world', 'm', 'm')
+
+
+def test_a_static_model_with_links():
+    parents = parents_of(world_file(
+        model('m', '<static>1</static>' + LINKS + '<frame name="f"/>')))
+    assert parents['m'] == 'm::a'
+    assert (parents['m::a'], parents['m::b'], parents['m::f']) == ('world', 'm::a', 'm')
+
+
+def test_a_joint_to_a_static_model():
+    parents = parents_of(world_file(
+        model('s', '<static>1</static><link name="l"/>') + model('m', LINKS)
+        + joints(('s', 'm::b'))))
+    assert (parents['m::b'], parents['m::a'], parents['s::l']) == ('s::l', 'world', 'world')
+
+
+def test_the_static_side_of_a_joint_holds_the_other_whatever_the_order():
+    parents = parents_of(world_file(
+        model('m', LINKS) + model('s', '<static>1</static><link name="l"/>')
+        + joints(('m::a', 's'))))
+    assert (parents['m::a'], parents['s::l']) == ('s::l', 'world')
+
+
+# The world and other models
+
+def test_a_link_that_is_joined_to_the_world_hangs_on_it():
+    parents = parents_of(world_file(
+        model('m', LINKS + joints(('a', 'b'), ('world', 'b'), ('b', 'c')))))
+    assert (parents['m::b'], parents['m::a'], parents['m::c']) == ('world', 'm::b', 'm::b')
+    assert parents['m'] == 'm::a'
+
+
+def test_a_model_file_joined_to_the_world():
+    parents = parents_of(model_file(LINKS + joints(('a', 'b'), ('world', 'b'))))
+    assert (parents['m::b'], parents['m::a']) == ('__root__', 'm::b')
+
+
+def test_a_joint_to_a_frame_of_the_world():
+    parents = parents_of(world_file(
+        model('m', LINKS) + '<frame name="f"/>' + joints(('f', 'm::b'))))
+    assert parents['m::b'] == 'world'
+
+
+def test_models_that_are_joined_hang_on_one_another():
+    parents = parents_of(world_file(
+        model('p', LINKS) + model('q', LINKS) + joints(('p::c', 'q::b'))))
+    assert parents['q::b'] == 'p::c'
+    assert parents['q'] == 'q::a'
+    assert parents['p::a'] == 'world'
+
+
+def test_a_chain_of_models_hangs_on_the_one_that_is_bolted_down():
+    parents = parents_of(world_file(
+        ''.join(model(name, f'<link name="{name}"/>') for name in 'pqr')
+        + joints(('p', 'q'), ('q', 'r'), ('world', 'r'))))
+    assert (parents['r::r'], parents['q::q'], parents['p::p']) == ('world', 'r::r', 'q::q')
+
+
+def test_what_is_free():
+    text = world_file(
+        model('free', LINKS) + model('bolted', LINKS + joints(('world', 'a'), ('a', 'b')))
+        + model('fixed', '<static>1</static><link name="l"/>') + '<frame name="f"/>')
+    assert {'free::a'} <= names_of(text, 'anchored')
+    assert not {'bolted::a', 'bolted::b'} & names_of(text, 'anchored')
+
+
+# Loops
+
+@pytest.mark.parametrize('pairs', [
+    [('a', 'b'), ('b', 'c'), ('c', 'a')], [('a', 'b'), ('c', 'b'), ('a', 'c')],
+])
+def test_the_joint_that_closes_a_loop_is_left_out(pairs):
+    text = model_file(LINKS + joints(*pairs))
+    last = '_'.join(pairs[-1])
+    assert names_of(text, 'loops') == [f'm::{last}']
+    parents = parents_of(text)
+    assert (parents['m::b'], parents['m::c']) == ('m::a', 'm::b')
+    assert parents[f'm::{last}'] == f'm::{pairs[-1][1]}'
+
+
+def test_two_joints_between_the_same_links():
+    text = model_file(
+        LINKS + joints(('a', 'b')) + fixed_joint('again', 'a', 'b')
+        + fixed_joint('back', 'b', 'a'))
+    assert names_of(text, 'loops') == ['m::again', 'm::back']
+
+
+def test_a_loop_through_the_world():
+    text = model_file(LINKS + joints(('world', 'a'), ('a', 'b'), ('b', 'c'), ('world', 'c')))
+    assert names_of(text, 'loops') == ['m::world_c']
+
+
+def test_a_long_chain():
+    count = 3000
+    text = model_file(
+        ''.join(f'<link name="l{i}"/>' for i in range(count))
+        + joints(*((f'l{i}', f'l{i - 1}') for i in range(1, count))))
+    parents = parents_of(text)
+    assert parents[f'm::l{count - 1}'] == f'm::l{count - 2}'
+
+
+# Parents found for all at once
+
+BODIES = [f'{name}::{link}' for name in 'pqr' for link in 'abc']
+
+
+def builder_of_joints(pairs, static=()):
+    models = ''.join(
+        model(name, f'<static>{name in static}</static>{LINKS}') for name in 'pqr')
+    return _Builder(sdf_pose_bridge.load_text(world_file(models + joints(*pairs))))
+
+
+@given(
+    edges=st.lists(
+        st.tuples(st.sampled_from(['world', *BODIES]), st.sampled_from(BODIES)),
+        unique_by=lambda edge: edge[1]),
+    static=st.sets(st.sampled_from('pqr'), max_size=1))
+def test_what_is_found_at_once_is_what_a_search_finds(edges, static):
+    pairs = [
+        (start, end) for start, end in edges
+        if start != end and (start[0] != end[0] or end[0] not in static)]
+    builder = builder_of_joints(pairs, static)
+    bodies, ranks = builder._ranked_bodies()
+    movers = builder._movers_if_trees_hang_on_first(bodies, ranks)
+    found, loops = builder._movers_of_any(bodies[ranks.argsort()].tolist())
+    assert movers is None or (movers.tolist(), []) == (found.tolist(), loops)
+
+
+def test_a_tree_below_the_first_link_is_found_at_once():
+    builder = builder_of_joints([('p::a', 'p::b'), ('p::b', 'p::c'), ('p::a', 'q::a')])
+    assert builder._movers_if_trees_hang_on_first(*builder._ranked_bodies()) is not None
+
+
+@pytest.mark.parametrize('pairs', [
+    [('p::a', 'p::b'), ('p::b', 'p::a')],
+    [('p::b', 'p::c'), ('p::c', 'q::a'), ('q::a', 'p::b')],
+    [('p::a', 'p::c'), ('p::b', 'p::c')],
+    [('p::b', 'p::a')],
+])
+def test_loops_two_parents_and_other_tops_need_a_search(pairs):
+    builder = builder_of_joints(pairs)
+    assert builder._movers_if_trees_hang_on_first(*builder._ranked_bodies()) is None
+
+
+@pytest.mark.parametrize('count', [1, 2, 3, 4, 5, 8, 9, 31, 33])
+def test_a_chain_of_any_length_is_found_at_once(count):
+    links = [f'l{number}' for number in range(count)]
+    text = model_file(
+        ''.join(f'<link name="{link}"/>' for link in links)
+        + joints(*reversed(list(itertools.pairwise(links)))))
+    builder = _Builder(sdf_pose_bridge.load_text(text))
+    movers = builder._movers_if_trees_hang_on_first(*builder._ranked_bodies())
+    names = builder._scene.names
+    assert {names[end]: names[start] for end, start in enumerate(movers) if start >= 0} == {
+        f'm::{end}': f'm::{start}' for start, end in itertools.pairwise(links)}

@@ -1,0 +1,313 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The tree of TF frames: clashes, options, and poses that stay what the scene says."""
+
+from pathlib import Path
+
+from hypothesis import given
+from hypothesis import HealthCheck
+from hypothesis import settings
+from hypothesis import strategies as st
+from matrices import assert_same_pose
+from matrices import matrix_from_pose
+import numpy as np
+import pytest
+from random_scenes import random_scenes
+from sdf_texts import fixed_joint
+from sdf_texts import model_file
+from sdf_texts import warning_codes
+from sdf_texts import world_file
+from tf_checks import assert_is_tree
+from tf_checks import model
+from tf_checks import only_tree_error
+from tf_checks import parents_of
+from tf_checks import pose_of
+from tf_checks import tree_errors_of
+from tf_checks import tree_of
+
+import sdf_pose_bridge
+from sdf_pose_bridge import Kind
+from sdf_pose_bridge.tf.frame_ids import FrameNames
+from sdf_pose_bridge.tf.tree import AnchorModels
+from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
+
+EXAMPLES = sorted((Path(__file__).parents[2] / 'examples').rglob('*.sdf'))
+ALL_KINDS = frozenset(Kind) - {Kind.ROOT, Kind.WORLD}
+LINK = '<link name="l"/>'
+
+
+def assert_has_poses_of(tree, scene, ids):
+    """Check the poses of frames against the scene; ids tells the frame id of each element."""
+    for index, frame_id in ids.items():
+        assert_same_pose(
+            pose_of(tree, frame_id), matrix_from_pose(scene.poses[index].tolist()),
+            name=scene.names[index])
+
+
+def scoped_ids(scene, kinds):
+    """Name all elements of some kinds by the documented rule, where no sensor sets an id."""
+    ids = {}
+    for index, name in enumerate(scene.names):
+        kind = Kind(scene.kinds[index])
+        if kind not in kinds or scene.roots[index]:
+            continue
+        parts = name.split('::')
+        if kind in {Kind.VISUAL, Kind.COLLISION, Kind.LIGHT, Kind.PARTICLE_EMITTER,
+                    Kind.PROJECTOR, Kind.ACTOR}:
+            parts.insert(-1, kind.label)
+        ids[index] = '/'.join(parts)
+    return ids
+
+
+# Frames that TF, or a reader of it, could not tell apart
+
+@pytest.mark.parametrize(('text', 'options', 'frame_id'), [
+    (model_file('<link name="a/b"/><model name="a"><link name="b"/></model>'), {}, 'a/b'),
+    (world_file(model('m/x', LINK) + model('m', '<link name="x"/><link name="x/l"/>')), {}, 'm/x'),
+    (model_file('<link name="m"/>'), {}, 'm'),
+    (world_file(model('p', LINK) + model('q', LINK)), {'frame_names': FrameNames.RELATIVE}, 'l'),
+    (world_file(model('l', '<link name="k"/>') + model('q', LINK)),
+     {'frame_names': FrameNames.RELATIVE}, 'l'),
+    (model_file('<link name="/a"/><link name="a"/>'), {}, 'a'),
+    (model_file('<link name="a_b"/><model name="a"><link name="b"/></model>'),
+     {'frame_separator': '_'}, 'a_b'),
+    (model_file('<link name="l"><visual name="x"/></link><model name="l2"><link name="k"/>'
+                '</model><link name="l/visual/x"/>'), {'kinds': ALL_KINDS}, 'l/visual/x'),
+])
+def test_two_elements_would_share_an_id(text, options, frame_id):
+    error = tree_errors_of(text, **options)[0]
+    assert error.code == 'DUPLICATE_NAME'
+    assert f'"{frame_id}"' in error.message
+
+
+@pytest.mark.parametrize(('name', 'root_frame', 'code'), [
+    ('m7/l', 'world', 'DUPLICATE_NAME'), ('map', 'map', 'DUPLICATE_NAME'),
+    ('//', 'world', 'ELEMENT_INVALID')])
+def test_one_bad_id_among_many(name, root_frame, code):
+    models = ''.join(model(f'm{number}', LINK) for number in range(1000))
+    scene = sdf_pose_bridge.load_text(world_file(f'{models}<frame name="{name}"/>'))
+    with pytest.raises(sdf_pose_bridge.SdfError) as caught:
+        tf_tree_from_scene(scene, TfOptions(root_frame=root_frame))
+    assert [(error.code, f'"{name}"' in error.message) for error in caught.value.errors] == [
+        (code, True)]
+
+
+def test_a_clash_names_both_and_their_lines():
+    error = only_tree_error(
+        '<sdf version="1.9"><model name="m">\n<link name="a/b"/>\n'
+        '<model name="a">\n<link name="b"/></model></model></sdf>')
+    assert 'link "m::a/b"' in error.message
+    assert 'link "m::a::b"' in error.message
+    assert error.line == 4
+    assert '(line 2)' in error.message
+
+
+def test_all_clashes_are_told():
+    text = world_file(model('p', '<link name="a"/><link name="b"/>')
+                      + model('q', '<link name="a"/><link name="b"/>'))
+    assert len(tree_errors_of(text, frame_names=FrameNames.RELATIVE)) == 2
+
+
+@pytest.mark.parametrize(('text', 'root'), [
+    (world_file(model('map', LINK)), 'map'),
+    (model_file('<link name="base"/>'), 'base'),
+    (model_file('<link name="a"><sensor name="s" type="imu"/></link>'), 'a/s'),
+])
+def test_an_id_is_that_of_the_root(text, root):
+    error = only_tree_error(text, root_frame=root)
+    assert error.code == 'DUPLICATE_NAME'
+    assert f'"{root}"' in error.message
+
+
+def test_a_prefix_tells_a_frame_from_the_root():
+    assert parents_of(world_file(model('map', LINK)), root_frame='map', frame_prefix='r/') == {
+        'r/map': 'r/map/l', 'r/map/l': 'map'}
+
+
+@pytest.mark.parametrize('prefix', ['', 'r/'])
+def test_a_name_leaves_no_id(prefix):
+    error = only_tree_error(model_file('<link name="/"/>'), frame_prefix=prefix)
+    assert error.code == 'ELEMENT_INVALID'
+    assert '"m::/"' in error.message
+
+
+def test_clashes_of_what_is_not_published_do_not_matter():
+    text = world_file(model('p', LINK) + model('q', LINK))
+    parents_of(text, frame_names=FrameNames.RELATIVE, model='p')
+    parents_of(text, frame_names=FrameNames.RELATIVE, kinds=frozenset({Kind.MODEL}))
+
+
+def test_blanks_are_kept_with_a_warning():
+    tree = tree_of(model_file('<link name="left arm"/>'))
+    assert 'left arm' in tree.frame_ids
+    assert warning_codes(tree) == ['WARNING']
+
+
+def test_a_leading_slash_is_stripped():
+    assert tree_of(model_file('<link name="/a"/>')).frame_ids == ('m', 'a')
+
+
+# Options
+
+CELL = world_file(
+    '<frame name="corner"/>'
+    + model('table', '<static>1</static>' + LINK) + model('free', LINK + '<frame name="f"/>')
+    + model('bolted', LINK + fixed_joint('j', 'world', 'l'))
+    + model('held', LINK) + fixed_joint('k', 'bolted', 'held'))
+
+
+@pytest.mark.parametrize(('anchor', 'on_root'), [
+    (AnchorModels.ALL, {'corner', 'table/l', 'free/l', 'bolted/l'}),
+    (AnchorModels.STATIC, {'corner', 'table/l', 'bolted/l'}),
+    (AnchorModels.NONE, {'corner'}),
+])
+def test_which_models_are_anchored(anchor, on_root):
+    parents = parents_of(CELL, anchor_models=anchor)
+    assert {name for name, parent in parents.items() if parent == 'world'} == on_root
+    assert parents['held/l'] == 'bolted/l'
+
+
+def test_a_frame_without_a_parent_starts_a_tree_of_its_own():
+    parents = parents_of(CELL, anchor_models=AnchorModels.STATIC)
+    assert (parents['free/l'], parents['free'], parents['free/f']) == ('', 'free/l', 'free')
+
+
+def test_the_default_kinds():
+    assert {kind.label for kind in DEFAULT_KINDS} == {'model', 'link', 'frame', 'sensor'}
+
+
+def test_other_kinds():
+    text = model_file(
+        '<link name="l"><inertial/><visual name="x"/><collision name="x"/></link>'
+        '<link name="k"/>' + fixed_joint('j', 'l', 'k'))
+    assert parents_of(text, kinds=ALL_KINDS) == {
+        'm': 'l', 'l': 'world', 'l/inertial': 'l', 'l/visual/x': 'l', 'l/collision/x': 'l',
+        'k': 'l', 'j': 'k'}
+
+
+def test_what_is_not_published_stands_in_no_ones_way():
+    text = model_file('<link name="l"/><frame name="f" attached_to="l"/>'
+                      '<frame name="g" attached_to="f"/><link name="k"/>'
+                      + fixed_joint('j', 'l', 'k'))
+    assert parents_of(text, kinds=frozenset({Kind.FRAME})) == {'f': 'world', 'g': 'f'}
+    assert parents_of(text, kinds=frozenset({Kind.JOINT})) == {'j': 'world'}
+    assert parents_of(text, kinds=frozenset()) == {}
+
+
+def test_the_root_frame():
+    assert parents_of(model_file(LINK), root_frame='map') == {'m': 'l', 'l': 'map'}
+
+
+def test_one_model_of_a_world():
+    parents = parents_of(CELL, model='free')
+    assert parents == {'free': 'free/l', 'free/l': 'world', 'free/f': 'free'}
+
+
+def test_one_model_that_is_held_by_another():
+    tree = tree_of(CELL.replace('<model name="bolted">', '<model name="bolted"><pose>1 0 0 0 0 0'
+                                '</pose>'), model='held')
+    assert tree.parent_ids == ('held/l', 'world')
+
+
+def test_a_nested_model():
+    nested = model('n', '<link name="k"/>', '<pose>1 0 0 0 0 0</pose>')
+    text = world_file(model('m', LINK + nested))
+    tree = tree_of(text, model='m::n')
+    assert tree.frame_ids == ('m/n', 'm/n/k')
+    assert pose_of(tree, 'm/n')[:3] == [1, 0, 0]
+
+
+@pytest.mark.parametrize('name', ['fre', 'free::l', 'w', 'world', 'corner'])
+def test_an_unknown_model(name):
+    error = only_tree_error(CELL, model=name)
+    assert f'"{name}"' in error.message
+
+
+def test_the_nearest_model_is_suggested():
+    assert 'did you mean "bolted"' in only_tree_error(CELL, model='boltd').message
+
+
+def test_of_several_worlds_the_first():
+    text = ('<sdf version="1.10"><world name="day">' + model('p', LINK)
+            + '</world><world name="night">' + model('p', LINK) + '</world></sdf>')
+    tree = tree_of(text)
+    assert tree.frame_ids == ('p', 'p/l')
+    assert 'night' in tree.warnings[0].message
+
+
+def test_a_loop_is_warned_of():
+    text = model_file(
+        '<link name="a"/><link name="b"/>' + fixed_joint('j', 'a', 'b')
+        + fixed_joint('again', 'a', 'b'))
+    tree = tree_of(text)
+    assert warning_codes(tree) == ['WARNING']
+    assert '"m::again"' in tree.warnings[0].message
+
+
+def test_an_empty_file():
+    tree = tree_of('<sdf version="1.9"/>')
+    assert tree.frame_ids == ()
+    assert tree.transforms.shape == (0, 7)
+
+
+def test_arrays_cannot_be_written():
+    tree = tree_of(model_file(LINK))
+    for array in (tree.poses, tree.parents, tree.transforms, tree.elements):
+        with pytest.raises(ValueError, match='read-only'):
+            array[0] = 1.0
+
+
+def test_options_do_not_change_the_scene():
+    scene = sdf_pose_bridge.load_text(CELL)
+    before = scene.poses.copy()
+    tf_tree_from_scene(scene)
+    np.testing.assert_array_equal(scene.poses, before)
+
+
+# Whatever the scene
+
+@pytest.mark.parametrize('anchor', AnchorModels)
+@pytest.mark.parametrize('path', EXAMPLES, ids=lambda path: path.stem)
+def test_the_examples_are_trees(path, anchor):
+    scene = sdf_pose_bridge.load(path)
+    kinds = ALL_KINDS - {Kind.SENSOR}
+    tree = tf_tree_from_scene(scene, TfOptions(
+        kinds=kinds, anchor_models=anchor, frame_names=FrameNames.SCOPED))
+    assert_is_tree(tree)
+    assert_has_poses_of(tree, scene, scoped_ids(scene, kinds))
+
+
+@pytest.mark.parametrize('path', EXAMPLES, ids=lambda path: path.stem)
+def test_the_examples_need_no_options(path):
+    assert_is_tree(tf_tree_from_scene(sdf_pose_bridge.load(path)))
+
+
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(random_scenes(), st.sampled_from(AnchorModels), st.sets(st.sampled_from(sorted(ALL_KINDS))),
+       st.sampled_from(['/', '::']), st.booleans())
+def test_random_scenes_are_trees(drawn, anchor, kinds, separator, optical_frames):
+    scene = sdf_pose_bridge.load_text(drawn.text())
+    tree = tf_tree_from_scene(scene, TfOptions(
+        kinds=frozenset(kinds), anchor_models=anchor, frame_names=FrameNames.SCOPED,
+        frame_separator=separator, optical_frames=optical_frames))
+    assert_is_tree(tree)
+    if separator == '/':
+        ids = scoped_ids(scene, kinds)
+        assert_has_poses_of(tree, scene, ids)
+        assert {i for i in tree.frame_ids if not i.endswith('_optical')} == set(ids.values())
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(random_scenes(), st.data())
+def test_one_model_of_a_random_scene_is_a_tree(drawn, data):
+    scene = sdf_pose_bridge.load_text(drawn.text())
+    name = data.draw(st.sampled_from(drawn.models)).scoped_name
+    tree = tf_tree_from_scene(
+        scene, TfOptions(kinds=ALL_KINDS, model=name, frame_names=FrameNames.SCOPED))
+    assert_is_tree(tree)
+    inside = {
+        index: frame_id for index, frame_id in scoped_ids(scene, ALL_KINDS).items()
+        if f'{scene.names[index]}::'.startswith(f'{name}::')}
+    assert_has_poses_of(tree, scene, inside)
