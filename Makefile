@@ -23,7 +23,7 @@ help:
 	@echo 'make demo           the node on an example, and what a listener receives from it'
 	@echo 'make test           all tests; ARGS="-k name" hands arguments to pytest'
 	@echo 'make run FILE=...   the node on an SDFormat file; ARGS="-p name:=value" sets parameters'
-	@echo 'make lint           ruff and mypy'
+	@echo 'make lint           ruff, mypy and import-linter'
 	@echo 'make bench          benchmarks; ARGS="..." hands arguments to them'
 	@echo 'make differential   random scenes against libsdformat; ARGS="--scenes 100" for fewer'
 	@echo 'make setup          only the environment in .underlay, which all of these share'
@@ -48,7 +48,7 @@ run: setup
 	@$(in_shell) python underlay/run.py "$$CALLER" "$$FILE" $(ARGS)
 
 lint: setup
-	@. underlay/setup.bash && ruff check && exec mypy
+	@. underlay/setup.bash && ruff check && mypy && exec lint-imports --no-logo --no-cache
 
 bench: setup
 	@[[ -d benchmarks ]] || { echo 'There are no benchmarks yet.' >&2; exit 1; }

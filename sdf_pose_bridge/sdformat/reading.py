@@ -21,7 +21,7 @@ from sdf_pose_bridge.sdformat.document import XmlElement
 from sdf_pose_bridge.sdformat.element_columns import ElementColumns
 from sdf_pose_bridge.sdformat.elements import NOWHERE
 from sdf_pose_bridge.sdformat.elements import step
-from sdf_pose_bridge.sdformat.include.inclusions import DEEPEST
+from sdf_pose_bridge.sdformat.include.inclusion import DEEPEST
 from sdf_pose_bridge.sdformat.versions import may_hold_flat_names
 from sdf_pose_bridge.sdformat.versions import Version
 from sdf_pose_bridge.sdformat.versions import version_of

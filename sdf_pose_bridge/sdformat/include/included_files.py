@@ -19,8 +19,8 @@ from sdf_pose_bridge.sdformat.document import value_of
 from sdf_pose_bridge.sdformat.document import XmlElement
 from sdf_pose_bridge.sdformat.document_reading import document_from_file
 from sdf_pose_bridge.sdformat.include.expansion import expanded
+from sdf_pose_bridge.sdformat.include.inclusion import DEEPEST
 from sdf_pose_bridge.sdformat.include.inclusion import Inclusion
-from sdf_pose_bridge.sdformat.include.inclusions import DEEPEST
 from sdf_pose_bridge.sdformat.include.manifest import model_file_from_directory
 from sdf_pose_bridge.sdformat.include.params import apply_params
 from sdf_pose_bridge.sdformat.include.params import params_of

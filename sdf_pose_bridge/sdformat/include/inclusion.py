@@ -14,6 +14,9 @@ from sdf_pose_bridge.sdformat.document import boolean_from_text
 from sdf_pose_bridge.sdformat.document import Document
 from sdf_pose_bridge.sdformat.document import XmlElement
 
+DEEPEST = 64
+"""Files may include one another to this depth."""
+
 TOP_TAGS = ('model', 'actor', 'light')
 """What a file can be included for, in the order in which libsdformat looks."""
 

@@ -17,10 +17,6 @@ from sdf_pose_bridge.sdformat.versions import upgrade
 if TYPE_CHECKING:
     from sdf_pose_bridge.sdformat.include.inclusion import Inclusion
 
-DEEPEST = 64
-"""Files may include one another to this depth."""
-
-
 class DocumentSet(NamedTuple):
     """A document and everything that it includes, each upgraded by its own version."""
 
