@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from sdf_pose_bridge.errors import SdfWarning
     from sdf_pose_bridge.errors import UnknownFrameError
     from sdf_pose_bridge.geometry.poses import Pose
-    from sdf_pose_bridge.names import Kind
     from sdf_pose_bridge.scene.loading import load
     from sdf_pose_bridge.scene.loading import load_text
     from sdf_pose_bridge.scene.scene import Scene
+    from sdf_pose_bridge.sdformat.grammar import Kind
 
 __all__ = [
     'Kind',
@@ -39,7 +39,7 @@ __all__ = [
 ]
 
 _HOMES = {
-    'Kind': 'names',
+    'Kind': 'sdformat.grammar',
     'Place': 'errors',
     'Pose': 'geometry.poses',
     'Scene': 'scene.scene',

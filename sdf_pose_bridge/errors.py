@@ -1,21 +1,22 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""What can be wrong with an SDFormat file: one family of errors, a class for each cause.
+"""
+Errors and warnings about SDFormat files.
 
-Codes are those of libsdformat (``sdf::ErrorCode``), so that a message found here can be looked up
-there.
+All errors derive from :class:`SdfError`, with one class for each cause. Codes are those of
+libsdformat (``sdf::ErrorCode``).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from collections.abc import Iterable
 from collections.abc import Sequence
 from typing import NamedTuple
+from typing import TypeVar
 
 
 class Place(NamedTuple):
-    """Where in the input something stands."""
+    """A place in the input."""
 
     file: str
     """Path of the file, as it was opened."""
@@ -29,14 +30,13 @@ class Place(NamedTuple):
 
 
 class SdfWarning(NamedTuple):
-    """Something that libsdformat accepts, but that its author should know of."""
+    """Something that libsdformat accepts, but that the author of the file should know of."""
 
     code: str
-    """Code of the error that the same thing is elsewhere, or ``WARNING``."""
+    """Code of the corresponding error, or ``WARNING``."""
     message: str
-    """One sentence for a person."""
+    """One sentence."""
     place: Place
-    """Where it stands."""
 
     def __str__(self) -> str:
         return f'{self.place}: {self.code}: {self.message}'
@@ -44,10 +44,10 @@ class SdfWarning(NamedTuple):
 
 class SdfError(Exception):
     """
-    One thing that is wrong, with its place; the base of all errors of this package's core.
+    An error in an SDFormat file; the base class of all errors of the core.
 
     :param message: one sentence that names the value and the rule that it breaks.
-    :param place: where it stands.
+    :param place: where the error is.
     """
 
     code: str = 'ERROR'
@@ -74,12 +74,12 @@ class SdfError(Exception):
 
     @property
     def errors(self) -> tuple[SdfError, ...]:
-        """All errors of the load that this one ended, in file order."""
+        """All errors of the load that this error ended, in file order."""
         return (self,)
 
     @property
     def warnings(self) -> tuple[SdfWarning, ...]:
-        """What the load warned about before it ended, in file order."""
+        """All warnings of the load that this error ended, in file order."""
         return ()
 
     def __str__(self) -> str:
@@ -88,10 +88,10 @@ class SdfError(Exception):
 
 class LoadError(SdfError):
     """
-    A file that cannot be used; it speaks for its first error and holds all of them.
+    A file that is not valid. Code, message and place are those of the first error.
 
     :param errors: one or more errors, in file order.
-    :param warnings: what was only warned about, in file order.
+    :param warnings: the warnings, in file order.
     """
 
     def __init__(self, errors: Sequence[SdfError], warnings: Sequence[SdfWarning] = ()) -> None:
@@ -108,7 +108,7 @@ class LoadError(SdfError):
 
     @property
     def warnings(self) -> tuple[SdfWarning, ...]:
-        """What the load warned about, in file order."""
+        """All warnings about the file, in file order."""
         return self._warnings
 
     def __str__(self) -> str:
@@ -134,7 +134,7 @@ class ConversionError(SdfError):
 
 
 class AttributeInvalidError(SdfError):
-    """An attribute has a value that it must not have."""
+    """An attribute has an invalid value."""
 
     code = 'ATTRIBUTE_INVALID'
 
@@ -146,7 +146,7 @@ class AttributeMissingError(SdfError):
 
 
 class ElementInvalidError(SdfError):
-    """An element has a value that it must not have."""
+    """An element has an invalid value."""
 
     code = 'ELEMENT_INVALID'
 
@@ -158,19 +158,19 @@ class ElementMissingError(SdfError):
 
 
 class ElementIncorrectTypeError(SdfError):
-    """An element stands where only others, or no further one, may stand."""
+    """An element is not allowed at its place."""
 
     code = 'ELEMENT_INCORRECT_TYPE'
 
 
 class ReservedNameError(SdfError):
-    """A name is one that SDFormat keeps for itself."""
+    """A name is reserved."""
 
     code = 'RESERVED_NAME'
 
 
 class DuplicateNameError(SdfError):
-    """Two elements of one scope share a name."""
+    """Two elements of one scope have the same name."""
 
     code = 'DUPLICATE_NAME'
 
@@ -182,49 +182,49 @@ class ModelWithoutLinkError(SdfError):
 
 
 class CanonicalLinkError(SdfError):
-    """``canonical_link`` names nothing."""
+    """``canonical_link`` does not name a frame."""
 
     code = 'MODEL_CANONICAL_LINK_INVALID'
 
 
 class RelativeToError(SdfError):
-    """``relative_to`` or a placement frame names nothing."""
+    """``relative_to`` or a placement frame does not name a frame."""
 
     code = 'POSE_RELATIVE_TO_INVALID'
 
 
 class RelativeToCycleError(SdfError):
-    """Poses are written relative to one another in a ring."""
+    """Poses are relative to one another in a cycle."""
 
     code = 'POSE_RELATIVE_TO_CYCLE'
 
 
 class AttachedToError(SdfError):
-    """``attached_to`` names nothing."""
+    """``attached_to`` does not name a frame."""
 
     code = 'FRAME_ATTACHED_TO_INVALID'
 
 
 class AttachedToCycleError(SdfError):
-    """Frames are attached to one another in a ring."""
+    """Frames are attached to one another in a cycle."""
 
     code = 'FRAME_ATTACHED_TO_CYCLE'
 
 
 class JointChildError(SdfError):
-    """A joint's child names nothing that can be one."""
+    """The child of a joint is not valid."""
 
     code = 'JOINT_CHILD_LINK_INVALID'
 
 
 class JointParentError(SdfError):
-    """A joint's parent names nothing that can be one."""
+    """The parent of a joint is not valid."""
 
     code = 'JOINT_PARENT_LINK_INVALID'
 
 
 class JointSameLinkError(SdfError):
-    """A joint's parent and child are one body."""
+    """The parent and the child of a joint are the same body."""
 
     code = 'JOINT_PARENT_SAME_AS_CHILD'
 
@@ -236,68 +236,101 @@ class ExpressedInError(SdfError):
 
 
 class UriLookupError(SdfError):
-    """What an include names was not found."""
+    """The URI of an include was not found."""
 
     code = 'URI_LOOKUP'
 
 
 class PlacementFrameError(SdfError):
-    """An include names a placement frame, but not where it is placed."""
+    """An include has a placement frame, but no pose."""
 
     code = 'MODEL_PLACEMENT_FRAME_INVALID'
 
 
 class MergeIncludeError(SdfError):
-    """Something cannot be merged into what includes it."""
+    """An element cannot be merged into the element that includes it."""
 
     code = 'MERGE_INCLUDE_UNSUPPORTED'
 
 
 class UnknownFrameError(SdfError, LookupError):
-    """A query names a frame that the scene does not have, or has more than once."""
+    """A query names a frame that does not exist, or one of several with the same name."""
 
     code = 'POSE_RELATIVE_TO_INVALID'
 
 
-MOST_COMPARED = 400
-"""With how many names one that was not found is compared in full."""
+_Problem = TypeVar('_Problem', SdfError, SdfWarning)
 
 
-def hint_from_names(wanted: str, names: Iterable[str]) -> str:
+class Problems:
     """
-    Return the end of a sentence about a name that was not found.
+    The errors and warnings of one load.
 
-    :param wanted: the name that was looked for.
-    :param names: those that exist where it was looked for.
-    :return: ``; did you mean "..."?`` with the nearest name, or an empty string.
+    :param paths: the files that are read, in the order of reading; it may grow.
     """
-    # Most processes need it for nothing.
-    import difflib
-    near = difflib.get_close_matches(wanted, _likeliest(wanted, list(names)), n=1, cutoff=0.6)
-    return f'; did you mean "{near[0]}"?' if near else ''
 
+    def __init__(self, paths: Sequence[str]) -> None:
+        self._paths = paths
+        self._errors: list[SdfError] = []
+        self._warnings: list[SdfWarning] = []
 
-def _likeliest(wanted: str, names: list[str]) -> list[str]:
-    """Leave out what would take seconds to compare, as large scenes have many similar names."""
-    if len(names) <= MOST_COMPARED:
-        return names
-    length = len(wanted)
-    most = min(length, max(map(len, names)))
-    beginning = _sharing_most(names, most, str.startswith, lambda size: wanted[:size])
-    end = _sharing_most(names, most, str.endswith, lambda size: wanted[length - size:])
-    return [*beginning[:MOST_COMPARED // 2], *end[:MOST_COMPARED // 2]]
+    def error(self, error: SdfError) -> None:
+        """
+        Add an error.
 
+        :param error: the error.
+        """
+        self._errors.append(error)
 
-def _sharing_most(
-    names: list[str], most: int, shares: Callable[[str, str], bool], part: Callable[[int], str],
-) -> list[str]:
-    least = 0
-    while least < most:
-        size = (least + most + 1) // 2
-        wanted = part(size)
-        sharing = [name for name in names if shares(name, wanted)]
-        if sharing:
-            names, least = sharing, size
-        else:
-            most = size - 1
-    return names
+    def warning(self, message: str, place: Place, code: str = 'WARNING') -> None:
+        """
+        Add a warning.
+
+        :param message: one sentence.
+        :param place: where it is.
+        :param code: code of the corresponding error, or ``WARNING``.
+        """
+        self._warnings.append(SdfWarning(code, message, place))
+
+    def extend(self, problems: Iterable[SdfError | SdfWarning]) -> None:
+        """
+        Add errors and warnings.
+
+        :param problems: any number of them.
+        """
+        for problem in problems:
+            if isinstance(problem, SdfError):
+                self._errors.append(problem)
+            else:
+                self._warnings.append(problem)
+
+    @property
+    def errors(self) -> tuple[SdfError, ...]:
+        """All errors by file and line, each once however often its file is included."""
+        return self._in_order(self._errors)
+
+    @property
+    def warnings(self) -> tuple[SdfWarning, ...]:
+        """All warnings, in the order of :attr:`errors`."""
+        return self._in_order(self._warnings)
+
+    def raise_errors(self) -> None:
+        """
+        Raise the errors, if there are any.
+
+        :raises LoadError: with all errors and warnings.
+        """
+        if self._errors:
+            raise LoadError(self.errors, self.warnings)
+
+    def _in_order(self, problems: Sequence[_Problem]) -> tuple[_Problem, ...]:
+        ranks = {path: rank for rank, path in enumerate(self._paths)}
+        unique: dict[tuple[str, str, Place], _Problem] = {}
+        for problem in problems:
+            place = problem.place
+            if ranks.get(place.file, 1):
+                # An element of an included file has another path for each include.
+                place = place._replace(element='')
+            unique.setdefault((problem.code, problem.message, place), problem)
+        return tuple(sorted(unique.values(), key=lambda problem: (
+            ranks.get(problem.place.file, len(ranks)), problem.place.line)))

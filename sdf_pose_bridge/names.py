@@ -1,62 +1,34 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Kinds of element that have a pose, and how SDFormat spells their names."""
+"""Names in SDFormat: how they are scoped, which are reserved, and which one was meant."""
 
 from __future__ import annotations
 
-import enum
+from collections.abc import Callable
+from collections.abc import Iterable
 
 SEPARATOR = '::'
-"""Stands between the names of a scoped name: ``robot::arm::hand``."""
+"""Separates the parts of a scoped name: ``robot::arm::hand``."""
 
 WORLD_FRAME = 'world'
-"""The inertial frame of a world, as references in that world spell it."""
+"""The name by which references in a world mean its frame."""
 
 ROOT_FRAME = '__root__'
-"""The implicit root outside the model of a model file; no file may write it."""
+"""The implicit root of a model file. No file may write this name."""
 
 MODEL_FRAME = '__model__'
-"""A model's own frame, as references inside that model spell it."""
+"""The name by which references in a model mean the frame of the model."""
 
-
-class Kind(enum.IntEnum):
-    """Kind of an element that has a pose."""
-
-    ROOT = 0
-    """What the poses of a model file are reported in; stands in no file."""
-    WORLD = 1
-    MODEL = 2
-    LINK = 3
-    JOINT = 4
-    FRAME = 5
-    VISUAL = 6
-    COLLISION = 7
-    SENSOR = 8
-    LIGHT = 9
-    INERTIAL = 10
-    PARTICLE_EMITTER = 11
-    PROJECTOR = 12
-    ACTOR = 13
-
-    # An Enum's own hash is a function in Python, and kinds are keys wherever elements are read.
-    __hash__ = int.__hash__
-
-    @property
-    def label(self) -> str:
-        """Name of the kind as SDFormat spells the element: ``particle_emitter``."""
-        return self.name.lower()
-
-
-FRAME_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.JOINT, Kind.FRAME})
-"""Kinds that others may refer to; they share one name space in a scope."""
+_MOST_COMPARED = 400
+"""How many names are compared in full with one that was not found."""
 
 
 def is_reserved(name: str) -> bool:
     """
-    Tell whether SDFormat keeps a name for itself.
+    Return whether a name is reserved (``isReservedName`` of libsdformat).
 
     :param name: an element's own name, without its scope.
-    :return: true for ``world`` and for four or more characters between double underscores.
+    :return: True for ``world``, and for four or more characters that begin and end with ``__``.
     """
     return name == WORLD_FRAME or (
         len(name) >= 4 and name.startswith('__') and name.endswith('__'))
@@ -64,10 +36,52 @@ def is_reserved(name: str) -> bool:
 
 def scoped_name(scope: str, name: str) -> str:
     """
-    Return the absolute name of something in a scope.
+    Return the absolute name of an element.
 
-    :param scope: absolute name of the scope; empty for a world or the implicit root.
-    :param name: a name or a reference in that scope.
+    :param scope: absolute name of its scope; empty for a world or the implicit root.
+    :param name: its name, or a reference, in that scope.
     :return: the two joined by ``::``.
     """
     return f'{scope}{SEPARATOR}{name}' if scope else name
+
+
+def hint_from_names(wanted: str, names: Iterable[str]) -> str:
+    """
+    Return the end of a message about a name that was not found.
+
+    :param wanted: the name.
+    :param names: the names that exist.
+    :return: ``; did you mean "..."?`` with the nearest name, or an empty string.
+    """
+    # The import takes a millisecond, and most processes do not need it.
+    import difflib
+    near = difflib.get_close_matches(wanted, _likely_names(wanted, list(names)), n=1, cutoff=0.6)
+    return f'; did you mean "{near[0]}"?' if near else ''
+
+
+def _likely_names(wanted: str, names: list[str]) -> list[str]:
+    """Return the names with the longest common beginnings and ends, if there are very many."""
+    if len(names) <= _MOST_COMPARED:
+        return names
+    length = len(wanted)
+    longest = min(length, max(map(len, names)))
+    same_start = _sharing_longest(names, longest, str.startswith, lambda size: wanted[:size])
+    same_end = _sharing_longest(names, longest, str.endswith, lambda size: wanted[length - size:])
+    half = _MOST_COMPARED // 2
+    return [*same_start[:half], *same_end[:half]]
+
+
+def _sharing_longest(
+    names: list[str], longest: int, shares: Callable[[str, str], bool], part: Callable[[int], str],
+) -> list[str]:
+    """Find, by bisection, the names that share the longest possible part with the wanted one."""
+    shortest = 0
+    while shortest < longest:
+        size = (shortest + longest + 1) // 2
+        wanted = part(size)
+        sharing = [name for name in names if shares(name, wanted)]
+        if sharing:
+            names, shortest = sharing, size
+        else:
+            longest = size - 1
+    return names

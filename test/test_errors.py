@@ -7,7 +7,7 @@ import pickle
 import pytest
 
 from sdf_pose_bridge import errors
-from sdf_pose_bridge.errors import hint_from_names
+from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.errors import LoadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place

@@ -4,9 +4,9 @@
 
 import pytest
 
-from sdf_pose_bridge.names import FRAME_KINDS
+from sdf_pose_bridge.sdformat.grammar import FRAME_KINDS
 from sdf_pose_bridge.names import is_reserved
-from sdf_pose_bridge.names import Kind
+from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.names import scoped_name
 
 

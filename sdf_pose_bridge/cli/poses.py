@@ -17,8 +17,8 @@ from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.grammar import Kind
 
 _SHOWN_KINDS = tuple(kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD))
 _SHOWN_BY_NAME = {kind.label: kind for kind in _SHOWN_KINDS}

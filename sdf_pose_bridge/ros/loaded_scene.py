@@ -7,17 +7,14 @@ from pathlib import Path
 import time
 from typing import NamedTuple
 
-from ament_index_python.packages import get_package_share_directory
-
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UriLookupError
 from sdf_pose_bridge.ros.settings import Settings
 from sdf_pose_bridge.scene.loading import load
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.include.file_address import AddressError
-from sdf_pose_bridge.sdformat.include.file_address import path_from_address
-from sdf_pose_bridge.sdformat.include.resources import resource_finder
+from sdf_pose_bridge.sdformat.include.uris import AddressError
+from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfTree
@@ -87,9 +84,7 @@ def _file_from_settings(
     settings: Settings,
 ) -> tuple[Path, tuple[str, ...], tuple[SdfWarning, ...]]:
     finder = resource_finder(settings.resource_paths, os.environ)
-    path = path_from_address(
-        settings.sdf_file, get_package_share_directory,
-        lambda uri: finder.path_from_uri(uri, including_file=''))
+    path = finder.path_from_address(settings.sdf_file)
     # Unlike Path's, it says no of a path that is too long; reading the file says why.
     if not os.path.isdir(path):  # noqa: PTH112
         return path, (), ()

@@ -45,7 +45,7 @@ from sdf_pose_bridge.ros.services import add_conversion_services
 from sdf_pose_bridge.ros.services import never_raising
 from sdf_pose_bridge.ros.settings import Settings
 from sdf_pose_bridge.ros.settings import SettingsError
-from sdf_pose_bridge.sdformat.include.file_address import AddressError
+from sdf_pose_bridge.sdformat.include.uris import AddressError
 from sdf_pose_bridge_interfaces.srv import LookupPose
 
 

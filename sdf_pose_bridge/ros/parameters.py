@@ -25,7 +25,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.parameter_service import ParameterService
 
-from sdf_pose_bridge.errors import hint_from_names
+from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.ros.settings import FASTEST_RATE
 from sdf_pose_bridge.ros.settings import Problem
 from sdf_pose_bridge.ros.settings import PUBLISHED_KINDS

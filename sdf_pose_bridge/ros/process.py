@@ -29,7 +29,7 @@ from sdf_pose_bridge.ros.settings import Settings
 from sdf_pose_bridge.ros.settings import SettingsError
 from sdf_pose_bridge.ros.stop_request import StopRequest
 from sdf_pose_bridge.ros.tf_static import TfStatic
-from sdf_pose_bridge.sdformat.include.file_address import AddressError
+from sdf_pose_bridge.sdformat.include.uris import AddressError
 import sdf_pose_bridge_interfaces  # noqa: F401 - if missing, that comes out before anything is done
 
 NODE_NAME = 'sdf_pose_bridge'

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import NamedTuple
 from typing import TypeVar
 
-from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.scene.loading import MissingInclude
+from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.tree import AnchorModels
 from sdf_pose_bridge.tf.tree import TfOptions

@@ -1,10 +1,12 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-The frame graph: what each pose is relative to, and which body carries each frame.
+Look up and check every reference: what poses are relative to, and what frames are attached to.
 
-Every reference is looked up and checked here; what comes out has no ring and no loose end.
+Source: ``FrameSemantics.cc`` of libsdformat. The graph that results has no cycles.
 """
+
+from __future__ import annotations
 
 from collections.abc import Mapping
 from collections.abc import Sequence
@@ -16,307 +18,301 @@ from sdf_pose_bridge.errors import AttachedToCycleError
 from sdf_pose_bridge.errors import AttachedToError
 from sdf_pose_bridge.errors import CanonicalLinkError
 from sdf_pose_bridge.errors import ModelWithoutLinkError
+from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import RelativeToCycleError
 from sdf_pose_bridge.errors import RelativeToError
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.names import WORLD_FRAME
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.joints import check_joints
 from sdf_pose_bridge.scene.joints import JointEnds
-from sdf_pose_bridge.scene.pointer_chains import ends_from_pointers
-from sdf_pose_bridge.scene.pointer_chains import rings_from_pointers
-from sdf_pose_bridge.scene.scopes import IS_FRAME_KIND
-from sdf_pose_bridge.scene.scopes import Scopes
+from sdf_pose_bridge.scene.name_scopes import IS_FRAME_KIND
+from sdf_pose_bridge.scene.name_scopes import NameScopes
+from sdf_pose_bridge.scene.pointers import cycles_from_pointers
+from sdf_pose_bridge.scene.pointers import ends_from_pointers
 from sdf_pose_bridge.sdformat.elements import Elements
-from sdf_pose_bridge.sdformat.elements import FrameFacts
+from sdf_pose_bridge.sdformat.elements import FrameDetails
 from sdf_pose_bridge.sdformat.elements import Indices
-from sdf_pose_bridge.sdformat.elements import ModelFacts
-from sdf_pose_bridge.sdformat.elements import NOWHERE
+from sdf_pose_bridge.sdformat.elements import ModelDetails
+from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
+from sdf_pose_bridge.sdformat.grammar import Kind
+
+_MOST_NAMES_SHOWN = 5
+_LONGEST_CYCLE_SHOWN = 12
 
 
 class FrameGraph(NamedTuple):
-    """The checked references of all elements; each column has an entry for each of them."""
+    """The checked references of all elements. Entry i of a sequence is about element i."""
 
     names: Sequence[str]
     """Absolute names, such as ``robot::arm::hand``."""
     roots: Sequence[int]
-    """The world or implicit root that each element belongs to."""
+    """The world or implicit root of each element."""
     references: Indices
-    """The frame that each pose is relative to; -1 for roots and for what cannot be placed."""
+    """The frame that each pose is relative to; -1 for roots and unresolved elements."""
     placements: Mapping[int, int]
-    """For models the frame that their pose places, where that is not the model frame."""
+    """The frames that poses place, where these are not the elements themselves."""
     attachments: Indices
-    """The frame that each frame is attached to directly; -1 for links, static models, roots."""
+    """The frame that each frame is attached to; -1 for links, static models and roots."""
     bodies: Indices
-    """The link, static model or root that carries each frame in the end; -1 for other kinds."""
+    """The link, static model or root that each frame is attached to in the end; -1 for others."""
     canonical_links: Indices
-    """For a model its canonical link; -1 for a model without one and for other kinds."""
+    """The canonical link of each model; -1 for a model without one and for other kinds."""
     joints: Sequence[JointEnds]
-    """The ends of every joint, in file order."""
-    lost: frozenset[int]
-    """Elements that cannot be placed: link children whose reference does not exist, which
-    libsdformat loads all the same, and what refers to something that was left out."""
+    """All joints, in file order."""
+    unresolved: frozenset[int]
+    """Elements without a pose in the root: those in links whose reference does not exist, which
+    libsdformat loads all the same, and those that refer to an include that was not found."""
 
 
-def frame_graph_from_elements(table: Elements, problems: Problems) -> FrameGraph:
+def frame_graph_from_elements(elements: Elements, problems: Problems) -> FrameGraph:
     """
     Look up and check every reference.
 
-    :param table: the elements.
-    :param problems: takes what is wrong with the references.
-    :return: the graph; what is wrong in it stands at the default of its kind.
+    :param elements: the elements.
+    :param problems: takes what is wrong with references.
+    :return: the graph; a wrong reference in it is replaced by the default of its kind.
     """
-    return _Builder(table, problems).graph()
+    return _Builder(elements, problems).graph()
 
 
 class _Builder:
 
-    def __init__(self, table: Elements, problems: Problems) -> None:
-        self._table = table
+    def __init__(self, elements: Elements, problems: Problems) -> None:
+        self._elements = elements
         self._problems = problems
-        self._scopes = Scopes(table)
-        self._reported_rings: set[frozenset[int]] = set()
-        self._lost: dict[int, str] = {}
-        self._scope_of: list[int] = table.scopes.tolist()
+        self._scopes = NameScopes(elements)
+        self._scope_of: list[int] = elements.scopes.tolist()
+        self._reported_cycles: set[frozenset[int]] = set()
+        self._unresolved: dict[int, str] = {}
+        """Unresolved elements, and for each the URI of the missing include that causes it."""
 
     def graph(self) -> FrameGraph:
-        table = self._table
+        elements = self._elements
         joints = self._joint_ends()
         canonical = self._canonical_pointers()
         attachments = self._attachments(joints, canonical)
         bodies = ends_from_pointers(attachments)
-        bodies[(table.parents >= 0) & ~IS_FRAME_KIND[table.kinds]] = NOWHERE
-        kept_joints = [ends for ends in joints.values() if ends.joint not in self._lost]
-        check_joints(table, self._scopes, kept_joints, bodies, self._problems)
+        bodies[(elements.parents >= 0) & ~IS_FRAME_KIND[elements.kinds]] = NO_ELEMENT
+        check_joints(
+            elements, self._scopes,
+            [ends for ends in joints.values() if ends.joint not in self._unresolved],
+            bodies, self._problems)
         references = self._references(joints)
         placements = self._placements()
-        self._lose_dependents(references, attachments, joints)
+        self._add_dependents(references, attachments, joints)
         return FrameGraph(
             self._scopes.names, self._scopes.roots, references, placements, attachments, bodies,
             self._canonical_links(canonical, bodies), tuple(joints.values()),
-            frozenset(self._lost))
+            frozenset(self._unresolved))
 
-    # What carries what
+    # Attachment
 
     def _joint_ends(self) -> dict[int, JointEnds]:
-        joints = self._table.joints
-        scopes = [self._scope_of[index] for index in joints]
-        names = [facts.parent.name for facts in joints.values()]
-        parents = self._scopes.frames(scopes, names)
-        for place, name in enumerate(names):
-            if name == WORLD_FRAME:
-                parents[place] = self._scopes.roots[scopes[place]]
-        child_names = [facts.child.name for facts in joints.values()]
-        children = self._scopes.frames(scopes, child_names)
-        for ends, end_names in ((parents, names), (children, child_names)):
-            if self._table.missing and None in ends:
-                for index, scope, end, name in zip(joints, scopes, ends, end_names, strict=True):
-                    if end is None and (uri := self._scopes.missing_uri(scope, name)):
-                        self._lost[index] = uri
         return {
-            index: JointEnds(
-                index, NOWHERE if parent is None else parent, NOWHERE if child is None else child)
-            for index, parent, child in zip(joints, parents, children, strict=True)}
+            joint: JointEnds(
+                joint, self._joint_end(joint, details.parent.name, is_parent=True),
+                self._joint_end(joint, details.child.name, is_parent=False))
+            for joint, details in self._elements.joints.items()}
 
-    def _attachments(self, joints: dict[int, JointEnds], canonical: dict[int, int]) -> Indices:
-        table = self._table
-        attached = {index: ends.child for index, ends in joints.items()}
-        attached |= {
-            index: canonical[index] for index, facts in table.models.items()
-            if not facts.is_static}
-        attached |= {index: self._attached_to(index, facts)
-                     for index, facts in table.frames.items()}
-        attachments = np.full(len(table.names), NOWHERE, dtype=np.int32)
-        _put(attachments, attached)
-        self._break_rings(attachments, AttachedToCycleError, 'attached to')
+    def _joint_end(self, joint: int, name: str, *, is_parent: bool) -> int:
+        scope = self._scope_of[joint]
+        if is_parent and name == WORLD_FRAME:
+            return self._scopes.roots[joint]
+        found = self._scopes.frame(scope, name) if name else None
+        if found is not None:
+            return found
+        uri = self._scopes.missing_uri(scope, name)
+        if uri:
+            self._unresolved[joint] = uri
+        return NO_ELEMENT
+
+    def _attachments(
+        self, joints: Mapping[int, JointEnds], canonical: Mapping[int, int],
+    ) -> Indices:
+        elements = self._elements
+        attachments = np.full(len(elements.names), NO_ELEMENT, dtype=np.int32)
+        for joint, ends in joints.items():
+            attachments[joint] = ends.child
+        for model, details in elements.models.items():
+            if not details.is_static:
+                attachments[model] = canonical[model]
+        for frame, frame_details in elements.frames.items():
+            attachments[frame] = self._attached_to(frame, frame_details)
+        self._break_cycles(attachments, AttachedToCycleError, 'attached to')
         return attachments
 
-    def _attached_to(self, index: int, facts: FrameFacts) -> int:
-        scope = self._scope_of[index]
-        if not facts.attached_to:
+    def _attached_to(self, frame: int, details: FrameDetails) -> int:
+        scope = self._scope_of[frame]
+        if not details.attached_to:
             return scope
-        found = self._scopes.frame(scope, facts.attached_to)
+        found = self._scopes.frame(scope, details.attached_to)
         if found is None:
-            self._unknown(AttachedToError, index, 'attached_to', facts.attached_to, scope)
+            self._report_unknown(
+                AttachedToError, frame, 'attached_to', details.attached_to, scope)
             return scope
         return found
 
     def _canonical_pointers(self) -> dict[int, int]:
-        """Find what each model's canonical link is said to be: a link, or what leads to one."""
-        table = self._table
-        is_link: list[bool] = (table.kinds == Kind.LINK).tolist()
-        first_links = self._first_of_kind(Kind.LINK)
-        first_models = self._first_of_kind(Kind.MODEL)
+        """Find the canonical link of each model, or the frame that leads to it."""
+        kinds: list[int] = self._elements.kinds.tolist()
+        first_links = self._first_children_of_kind(Kind.LINK)
+        first_models = self._first_children_of_kind(Kind.MODEL)
         pointers: dict[int, int] = {}
-        for index in sorted(table.models, reverse=True):
-            facts = table.models[index]
-            first = first_links.get(index, first_models.get(index))
-            # A nested model's own link is meant, even where that model is static and its frame
-            # therefore not attached to the link.
-            inside = NOWHERE if first is None else pointers.get(first, NOWHERE)
-            if inside >= 0 and is_link[inside]:
-                first = inside
-            pointers[index] = self._canonical_pointer(index, facts, first)
+        for model in sorted(self._elements.models, reverse=True):  # inner models come first
+            default = first_links.get(model, first_models.get(model, NO_ELEMENT))
+            # Of a nested model its own link is meant, even if that model is static, so that its
+            # frame is not attached to the link.
+            inner = pointers.get(default, NO_ELEMENT)
+            if inner >= 0 and kinds[inner] == Kind.LINK:
+                default = inner
+            pointers[model] = self._canonical_pointer(
+                model, self._elements.models[model], default)
         return pointers
 
-    def _first_of_kind(self, kind: Kind) -> dict[int, int]:
-        """Find the first child of a kind of each element that holds one."""
-        indices = np.flatnonzero(self._table.kinds == kind)[::-1]
-        return dict(zip(self._table.parents[indices].tolist(), indices.tolist(), strict=True))
+    def _first_children_of_kind(self, kind: Kind) -> dict[int, int]:
+        """Find the first child of a kind of each element that has one."""
+        indices = np.flatnonzero(self._elements.kinds == kind)[::-1]
+        return dict(zip(self._elements.parents[indices].tolist(), indices.tolist(), strict=True))
 
-    def _canonical_pointer(self, index: int, facts: ModelFacts, first: int | None) -> int:
-        name = facts.canonical_link
+    def _canonical_pointer(self, model: int, details: ModelDetails, default: int) -> int:
+        name = details.canonical_link
         if name:
-            found = self._scopes.frame(index, name)
+            found = self._scopes.frame(model, name)
             if found is not None:
                 return found
-            if not facts.is_static:
-                self._unknown(CanonicalLinkError, index, 'canonical_link', name, index)
-        elif first is None and not facts.is_static and index not in self._table.missing:
-            msg = (f'model "{self._scopes.names[index]}" has no link and no nested model; only a '
+            if not details.is_static:
+                self._report_unknown(CanonicalLinkError, model, 'canonical_link', name, model)
+        elif default == NO_ELEMENT and not details.is_static and (
+                model not in self._elements.missing_includes):
+            msg = (f'model "{self._scopes.names[model]}" has no link and no nested model; only a '
                    'static model may have none')
-            self._problems.error(ModelWithoutLinkError(msg, self._table.place(index)))
-        return NOWHERE if first is None else first
+            self._problems.error(ModelWithoutLinkError(msg, self._elements.place(model)))
+        return default
 
-    def _canonical_links(self, canonical: dict[int, int], bodies: Indices) -> Indices:
-        kinds: list[int] = self._table.kinds.tolist()
-        body_of: list[int] = bodies.tolist()
-        links: dict[int, int] = {}
-        for index, target in canonical.items():  # inner models come first
+    def _canonical_links(self, canonical: Mapping[int, int], bodies: Indices) -> Indices:
+        kinds: list[int] = self._elements.kinds.tolist()
+        links = np.full(len(kinds), NO_ELEMENT, dtype=np.int32)
+        for model, target in canonical.items():  # inner models come first
             if target >= 0 and kinds[target] != Kind.MODEL:
-                target = body_of[target]
-            elif target > index:
-                target = links.get(target, NOWHERE)
+                link = int(bodies[target])
             else:
-                target = NOWHERE
-            if target >= 0 and kinds[target] == Kind.LINK:
-                links[index] = target
-        result = np.full(len(kinds), NOWHERE, dtype=np.int32)
-        _put(result, links)
-        return result
+                # A model that is not inside the model does not lead to a link.
+                link = int(links[target]) if target > model else NO_ELEMENT
+            if link >= 0 and kinds[link] == Kind.LINK:
+                links[model] = link
+        return links
 
-    # What is placed in what
+    # Placement
 
-    def _references(self, joints: dict[int, JointEnds]) -> Indices:
-        table = self._table
-        references: Indices = table.parents.copy()
-        _put(references, {
-            index: ends.child for index, ends in joints.items() if ends.child != NOWHERE})
-        _put(references, {
-            index: found for index, facts in table.frames.items() if facts.attached_to
-            and (found := self._scopes.frame(self._scope_of[index], facts.attached_to))
-            is not None})
-        scopes = [self._scope_of[index] for index in table.relative_to]
-        frames = self._scopes.frames(scopes, list(table.relative_to.values()))
-        _put(references, {
-            index: self._without_reference(index, name) if found is None else found
-            for (index, name), found in zip(table.relative_to.items(), frames, strict=True)})
-        self._break_rings(references, RelativeToCycleError, 'relative to')
+    def _references(self, joints: Mapping[int, JointEnds]) -> Indices:
+        elements = self._elements
+        references: Indices = elements.parents.copy()
+        for joint, ends in joints.items():
+            if ends.child != NO_ELEMENT:
+                references[joint] = ends.child
+        for frame, details in elements.frames.items():
+            if details.attached_to:
+                found = self._scopes.frame(self._scope_of[frame], details.attached_to)
+                if found is not None:
+                    references[frame] = found
+        for index, name in elements.relative_to.items():
+            found = self._scopes.frame(self._scope_of[index], name)
+            references[index] = self._default_reference(index, name) if found is None else found
+        self._break_cycles(references, RelativeToCycleError, 'relative to')
         return references
 
-    def _without_reference(self, index: int, name: str) -> int:
-        """Report that the name of a frame means nothing; return what to use instead."""
-        table = self._table
+    def _default_reference(self, index: int, name: str) -> int:
+        """Report an unknown ``relative_to``; return the reference to use instead."""
+        elements = self._elements
         scope = self._scope_of[index]
-        if IS_FRAME_KIND[table.kinds[index]]:
-            self._unknown(
-                RelativeToError, index, 'relative_to', name, scope, int(table.pose_lines[index]),
-                'pose')
-            return int(table.parents[index])
-        self._lose(index, name)
-        return NOWHERE
+        if IS_FRAME_KIND[elements.kinds[index]]:
+            self._report_unknown(
+                RelativeToError, index, 'relative_to', name, scope,
+                int(elements.pose_lines[index]), 'pose')
+            return int(elements.parents[index])
+        self._unresolved[index] = self._scopes.missing_uri(scope, name)
+        if not self._unresolved[index]:
+            msg = (f'relative_to="{name}" names no frame in {self._scopes.described(scope)}'
+                   f'{self._scopes.hint(scope, name)}; the {elements.kind(index).label} is left '
+                   'out')
+            place = elements.place(index, int(elements.pose_lines[index]), 'pose')
+            self._problems.warning(msg, place, RelativeToError.code)
+        return NO_ELEMENT
 
     def _placements(self) -> dict[int, int]:
+        elements = self._elements
+        names = [(model, model, details.placement_frame)
+                 for model, details in elements.models.items() if details.placement_frame]
+        names += [(frame, self._scope_of[frame], details.placement_frame)
+                  for frame, details in elements.frames.items() if details.placement_frame]
         placements: dict[int, int] = {}
-        table = self._table
-        scoped = [(index, index, facts.placement_frame) for index, facts in table.models.items()]
-        scoped += [(index, self._scope_of[index], facts.placement_frame)
-                   for index, facts in table.frames.items()]
-        for index, scope, name in scoped:
-            if not name:
-                continue
+        for index, scope, name in names:
             found = self._scopes.frame(scope, name)
             if found is None:
-                self._unknown(RelativeToError, index, 'placement_frame', name, scope)
+                self._report_unknown(RelativeToError, index, 'placement_frame', name, scope)
             elif found != index:
                 placements[index] = found
         return placements
 
     # Reports
 
-    def _unknown(
+    def _report_unknown(
         self, error_class: type[SdfError], index: int, attribute: str, name: str, scope: int,
         line: int = 0, part: str = '',
     ) -> None:
         uri = self._scopes.missing_uri(scope, name)
         if uri:
-            self._lost[index] = uri
+            self._unresolved[index] = uri
             return
         msg = (f'{attribute}="{name}" names no frame in {self._scopes.described(scope)}'
                f'{self._scopes.hint(scope, name)}')
-        self._problems.error(error_class(msg, self._table.place(index, line, part)))
+        self._problems.error(error_class(msg, self._elements.place(index, line, part)))
 
-    def _lose(self, index: int, name: str) -> None:
-        scope = self._scope_of[index]
-        self._lost[index] = self._scopes.missing_uri(scope, name)
-        if self._lost[index]:
-            return
-        msg = (f'relative_to="{name}" names no frame in {self._scopes.described(scope)}'
-               f'{self._scopes.hint(scope, name)}; the {self._table.kind(index).label} is left '
-               'out')
-        place = self._table.place(index, int(self._table.pose_lines[index]), 'pose')
-        self._problems.warning(RelativeToError.code, msg, place)
-
-    def _lose_dependents(
-        self, references: Indices, attachments: Indices, joints: dict[int, JointEnds],
+    def _add_dependents(
+        self, references: Indices, attachments: Indices, joints: Mapping[int, JointEnds],
     ) -> None:
-        """Leave out what stands on something that is left out, and say how much that is."""
-        if not self._lost:
+        """Add to the unresolved elements those that depend on one, and report how many there are."""
+        if not self._unresolved:
             return
-        before = 0
-        columns = self._table.parents.tolist(), references.tolist(), attachments.tolist()
-        while before != len(self._lost):
-            before = len(self._lost)
+        columns = self._elements.parents.tolist(), references.tolist(), attachments.tolist()
+        count = 0
+        while count != len(self._unresolved):
+            count = len(self._unresolved)
             for index, pointers in enumerate(zip(*columns, strict=True)):
                 needed = [*pointers, joints[index].parent] if index in joints else pointers
                 for other in needed:
-                    if other in self._lost:
-                        self._lost.setdefault(index, self._lost[other])
+                    if other in self._unresolved:
+                        self._unresolved.setdefault(index, self._unresolved[other])
         if self._problems.errors:
             return
-        for uri in sorted(set(self._lost.values()) - {''}):
-            lost = [index for index, cause in self._lost.items() if cause == uri]
-            names = ', '.join(f'"{self._scopes.names[index]}"' for index in sorted(lost)[:5])
-            rest = f' and {len(lost) - 5} more' if len(lost) > 5 else ''
-            msg = (f'because "{uri}" is missing, {len(lost)} more elements are left out, which '
-                   f'refer to it: {names}{rest}')
-            self._problems.warning('WARNING', msg, self._table.place(min(lost)))
+        for uri in sorted(set(self._unresolved.values()) - {''}):
+            indices = sorted(index for index, cause in self._unresolved.items() if cause == uri)
+            names = ', '.join(
+                f'"{self._scopes.names[index]}"' for index in indices[:_MOST_NAMES_SHOWN])
+            rest = len(indices) - _MOST_NAMES_SHOWN
+            msg = (f'because "{uri}" is missing, {len(indices)} more elements are left out, which '
+                   f'refer to it: {names}{f" and {rest} more" if rest > 0 else ""}')
+            self._problems.warning(msg, self._elements.place(indices[0]))
 
-    def _break_rings(
+    def _break_cycles(
         self, pointers: Indices, error_class: type[SdfError], verb: str,
     ) -> None:
-        """Report each ring once, at its first element in the file, and open it there."""
-        for ring in rings_from_pointers(pointers):
-            start = ring.index(min(ring))
-            pointers[ring[start]] = NOWHERE
-            if frozenset(ring) in self._reported_rings:
+        """Report each cycle once, at its first element in the file, and break it there."""
+        for cycle in cycles_from_pointers(pointers):
+            start = cycle.index(min(cycle))
+            first = cycle[start]
+            pointers[first] = NO_ELEMENT
+            if frozenset(cycle) in self._reported_cycles:
                 continue
-            self._reported_rings.add(frozenset(ring))
-            chain = [*ring[start:], *ring[:start], ring[start]]
-            shown = [f'"{self._scopes.names[i]}"' for i in chain]
-            if len(shown) > 12:
+            self._reported_cycles.add(frozenset(cycle))
+            shown = [f'"{self._scopes.names[index]}"'
+                     for index in [*cycle[start:], *cycle[:start], first]]
+            if len(shown) > _LONGEST_CYCLE_SHOWN:
                 shown = [*shown[:6], f'... ({len(shown) - 11} more)', *shown[-5:]]
-            index = ring[start]
             msg = f'this is {verb} itself: {" -> ".join(shown)}'
-            if error_class is RelativeToCycleError and any(map(self._is_placed_in_child, ring)):
-                msg += '; a joint that says nothing else is placed in its child'
-            place = self._table.place(index, int(self._table.pose_lines[index]))
+            if error_class is RelativeToCycleError and any(
+                    index in self._elements.joints and index not in self._elements.relative_to
+                    for index in cycle):
+                msg += '; the default reference of a joint is its child'
+            place = self._elements.place(first, int(self._elements.pose_lines[first]))
             self._problems.error(error_class(msg, place))
-
-    def _is_placed_in_child(self, index: int) -> bool:
-        return index in self._table.joints and index not in self._table.relative_to
-
-
-def _put(column: Indices, values: dict[int, int]) -> None:
-    column[list(values)] = list(values.values())

@@ -1,37 +1,53 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""From a file to a Scene: one stage after the other, with all errors of the file at once."""
+"""Load a file: read it, replace its includes, read its elements, check and resolve them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from collections.abc import Iterator
+from collections.abc import Sequence
 import contextlib
 import enum
 import gc
 import os
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+from typing import TypeVar
 
-from sdf_pose_bridge.problems import Problems
+import numpy as np
+
+from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.scene.frame_graph import frame_graph_from_elements
+from sdf_pose_bridge.scene.frame_graph import FrameGraph
+from sdf_pose_bridge.scene.resolution import root_poses_from_graph
+from sdf_pose_bridge.scene.scene import Joint
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.scene.scene_assembly import scene_from_graph
-from sdf_pose_bridge.sdformat.checks import check_values
-from sdf_pose_bridge.sdformat.document import Document
-from sdf_pose_bridge.sdformat.document_reading import document_from_file
-from sdf_pose_bridge.sdformat.document_reading import document_from_text
-from sdf_pose_bridge.sdformat.include.inclusions import document_set
-from sdf_pose_bridge.sdformat.include.inclusions import DocumentSet
-from sdf_pose_bridge.sdformat.include.resources import resource_finder
-from sdf_pose_bridge.sdformat.reader import elements_from_documents
+from sdf_pose_bridge.sdformat.documents import document_from_file
+from sdf_pose_bridge.sdformat.documents import document_from_text
+from sdf_pose_bridge.sdformat.elements import Elements
+from sdf_pose_bridge.sdformat.elements import Indices
+from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.include.uris import resource_finder
+from sdf_pose_bridge.sdformat.reader import elements_from_tree
+from sdf_pose_bridge.sdformat.sources import Document
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+_Scalar = TypeVar('_Scalar', bound=np.generic)
 
 
 class MissingInclude(enum.Enum):
-    """What to do about an include that cannot be found."""
+    """What to do about an include that is not found."""
 
     ERROR = 'error'
     """The file is not valid."""
     SKIP = 'skip'
-    """It is left out, with a warning."""
+    """The include is left out, with a warning."""
 
 
 def load(
@@ -44,15 +60,18 @@ def load(
     Read a file and resolve every pose in it.
 
     :param path: path of an SDFormat file.
-    :param resource_paths: directories in which included models are looked for first; then come
+    :param resource_paths: directories in which included models are searched first; then come
         those of the environment variables ``GZ_SIM_RESOURCE_PATH`` and ``SDF_PATH``.
-    :param on_missing_include: ``error``, or ``skip`` to leave out what cannot be found.
+    :param on_missing_include: ``error``, or ``skip`` to leave out includes that are not found.
     :return: the scene.
-    :raises SdfError: if the file is not valid; ``errors`` on it has all that was found.
+    :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
     """
-    with _collection_paused():
-        return _resolved_scene(
-            document_from_file(path), resource_paths, MissingInclude(on_missing_include))
+    sources = Sources()
+    problems = Problems(sources.paths)
+    with _without_garbage_collection():
+        document = document_from_file(os.fspath(path), sources, problems)
+        return _scene(
+            document, sources, problems, resource_paths, MissingInclude(on_missing_include))
 
 
 def load_text(
@@ -66,24 +85,23 @@ def load_text(
     Resolve every pose in SDFormat text, as :func:`load` does for a file.
 
     :param text: the content of an SDFormat file.
-    :param name: what to call it in errors; relative includes are looked for beside it.
+    :param name: its name in errors; relative includes are searched beside it.
     :param resource_paths: as for :func:`load`.
     :param on_missing_include: as for :func:`load`.
     :return: the scene.
     :raises SdfError: as for :func:`load`.
     """
-    with _collection_paused():
-        return _resolved_scene(
-            document_from_text(text, name), resource_paths, MissingInclude(on_missing_include))
+    sources = Sources()
+    problems = Problems(sources.paths)
+    with _without_garbage_collection():
+        document = document_from_text(text, name, sources, problems)
+        return _scene(
+            document, sources, problems, resource_paths, MissingInclude(on_missing_include))
 
 
 @contextlib.contextmanager
-def _collection_paused() -> Iterator[None]:
-    """
-    Keep the garbage collector from looking through the elements of a large file again and again.
-
-    A load makes no cycles of objects that matter.
-    """
+def _without_garbage_collection() -> Iterator[None]:
+    """Disable the collector, which would search the elements of a large file again and again."""
     was_enabled = gc.isenabled()
     gc.disable()
     try:
@@ -93,36 +111,92 @@ def _collection_paused() -> Iterator[None]:
             gc.enable()
 
 
-def _resolved_scene(
-    document: Document,
-    resource_paths: Iterable[str | os.PathLike[str]],
-    on_missing_include: MissingInclude,
+def _scene(
+    document: Document, sources: Sources, problems: Problems,
+    resource_paths: Iterable[str | os.PathLike[str]], on_missing_include: MissingInclude,
 ) -> Scene:
-    documents = document_set(document, resource_finder(resource_paths, os.environ))
-    problems = Problems(documents.files)
-    for each in documents.all_documents():
-        check_values(each, problems)
-    skips_missing = on_missing_include is MissingInclude.SKIP
-    broken = _broken_documents(documents, problems, skips_missing=skips_missing)
-    table = elements_from_documents(
-        documents, problems, broken=broken, skips_missing=skips_missing)
-    graph = frame_graph_from_elements(table, problems)
-    problems.raise_any()
-    return scene_from_graph(documents, table, graph, problems.warnings)
+    may_hold_scoped_names = document.may_hold_scoped_names
+    if next(document.root.iter('include'), None) is not None:
+        # Many files have no includes and need not wait for this import.
+        from sdf_pose_bridge.sdformat.include.expansion import IncludeExpansion
+        expansion = IncludeExpansion(
+            resource_finder(resource_paths, os.environ), sources, problems,
+            skips_missing=on_missing_include is MissingInclude.SKIP,
+            canonical_link_of=lambda root: _canonical_link(root, sources, problems))
+        expansion.expand(document)
+        may_hold_scoped_names |= expansion.may_hold_scoped_names
+    elements = elements_from_tree(
+        document.root, sources, problems, may_hold_scoped_names=may_hold_scoped_names)
+    graph = frame_graph_from_elements(elements, problems)
+    problems.raise_errors()
+    return _scene_from_graph(document.path, elements, graph, problems)
 
 
-def _broken_documents(
-    documents: DocumentSet, problems: Problems, *, skips_missing: bool,
-) -> frozenset[str]:
-    """Check what is merged on its own, where it cannot use names of what it is merged into."""
-    broken: set[str] = set()
-    for document in documents.merged():
-        own_problems = Problems(documents.files)
-        table = elements_from_documents(
-            documents._replace(document=document), own_problems,
-            broken=frozenset(broken), skips_missing=skips_missing)
-        frame_graph_from_elements(table, own_problems)
-        if own_problems.errors:
-            broken.add(document.path)
-            problems.extend(own_problems)
-    return frozenset(broken)
+def _canonical_link(root: XmlElement, sources: Sources, problems: Problems) -> str | None:
+    """
+    Check a model file by itself.
+
+    :param root: its ``sdf`` element.
+    :param sources: where its elements were written.
+    :param problems: takes the errors of the file.
+    :return: name of the canonical link in the model; empty if it has none; None if there are
+        errors.
+    """
+    own_problems = Problems(sources.paths)
+    elements = elements_from_tree(root, sources, own_problems, may_hold_scoped_names=True)
+    graph = frame_graph_from_elements(elements, own_problems)
+    if own_problems.errors:
+        problems.extend([*own_problems.errors, *own_problems.warnings])
+        return None
+    model = 1  # element 0 is the implicit root
+    link = int(graph.canonical_links[model])
+    return graph.names[link].partition('::')[2] if link != NO_ELEMENT else ''
+
+
+def _scene_from_graph(
+    path: str, elements: Elements, graph: FrameGraph, problems: Problems,
+) -> Scene:
+    """Resolve the poses, and leave out unresolved elements."""
+    count = len(elements.names)
+    is_kept = np.ones(count, dtype=bool)
+    is_kept[list(graph.unresolved)] = False
+    # The last entry is that of index -1.
+    new_index = np.append(np.where(is_kept, np.cumsum(is_kept) - 1, NO_ELEMENT), NO_ELEMENT)
+    new_index_of: list[int] = new_index.tolist()
+
+    def reindexed(old: Sequence[int] | Indices) -> Indices:
+        return _frozen(new_index[np.asarray(old, dtype=np.intp)[is_kept]].astype(np.int32))
+
+    return Scene(
+        path=path,
+        files=tuple(elements.paths),
+        names=tuple(name for name, is_in in zip(graph.names, is_kept.tolist(), strict=True) if is_in),
+        kinds=_frozen(elements.kinds[is_kept]),
+        parents=reindexed(elements.parents),
+        roots=reindexed(graph.roots),
+        poses=_frozen(root_poses_from_graph(elements.poses, graph)[is_kept]),
+        attachments=reindexed(graph.attachments),
+        bodies=reindexed(graph.bodies),
+        canonical_links=reindexed(graph.canonical_links),
+        static_models=frozenset(
+            new_index_of[index] for index, details in elements.models.items()
+            if details.is_static and is_kept[index]),
+        joints=tuple(
+            Joint(new_index_of[joint], elements.joints[joint].type, new_index_of[parent],
+                  new_index_of[child])
+            for joint, parent, child in graph.joints if is_kept[joint]),
+        sensors=MappingProxyType({
+            new_index_of[index]: details for index, details in elements.sensors.items()
+            if is_kept[index]}),
+        lines=_frozen(elements.lines[is_kept]),
+        file_indices=_frozen(elements.file_indices[is_kept]),
+        world_names=MappingProxyType({
+            new_index_of[index]: elements.names[index]
+            for index in np.flatnonzero(is_kept & (elements.kinds == Kind.WORLD)).tolist()}),
+        warnings=problems.warnings,
+    )
+
+
+def _frozen(array: npt.NDArray[_Scalar]) -> npt.NDArray[_Scalar]:
+    array.setflags(write=False)
+    return array

@@ -25,52 +25,54 @@ def root_poses_from_graph(poses: PoseArray, graph: FrameGraph) -> PoseArray:
     """
     Resolve all poses.
 
-    :param poses: shape (n, 7), row i that of element i in the frame that it is relative to, or of
-        its placement frame.
-    :param graph: what each is relative to; without rings.
-    :return: shape (n, 7), row i the pose of element i in its world or implicit root; unit
-        quaternions with w >= 0.
+    :param poses: shape (n, 7), pose of each element, or of its placement frame, in the frame that
+        it is relative to.
+    :param graph: what each pose is relative to; without cycles.
+    :return: shape (n, 7), pose of each element in its world or implicit root; unit quaternions
+        with w >= 0.
     """
-    edges = _solved_placements(poses, graph)
+    edges = _edges_of_model_frames(poses, graph)
     references = graph.references
-    is_referred_to = np.zeros(len(references), dtype=bool)
-    is_referred_to[references[references >= 0]] = True
-    resolved = _followed(edges, references, np.flatnonzero(is_referred_to))
-    others = np.flatnonzero(~is_referred_to & (references >= 0))
+    is_reference = np.zeros(len(references), dtype=bool)
+    is_reference[references[references >= 0]] = True
+    resolved = _poses_along_chains(edges, references, np.flatnonzero(is_reference))
+    others = np.flatnonzero(~is_reference & (references >= 0))
     resolved[others] = pose_products(resolved[references[others]], edges[others])
     resolved[:, 3:] = canonical_quaternion(resolved[:, 3:])
     resolved[:, :3] += 0.0  # no negative zeros
     return resolved
 
 
-def _followed(edges: PoseArray, references: Indices, indices: npt.NDArray[np.intp]) -> PoseArray:
+def _poses_along_chains(
+    edges: PoseArray, references: Indices, indices: npt.NDArray[np.intp],
+) -> PoseArray:
     """
-    Follow the chains of some poses to their ends.
+    Multiply poses along chains of references.
 
-    Each round doubles the length of what has been followed, so a chain of a thousand takes ten.
+    Each round doubles the length of the chains, so a chain of a thousand takes ten rounds.
 
     :param edges: the pose of each element in the one that it is relative to.
     :param references: the element that each is relative to; -1 at the end of a chain.
-    :param indices: the elements whose chains are followed; chains stay among them.
+    :param indices: the elements to resolve. All references of these are among them.
     :return: a copy of the poses, in which those of these elements are in the ends of their chains.
     """
-    followed: PoseArray = edges.copy()
+    resolved: PoseArray = edges.copy()
     targets = references.copy()
     active = indices[references[indices] >= 0]
     while len(active):
         next_targets = targets[targets[active]]
         active = active[next_targets >= 0]
-        followed[active] = pose_products(followed[targets[active]], followed[active])
+        resolved[active] = pose_products(resolved[targets[active]], resolved[active])
         targets[active] = next_targets[next_targets >= 0]
-    return followed
+    return resolved
 
 
-def _solved_placements(poses: PoseArray, graph: FrameGraph) -> PoseArray:
+def _edges_of_model_frames(poses: PoseArray, graph: FrameGraph) -> PoseArray:
     """
     Replace the pose of each placement frame by that of its model frame.
 
-    With R what the pose is relative to, P the placement frame and M the model frame,
-    ``X_RM = X_RP inverse(X_MP)``. The innermost models, which are last, come first.
+    With the reference R, the placement frame P and the model frame M,
+    ``X_RM = X_RP inverse(X_MP)``. Inner models, which come last, are solved first.
     """
     if not graph.placements:
         return poses

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sdf_pose_bridge.errors import hint_from_names
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UnknownFrameError
@@ -17,10 +16,11 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_inverse
 from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.names import FRAME_KINDS
-from sdf_pose_bridge.names import Kind
+from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.sdformat.elements import Indices
-from sdf_pose_bridge.sdformat.elements import SensorFacts
+from sdf_pose_bridge.sdformat.elements import SensorDetails
+from sdf_pose_bridge.sdformat.grammar import FRAME_KINDS
+from sdf_pose_bridge.sdformat.grammar import Kind
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -72,7 +72,7 @@ class Scene:
     """The models that are static."""
     joints: tuple[Joint, ...]
     """All joints, in file order."""
-    sensors: Mapping[int, SensorFacts]
+    sensors: Mapping[int, SensorDetails]
     """What is known of each sensor."""
     lines: Indices
     """The line that each stands in; 0 where none can be named."""
@@ -88,7 +88,7 @@ class Scene:
         path: str, files: tuple[str, ...], names: tuple[str, ...], kinds: 'npt.NDArray[np.uint8]',
         parents: Indices, roots: Indices, poses: PoseArray, attachments: Indices, bodies: Indices,
         canonical_links: Indices, static_models: frozenset[int], joints: tuple[Joint, ...],
-        sensors: Mapping[int, SensorFacts], lines: Indices, file_indices: Indices,
+        sensors: Mapping[int, SensorDetails], lines: Indices, file_indices: Indices,
         world_names: Mapping[int, str], warnings: tuple[SdfWarning, ...],
     ) -> None:
         vars(self).update(

@@ -1,7 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The typed form of a file: a table of its elements that carry a pose, with their references."""
+"""The table of the elements of a load that have a pose, with their references as written."""
 
+from __future__ import annotations
+
+from array import array
 from collections.abc import Mapping
 from collections.abc import Sequence
 from typing import Any
@@ -11,57 +14,46 @@ from typing import TypeAlias
 import numpy as np
 
 from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.names import Kind
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.pose_text import IDENTITY
+from sdf_pose_bridge.sdformat.pose_text import PoseFormat
+from sdf_pose_bridge.sdformat.pose_text import poses_from_texts
+from sdf_pose_bridge.sdformat.xml_tree import path_step
 
-NOWHERE = -1
-"""Stands for an index where there is none."""
+NO_ELEMENT = -1
+"""Index that means no element."""
 
-Indices: TypeAlias = np.ndarray[Any, np.dtype[np.int32]]
-
-_Integers: TypeAlias = Sequence[int] | np.ndarray[Any, np.dtype[Any]]
-
-CAMERA_TYPES = frozenset({
-    'boundingbox', 'boundingbox_camera', 'camera', 'depth', 'depth_camera', 'multicamera', 'rgbd',
-    'rgbd_camera', 'segmentation', 'segmentation_camera', 'thermal', 'thermal_camera',
-    'wideanglecamera',
-})
-"""Types of sensors that take images."""
-
-
-JOINT_TYPES = frozenset({
-    'ball', 'continuous', 'fixed', 'gearbox', 'prismatic', 'revolute', 'revolute2', 'screw',
-    'universal',
-})
-"""Types of joints."""
+Indices: TypeAlias = 'np.ndarray[Any, np.dtype[np.int32]]'
 
 
 class Reference(NamedTuple):
-    """A name that an element uses, as written, and where."""
+    """A name by which an element refers to a frame."""
 
     name: str
-    line: int
+    """As written; empty for none."""
+    line: int = 0
 
 
-class ModelFacts(NamedTuple):
+class ModelDetails(NamedTuple):
     """What only a model has."""
 
     is_static: bool
     canonical_link: str
-    """Value of the attribute; empty for the first link."""
+    """Value of the attribute; empty for the default."""
     placement_frame: str
-    """The frame that the pose places; an empty name for the model frame."""
+    """The frame that the pose places; empty for the model frame."""
 
 
-class FrameFacts(NamedTuple):
+class FrameDetails(NamedTuple):
     """What only an explicit frame has."""
 
     attached_to: str
     """Value of the attribute; empty for the frame of its scope."""
     placement_frame: str = ''
-    """The frame that the pose places, for a frame that stands for a merged model's."""
+    """The frame that the pose places; empty for this one. Only proxies of merged models have it."""
 
 
-class JointFacts(NamedTuple):
+class JointDetails(NamedTuple):
     """What only a joint has."""
 
     type: str
@@ -69,111 +61,167 @@ class JointFacts(NamedTuple):
     parent: Reference
     child: Reference
     expressed_in: tuple[Reference, ...]
-    """The frames that its axes are given in, where one is named."""
+    """The frames that the axes are expressed in, where they are given."""
 
 
-class SensorFacts(NamedTuple):
+class SensorDetails(NamedTuple):
     """What only a sensor has."""
 
     type: str
     """As written: ``camera``, ``gpu_lidar``, ..."""
     frame_id: str
-    """The frame id that Gazebo stamps on its messages, where the file sets one; else empty."""
+    """The frame id of the messages of Gazebo, where the file sets it; else empty."""
     is_camera: bool
-    """True if its type is a camera's or it has a ``<camera>``: an optical frame belongs to it."""
+    """Whether an optical frame belongs to it."""
     optical_frame_id: str
-    """Name of the optical frame, where the file sets one; else empty."""
+    """The id of the optical frame, where the file sets it; else empty."""
 
 
 class Elements(NamedTuple):
     """
-    All elements of a load, each after the one that holds it, in the order of the file.
+    All elements with a pose, each after its parent element, in the order of the file.
 
     Entry i of each sequence and array is about element i.
     """
 
     kinds: np.ndarray[Any, np.dtype[np.uint8]]
-    """Values of :class:`~sdf_pose_bridge.names.Kind`."""
+    """Values of :class:`~sdf_pose_bridge.sdformat.grammar.Kind`."""
     names: Sequence[str]
-    """Their own names, without their scopes."""
+    """Their own names, without scopes."""
     parents: Indices
-    """The element that holds each; -1 for a world and the implicit root."""
+    """Their parent elements; -1 for a world and the implicit root."""
     scopes: Indices
-    """The model, world or root whose names the references of each use."""
+    """The model, world or root whose names the references of each element use."""
     file_indices: Indices
-    """Which of the files each stands in."""
+    """Index of the file of each element in ``paths``."""
     lines: Indices
     pose_lines: Indices
-    """The line of each one's pose; 0 where none is written."""
+    """The lines of their poses; 0 for an element without ``<pose>``."""
     poses: np.ndarray[Any, np.dtype[np.float64]]
-    """Shape (n, 7): the pose of each as written, x y z in metres, unit quaternion x y z w, in the
-    frame that it is relative to; the identity where none is written."""
+    """Shape (n, 7): pose of each element in the frame that it is relative to, x y z in metres,
+    unit quaternion x y z w; the identity for an element without ``<pose>``."""
     relative_to: Mapping[int, str]
-    """The frame that a pose is given in, as written, where that is not the default of its kind."""
-    models: Mapping[int, ModelFacts]
-    frames: Mapping[int, FrameFacts]
-    joints: Mapping[int, JointFacts]
-    sensors: Mapping[int, SensorFacts]
-    files: Sequence[str]
-    missing: Mapping[int, Mapping[str, str]]
-    """For each element that should hold something that was not found: its name and URI. An empty
-    name stands for a merge, which could have brought any name."""
+    """The frames that poses are relative to, where they are given."""
+    models: Mapping[int, ModelDetails]
+    frames: Mapping[int, FrameDetails]
+    joints: Mapping[int, JointDetails]
+    sensors: Mapping[int, SensorDetails]
+    paths: Sequence[str]
+    """The files of the load."""
+    missing_includes: Mapping[int, Mapping[str, str]]
+    """For each element with includes that were not found: names and URIs of what is missing. An
+    empty name is that of a merge, which could have had elements of any name."""
 
     def kind(self, index: int) -> Kind:
         """
-        Tell what an element is.
+        Return the kind of an element.
 
-        :param index: its index.
+        :param index: index of the element.
         :return: its kind.
         """
         return Kind(int(self.kinds[index]))
 
     def place(self, index: int, line: int = 0, part: str = '') -> Place:
         """
-        Tell where an element stands.
+        Return the place of an element, or of a part of it.
 
-        :param index: its index.
-        :param line: line of the part of it that is meant; 0 for its own.
-        :param part: what is meant of it, such as ``pose``; empty for the element itself.
-        :return: its file, line and path.
+        :param index: index of the element.
+        :param line: line of the part; 0 for that of the element.
+        :param part: path of the part in the element, such as ``pose``.
+        :return: file, line and path.
         """
-        path = element_path(self.kinds, self.names, self.parents, index)
-        return Place(
-            self.files[self.file_indices[index]],
-            line or int(self.lines[index]),
-            f'{path}/{part}' if part else path,
-        )
+        steps = [part] if part else []
+        path = self.paths[self.file_indices[index]]
+        line = line or int(self.lines[index])
+        while index >= 0:
+            kind = self.kind(index)
+            if kind is not Kind.ROOT:
+                name = '' if kind is Kind.INERTIAL else self.names[index]
+                steps.append(path_step(kind.label, name))
+            index = int(self.parents[index])
+        return Place(path, line, '/'.join(['/sdf', *reversed(steps)]))
 
 
-def element_path(
-    kinds: _Integers, names: Sequence[str], parents: _Integers, index: int,
-) -> str:
+class ElementsBuilder:
     """
-    Return the path of an element, such as ``/sdf/model[@name="m"]/link[@name="l"]``.
+    The table while it grows.
 
-    :param kinds: the kind of each element.
-    :param names: the name of each.
-    :param parents: the element that holds each; -1 for none.
-    :param index: index of an element; -1 for the document itself.
-    :return: its path from the outermost element.
+    :param paths: the files of the load.
     """
-    steps: list[str] = []
-    while index >= 0:
-        kind = Kind(int(kinds[index]))
-        if kind is Kind.INERTIAL:
-            steps.append(kind.label)
-        elif kind is not Kind.ROOT:
-            steps.append(step(kind.label, names[index]))
-        index = int(parents[index])
-    return '/'.join(['/sdf', *reversed(steps)])
+
+    def __init__(self, paths: Sequence[str]) -> None:
+        self.kinds = array('B')
+        self.names: list[str] = []
+        self.parents = array('i')
+        self.file_indices = array('i')
+        self.lines = array('i')
+        self.pose_lines = array('i')
+        self.relative_to: dict[int, str] = {}
+        self.models: dict[int, ModelDetails] = {}
+        self.frames: dict[int, FrameDetails] = {}
+        self.joints: dict[int, JointDetails] = {}
+        self.sensors: dict[int, SensorDetails] = {}
+        self.missing_includes: dict[int, dict[str, str]] = {}
+        self._scopes = array('i')
+        self._paths = paths
+        self._texts: dict[PoseFormat, list[str]] = {}
+        self._indices: dict[PoseFormat, array[int]] = {}
+
+    def add(
+        self, kind: Kind, name: str, parent: int, scope: int, file_index: int, line: int,
+    ) -> int:
+        """
+        Add an element.
+
+        :return: its index.
+        """
+        index = len(self.names)
+        self.kinds.append(kind)
+        self.names.append(name)
+        self.parents.append(parent)
+        self._scopes.append(scope)
+        self.file_indices.append(file_index)
+        self.lines.append(line)
+        self.pose_lines.append(0)
+        return index
+
+    def set_pose(self, index: int, text: str, pose_format: PoseFormat, line: int) -> None:
+        """
+        Set the pose of an element.
+
+        :param index: index of the element.
+        :param text: the pose as written.
+        :param pose_format: how it is to be read.
+        :param line: its line.
+        """
+        self.pose_lines[index] = line
+        if pose_format not in self._texts:
+            self._texts[pose_format], self._indices[pose_format] = [], array('i')
+        self._texts[pose_format].append(text)
+        self._indices[pose_format].append(index)
+
+    def elements(self) -> tuple[Elements, list[tuple[int, str]]]:
+        """
+        Return the table.
+
+        :return: the table; and for each pose that is not valid, and therefore the identity, the
+            index of its element and the reason.
+        """
+        poses = np.tile(IDENTITY, (len(self.names), 1))
+        failures = []
+        for pose_format, texts in self._texts.items():
+            indices = self._indices[pose_format]
+            poses[indices], failed = poses_from_texts(texts, pose_format)
+            failures += [(indices[row], reason) for row, reason in failed]
+        table = Elements(
+            kinds=np.array(self.kinds, dtype=np.uint8), names=self.names,
+            parents=_indices(self.parents), scopes=_indices(self._scopes),
+            file_indices=_indices(self.file_indices), lines=_indices(self.lines),
+            pose_lines=_indices(self.pose_lines), poses=poses, relative_to=self.relative_to,
+            models=self.models, frames=self.frames, joints=self.joints, sensors=self.sensors,
+            paths=self._paths, missing_includes=self.missing_includes)
+        return table, failures
 
 
-def step(label: str, name: str) -> str:
-    """
-    Return one step of an element's path.
-
-    :param label: the element's tag.
-    :param name: its name.
-    :return: such as ``link[@name="l"]``.
-    """
-    return f'{label}[@name="{name}"]'
+def _indices(column: array[int]) -> Indices:
+    return np.array(column, dtype=np.int32)

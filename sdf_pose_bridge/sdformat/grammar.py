@@ -1,276 +1,456 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-What values SDFormat's elements take, as far as they can be wrong.
+The elements of SDFormat: what each may hold, what it must have, and which values it takes.
 
-Facts of the specification of version 1.11. Keys are the tag of the parent and of the element; an
-element that is not listed takes any text. Poses are not here:
-:mod:`sdf_pose_bridge.sdformat.pose_text` reads those.
+Facts of the specification, version 1.11 (http://sdformat.org/spec). A definition lists what an
+element holds, separated by blanks:
+
+* ``tag``: a child element; its definition is that of ``parent/tag`` or ``tag``, or it is a string.
+* ``tag:type`` or ``tag:type[min,max]``: a child element with a value, see :class:`ValueType`.
+* ``tag=name``: a child element that is defined under another name.
+* ``@name`` or ``@name:type``: an attribute.
+* ``:type``: the type of the value of the element itself.
+* ``*``: any children, which are not read.
+
+``!`` after a tag or a name: the element or attribute is required. Where a required child element
+is missing, libsdformat adds it with its default value, except in joints.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 import enum
+from functools import cache
+from functools import cached_property
+import math
+import re
+from typing import Any
+from typing import NamedTuple
 
 
 class ValueType(enum.Enum):
-    """Type of an element's value."""
+    """Type of a value, by the name that definitions use."""
 
-    BOOLEAN = 'a boolean (true, false, 1 or 0)'
-    INTEGER = 'an integer'
-    NUMBER = 'a number'
-    TWO_NUMBERS = 'two numbers'
-    THREE_NUMBERS = 'three numbers'
-    COLOR = 'a color of three or four numbers from 0 to 1'
+    STRING = 'string', 'a text'
+    BOOLEAN = 'bool', 'a boolean (true, false, 1 or 0)'
+    INTEGER = 'int', 'an integer'
+    NUMBER = 'double', 'a number'
+    TWO_NUMBERS = 'vector2', 'two numbers'
+    THREE_NUMBERS = 'vector3', 'three numbers'
+    AXIS = 'axis', 'three numbers'
+    """A direction: not all of the numbers are zero."""
+    COLOR = 'color', 'a color of three or four numbers from 0 to 1'
+    POSE = 'pose', 'a pose'
+
+    description: str
+    """What the value has to be, for messages."""
+
+    def __new__(cls, value: str, description: str = '') -> ValueType:
+        member = object.__new__(cls)
+        member._value_ = value
+        member.description = description
+        return member
 
 
-_BOOLEANS = {
-    'animation': 'interpolate_x',
-    'audio_source': 'loop',
-    'bullet': 'split_impulse',
-    'camera': 'triggered',
-    'constraints': 'split_impulse',
-    'contact': 'collide_without_contact',
-    'heightmap': 'use_terrain_paging',
-    'imu': 'enable_orientation',
-    'lens': 'scale_to_hfov',
-    'light': 'cast_shadows light_on visualize',
-    'link': 'enable_wind gravity kinematic must_be_base_link self_collide',
-    'material': 'double_sided lighting',
-    'model': 'allow_auto_disable enable_wind self_collide',
-    'ode': 'cfm_damping implicit_spring_damper',
-    'particle_emitter': 'emitting',
-    'physics': 'provide_feedback',
-    'scene': 'grid origin_visual shadows',
-    'script': 'auto_start loop',
-    'sensor': 'always_on enable_metrics visualize',
-    'simbody': 'must_be_loop_joint',
-    'solver': 'thread_position_correction use_dynamic_moi_rescaling',
-    'submesh': 'center',
-    'torsional': 'use_patch_radius',
-    'track_visual': 'inherit_yaw static use_model_frame',
-    'visual': 'cast_shadows',
+class Kind(enum.IntEnum):
+    """
+    Kind of an element that has a pose.
+
+    Each member has the elements in which the kind may stand, and the definition of its content. A
+    kind has a name space of its own among its siblings, unless it is one of :data:`FRAME_KINDS`.
+    """
+
+    parents: tuple[str, ...]
+    content: str
+
+    # A call with an integer finds the member of that value, hence the types.
+    def __new__(cls, parents: Any, content: str = '') -> Kind:
+        member = int.__new__(cls, len(cls.__members__))
+        member._value_ = len(cls.__members__)
+        member.parents = tuple(parents.split())
+        member.content = content
+        return member
+
+    # An Enum's own hash is a function in Python, and kinds are keys wherever elements are read.
+    __hash__ = int.__hash__
+
+    ROOT = '', ''
+    """The implicit root of a model file, in which its poses are resolved. No file writes it."""
+    WORLD = 'sdf', (
+        '@name! audio wind include gravity!:vector3 magnetic_field!:vector3 atmosphere! gui '
+        'physics! scene! plugin road spherical_coordinates state population')
+    MODEL = 'sdf world model', (
+        '@name! @canonical_link @placement_frame pose static:bool self_collide:bool '
+        'allow_auto_disable:bool enable_wind:bool plugin gripper include')
+    LINK = 'model', (
+        '@name! pose gravity:bool enable_wind:bool self_collide:bool kinematic:bool '
+        'must_be_base_link:bool velocity_decay audio_sink audio_source battery')
+    JOINT = 'model world', (
+        '@name! @type! pose parent! child! gearbox_ratio:double gearbox_reference_body '
+        'thread_pitch:double screw_thread_pitch:double axis axis2 physics')
+    FRAME = 'model world', '@name! @attached_to pose'
+    VISUAL = 'link', (
+        '@name! pose cast_shadows:bool laser_retro:double transparency:double '
+        'visibility_flags:int meta material geometry! plugin')
+    COLLISION = 'link', (
+        '@name! pose laser_retro:double max_contacts:int density:double auto_inertia_params '
+        'geometry! surface')
+    SENSOR = 'link joint', (
+        '@name! @type! pose always_on:bool update_rate:double visualize:bool topic '
+        'enable_metrics:bool plugin air_pressure air_speed altimeter camera contact force_torque '
+        'gps imu lidar logical_camera magnetometer navsat ray rfid rfidtag sonar transceiver')
+    LIGHT = 'sdf world link', (
+        '@name! @type! pose cast_shadows:bool light_on:bool visualize:bool intensity:double '
+        'diffuse:color specular:color attenuation direction!:vector3 spot')
+    INERTIAL = 'link', (
+        '@auto:bool pose mass:double density:double auto_inertia_params inertia '
+        'fluid_added_mass')
+    PARTICLE_EMITTER = 'link', (
+        '@name! @type! pose emitting:bool duration:double size:vector3 particle_size:vector3 '
+        'lifetime:double rate:double[0,] min_velocity:double[0,] max_velocity:double[0,] '
+        'scale_rate:double[0,] color_start:color color_end:color color_range_image topic '
+        'particle_scatter_ratio:double material')
+    PROJECTOR = 'link', (
+        '@name! pose texture!:string fov:double near_clip:double far_clip:double '
+        'visibility_flags:int plugin')
+    ACTOR = 'sdf world', '@name! pose skin animation script! link!=link joint=joint plugin'
+
+    @property
+    def label(self) -> str:
+        """Tag of the element: ``particle_emitter``."""
+        return self.name.lower()
+
+
+FRAME_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.JOINT, Kind.FRAME})
+"""The kinds that references can name. Those of one scope share a name space."""
+
+ELEMENTS = {
+    'sdf': '@version! include',
+    'actor/animation': '@name! filename! scale:double interpolate_x:bool',
+    'actor/script': 'loop:bool delay_start:double auto_start:bool trajectory',
+    'air_pressure': 'reference_altitude:double pressure',
+    'air_speed': 'pressure',
+    'altimeter': 'vertical_position vertical_velocity',
+    'angular_velocity': 'x y z',
+    'atmosphere': '@type! temperature:double pressure:double temperature_gradient:double',
+    'attenuation': 'range!:double linear:double constant:double quadratic:double',
+    'audio': 'device!',
+    'audio_sink': '',
+    'audio_source': 'uri! pitch:double gain:double contact loop:bool pose',
+    'audio_source/contact': 'collision!:string',
+    'auto_inertia_params': '*',
+    'axis': 'xyz! dynamics limit! mimic',
+    'axis/limit': (
+        'lower!:double upper!:double effort:double velocity:double stiffness:double '
+        'dissipation:double'),
+    'axis2': 'xyz! dynamics limit! mimic',
+    'axis2/limit': (
+        'lower:double upper:double effort:double velocity:double stiffness:double '
+        'dissipation:double'),
+    'battery': '@name! voltage!:double',
+    'blend': 'min_height!:double fade_dist!:double',
+    'bounce': 'restitution_coefficient:double[0,1] threshold:double',
+    'box': 'size!:vector3',
+    'bullet': 'solver! constraints!',
+    'bullet/constraints': (
+        'cfm!:double erp!:double contact_surface_layer!:double split_impulse!:bool '
+        'split_impulse_penetration_threshold!:double'),
+    'bullet/solver': 'type! min_step_size:double iters!:int sor!:double',
+    'camera': (
+        '@name triggered:bool camera_info_topic trigger_topic '
+        'horizontal_fov!:double[0.1,6.283186] image! clip! save depth_camera segmentation_type '
+        'box_type noise distortion lens visibility_mask:int optical_frame_id pose'),
+    'camera/clip': 'near!:double[0,] far!:double[0.1,]',
+    'camera/image': 'width!:int height!:int format anti_aliasing:int',
+    'camera/noise': 'type! mean:double stddev:double',
+    'capsule': 'radius!:double length!:double',
+    'clouds': (
+        'speed:double[0,] direction:double[0,3.1456] humidity:double[0,1] '
+        'mean_size:double[0,1] ambient:color'),
+    'cone': 'radius!:double length!:double',
+    'contact': 'collision!:string topic!',
+    'convex_decomposition': 'max_convex_hulls:int voxel_resolution:int',
+    'custom_function': 'c1:double c2:double c3:double f:double fun!',
+    'custom_rpy': ':vector3 @parent_frame',
+    'cylinder': 'radius!:double length!:double',
+    'dart': 'solver! collision_detector',
+    'dart/solver': 'solver_type!',
+    'deletions': 'name!',
+    'depth_camera': 'output! clip',
+    'depth_camera/clip': 'near:double[0,] far:double[0.1,]',
+    'distortion': 'k1:double k2:double k3:double p1:double p2:double center:vector2',
+    'dynamics': (
+        'damping:double friction:double spring_reference!:double spring_stiffness!:double'),
+    'ellipsoid': 'radii!:vector3',
+    'empty': '',
+    'fluid_added_mass': (
+        'xx:double xy:double xz:double xp:double xq:double xr:double yy:double yz:double '
+        'yp:double yq:double yr:double zz:double zp:double zq:double zr:double pp:double '
+        'pq:double pr:double qq:double qr:double rr:double'),
+    'fog': 'color:color type start:double[0,] end:double[0,] density:double[0,]',
+    'force': 'x y z',
+    'force_torque': 'frame:string measure_direction force torque',
+    'friction': 'torsional ode bullet',
+    'friction/bullet': (
+        'friction:double[0,] friction2:double[0,] fdir1:vector3 rolling_friction:double'),
+    'friction/ode': 'mu:double[0,] mu2:double[0,] fdir1:vector3 slip1:double slip2:double',
+    'geometry': (
+        'empty box capsule cone cylinder ellipsoid heightmap image mesh plane polyline sphere'),
+    'gps': 'position_sensing velocity_sensing',
+    'grasp_check': 'detach_steps:int attach_steps:int min_contact_count:int',
+    'grav_dir_x': ':vector3 @parent_frame',
+    'gripper': '@name! grasp_check gripper_link! palm_link!',
+    'gui': '@fullscreen:bool plugin camera=gui_camera',
+    'gui_camera': '@name! view_controller projection_type track_visual pose',
+    'heightmap': (
+        'uri! size:vector3 pos:vector3 texture blend use_terrain_paging:bool sampling:int'),
+    'horizontal': 'samples!:int resolution!:double min_angle!:double max_angle!:double',
+    'image': 'uri! scale!:double threshold!:int height!:double granularity!:int',
+    'imu': (
+        'orientation_reference_frame angular_velocity linear_acceleration '
+        'enable_orientation:bool'),
+    'include': '@merge:bool uri! pose plugin name static:bool placement_frame',
+    'inertia': 'ixx!:double ixy!:double ixz!:double iyy!:double iyz!:double izz!:double',
+    'inertial/pose': ':pose @rotation_format @degrees:bool',
+    'insertions': 'model!=model light!=light',
+    'intrinsics': 'fx!:double fy!:double cx!:double cy!:double s!:double',
+    'joint/physics': 'simbody=joint_simbody ode=joint_ode provide_feedback:bool',
+    'joint_ode': (
+        'cfm_damping:bool implicit_spring_damper:bool fudge_factor:double cfm:double erp:double '
+        'bounce:double max_force:double velocity:double limit suspension'),
+    'joint_simbody': 'must_be_loop_joint:bool',
+    'lens': (
+        'type! scale_to_hfov!:bool custom_function cutoff_angle:double[0,3.141592653] '
+        'env_texture_size:int[4,2048] intrinsics projection'),
+    'lidar': 'scan! range! noise=camera/noise visibility_mask:int',
+    'light_map': ':string @uv_set:int',
+    'light_state': '@name! pose',
+    'limit': 'cfm!:double erp!:double',
+    'linear_acceleration': 'x y z',
+    'link_state': '@name! velocity:pose acceleration:pose wrench:pose collision pose',
+    'link_state/collision': '@name!',
+    'logical_camera': 'near!:double far!:double aspect_ratio!:double horizontal_fov!:double',
+    'magnetometer': 'x y z',
+    'material': (
+        'script shader render_order:double lighting:bool ambient:color diffuse:color '
+        'specular:color shininess:double emissive:color double_sided:bool pbr'),
+    'material/script': 'uri! name!',
+    'mesh': '@optimization convex_decomposition uri! submesh scale:vector3',
+    'meta': 'layer:int',
+    'metal': (
+        'albedo_map roughness_map roughness metalness_map metalness environment_map '
+        'ambient_occlusion_map normal_map emissive_map light_map'),
+    'mimic': '@joint! @axis multiplier!:double offset!:double reference!:double',
+    'model_state': (
+        '@name! joint=joint_state model=model_state frame=frame pose scale:vector3 '
+        'link=link_state'),
+    'joint_state': '@name! angle!',
+    'joint_state/angle': ':double @axis!:int',
+    'navsat': 'position_sensing velocity_sensing',
+    'noise': (
+        '@type! mean:double stddev:double[0,] bias_mean:double bias_stddev:double[0,] '
+        'dynamic_bias_stddev:double[0,] dynamic_bias_correlation_time:double precision:double'),
+    'normal_map': ':string @type',
+    'ode': 'solver! constraints!',
+    'ode/constraints': (
+        'cfm!:double erp!:double contact_max_correcting_vel!:double '
+        'contact_surface_layer!:double'),
+    'ode/solver': (
+        'type! min_step_size:double island_threads:int iters!:int precon_iters:int sor!:double '
+        'thread_position_correction:bool use_dynamic_moi_rescaling!:bool friction_model'),
+    'orientation_reference_frame': 'localization! custom_rpy grav_dir_x',
+    'pbr': 'metal specular',
+    'physics': (
+        '@name @default:bool @type! max_step_size!:double real_time_factor!:double '
+        'real_time_update_rate!:double max_contacts:int dart simbody bullet ode'),
+    'plane': 'normal!:vector3 size!:vector2',
+    'plugin': '@name @filename! *',
+    'polyline': 'point!:vector2 height!:double',
+    'population': '@name! box cylinder model_count!:int distribution! pose model!=model',
+    'distribution': 'type! rows:int cols:int step:vector3',
+    'pose': ':pose @relative_to @rotation_format @degrees:bool',
+    'position_sensing': 'horizontal vertical',
+    'position_sensing/horizontal': 'noise',
+    'position_sensing/vertical': 'noise',
+    'pressure': 'noise',
+    'projection': (
+        'p_fx:double p_fy:double p_cx:double p_cy:double tx:double ty:double'),
+    'range': 'min!:double max!:double resolution:double',
+    'ray': 'scan! range! noise=camera/noise visibility_mask:int',
+    'rfid': '',
+    'rfidtag': '',
+    'road': '@name! width!:double point!:vector3 material',
+    'save': '@enabled!:bool path!',
+    'scan': 'horizontal! vertical',
+    'scene': (
+        'ambient!:color background!:color sky shadows!:bool fog grid:bool origin_visual:bool'),
+    'shader': '@type! normal_map:string',
+    'simbody': (
+        'min_step_size:double accuracy:double max_transient_velocity:double contact'),
+    'simbody/contact': (
+        'stiffness:double dissipation:double plastic_coef_restitution:double '
+        'plastic_impact_velocity:double static_friction:double dynamic_friction:double '
+        'viscous_friction:double override_impact_capture_velocity:double '
+        'override_stiction_transition_velocity:double'),
+    'skin': 'filename! scale:double',
+    'sky': 'time:double sunrise:double sunset:double clouds cubemap_uri',
+    'soft_contact': 'dart',
+    'soft_contact/dart': (
+        'bone_attachment!:double stiffness!:double damping!:double flesh_mass_fraction!:double'),
+    'sonar': 'geometry:string min!:double max!:double radius:double',
+    'specular': (
+        'albedo_map specular_map glossiness_map glossiness environment_map '
+        'ambient_occlusion_map normal_map emissive_map light_map'),
+    'sphere': 'radius!:double',
+    'spherical_coordinates': (
+        'surface_model! world_frame_orientation latitude_deg!:double longitude_deg!:double '
+        'elevation!:double surface_axis_equatorial:double surface_axis_polar:double '
+        'heading_deg!:double'),
+    'spot': 'inner_angle!:double outer_angle!:double falloff!:double',
+    'state': (
+        '@world_name! sim_time wall_time real_time iterations!:int insertions deletions '
+        'model=model_state light=light_state'),
+    'submesh': 'name! center:bool',
+    'surface': 'bounce friction contact soft_contact',
+    'surface/contact': (
+        'collide_without_contact:bool collide_without_contact_bitmask:int collide_bitmask:int '
+        'category_bitmask:int poissons_ratio:double elastic_modulus:double ode=contact_ode '
+        'bullet=contact_bullet'),
+    'contact_bullet': (
+        'soft_cfm:double soft_erp:double kp:double kd:double split_impulse!:bool '
+        'split_impulse_penetration_threshold!:double'),
+    'contact_ode': (
+        'soft_cfm:double soft_erp:double kp:double kd:double max_vel:double min_depth:double'),
+    'suspension': 'cfm!:double erp!:double',
+    'texture': 'size!:double diffuse! normal!',
+    'torque': 'x y z',
+    'torsional': (
+        'coefficient:double[0,] use_patch_radius:bool patch_radius:double[0,] '
+        'surface_radius:double[0,] ode'),
+    'torsional/ode': 'slip:double',
+    'track_visual': (
+        'name min_dist:double max_dist:double static:bool use_model_frame:bool xyz:vector3 '
+        'inherit_yaw:bool'),
+    'trajectory': '@id!:int @type! @tension:double waypoint',
+    'transceiver': (
+        'essid frequency:double min_frequency:double max_frequency:double gain!:double '
+        'power!:double sensitivity:double'),
+    'velocity_decay': 'linear:double angular:double',
+    'velocity_sensing': 'horizontal vertical',
+    'velocity_sensing/horizontal': 'noise',
+    'velocity_sensing/vertical': 'noise',
+    'vertical': 'samples!:int resolution:double min_angle!:double max_angle!:double',
+    'vertical_position': 'noise',
+    'vertical_velocity': 'noise',
+    'waypoint': 'time!:double pose!:pose',
+    'wind': 'linear_velocity:vector3',
+    'x': 'noise',
+    'xyz': ':axis @expressed_in',
+    'y': 'noise',
+    'z': 'noise',
 }
+"""Definitions of the elements that have no pose, by tag, ``parent/tag`` or another name."""
 
-_INTEGERS = {
-    'camera': 'visibility_mask',
-    'collision': 'max_contacts',
-    'contact': 'category_bitmask collide_bitmask collide_without_contact_bitmask',
-    'convex_decomposition': 'max_convex_hulls voxel_resolution',
-    'distribution': 'cols rows',
-    'grasp_check': 'attach_steps detach_steps min_contact_count',
-    'heightmap': 'sampling',
-    'horizontal': 'samples',
-    'image': 'anti_aliasing width',
-    'lens': 'env_texture_size',
-    'lidar': 'visibility_mask',
-    'meta': 'layer',
-    'physics': 'max_contacts',
-    'population': 'model_count',
-    'projector': 'visibility_flags',
-    'ray': 'visibility_mask',
-    'solver': 'island_threads iters precon_iters',
-    'state': 'iterations',
-    'vertical': 'samples',
-    'visual': 'visibility_flags',
-}
+_ITEM = re.compile(
+    r'(?P<attribute>@?)(?P<name>[\w*]*)(?P<required>!?)(?:=(?P<identifier>\w+(?:/\w+)?))?'
+    r'(?::(?P<type>\w+))?(?:\[(?P<minimum>[^,]*),(?P<maximum>.*)\])?')
+_KINDS = {kind.label: kind for kind in Kind}
 
-_NUMBERS = {
-    'air_pressure': 'reference_altitude',
-    'animation': 'scale',
-    'atmosphere': 'pressure temperature temperature_gradient',
-    'attenuation': 'constant linear quadratic range',
-    'audio_source': 'gain pitch',
-    'battery': 'voltage',
-    'blend': 'fade_dist min_height',
-    'bounce': 'restitution_coefficient threshold',
-    'bullet': 'friction friction2 kd kp rolling_friction soft_cfm soft_erp '
-              'split_impulse_penetration_threshold',
-    'camera': 'horizontal_fov',
-    'capsule': 'length radius',
-    'clip': 'far near',
-    'clouds': 'direction humidity mean_size speed',
-    'collision': 'density laser_retro',
-    'cone': 'length radius',
-    'constraints': 'cfm contact_max_correcting_vel contact_surface_layer erp '
-                   'split_impulse_penetration_threshold',
-    'contact': 'dissipation dynamic_friction elastic_modulus override_impact_capture_velocity '
-               'override_stiction_transition_velocity plastic_coef_restitution '
-               'plastic_impact_velocity poissons_ratio static_friction stiffness viscous_friction',
-    'custom_function': 'c1 c2 c3 f',
-    'cylinder': 'length radius',
-    'dart': 'bone_attachment damping flesh_mass_fraction stiffness',
-    'distortion': 'k1 k2 k3 p1 p2',
-    'dynamics': 'damping friction spring_reference spring_stiffness',
-    'fluid_added_mass': 'pp pq pr qq qr rr xp xq xr xx xy xz yp yq yr yy yz zp zq zr zz',
-    'fog': 'density end start',
-    'horizontal': 'max_angle min_angle resolution',
-    'inertia': 'ixx ixy ixz iyy iyz izz',
-    'inertial': 'density mass',
-    'intrinsics': 'cx cy fx fy s',
-    'joint': 'gearbox_ratio screw_thread_pitch thread_pitch',
-    'lens': 'cutoff_angle',
-    'light': 'intensity',
-    'limit': 'cfm dissipation effort erp lower stiffness upper velocity',
-    'logical_camera': 'aspect_ratio far horizontal_fov near',
-    'material': 'render_order shininess',
-    'mimic': 'multiplier offset reference',
-    'noise': 'bias_mean bias_stddev dynamic_bias_correlation_time dynamic_bias_stddev mean '
-             'precision stddev',
-    'ode': 'bounce cfm erp fudge_factor kd kp max_force max_vel min_depth mu mu2 slip slip1 slip2 '
-           'soft_cfm soft_erp velocity',
-    'particle_emitter': 'duration lifetime max_velocity min_velocity particle_scatter_ratio rate '
-                        'scale_rate',
-    'physics': 'max_step_size real_time_factor real_time_update_rate',
-    'polyline': 'height',
-    'projection': 'p_cx p_cy p_fx p_fy tx ty',
-    'projector': 'far_clip fov near_clip',
-    'range': 'max min resolution',
-    'road': 'width',
-    'script': 'delay_start',
-    'sensor': 'update_rate',
-    'simbody': 'accuracy max_transient_velocity min_step_size',
-    'skin': 'scale',
-    'sky': 'sunrise sunset time',
-    'solver': 'min_step_size sor',
-    'sonar': 'max min radius',
-    'sphere': 'radius',
-    'spherical_coordinates': 'elevation heading_deg latitude_deg longitude_deg '
-                             'surface_axis_equatorial surface_axis_polar',
-    'spot': 'falloff inner_angle outer_angle',
-    'suspension': 'cfm erp',
-    'texture': 'size',
-    'torsional': 'coefficient patch_radius surface_radius',
-    'track_visual': 'max_dist min_dist',
-    'transceiver': 'frequency gain max_frequency min_frequency power sensitivity',
-    'velocity_decay': 'angular linear',
-    'vertical': 'max_angle min_angle resolution',
-    'visual': 'laser_retro transparency',
-    'waypoint': 'time',
-}
 
-_PAIRS = {
-    'distortion': 'center',
-    'plane': 'size',
-    'polyline': 'point',
-}
+class Attribute(NamedTuple):
+    """Definition of an attribute."""
 
-_TRIPLES = {
-    'axis': 'xyz',
-    'axis2': 'xyz',
-    'box': 'size',
-    'bullet': 'fdir1',
-    'distribution': 'step',
-    'ellipsoid': 'radii',
-    'heightmap': 'pos size',
-    'light': 'direction',
-    'mesh': 'scale',
-    'model': 'scale',
-    'ode': 'fdir1',
-    'orientation_reference_frame': 'custom_rpy grav_dir_x',
-    'particle_emitter': 'particle_size size',
-    'plane': 'normal',
-    'road': 'point',
-    'track_visual': 'xyz',
-    'wind': 'linear_velocity',
-    'world': 'gravity magnetic_field',
-}
+    value_type: ValueType
+    is_required: bool
 
-_COLORS = {
-    'clouds': 'ambient',
-    'fog': 'color',
-    'light': 'diffuse specular',
-    'material': 'ambient diffuse emissive specular',
-    'particle_emitter': 'color_end color_start',
-    'scene': 'ambient background',
-}
 
-SMALLEST_VALUES = {
-    ('bounce', 'restitution_coefficient'): 0.0,
-    ('bullet', 'friction'): 0.0,
-    ('bullet', 'friction2'): 0.0,
-    ('camera', 'horizontal_fov'): 0.1,
-    ('clip', 'far'): 0.1,
-    ('clip', 'near'): 0.0,
-    ('clouds', 'direction'): 0.0,
-    ('clouds', 'humidity'): 0.0,
-    ('clouds', 'mean_size'): 0.0,
-    ('clouds', 'speed'): 0.0,
-    ('fog', 'density'): 0.0,
-    ('fog', 'end'): 0.0,
-    ('fog', 'start'): 0.0,
-    ('lens', 'cutoff_angle'): 0.0,
-    ('lens', 'env_texture_size'): 4.0,
-    ('noise', 'bias_stddev'): 0.0,
-    ('noise', 'dynamic_bias_stddev'): 0.0,
-    ('noise', 'stddev'): 0.0,
-    ('ode', 'mu'): 0.0,
-    ('ode', 'mu2'): 0.0,
-    ('particle_emitter', 'max_velocity'): 0.0,
-    ('particle_emitter', 'min_velocity'): 0.0,
-    ('particle_emitter', 'rate'): 0.0,
-    ('particle_emitter', 'scale_rate'): 0.0,
-    ('torsional', 'coefficient'): 0.0,
-    ('torsional', 'patch_radius'): 0.0,
-    ('torsional', 'surface_radius'): 0.0,
-}
-"""The least value of elements that have one, by the parent's tag and their own."""
+class Definition:
+    """
+    Definition of an element in the element that holds it.
 
-LARGEST_VALUES = {
-    ('bounce', 'restitution_coefficient'): 1.0,
-    ('camera', 'horizontal_fov'): 6.283186,
-    ('clouds', 'direction'): 3.1456,
-    ('clouds', 'humidity'): 1.0,
-    ('clouds', 'mean_size'): 1.0,
-    ('lens', 'cutoff_angle'): 3.141592653,
-    ('lens', 'env_texture_size'): 2048.0,
-}
-"""The greatest value of elements that have one, by the parent's tag and their own."""
+    :param identifier: the tag, ``parent/tag`` or another name that tells definitions apart.
+    :param content: what the element holds, as this module describes it.
+    :param has_frames: whether kinds of elements are frames here, and not parts of a state.
+    :param value_type: type of the value, if the content does not tell.
+    :param minimum: the smallest value that the element may have.
+    :param maximum: the largest value that the element may have.
+    """
 
-VALUE_TYPES: dict[str, dict[str, ValueType]] = {}
-"""Type of the value of each element, by the parent's tag and its own."""
+    def __init__(
+        self, identifier: str, content: str, *, has_frames: bool = False,
+        value_type: ValueType | None = None, minimum: float = -math.inf,
+        maximum: float = math.inf,
+    ) -> None:
+        self.identifier = identifier
+        self.minimum = minimum
+        self.maximum = maximum
+        self.kind = _KINDS.get(identifier) if has_frames else None
+        """The kind of the element; None for an element that is no frame."""
+        self.value_type = value_type
+        """Type of the value; None for an element that holds others."""
+        self._has_frames = has_frames
+        self._items = [item for item in map(_ITEM.fullmatch, content.split()) if item]
+        for item in self._items:
+            if not item['name']:
+                self.value_type = ValueType(item['type'])
 
-for _value_type, _table in (
-    (ValueType.BOOLEAN, _BOOLEANS),
-    (ValueType.INTEGER, _INTEGERS),
-    (ValueType.NUMBER, _NUMBERS),
-    (ValueType.TWO_NUMBERS, _PAIRS),
-    (ValueType.THREE_NUMBERS, _TRIPLES),
-    (ValueType.COLOR, _COLORS),
-):
-    for _parent, _tags in _table.items():
-        VALUE_TYPES.setdefault(_parent, {}).update(dict.fromkeys(_tags.split(), _value_type))
+    @cached_property
+    def attributes(self) -> Mapping[str, Attribute]:
+        """The attributes by name."""
+        return {
+            item['name']: Attribute(ValueType(item['type'] or 'string'), bool(item['required']))
+            for item in self._items if item['attribute']}
 
-VALUE_TAGS = tuple(dict.fromkeys(_tag for _types in VALUE_TYPES.values() for _tag in _types))
-"""Tags of elements whose value has a type, at least in some parents."""
+    @cached_property
+    def checked_attributes(self) -> tuple[tuple[str, Attribute], ...]:
+        """The attributes that are required or are no strings, without the names of frames."""
+        return tuple(
+            (name, attribute) for name, attribute in self.attributes.items()
+            if (attribute.is_required or attribute.value_type is not ValueType.STRING)
+            and (name != 'name' or self.kind is None))
 
-COUNTS_OF_NUMBERS = {ValueType.TWO_NUMBERS: 2, ValueType.THREE_NUMBERS: 3}
-"""How many numbers a value has, where that is more than one."""
+    @cached_property
+    def children(self) -> Mapping[object, Definition]:
+        """The child elements by tag."""
+        children: dict[object, Definition] = {
+            item['name']: self._child(item) for item in self._child_items()}
+        for kind in Kind:
+            if self.identifier in kind.parents:
+                children[kind.label] = definition_of(kind.label, has_frames=self._has_frames)
+        return children
 
-AXES = frozenset({('axis', 'xyz'), ('axis2', 'xyz')})
-"""Elements that hold a direction, by the parent's tag and their own."""
+    @cached_property
+    def required_children(self) -> frozenset[str]:
+        """Tags of the child elements that libsdformat adds where they are missing."""
+        return frozenset(item['name'] for item in self._child_items() if item['required'])
 
-MATERIAL_TAGS = ('script', 'shader')
-"""Tags of what has to be whole in a material."""
+    def _child_items(self) -> list[re.Match[str]]:
+        return [
+            item for item in self._items
+            if item['name'] not in ('', '*') and not item['attribute']]
 
-HOLDERS_OF_POSES = ('waypoint', 'camera', 'audio_source', 'population')
-"""Tags of elements whose poses are no frames' poses."""
+    def _child(self, item: re.Match[str]) -> Definition:
+        tag = item['name']
+        if not item['type']:
+            for identifier in (item['identifier'], f'{self.identifier}/{tag}', tag):
+                if identifier in ELEMENTS or (identifier and item['identifier']):
+                    return definition_of(identifier)
+        return Definition(
+            tag, '', value_type=ValueType(item['type'] or 'string'),
+            minimum=float(item['minimum'] or -math.inf),
+            maximum=float(item['maximum'] or math.inf))
 
-REQUIRED_ATTRIBUTES = {
-    'actor': 'name',
-    'battery': 'name',
-    'gripper': 'name',
-    'light': 'type',
-    'mimic': 'joint',
-    'particle_emitter': 'type',
-    'plugin': 'filename',
-    'population': 'name',
-    'road': 'name',
-    'sensor': 'type',
-    'shader': 'type',
-}
-"""Attributes that must be there, besides the names of elements that have a pose."""
 
-CHECKED_TAGS = tuple(dict.fromkeys((
-    *VALUE_TAGS, *REQUIRED_ATTRIBUTES, *MATERIAL_TAGS, *HOLDERS_OF_POSES, 'state')))
-"""Tags of all elements with values that are listed here."""
+@cache
+def definition_of(identifier: str, *, has_frames: bool = False) -> Definition:
+    """
+    Return the definition of an element.
+
+    :param identifier: label of a kind, or a key of :data:`ELEMENTS`.
+    :param has_frames: whether kinds of elements are frames here.
+    :return: the definition.
+    """
+    kind = _KINDS.get(identifier)
+    content = ELEMENTS[identifier] if kind is None else kind.content
+    return Definition(identifier, content, has_frames=has_frames)

@@ -1,342 +1,295 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Walk the XML of a document and fill the table of its elements that carry a pose."""
+"""
+Fill the table of elements in one walk over a tree.
+
+Every element is visited once. The grammar says what it is: an element with a frame becomes a row
+of the table, a value is checked, and what the grammar does not know is skipped.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import NamedTuple
-from typing import TYPE_CHECKING
 
-from lxml import etree
-
+from sdf_pose_bridge.errors import AttributeInvalidError
+from sdf_pose_bridge.errors import AttributeMissingError
 from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementIncorrectTypeError
 from sdf_pose_bridge.errors import ElementInvalidError
-from sdf_pose_bridge.errors import MergeIncludeError
-from sdf_pose_bridge.names import Kind
-from sdf_pose_bridge.names import MODEL_FRAME
+from sdf_pose_bridge.errors import Problems
+from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
-from sdf_pose_bridge.names import WORLD_FRAME
-from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.document import boolean_from_text
-from sdf_pose_bridge.sdformat.document import Document
-from sdf_pose_bridge.sdformat.document import value_of
-from sdf_pose_bridge.sdformat.document import XmlElement
-from sdf_pose_bridge.sdformat.element_builder import ElementBuilder
+from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.sdformat.details import DetailsReader
 from sdf_pose_bridge.sdformat.elements import Elements
-from sdf_pose_bridge.sdformat.elements import FrameFacts
-from sdf_pose_bridge.sdformat.elements import ModelFacts
-from sdf_pose_bridge.sdformat.elements import NOWHERE
-from sdf_pose_bridge.sdformat.include.inclusions import DocumentSet
-from sdf_pose_bridge.sdformat.joint_reader import joint_facts_from_xml
-from sdf_pose_bridge.sdformat.sensor_facts import sensor_facts_from_xml
-from sdf_pose_bridge.sdformat.sibling_names import NameClaims
+from sdf_pose_bridge.sdformat.elements import ElementsBuilder
+from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
+from sdf_pose_bridge.sdformat.grammar import Definition
+from sdf_pose_bridge.sdformat.grammar import definition_of
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.grammar import ValueType
+from sdf_pose_bridge.sdformat.pose_text import pose_from_text
+from sdf_pose_bridge.sdformat.pose_text import PoseFormat
+from sdf_pose_bridge.sdformat.pose_text import PoseTextError
+from sdf_pose_bridge.sdformat.sibling_names import SiblingNames
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.values import boolean_from_text
+from sdf_pose_bridge.sdformat.values import is_of_type
+from sdf_pose_bridge.sdformat.values import value_fault
+from sdf_pose_bridge.sdformat.versions import allows_scoped_names
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of
+from sdf_pose_bridge.sdformat.xml_tree import described
+from sdf_pose_bridge.sdformat.xml_tree import is_foreign
+from sdf_pose_bridge.sdformat.xml_tree import text_of
+from sdf_pose_bridge.sdformat.xml_tree import written_tag
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-if TYPE_CHECKING:
-    from sdf_pose_bridge.sdformat.include.include_reader import Include
-    from sdf_pose_bridge.sdformat.include.inclusion import Inclusion
-
-_TOP_KINDS = {'model': Kind.MODEL, 'light': Kind.LIGHT, 'actor': Kind.ACTOR}
-_LINK_CHILD_KINDS = {
-    'visual': Kind.VISUAL,
-    'collision': Kind.COLLISION,
-    'sensor': Kind.SENSOR,
-    'light': Kind.LIGHT,
-    'inertial': Kind.INERTIAL,
-    'particle_emitter': Kind.PARTICLE_EMITTER,
-    'projector': Kind.PROJECTOR,
-}
-
-
-class _Scope(NamedTuple):
-    """Where elements are being read into."""
-
-    holder: int
-    """Index of the model, world or root."""
-    proxy: str = ''
-    """For what a merge brings: the frame that stands for the merged model's own."""
-
-    def name(self, reference: str) -> str:
-        """Return a reference as it has to be written in the scope."""
-        return self.proxy if self.proxy and reference == MODEL_FRAME else reference
+_DEEPEST = 300
+"""How deep elements may be nested. libxml2 allows 256 levels in a file."""
 
 
-def elements_from_documents(
-    documents: DocumentSet,
-    problems: Problems,
-    *,
-    broken: frozenset[str] = frozenset(),
-    skips_missing: bool = False,
+class _Parent(NamedTuple):
+    """The nearest element with a frame around the one that is read."""
+
+    element: int
+    """Its index."""
+    scope: int
+    """Index of the model, world or root whose names references use."""
+    path: str
+    """Its file."""
+
+
+def elements_from_tree(
+    root: XmlElement, sources: Sources, problems: Problems, *, may_hold_scoped_names: bool,
 ) -> Elements:
     """
-    Read all elements that carry a pose.
+    Read all elements with a pose.
 
-    :param documents: a file and what it includes, in the newest grammar.
-    :param problems: takes what is wrong with names, values and structure; references are not
-        looked up here.
-    :param broken: paths of files that are known not to be valid, which are not merged.
-    :param skips_missing: whether an include that cannot be found is left out with a warning.
-    :return: the elements. Where something is wrong the element is kept if it can be, so that
-        other errors are found and none follows from the first.
+    :param root: the ``sdf`` element of a tree in the newest version. An ``<include>`` in it is
+        one that was not found.
+    :param sources: where its elements were written.
+    :param problems: takes what is wrong with structure, names, attributes and values; references
+        are not looked up here.
+    :param may_hold_scoped_names: False if no name in the tree can hold ``::``.
+    :return: the elements. One with an error is kept if that is possible, so that other errors are
+        found and none follows from the first.
     """
-    table = ElementBuilder(documents.document, problems)
-    _ElementReader(table, documents.inclusions, broken, skips_missing).read(documents.document)
-    return table.elements()
+    if may_hold_scoped_names:
+        _check_scoped_names(root, sources, problems)
+    return _Reader(sources, problems).elements(root)
 
 
-class _ElementReader:
-    """Walks the XML; one method for each element of the grammar."""
+def check_element(
+    xml: XmlElement, definition: Definition, sources: Sources, problems: Problems,
+) -> None:
+    """
+    Check the attributes and values of an element that is no part of the tree.
 
-    def __init__(
-        self,
-        table: ElementBuilder,
-        inclusions: Mapping[XmlElement, Inclusion],
-        broken: frozenset[str],
-        skips_missing: bool,  # noqa: FBT001
-    ) -> None:
-        self._table = table
-        self._names = NameClaims(table)
-        self._inclusions = inclusions
-        self._broken = broken
-        self._skips_missing = skips_missing
+    :param xml: the element.
+    :param definition: its definition.
+    :param sources: where it was written.
+    :param problems: takes what is wrong.
+    """
+    _Reader(sources, problems).check(xml, definition)
 
-    # The file
 
-    def read(self, document: Document) -> None:
-        for warning in document.warnings:
-            self._table.note_warning(warning)
-        self._table.check_separators(document)
+def _check_scoped_names(root: XmlElement, sources: Sources, problems: Problems) -> None:
+    """Report names with ``::`` in files that must not have them, or are included by such files."""
+    xmls: list[XmlElement] = root.xpath('//*[contains(@name, "::")]')
+    for xml in xmls:
+        if is_foreign(xml) or all(
+                allows_scoped_names(sources.versions[path])
+                for path in sources.enclosing_paths(xml)):
+            continue
+        msg = f'the name "{xml.get("name")}" holds "{SEPARATOR}", which separates scopes'
+        problems.error(ReservedNameError(msg, sources.place_of_name(xml)))
+
+
+class _Reader:
+
+    def __init__(self, sources: Sources, problems: Problems) -> None:
+        self._sources = sources
+        self._problems = problems
+        self._builder = ElementsBuilder(sources.paths)
+        self._names = SiblingNames(self._builder, sources, problems)
+        self._details = DetailsReader(sources, problems)
+        self._file_indices = {path: index for index, path in enumerate(sources.paths)}
+
+    def check(self, xml: XmlElement, definition: Definition) -> None:
+        self._read(xml, definition, None, 1)
+
+    def elements(self, root: XmlElement) -> Elements:
+        self._read_file(root)
+        elements, failures = self._builder.elements()
+        for index, reason in failures:
+            place = elements.place(index, int(elements.pose_lines[index]), 'pose')
+            self._problems.error(ElementInvalidError(reason, place))
+        return elements
+
+    def _read_file(self, root: XmlElement) -> None:
+        """Read worlds, and the one model, light or actor that may stand beside them."""
+        definitions = definition_of('sdf', has_frames=True).children
+        path = self._sources.path(root)
         first = ''
-        for xml in document.root.iterchildren(etree.Element):
-            if xml.tag == 'world':
-                self._world(xml)
-            elif xml.tag in _TOP_KINDS or xml.tag == 'include':
-                if first:
-                    self._second_at_top(xml, first)
-                    continue
-                first = self._table.described(xml)
-                root = _Scope(self._table.add(Kind.ROOT, xml, ROOT_FRAME, NOWHERE, NOWHERE))
-                if xml.tag == 'model':
-                    self._table.check_top_pose(xml, root.holder)
-                    self._model(xml, root)
-                elif xml.tag == 'include':
-                    self._include(xml, root)
-                else:
-                    self._leaf(_TOP_KINDS[str(xml.tag)], xml, root.holder, root)
+        for child in root:
+            definition = definitions.get(child.tag)
+            if definition is None:
+                continue
+            if definition.kind is Kind.WORLD:
+                self._read(child, definition, _Parent(NO_ELEMENT, NO_ELEMENT, path), 1)
+            elif first:
+                self._report_second_top(child, first)
+            else:
+                first = described(child)
+                index = self._builder.add(
+                    Kind.ROOT, ROOT_FRAME, NO_ELEMENT, NO_ELEMENT, self._file_indices[path],
+                    self._sources.line(child))
+                self._read(child, definition, _Parent(index, index, path), 1)
 
-    def _second_at_top(self, xml: XmlElement, first: str) -> None:
-        this = self._table.described(xml)
-        if this == first:
-            msg = f'{this} stands at the top of this file already'
-            self._table.error(DuplicateNameError, xml, msg, NOWHERE, this)
+    def _report_second_top(self, xml: XmlElement, first: str) -> None:
+        if described(xml) == first:
+            msg = f'{first} stands at the top of this file already'
+            self._problems.error(DuplicateNameError(msg, self._sources.place_of_name(xml)))
         else:
-            msg = (f'{this} stands at the top of this file after {first}; only one model, light '
-                   'or actor may')
-            self._table.error(ElementIncorrectTypeError, xml, msg, NOWHERE, this)
+            msg = (f'{described(xml)} stands at the top of this file after {first}; only one '
+                   'model, light or actor may')
+            self._problems.error(ElementIncorrectTypeError(msg, self._sources.place_of_name(xml)))
 
-    # Includes
+    def _read(
+        self, xml: XmlElement, definition: Definition, parent: _Parent | None, depth: int,
+    ) -> None:
+        """Read an element; ``parent`` is None where no element has a frame."""
+        if definition.checked_attributes:
+            self._check_attributes(xml, definition)
+        value_type = definition.value_type
+        if value_type is None:
+            if depth > _DEEPEST:
+                msg = f'elements are nested more than {_DEEPEST} deep'
+                self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
+            elif definition.kind is not None and parent is not None:
+                self._read_frame(xml, definition, definition.kind, parent, depth)
+            elif definition.identifier != 'include':
+                self._read_children(xml, definition, parent, depth)
+            elif parent is not None:
+                self._note_missing_include(xml, parent.element)
+        elif value_type is ValueType.POSE:
+            self._check_pose(xml)
+        elif value_type is not ValueType.STRING:
+            fault = value_fault(text_of(xml), definition)
+            if fault:
+                self._problems.error(ElementInvalidError(fault, self._sources.place(xml)))
 
-    def _include(self, xml: XmlElement, scope: _Scope) -> None:
-        # Many files include nothing, and need not wait for this.
-        from sdf_pose_bridge.sdformat.include.include_reader import include_from_xml
-        include = include_from_xml(
-            xml, self._inclusions[xml], self._table, scope.holder,
-            skips_missing=self._skips_missing)
-        if include is None:
+    def _read_children(
+        self, xml: XmlElement, definition: Definition, parent: _Parent | None, depth: int,
+    ) -> None:
+        children = definition.children
+        for child in xml:
+            child_definition = children.get(child.tag)
+            if child_definition is not None:
+                self._read(child, child_definition, parent, depth + 1)
+
+    def _read_frame(
+        self, xml: XmlElement, definition: Definition, kind: Kind, parent: _Parent, depth: int,
+    ) -> None:
+        """Add an element to the table, with all that it holds."""
+        has_name = 'name' in definition.attributes
+        name = self._names.add(kind, xml, parent.element) if has_name else kind.label
+        if name is None:
+            self._read_children(xml, definition_of(kind.label), None, depth)
             return
-        top = include.top
-        kind = _TOP_KINDS[str(top.tag)]
-        if include.is_merge:
-            self._merge(include, scope)
-        elif kind is Kind.MODEL:
-            self._included_model(include, scope)
-        elif self._table.columns.kind(scope.holder) is not Kind.MODEL:
-            name = self._names.claim(kind, xml, scope.holder, include.name)
-            if name is not None and include.has_pose:
-                self._table.add(kind, xml, name, scope.holder, scope.holder)
-            elif name is not None:
-                with self._table.reading(include.document):
-                    self._table.add(kind, top, name, scope.holder, scope.holder)
+        path = self._sources.path_at(xml, parent.path)
+        index = self._builder.add(
+            kind, name, parent.element, parent.scope, self._file_indices[path],
+            self._sources.line(xml))
+        self._read_details(xml, kind, index)
+        scope = index if kind in (Kind.WORLD, Kind.MODEL) else parent.scope
+        children, own = definition.children, _Parent(index, scope, path)
+        has_pose = False
+        for child in xml:
+            child_definition = children.get(child.tag)
+            if child_definition is None:
+                continue
+            if child_definition.value_type is ValueType.POSE and not has_pose:
+                has_pose = True
+                self._read_pose(child, child_definition, index)
+            else:
+                self._read(child, child_definition, own, depth + 1)
+
+    def _read_details(self, xml: XmlElement, kind: Kind, index: int) -> None:
+        if kind is Kind.MODEL:
+            self._builder.models[index] = self._details.model(xml)
+        elif kind is Kind.FRAME:
+            self._builder.frames[index] = self._details.frame(xml)
+        elif kind is Kind.JOINT:
+            self._builder.joints[index] = self._details.joint(xml)
+        elif kind is Kind.SENSOR:
+            self._builder.sensors[index] = self._details.sensor(xml)
+        elif kind is Kind.VISUAL:
+            self._details.check_visual(xml)
+
+    def _note_missing_include(self, xml: XmlElement, parent: int) -> None:
+        name, uri = self._details.missing_include(xml)
+        self._builder.missing_includes.setdefault(parent, {})[name] = uri
+
+    # Attributes and poses
+
+    def _check_attributes(self, xml: XmlElement, definition: Definition) -> None:
+        for name, attribute in definition.checked_attributes:
+            value = xml.get(name)
+            if value is None:
+                if attribute.is_required:
+                    msg = f'<{written_tag(xml)}> has no {name}'
+                    self._problems.error(AttributeMissingError(msg, self._sources.place(xml)))
+            elif value.strip() and not is_of_type(value.strip(), attribute.value_type):
+                msg = f'{name}="{value}" is not {attribute.value_type.description}'
+                self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
+
+    def _read_pose(self, xml: XmlElement, definition: Definition, index: int) -> None:
+        pose_format = PoseFormat()
+        text = text_of(xml)
+        if xml.keys():
+            self._check_attributes(xml, definition)
+            self._read_relative_to(xml, definition, index)
+            rotation_format = attribute_of(xml, 'rotation_format')
+            pose_format = PoseFormat(
+                rotation_format == 'quat_xyzw',
+                boolean_from_text(xml.get('degrees', '')) is True)
+            fault = ''
+            if rotation_format not in ('', 'euler_rpy', 'quat_xyzw'):
+                fault = f'rotation_format="{rotation_format}" must be euler_rpy or quat_xyzw'
+            elif pose_format.is_quaternion and pose_format.is_degrees:
+                fault = 'degrees="true" cannot be combined with rotation_format="quat_xyzw"'
+            if fault:
+                self._problems.error(ElementInvalidError(fault, self._sources.place(xml)))
+                text, pose_format = '', PoseFormat()
+        self._builder.set_pose(index, text, pose_format, self._sources.line(xml))
+
+    def _read_relative_to(self, xml: XmlElement, definition: Definition, index: int) -> None:
+        builder = self._builder
+        kind = Kind(builder.kinds[index])
+        if xml.get('frame') is not None:
+            msg = f'frame="{xml.get("frame")}" has no meaning since 1.7; relative_to has'
+            self._problems.warning(msg, self._sources.place(xml))
+        relative_to = self._details.reference(xml, 'relative_to')
+        if not relative_to:
+            return
+        reason = ''
+        if 'relative_to' not in definition.attributes:
+            reason = 'an inertial is placed in its link'
+        elif kind is Kind.ACTOR:
+            reason = 'an actor is placed in the world'
+        elif kind is Kind.LIGHT and builder.kinds[builder.parents[index]] == Kind.ROOT:
+            reason = 'a light at the top of a file is placed in the implicit root'
+        if reason:
+            msg = f'relative_to="{relative_to}" is ignored; {reason}'
+            self._problems.warning(msg, self._sources.place(xml))
         else:
-            msg = f'the included {kind.label} is left out; a model can include only models'
-            self._table.warning(xml, msg, scope.holder, 'include')
+            builder.relative_to[index] = relative_to
 
-    def _included_model(self, include: Include, scope: _Scope) -> None:
-        name = self._names.claim(Kind.MODEL, include.xml, scope.holder, include.name)
-        if name is None:
-            return
-        model = NOWHERE
-        if include.has_pose:
-            model = self._table.add(Kind.MODEL, include.xml, name, scope.holder, scope.holder)
-        with self._table.reading(include.document):
-            if not include.has_pose:
-                model = self._table.add(Kind.MODEL, include.top, name, scope.holder, scope.holder)
-            self._complete_model(include.top, model, scope, include)
-
-    def _merge(self, include: Include, scope: _Scope) -> None:
-        holder = self._table.columns.kind(scope.holder)
-        if include.top.tag != 'model' or holder not in (Kind.MODEL, Kind.WORLD):
-            msg = (f'merge="true" on the include of {self._table.described(include.top)}: only a '
-                   'model can be merged, into a model or a world')
-            self._table.error(MergeIncludeError, include.xml, msg, scope.holder, 'include')
-            return
-        proxy = f'_merged__{include.name}__model__'
-        if (include.document.path in self._broken
-                or self._names.claim(
-                    Kind.FRAME, include.xml, scope.holder, proxy) is None):
-            return
-        frame = NOWHERE
-        if include.has_pose:
-            frame = self._table.add(
-                Kind.FRAME, include.xml, proxy, scope.holder, scope.holder)
-        with self._table.reading(include.document):
-            if not include.has_pose:
-                frame = self._table.add(
-                    Kind.FRAME, include.top, proxy, scope.holder, scope.holder)
-            own_frame = MODEL_FRAME if holder is Kind.MODEL else WORLD_FRAME
-            columns = self._table.columns
-            relative_to = columns.relative_to.get(frame, own_frame)
-            columns.relative_to[frame] = scope.name(relative_to)
-            placement = include.placement_frame or self._table.reference(
-                include.top, 'placement_frame', frame)
-            merged = _Scope(scope.holder, proxy)
-            self._model_children(include.top, merged, is_in_world=holder is Kind.WORLD)
-            columns.frames[frame] = FrameFacts(
-                self._table.reference(include.top, 'canonical_link', frame)
-                or self._table.first_link_name(frame + 1, scope.holder),
-                merged.name(placement))
-
-    # World and model
-
-    def _world(self, xml: XmlElement) -> None:
-        name = self._names.claim(Kind.WORLD, xml, NOWHERE)
-        if name is None:
-            return
-        scope = _Scope(self._table.add(Kind.WORLD, xml, name, NOWHERE, NOWHERE))
-        for child in xml.iterchildren(etree.Element):
-            tag = child.tag
-            if tag == 'model':
-                self._model(child, scope)
-            elif tag == 'frame':
-                self._frame(child, scope)
-            elif tag == 'joint':
-                self._joint(child, scope)
-            elif tag == 'light':
-                self._leaf(Kind.LIGHT, child, scope.holder, scope)
-            elif tag == 'actor':
-                self._leaf(Kind.ACTOR, child, scope.holder, scope)
-            elif tag == 'include':
-                self._include(child, scope)
-
-    def _model(self, xml: XmlElement, scope: _Scope) -> None:
-        name = self._names.claim(Kind.MODEL, xml, scope.holder)
-        if name is None:
-            return
-        model = self._table.add(Kind.MODEL, xml, name, scope.holder, scope.holder)
-        self._complete_model(xml, model, scope)
-
-    def _complete_model(
-        self, xml: XmlElement, model: int, scope: _Scope, include: Include | None = None,
-    ) -> None:
-        self._hang_on_proxy(model, scope)
-        placement = '' if include is None else include.placement_frame
-        is_static = None if include is None else include.is_static
-        self._table.columns.models[model] = ModelFacts(
-            self._static(xml, model) if is_static is None else is_static,
-            self._table.reference(xml, 'canonical_link', model),
-            placement or self._table.reference(xml, 'placement_frame', model))
-        self._model_children(xml, _Scope(model))
-
-    def _model_children(
-        self, xml: XmlElement, scope: _Scope, *, is_in_world: bool = False,
-    ) -> None:
-        for child in xml.iterchildren(etree.Element):
-            tag = child.tag
-            if tag == 'link':
-                if is_in_world:
-                    msg = (f'{self._table.described(child)} cannot be merged into a world, which '
-                           'has no links of its own')
-                    self._table.error(MergeIncludeError, child, msg, scope.holder, '')
-                else:
-                    self._link(child, scope)
-            elif tag == 'joint':
-                self._joint(child, scope)
-            elif tag == 'frame':
-                self._frame(child, scope)
-            elif tag == 'model':
-                self._model(child, scope)
-            elif tag == 'include':
-                self._include(child, scope)
-
-    def _hang_on_proxy(self, index: int, scope: _Scope) -> None:
-        """Place what a merge brings in the frame that stands for the merged model's own."""
-        if not scope.proxy:
-            return
-        columns = self._table.columns
-        relative_to = columns.relative_to.get(index)
-        has_own_default = columns.kind(index) in (Kind.FRAME, Kind.JOINT)
-        if relative_to == MODEL_FRAME or not (relative_to or has_own_default):
-            columns.relative_to[index] = scope.proxy
-
-    def _static(self, xml: XmlElement, model: int) -> bool:
-        static = next(xml.iterchildren('static'), None)
-        text = '' if static is None else value_of(static)
-        value = boolean_from_text(text) if text else False
-        if static is not None and value is None:
-            msg = f'"{text}" is no boolean; it must be true, false, 1 or 0'
-            self._table.error(ElementInvalidError, static, msg, model, 'static')
-        return bool(value)
-
-    # What a model and a world hold
-
-    def _link(self, xml: XmlElement, scope: _Scope) -> None:
-        name = self._names.claim(Kind.LINK, xml, scope.holder)
-        if name is None:
-            return
-        link = self._table.add(Kind.LINK, xml, name, scope.holder, scope.holder)
-        self._hang_on_proxy(link, scope)
-        for child in xml.iterchildren(etree.Element):
-            kind = _LINK_CHILD_KINDS.get(str(child.tag))
-            if kind is Kind.SENSOR:
-                self._sensor(child, link, scope)
-            elif kind is Kind.INERTIAL:
-                self._table.add(kind, child, kind.label, link, scope.holder)
-            elif kind is not None:
-                self._leaf(kind, child, link, scope)
-
-    def _frame(self, xml: XmlElement, scope: _Scope) -> None:
-        name = self._names.claim(Kind.FRAME, xml, scope.holder)
-        if name is None:
-            return
-        frame = self._table.add(Kind.FRAME, xml, name, scope.holder, scope.holder)
-        self._hang_on_proxy(frame, scope)
-        attached_to = self._table.reference(xml, 'attached_to', frame)
-        self._table.columns.frames[frame] = FrameFacts(scope.name(attached_to) or scope.proxy)
-
-    def _joint(self, xml: XmlElement, scope: _Scope) -> None:
-        name = self._names.claim(Kind.JOINT, xml, scope.holder)
-        if name is None:
-            return
-        joint = self._table.add(Kind.JOINT, xml, name, scope.holder, scope.holder)
-        self._hang_on_proxy(joint, scope)
-        self._table.columns.joints[joint] = joint_facts_from_xml(
-            xml, self._table, joint, scope.name)
-        for child in xml.iterchildren('sensor'):
-            self._sensor(child, joint, scope)
-
-    def _sensor(self, xml: XmlElement, parent: int, scope: _Scope) -> None:
-        sensor = self._leaf(Kind.SENSOR, xml, parent, scope)
-        if sensor is not None:
-            self._table.columns.sensors[sensor] = sensor_facts_from_xml(xml)
-
-    def _leaf(self, kind: Kind, xml: XmlElement, parent: int, scope: _Scope) -> int | None:
-        name = self._names.claim(kind, xml, parent)
-        if name is None:
-            return None
-        leaf = self._table.add(kind, xml, name, parent, scope.holder)
-        if scope.proxy and self._table.columns.relative_to.get(leaf) == MODEL_FRAME:
-            msg = ('relative_to="__model__" means the model that this is merged into, not the one '
-                   'that it was written in')
-            self._table.warning(xml, msg, leaf, 'pose')
-        return leaf
+    def _check_pose(self, xml: XmlElement) -> None:
+        """Check a pose that is not that of a frame."""
+        is_quaternion = attribute_of(xml, 'rotation_format') == 'quat_xyzw'
+        try:
+            pose_from_text(text_of(xml), PoseFormat(is_quaternion))
+        except PoseTextError as error:
+            self._problems.error(ElementInvalidError(str(error), self._sources.place(xml)))

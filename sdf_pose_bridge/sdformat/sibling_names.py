@@ -1,116 +1,121 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Judge the names of elements: reserved ones, duplicates, and clashes of old files."""
+"""
+Check the names of siblings: missing, reserved and duplicate ones.
+
+Rules: pose semantics in SDFormat, section on names; ``isReservedName`` and the loading of Model,
+World and Link in libsdformat.
+"""
 
 from __future__ import annotations
 
-import itertools
+from itertools import chain
+from itertools import count
 
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import AttributeMissingError
 from sdf_pose_bridge.errors import DuplicateNameError
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import ReservedNameError
-from sdf_pose_bridge.names import FRAME_KINDS
 from sdf_pose_bridge.names import is_reserved
-from sdf_pose_bridge.names import Kind
-from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.names import WORLD_FRAME
-from sdf_pose_bridge.sdformat.document import WHITE_SPACE
-from sdf_pose_bridge.sdformat.document import XmlElement
-from sdf_pose_bridge.sdformat.elements import step
-from sdf_pose_bridge.sdformat.reading import Reading
-from sdf_pose_bridge.sdformat.versions import renames_clashes
+from sdf_pose_bridge.sdformat.elements import ElementsBuilder
+from sdf_pose_bridge.sdformat.grammar import FRAME_KINDS
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.versions import renames_duplicates
+from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-_PROXY = '_merged__'
-_ARTICLE = {Kind.ACTOR: 'an', Kind.INERTIAL: 'an'}
+MERGED_MODEL_PREFIX = '_merged__'
+"""The name of the frame that replaces the model frame of a merged model begins with this."""
+
+_ARTICLES = {Kind.ACTOR: 'an', Kind.INERTIAL: 'an'}
 
 
-class NameClaims:
+class SiblingNames:
     """
-    The names that are taken, by scope and kind.
+    The names that are in use, by parent element and kind.
 
-    :param reading: knows the elements, and takes what is wrong with their names.
+    Links, joints, frames and models of one parent share a name space. Each other kind has its own.
+
+    :param builder: the table of elements.
+    :param sources: where elements were written.
+    :param problems: takes what is wrong with names.
     """
 
-    def __init__(self, reading: Reading) -> None:
-        self._reading = reading
-        self._claims: dict[tuple[int, int, str], tuple[int, int]] = {}
+    def __init__(self, builder: ElementsBuilder, sources: Sources, problems: Problems) -> None:
+        self._builder = builder
+        self._sources = sources
+        self._problems = problems
+        self._used: dict[tuple[int, Kind, str], tuple[Kind, int]] = {}
 
-    def claim(
-        self, kind: Kind, xml: XmlElement, parent: int, name: str = '',
-    ) -> str | None:
+    def add(self, kind: Kind, xml: XmlElement, parent: int) -> str | None:
         """
-        Read a name that no other element of its name space may have.
-
-        Links, joints, frames and models of one parent share a name space; each other kind has its
-        own. In old files one that clashes with another kind's gets a new name instead.
+        Add the name of the element that is added to the table next.
 
         :param kind: kind of the element.
         :param xml: the element.
-        :param parent: index of the element that holds it; -1 for the file.
-        :param name: the name to give it; empty for the one that it has.
-        :return: the name, or None if it is missing or taken, which is then reported.
+        :param parent: index of its parent element; -1 for the file.
+        :return: its name. Below version 1.7 that is a new one if another kind of element has the
+            name. None if the name is missing or in use, which is then reported.
         """
-        judged = self._judged_name(kind, xml, parent, name)
-        if judged is None:
+        name = self._checked_name(kind, xml)
+        if name is None:
             return None
-        space = Kind.FRAME if kind in FRAME_KINDS else kind
-        key = (parent, space, judged)
-        if key not in self._claims:
-            self._claims[key] = (kind, len(self._reading.columns))
-            return judged
-        other_kind, index = self._claims[key]
-        other = Kind(other_kind)
-        if other is not kind and self._renames_clashes(kind, parent):
-            return self._renamed(kind, xml, parent, judged)
-        msg = (f'the name "{judged}" belongs to {_ARTICLE.get(other, "a")} {other.label} of this '
-               f'scope already, {self._place_of_claim(index)}')
-        self._reading.error(DuplicateNameError, xml, msg, parent, step(kind.label, judged))
+        key = (parent, Kind.FRAME if kind in FRAME_KINDS else kind, name)
+        if key not in self._used:
+            self._used[key] = (kind, len(self._builder.names))
+            return name
+        other, index = self._used[key]
+        if other is not kind and self._is_renamed(kind, parent):
+            return self._new_name(kind, xml, parent, name)
+        msg = (f'the name "{name}" belongs to {_ARTICLES.get(other, "a")} {other.label} of this '
+               f'scope already, {self._described_place(index)}')
+        self._problems.error(DuplicateNameError(msg, self._sources.place_of_name(xml)))
         return None
 
-    def _renames_clashes(self, kind: Kind, parent: int) -> bool:
-        if parent < 0 or kind not in FRAME_KINDS or kind is Kind.MODEL:
-            return False
-        return renames_clashes(self._reading.version_of_element(parent)) and (
-            self._reading.columns.kind(parent) is Kind.MODEL or kind is Kind.FRAME)
-
-    def _renamed(self, kind: Kind, xml: XmlElement, parent: int, name: str) -> str:
-        tries = itertools.chain(
-            [f'{name}_{kind.label}'], (f'{name}_{kind.label}{i}' for i in itertools.count()))
-        new_name = next(
-            new_name for new_name in tries if (parent, Kind.FRAME, new_name) not in self._claims)
-        self._claims[parent, Kind.FRAME, new_name] = (kind, len(self._reading.columns))
-        msg = (f'the name "{name}" is that of another kind of element in this scope; this '
-               f'{kind.label} is called "{new_name}" instead, and references to "{name}" mean the '
-               'other one')
-        self._reading.warning(xml, msg, parent, step(kind.label, name))
-        return new_name
-
-    def _place_of_claim(self, index: int) -> str:
-        if index >= len(self._reading.columns):
-            return 'which is not valid itself'
-        return f'see {self._reading.place_of(index)}'
-
-    def _judged_name(
-        self, kind: Kind, xml: XmlElement, parent: int, given: str,
-    ) -> str | None:
-        written = given or xml.get('name')
+    def _checked_name(self, kind: Kind, xml: XmlElement) -> str | None:
+        written = xml.get('name')
         if written is None:
             msg = f'the {kind.label} has no name'
-            self._reading.error(AttributeMissingError, xml, msg, parent, kind.label)
+            self._problems.error(AttributeMissingError(msg, self._sources.place_of_name(xml)))
             return None
         name = written.strip(WHITE_SPACE)
         if not name:
             msg = f'the name of the {kind.label} is empty'
-            self._reading.error(AttributeInvalidError, xml, msg, parent, kind.label)
+            self._problems.error(AttributeInvalidError(msg, self._sources.place_of_name(xml)))
             return None
-        if given and SEPARATOR in name and not self._reading.allows_flat_names():
-            msg = f'the name "{name}" holds "{SEPARATOR}", which sets scopes apart'
-            self._reading.error(ReservedNameError, xml, msg, parent, kind.label)
-            return None
-        if kind is not Kind.ACTOR and is_reserved(name) and not name.startswith(_PROXY):
+        if is_reserved(name) and kind is not Kind.ACTOR and not (
+                name.startswith(MERGED_MODEL_PREFIX)):
             rule = ('it means the frame of the world' if name == WORLD_FRAME else
                     'so are all that begin and end with two underscores')
             msg = f'the name "{name}" is reserved; {rule}'
-            self._reading.error(ReservedNameError, xml, msg, parent, step(kind.label, name))
+            self._problems.error(ReservedNameError(msg, self._sources.place_of_name(xml)))
         return name
+
+    def _is_renamed(self, kind: Kind, parent: int) -> bool:
+        if parent < 0 or kind not in FRAME_KINDS or kind is Kind.MODEL:
+            return False
+        path = self._sources.paths[self._builder.file_indices[parent]]
+        return renames_duplicates(self._sources.versions[path]) and (
+            self._builder.kinds[parent] == Kind.MODEL or kind is Kind.FRAME)
+
+    def _new_name(self, kind: Kind, xml: XmlElement, parent: int, name: str) -> str:
+        candidates = chain(
+            [f'{name}_{kind.label}'], (f'{name}_{kind.label}{number}' for number in count()))
+        new_name = next(
+            each for each in candidates if (parent, Kind.FRAME, each) not in self._used)
+        self._used[parent, Kind.FRAME, new_name] = (kind, len(self._builder.names))
+        msg = (f'the name "{name}" is that of another kind of element in this scope; this '
+               f'{kind.label} is called "{new_name}" instead, and references to "{name}" mean the '
+               'other one')
+        self._problems.warning(msg, self._sources.place(xml))
+        return new_name
+
+    def _described_place(self, index: int) -> str:
+        if index >= len(self._builder.names):
+            return 'which is not valid itself'
+        path = self._sources.paths[self._builder.file_indices[index]]
+        return f'see {Place(path, self._builder.lines[index])}'

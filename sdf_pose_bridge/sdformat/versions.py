@@ -1,157 +1,187 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Bring a document of an older version of SDFormat to the newest grammar.
+Convert files of older versions of SDFormat to the newest grammar.
 
 The declared version switches nothing off: what newer versions brought works in every file. It
-tells what names and attributes of its time mean now. Steps of libsdformat's conversion that touch
-neither poses nor frames are left out.
+decides what names and attributes of its time mean. Source: libsdformat's ``Converter.cc`` and
+``sdf/*.convert``. Steps that touch neither poses nor names of frames are left out.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from lxml import etree
 
 from sdf_pose_bridge.errors import ConversionError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.names import MODEL_FRAME
-from sdf_pose_bridge.sdformat.document import boolean_from_text
-from sdf_pose_bridge.sdformat.document import Document
-from sdf_pose_bridge.sdformat.document import is_data
-from sdf_pose_bridge.sdformat.document import text_of
-from sdf_pose_bridge.sdformat.document import XmlElement
-
-
-class Version(NamedTuple):
-    """A version of SDFormat."""
-
-    major: int
-    minor: int
-
+from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.sdformat.sources import Document
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.sources import Version
+from sdf_pose_bridge.sdformat.values import boolean_from_text
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of
+from sdf_pose_bridge.sdformat.xml_tree import child_elements
+from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import is_foreign
+from sdf_pose_bridge.sdformat.xml_tree import text_of
+from sdf_pose_bridge.sdformat.xml_tree import value_of
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 OLDEST = Version(1, 2)
 NEWEST = Version(1, 12)
 
-_FRAME_ATTRIBUTE_ENDS = Version(1, 7)
-_FLAT_NAMES_END = Version(1, 8)
-_JOINTS_TURN_WITH_LINKS = Version(1, 5)
+_SCOPED_TAGS = frozenset({'link', 'joint', 'frame', 'model', 'gripper'})
+_REFERENCE_ATTRIBUTES = ('relative_to', 'attached_to', 'expressed_in')
 
 
-def version_of(document: Document) -> Version:
-    """
-    Read the version that a document declares.
-
-    :param document: a file as it was read.
-    :return: its version.
-    :raises ConversionError: if SDFormat has no such version, or it is older than 1.2.
-    """
-    version = version_from_text(document.version)
-    if version is None:
-        msg = f'version="{document.version}" is none that can be read; 1.2 to 1.12 can'
-        raise ConversionError(msg, Place(document.path, document.root.sourceline or 0, '/sdf'))
-    return version
-
-
-def version_from_text(text: str) -> Version | None:
+def version_from_text(text: str, place: Place) -> Version:
     """
     Read a version.
 
     :param text: such as ``1.10``.
-    :return: the version; None if SDFormat has no such version, or it is older than 1.2.
+    :param place: where it stands.
+    :return: the version.
+    :raises ConversionError: if it is not one from 1.2 to 1.12.
     """
     major, _, minor = text.partition('.')
     if text.isascii() and major.isdigit() and minor.isdigit() and len(text) < 10:
         version = Version(int(major), int(minor))
         if OLDEST <= version <= NEWEST and text == f'{version.major}.{version.minor}':
             return version
-    return None
+    msg = f'version="{text}" is not supported; versions 1.2 to 1.12 are'
+    raise ConversionError(msg, place)
 
 
-def upgrade(document: Document) -> None:
+def allows_scoped_names(version: Version) -> bool:
     """
-    Convert a document in place, by the rules of the version that it declares.
+    Return whether names in a file may hold ``::``.
 
-    :param document: a file as it was read; afterwards it has the meaning of version 1.12.
-    :raises ConversionError: if its version is unknown, or names in it cannot be converted.
+    :param version: the version that the file declares.
+    :return: True below 1.8, where old libraries wrote such names.
     """
-    version = version_of(document)
-    if turns_axes_with_model(version):
-        _turn_axes_with_model(document.root)
-    if has_frame_attributes(version):
-        _rename_frame_attributes(document.root)
+    return version < Version(1, 8)
+
+
+def renames_duplicates(version: Version) -> bool:
+    """
+    Return whether an element is renamed that shares its name with one of another kind.
+
+    :param version: the version that the file declares.
+    :return: True below 1.7; in later files it is an error.
+    """
+    return version < Version(1, 7)
+
+
+def convert(document: Document, sources: Sources) -> None:
+    """
+    Convert a file to the newest version, in place.
+
+    :param document: the file as it was read.
+    :param sources: where its elements were written.
+    :raises ConversionError: if names in it cannot be converted.
+    """
+    if document.version < Version(1, 5):
         _express_axes_in_model(document.root)
-    if not may_hold_flat_names(version) or not document.may_hold_separators:
-        return
-    # Few old files hold such names.
-    from sdf_pose_bridge.sdformat.flat_names import unflatten_model
-    for model in document.root.iterfind('world/model'):
-        unflatten_model(model, document.path)
+    if document.version < Version(1, 7):
+        _rename_frame_attributes(document.root)
+        _convert_use_parent_model_frame(document.root)
+    if allows_scoped_names(document.version) and document.may_hold_scoped_names:
+        for model in document.root.iterfind('world/model'):
+            _nest_scoped_elements(model, sources)
 
 
-def turns_axes_with_model(version: Version) -> bool:
-    """
-    Tell whether axes of joints are given in the model frame if nothing else is said.
-
-    :param version: the version that the file declares.
-    :return: true below 1.5.
-    """
-    return version < _JOINTS_TURN_WITH_LINKS
-
-
-def has_frame_attributes(version: Version) -> bool:
-    """
-    Tell whether ``frame`` is what ``relative_to`` is now, and a flag what ``expressed_in`` is.
-
-    :param version: the version that the file declares.
-    :return: true below 1.7.
-    """
-    return version < _FRAME_ATTRIBUTE_ENDS
-
-
-def may_hold_flat_names(version: Version) -> bool:
-    """
-    Tell whether names in a file may hold ``::``.
-
-    :param version: the version that the file declares.
-    :return: true below 1.8, where old libraries wrote such names.
-    """
-    return version < _FLAT_NAMES_END
-
-
-def renames_clashes(version: Version) -> bool:
-    """
-    Tell whether elements of different kinds may share a name, so that one has to be renamed.
-
-    :param version: the version that the file declares.
-    :return: true below 1.7.
-    """
-    return version < _FRAME_ATTRIBUTE_ENDS
-
-
-def _turn_axes_with_model(root: XmlElement) -> None:
-    models = (model for holder in (root, *root.iterchildren('world'))
-              for model in holder.iterchildren('model'))
-    for axis in (axis for model in models for joint in model.iterchildren('joint')
-                 for axis in joint.iterchildren('axis', 'axis2')):
-        xyz = next(axis.iterchildren('xyz'), None)
-        if xyz is not None and next(axis.iterchildren('use_parent_model_frame'), None) is None:
-            xyz.set('expressed_in', MODEL_FRAME)
+def _express_axes_in_model(root: XmlElement) -> None:
+    """1.4 to 1.5: axes are given in the model frame if nothing else is said."""
+    for parent in (root, *child_elements(root, 'world')):
+        for axis in parent.iterfind('model/joint/*'):
+            xyz = first_child(axis, 'xyz')
+            if (axis.tag in ('axis', 'axis2') and xyz is not None
+                    and first_child(axis, 'use_parent_model_frame') is None):
+                xyz.set('expressed_in', MODEL_FRAME)
 
 
 def _rename_frame_attributes(root: XmlElement) -> None:
+    """1.6 to 1.7: ``pose/@frame`` becomes ``relative_to``."""
     for pose in root.iter('pose'):
         frame = pose.get('frame')
-        if frame is not None and is_data(pose):
+        if frame is not None and not is_foreign(pose):
             del pose.attrib['frame']
             pose.set('relative_to', frame)
 
 
-def _express_axes_in_model(root: XmlElement) -> None:
+def _convert_use_parent_model_frame(root: XmlElement) -> None:
+    """1.6 to 1.7: ``axis/use_parent_model_frame`` becomes ``axis/xyz/@expressed_in``."""
     for flag in list(root.iter('use_parent_model_frame')):
         axis = flag.getparent()
-        if axis is None or not is_data(flag):
+        if axis is None or is_foreign(flag):
             continue
-        xyz = axis.find('xyz')
+        xyz = first_child(axis, 'xyz')
         if boolean_from_text(text_of(flag)) and xyz is not None:
             xyz.set('expressed_in', MODEL_FRAME)
         axis.remove(flag)
+
+
+def _nest_scoped_elements(model: XmlElement, sources: Sources) -> None:
+    """
+    1.7 to 1.8: move elements named ``nested::name`` into a new model ``nested``, recursively.
+
+    Old libraries could not nest models. They wrote the content of an included model into the
+    model around it, with such names, and a frame ``nested::__model__`` for its model frame.
+
+    :raises ConversionError: if a moved element refers to something outside its new model.
+    """
+    nested_models: dict[str, XmlElement] = {}
+    for child in list(child_elements(model)):
+        scope, separator, name = attribute_of(child, 'name').partition(SEPARATOR)
+        if child.tag not in _SCOPED_TAGS or not separator or not scope or not name:
+            continue
+        if scope not in nested_models:
+            nested_models[scope] = etree.Element('model', {'name': scope})
+            sources.set_source(nested_models[scope], sources.path(child), sources.line(child))
+        prefix = scope + SEPARATOR
+        if child.tag == 'frame' and name == MODEL_FRAME:
+            _replace_model_frame(child, nested_models[scope], prefix)
+            continue
+        _remove_prefix_from_references(child, prefix, sources)
+        child.set('name', name)
+        nested_models[scope].append(child)
+    for nested_model in nested_models.values():
+        model.append(nested_model)
+        _nest_scoped_elements(nested_model, sources)
+
+
+def _replace_model_frame(frame: XmlElement, nested_model: XmlElement, prefix: str) -> None:
+    """Give the pose and the attachment of ``nested::__model__`` to the nested model."""
+    parent = frame.getparent()
+    attached_to = attribute_of(frame, 'attached_to')
+    if attached_to.startswith(prefix):
+        nested_model.set('canonical_link', attached_to[len(prefix):])
+    pose = frame.find('pose')
+    if pose is not None:
+        nested_model.insert(0, pose)
+    if parent is not None:
+        parent.remove(frame)
+
+
+def _remove_prefix_from_references(xml: XmlElement, prefix: str, sources: Sources) -> None:
+    for element in xml.iter(etree.Element):
+        for attribute in _REFERENCE_ATTRIBUTES:
+            name = attribute_of(element, attribute)
+            if name:
+                element.set(attribute, _without_prefix(name, prefix, element, sources))
+    if xml.tag == 'joint':
+        for end in child_elements(xml, 'parent', 'child'):
+            end.text = _without_prefix(value_of(end), prefix, end, sources)
+
+
+def _without_prefix(name: str, prefix: str, xml: XmlElement, sources: Sources) -> str:
+    if name.startswith(prefix):
+        return name[len(prefix):]
+    if name in (WORLD_FRAME, MODEL_FRAME, ''):
+        return name
+    nested = prefix.removesuffix(SEPARATOR)
+    msg = (f'"{name}" cannot be converted: "{nested}" becomes a nested model, in which names of '
+           'the model around it are not visible')
+    raise ConversionError(msg, sources.place(xml))

@@ -1,51 +1,67 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Read XML into a tree, with care.
+Parse XML files, which may be hostile: no external entities, no expansion, no network.
 
-A file is hostile until it is read: no external entities, no expansion, no network, and the depth
-and the sizes that libxml2 allows without its "huge" option.
+Depth and sizes are limited as libxml2 does without its option ``huge``.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from collections.abc import Sequence
+import contextlib
 from pathlib import Path
 import re
 from typing import NamedTuple
+from xml.parsers import expat
 
 from lxml import etree
 
 from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.sdformat.document import WHITE_SPACE
-from sdf_pose_bridge.sdformat.document import XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-IGNORED_ERRORS = frozenset({
+_IGNORED_ERRORS = frozenset({
     'NS_ERR_UNDEFINED_NAMESPACE', 'NS_ERR_QNAME', 'NS_ERR_COLON', 'DTD_ID_REDEFINED'})
-"""Prefixes that are not declared are common in SDF files, and only libxml2 minds them; nor has
-``xml:id`` a meaning in SDFormat."""
+"""SDFormat has prefixes without namespaces, and ``xml:id`` has no meaning in it."""
 
-_FORGIVEN_ERRORS = frozenset({'ERR_DOCUMENT_END'})
-"""Something after the outermost element: libsdformat reads on."""
+_AFTER_ROOT_ERROR = 'ERR_DOCUMENT_END'
+"""Something follows the outermost element. libsdformat reads the file all the same."""
 
-_MOST_ENTRIES = 100
-"""Releases 2.11 to 2.13 of libxml2 tell no more errors than so many."""
+_DECLARATION_ERROR = 'ERR_RESERVED_XML_NAME'
+"""The declaration is not at the start. Only white space before it is accepted."""
 
 _HYPHENS_ERROR = 'ERR_HYPHEN_IN_COMMENT'
-"""Two hyphens in a comment, behind which libxml2 may miss the end of the comment."""
+"""Two hyphens in a comment, after which libxml2 may miss the end of the comment."""
+
+_MOST_ERRORS = 100
+"""Releases 2.11 to 2.13 of libxml2 report no more errors."""
+
+_LAST_LINE = 65_535
+"""libxml2 reports this line for all elements in later lines."""
 
 _COMMENT_OR_VERBATIM = re.compile(
     rb'<!--(?:(.*?)-->|.*)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)', re.DOTALL)
+_START_TAG = re.compile(rb'<(?:"[^"]*"|\'[^\']*\'|[^"\'>])*')
 
-_DECLARATION_ERROR = 'ERR_RESERVED_XML_NAME'
-"""A declaration that is not at the start; only white space before it is forgiven."""
+
+class XmlFile(NamedTuple):
+    """A parsed file."""
+
+    root: XmlElement
+    """The outermost element. Elements have the tags that are written, whatever ``xmlns`` says."""
+    warnings: tuple[SdfWarning, ...]
+    """What is wrong but is accepted."""
+    lines: Mapping[XmlElement, int]
+    """The lines of those elements whose line lxml does not know."""
 
 
 def bytes_from_file(path: str) -> bytes:
     """
-    Return what a file holds.
+    Return the content of a file.
 
     :param path: path of the file.
     :return: its bytes.
@@ -58,59 +74,31 @@ def bytes_from_file(path: str) -> bytes:
         raise FileReadError(msg, Place(path)) from error
 
 
-def root_from_file(path: str) -> XmlElement:
+def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFile:
     """
-    Read a file of any XML.
-
-    :param path: path of the file.
-    :return: its outermost element.
-    :raises FileReadError: if it is missing, unreadable or not XML.
-    """
-    return root_from_text(bytes_from_file(path), path)[0]
-
-
-def careful_parser(encoding: str | None = None, target: object = None) -> etree.XMLParser:
-    """
-    Make a parser that can be given anything.
-
-    :param encoding: encoding of the text; None for the one that it declares.
-    :param target: takes what is found, instead of a tree.
-    :return: the parser, whose log of errors tells what is wrong with a text.
-    """
-    # The stubs ask for a target with methods, each of which the parser would call.
-    return etree.XMLParser(  # type: ignore[call-overload,no-any-return]
-        encoding=encoding, target=target, recover=True, resolve_entities=False, no_network=True,
-        load_dtd=False, huge_tree=False, remove_blank_text=True)
-
-
-def root_from_text(
-    text: bytes, path: str, encoding: str | None = None,
-) -> tuple[XmlElement, tuple[SdfWarning, ...]]:
-    """
-    Read XML into a tree.
+    Parse XML.
 
     :param text: the XML.
     :param path: the name to use in errors.
     :param encoding: encoding of the text; None for the one that it declares.
-    :return: the outermost element, and what is wrong but does not stand in the way. Elements are
-        named as they are written, for SDFormat knows prefixes, but no namespaces.
-    :raises FileReadError: if it is not XML.
+    :return: the tree.
+    :raises FileReadError: if it is not well-formed, apart from what libsdformat accepts.
     """
     warnings = []
     root, failure, log = _parsed(text, encoding)
-    if is_full(log) or any(entry.type_name == _HYPHENS_ERROR for entry in log):
-        text, line, number = _text_without_hyphens_in_comments(text)
-        if number:
-            what = 'a comment holds' if number == 1 else f'{number} comments hold'
+    if len(log) >= _MOST_ERRORS or any(entry.type_name == _HYPHENS_ERROR for entry in log):
+        text, line, count = _without_hyphens_in_comments(text)
+        if count:
+            what = 'a comment holds' if count == 1 else f'{count} comments hold'
             msg = f'this is not well-formed XML: {what} two hyphens in a row'
             warnings.append(SdfWarning('WARNING', msg, Place(path, line)))
             root, failure, log = _parsed(text, encoding)
     for entry in log:
         msg = f'this is not well-formed XML: {entry.message.strip()}'
-        is_early = entry.type_name == _DECLARATION_ERROR and text.lstrip().startswith(b'<?xml')
-        if is_early or (entry.type_name in _FORGIVEN_ERRORS and root is not None):
+        if (entry.type_name == _AFTER_ROOT_ERROR and root is not None) or (
+                entry.type_name == _DECLARATION_ERROR and text.lstrip().startswith(b'<?xml')):
             warnings.append(SdfWarning('WARNING', msg, Place(path, entry.line)))
-        elif entry.type_name not in IGNORED_ERRORS:
+        elif entry.type_name not in _IGNORED_ERRORS:
             raise FileReadError(msg, Place(path, entry.line)) from None
     if failure is not None:
         msg = f'this is not XML: {failure.msg}'
@@ -118,98 +106,62 @@ def root_from_text(
     if root is None:
         msg = 'this is not XML: it has no element'
         raise FileReadError(msg, Place(path))
-    _refuse_what_hides_text(root, text, path)
-    fault = fault_beyond_log(text, encoding) if is_full(log) else None
-    if fault is not None:
-        msg = f'this is not well-formed XML: {fault.message}'
-        raise FileReadError(msg, Place(path, fault.line))
+    _check_document_type(root, path)
+    _check_instructions(root, text, path)
+    if len(log) >= _MOST_ERRORS:
+        _check_with_expat(text, encoding, path)
     if b'xmlns' in text:
-        _forget_default_namespaces(root)
-    return root, tuple(warnings)
-
-
-def is_full(log: Sequence[etree._LogEntry]) -> bool:
-    """
-    Tell whether there may be more errors than those in a log.
-
-    :param log: the errors in a text, those that are ignored among them.
-    :return: whether some releases of libxml2 would have kept further ones to themselves.
-    """
-    return len(log) >= _MOST_ENTRIES
-
-
-class Fault(NamedTuple):
-    """What keeps a text from being well-formed XML."""
-
-    message: str
-    line: int
-
-
-def fault_beyond_log(text: bytes, encoding: str | None = None) -> Fault | None:
-    """
-    Find out with another parser, which knows no namespaces, whether a text is well-formed XML.
-
-    :param text: the text.
-    :param encoding: its encoding; None for the one that it declares.
-    :return: the first thing that is wrong but for what is forgiven; None if there is none, or the
-        parser does not know the encoding.
-    """
-    from xml.parsers import expat
-    stripped = text.lstrip(WHITE_SPACE.encode())
-    try:
-        expat.ParserCreate(encoding).Parse(stripped, True)
-    except (LookupError, ValueError):
-        return None  # an encoding that it does not know, or one with characters of several bytes
-    except expat.ExpatError as error:
-        message = expat.ErrorString(error.code)
-        if message not in (
-                expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT,
-                expat.errors.XML_ERROR_UNKNOWN_ENCODING):
-            lines_before = text[:len(text) - len(stripped)].count(b'\n')
-            return Fault(message, error.lineno + lines_before)
-    return None
+        _remove_default_namespaces(root)
+    return XmlFile(root, tuple(warnings), _lines_beyond_last(root, text))
 
 
 def _parsed(
     text: bytes, encoding: str | None,
 ) -> tuple[XmlElement | None, etree.XMLSyntaxError | None, Sequence[etree._LogEntry]]:
     """Return the outermost element, or what kept it from being read; and the log of errors."""
-    parser = careful_parser(encoding)
+    parser = etree.XMLParser(
+        encoding=encoding, recover=True, resolve_entities=False, no_network=True, load_dtd=False,
+        huge_tree=False, remove_blank_text=True)
     try:
         return etree.fromstring(text, parser), None, list(parser.error_log)
     except etree.XMLSyntaxError as error:
         return None, error, list(parser.error_log)
 
 
-def _text_without_hyphens_in_comments(text: bytes) -> tuple[bytes, int, int]:
+def _without_hyphens_in_comments(text: bytes) -> tuple[bytes, int, int]:
     """
-    Put spaces in the place of hyphens, for a parser that minds them.
+    Replace the hyphens in comments by blanks.
 
-    Comments end where libsdformat's parser (TinyXML-2) lets them end: with the first ``-->``.
+    A comment ends with the first ``-->``, as in TinyXML-2.
 
-    :return: a text of the same length, the line of the first comment that holds two in a row, and
-        the number of such comments.
+    :return: a text of the same length, the line of the first comment that holds two hyphens in a
+        row, and the number of such comments.
     """
     starts = []
 
-    def spaced(found: re.Match[bytes]) -> bytes:
+    def with_blanks(found: re.Match[bytes]) -> bytes:
         comment = found[1]
         if comment is None:
             return found[0]
         if b'--' in comment or comment.endswith(b'-'):
             starts.append(found.start())
         return b'<!--%b-->' % comment.replace(b'-', b' ')
-    text = _COMMENT_OR_VERBATIM.sub(spaced, text)
+    text = _COMMENT_OR_VERBATIM.sub(with_blanks, text)
     return text, text.count(b'\n', 0, min(starts, default=0)) + 1, len(starts)
 
 
-def _refuse_what_hides_text(root: XmlElement, text: bytes, path: str) -> None:
-    """Refuse what an XML parser takes out of the text, or puts into it."""
-    definitions = root.getroottree().docinfo.internalDTD
-    if definitions is not None and next(definitions.iterentities(), None) is not None:
-        msg = 'the file declares entities, which SDFormat does not have'
+def _check_document_type(root: XmlElement, path: str) -> None:
+    document_type = root.getroottree().docinfo.internalDTD
+    if document_type is not None and any(
+            next(declarations, None) is not None for declarations in (
+                document_type.iterentities(), document_type.iterelements())):
+        msg = 'the document type declares entities or attributes, which SDFormat does not have'
         raise FileReadError(msg, Place(path, 1))
-    # Mostly there are no question marks but those of the declaration, and the tree is large.
+
+
+def _check_instructions(root: XmlElement, text: bytes, path: str) -> None:
+    """Refuse processing instructions in the tree, which end the text of an element in lxml."""
+    # The search of a large tree takes long, and mostly the declaration has the only "?".
     declaration = text.find(b'?>') + 2 if text.startswith(b'<?xml') else 0
     has_more = text.find(b'?', declaration) >= 0
     instruction = next(root.iter(etree.PI), None) if has_more else None
@@ -218,11 +170,60 @@ def _refuse_what_hides_text(root: XmlElement, text: bytes, path: str) -> None:
         raise FileReadError(msg, Place(path, instruction.sourceline or 0))
 
 
-def _forget_default_namespaces(root: XmlElement) -> None:
-    """Name elements as they are written: SDFormat knows prefixes, but no namespaces."""
+def _check_with_expat(text: bytes, encoding: str | None, path: str) -> None:
+    """
+    Refuse what libxml2 did not report after its first errors.
+
+    :raises FileReadError: if the text is not well-formed, apart from what follows the outermost
+        element. Encodings that expat does not know are not checked.
+    """
+    skipped, stripped = _without_leading_white_space(text)
+    try:
+        expat.ParserCreate(encoding).Parse(stripped, True)
+    except (LookupError, ValueError):
+        return
+    except expat.ExpatError as error:
+        message = expat.ErrorString(error.code)
+        if message not in (
+                expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT,
+                expat.errors.XML_ERROR_UNKNOWN_ENCODING):
+            msg = f'this is not well-formed XML: {message}'
+            raise FileReadError(msg, Place(path, skipped + error.lineno)) from error
+
+
+def _remove_default_namespaces(root: XmlElement) -> None:
     for element in root.iter(etree.Element):
         tag = str(element.tag)
-        if tag.startswith('{'):
-            name = tag[tag.index('}') + 1:]
-            if not element.prefix:
-                element.tag = name
+        if tag.startswith('{') and not element.prefix:
+            element.tag = tag[tag.index('}') + 1:]
+
+
+def _lines_beyond_last(root: XmlElement, text: bytes) -> dict[XmlElement, int]:
+    """
+    Return the lines of elements beyond the last line that libxml2 counts.
+
+    As for other elements, it is the line in which the start tag ends.
+    """
+    if text.count(b'\n') < _LAST_LINE:
+        return {}
+    skipped, stripped = _without_leading_white_space(text)
+    lines: list[int] = []
+
+    def add_line(_tag: str, _attributes: object) -> None:
+        tag = _START_TAG.match(stripped, parser.CurrentByteIndex)
+        lines.append(skipped + parser.CurrentLineNumber + (tag[0].count(b'\n') if tag else 0))
+
+    parser = expat.ParserCreate()
+    parser.StartElementHandler = add_line
+    # Elements after an error keep the line of libxml2.
+    with contextlib.suppress(expat.ExpatError, LookupError, ValueError):
+        parser.Parse(stripped, True)
+    return {
+        element: line for element, line in zip(root.iter(etree.Element), lines, strict=False)
+        if line >= _LAST_LINE}
+
+
+def _without_leading_white_space(text: bytes) -> tuple[int, bytes]:
+    """Return how many lines the white space has that is left out, and the text without it."""
+    stripped = text.lstrip(WHITE_SPACE.encode())
+    return text.count(b'\n', 0, len(text) - len(stripped)), stripped

@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.elements import Indices
+from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.texts import Texts
 
 if TYPE_CHECKING:

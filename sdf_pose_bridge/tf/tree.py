@@ -11,8 +11,8 @@ import numpy as np
 
 from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementInvalidError
-from sdf_pose_bridge.errors import hint_from_names
 from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.geometry.poses import Pose
@@ -20,12 +20,12 @@ from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.poses import relative_poses
 from sdf_pose_bridge.geometry.rotation import canonical_quaternion
-from sdf_pose_bridge.names import Kind
-from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.scene.scene import Joint
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.elements import Indices
-from sdf_pose_bridge.sdformat.elements import SensorFacts
+from sdf_pose_bridge.sdformat.elements import SensorDetails
+from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.frame_ids import OPTICAL_SUFFIX
@@ -160,7 +160,7 @@ class _Builder:
                     self._add_optical_frame(index, facts)
         for joint in self._parents.loop_joints:
             self._warn_loop(joint)
-        self._problems.raise_any()
+        self._problems.raise_errors()
         return self._laid_out(parents)
 
     # What is published
@@ -173,7 +173,7 @@ class _Builder:
             name = self._scene.world_names.get(index)
             what = 'the model beside the worlds' if name is None else f'world "{name}"'
             msg = f'{what} is not published; only the first world or model of a file is'
-            self._problems.warning('WARNING', msg, self._scene.place(index))
+            self._problems.warning(msg, self._scene.place(index))
         if options.model:
             is_inside = self._is_inside(self._model(options.model))
         else:
@@ -291,7 +291,7 @@ class _Builder:
             self._problems.error(DuplicateNameError(msg, place))
         elif any(character.isspace() for character in frame_id):
             msg = f'the frame id "{frame_id}" holds white space, which some tools cannot take'
-            self._problems.warning('WARNING', msg, place)
+            self._problems.warning(msg, place)
 
     def _described(self, element: int) -> str:
         return f'{Kind(self._scene.kinds[element]).label} "{self._scene.names[element]}"'
@@ -301,7 +301,7 @@ class _Builder:
         count = len(self._elements)
         return int(self._elements[row]) if row < count else self._optical[row - count].camera
 
-    def _add_optical_frame(self, index: int, facts: SensorFacts) -> None:
+    def _add_optical_frame(self, index: int, facts: SensorDetails) -> None:
         camera = int(self._row_of_element[index])
         if facts.optical_frame_id:
             frame_id = self._naming.frame_id_from_name(facts.optical_frame_id)
@@ -318,7 +318,7 @@ class _Builder:
         self._row_of_id.setdefault(frame_id, len(self._ids) - 1)
         self._judge(len(self._ids) - 1)
 
-    def _serves_as_optical_frame(self, row: int, pose: Pose, facts: SensorFacts) -> bool:
+    def _serves_as_optical_frame(self, row: int, pose: Pose, facts: SensorDetails) -> bool:
         """Tell whether a frame is there already that a camera's optical frame id means."""
         element = self._element(row)
         is_of_sensor = self._scene.kinds[element] == Kind.SENSOR
@@ -366,7 +366,7 @@ class _Builder:
         names = self._scene.names
         msg = (f'joint "{names[joint.element]}" closes a loop between "{names[joint.parent]}" and '
                f'"{names[joint.child]}"; TF is a tree, so it moves nothing there')
-        self._problems.warning('WARNING', msg, self._scene.place(joint.element))
+        self._problems.warning(msg, self._scene.place(joint.element))
 
     def _laid_out(self, parents: Indices) -> TfTree:
         optical = self._optical

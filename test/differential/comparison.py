@@ -15,7 +15,7 @@ from differential.reference import Answer
 from differential.reference import CRASH
 from differential.reference import PoseValues
 import sdf_pose_bridge
-from sdf_pose_bridge.names import Kind
+from sdf_pose_bridge.sdformat.grammar import Kind
 
 TOLERANCE = 1e-9
 """Metres, relative to the distance from the root where that is more than one; and radians."""

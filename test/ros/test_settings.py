@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from sdf_pose_bridge.names import Kind
+from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.ros.settings import settings_from_values
 from sdf_pose_bridge.ros.settings import SettingsError
 from sdf_pose_bridge.scene.loading import MissingInclude

@@ -10,7 +10,7 @@ from sdf_texts import model_file
 from sdf_texts import world_file
 
 from sdf_pose_bridge.errors import UnknownFrameError
-from sdf_pose_bridge.names import Kind
+from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.lookup import PoseLookup

@@ -1,165 +1,278 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Put what a file includes in the place of its includes, in a copy of the file.
+Replace every ``<include>`` by what it includes, so that one tree is left.
 
-Only a file whose content is to be changed from outside needs this; others keep their includes.
+Source: ``readXml`` and ``insertIncludedElement`` in libsdformat's ``parser.cc``. An include that
+is not found stays in the tree.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 import copy
-from typing import NamedTuple
+import os
+from pathlib import Path
 
-from lxml import etree
-
+from sdf_pose_bridge.errors import AttributeInvalidError
+from sdf_pose_bridge.errors import AttributeMissingError
+from sdf_pose_bridge.errors import ElementIncorrectTypeError
+from sdf_pose_bridge.errors import ElementInvalidError
+from sdf_pose_bridge.errors import ElementMissingError
+from sdf_pose_bridge.errors import PlacementFrameError
+from sdf_pose_bridge.errors import Problems
+from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.errors import UriLookupError
 from sdf_pose_bridge.names import ROOT_FRAME
-from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.sdformat.document import boolean_from_text
-from sdf_pose_bridge.sdformat.document import Document
-from sdf_pose_bridge.sdformat.document import set_line
-from sdf_pose_bridge.sdformat.document import value_of
-from sdf_pose_bridge.sdformat.document import WHITE_SPACE
-from sdf_pose_bridge.sdformat.document import XmlElement
-from sdf_pose_bridge.sdformat.include.inclusion import Inclusion
-from sdf_pose_bridge.sdformat.include.inclusion import is_merge
-from sdf_pose_bridge.sdformat.include.inclusion import tops_of
-from sdf_pose_bridge.sdformat.versions import may_hold_flat_names
-from sdf_pose_bridge.sdformat.versions import version_of
+from sdf_pose_bridge.sdformat.documents import document_from_file
+from sdf_pose_bridge.sdformat.grammar import definition_of
+from sdf_pose_bridge.sdformat.include.manifest import model_file_from_directory
+from sdf_pose_bridge.sdformat.include.merge import merge
+from sdf_pose_bridge.sdformat.include.params import apply_params
+from sdf_pose_bridge.sdformat.include.params import params_of
+from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
+from sdf_pose_bridge.sdformat.reader import check_element
+from sdf_pose_bridge.sdformat.sources import Document
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.values import boolean_from_text
+from sdf_pose_bridge.sdformat.xml_tree import child_elements
+from sdf_pose_bridge.sdformat.xml_tree import described
+from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import value_of
+from sdf_pose_bridge.sdformat.xml_tree import written_tag
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+DEEPEST = 64
+"""How deep files may include one another."""
+
+_TOP_TAGS = ('model', 'actor', 'light')
+"""What can be included, in the order of preference."""
+
+_PARENT_TAGS = frozenset({'sdf', 'world', 'model'})
 
 
-class Expansion(NamedTuple):
-    """A copy of a file, with what it includes in the place of its includes."""
-
-    document: Document
-    inclusions: dict[XmlElement, Inclusion]
-    """What the includes stand for that are left: those that merge, and those with errors."""
-    origins: dict[XmlElement, Document]
-    """The ``origins`` of the document and of those that are merged into it, to be added to."""
-    errors: tuple[SdfError, ...]
-    """What was wrong with the includes that are gone."""
-    warnings: tuple[SdfWarning, ...]
-    """What was warned about at the includes that are gone."""
-
-
-def expanded(document: Document, inclusions: Mapping[XmlElement, Inclusion]) -> Expansion:
+class IncludeExpansion:
     """
-    Copy a file and expand the copy.
+    Replaces includes, and reads each included file once.
 
-    :param document: a file in the newest grammar; it is not changed.
-    :param inclusions: what its includes stand for, and those of the files that it includes.
-    :return: the copy; what is included by what it merges is expanded too.
+    :param finder: finds the files that URIs name.
+    :param sources: takes the files and where elements were written.
+    :param problems: takes what is wrong with includes and with included files.
+    :param skips_missing: whether includes that are not found are warnings.
+    :param canonical_link_of: checks a model file by itself, given its ``sdf`` element; returns
+        the name of the model's canonical link, empty if it has none, or None if the file is not
+        valid, which is then reported. Files that are merged have to be valid by themselves.
     """
-    expander = _Expander(inclusions)
-    return Expansion(
-        expander.copy_of(document), expander.left, expander.origins, tuple(expander.errors),
-        tuple(expander.warnings))
 
+    def __init__(
+        self, finder: ResourceFinder, sources: Sources, problems: Problems, *,
+        skips_missing: bool, canonical_link_of: Callable[[XmlElement], str | None],
+    ) -> None:
+        self.may_hold_scoped_names = False
+        """Whether a name in what was included may hold ``::``."""
+        self._finder = finder
+        self._sources = sources
+        self._problems = problems
+        self._skips_missing = skips_missing
+        self._canonical_link_of = canonical_link_of
+        self._files: dict[str, Document | None] = {}
+        self._missing_uris: set[str] = set()
 
-class _Expander:
+    def expand(self, document: Document) -> None:
+        """
+        Replace the includes of a file.
 
-    def __init__(self, inclusions: Mapping[XmlElement, Inclusion]) -> None:
-        self.left: dict[XmlElement, Inclusion] = {}
-        self.origins: dict[XmlElement, Document] = {}
-        self.errors: list[SdfError] = []
-        self.warnings: list[SdfWarning] = []
-        self._inclusions = inclusions
+        :param document: the file, in the newest version; it is changed in place.
+        """
+        self._expand_in(document.root, (os.path.realpath(document.path),))
 
-    def copy_of(self, document: Document) -> Document:
-        root = copy.deepcopy(document.root)
-        if document.origins:
-            for old, new in zip(document.root.iter(), root.iter(), strict=True):
-                if old in document.origins:
-                    self.origins[new] = document.origins[old]
-        result = document._replace(
-            root=root, origins=self.origins, may_hold_separators=True)
-        # Listed first, for the copy changes on the way.
-        pairs = list(zip(document.root.iter('include'), root.iter('include'), strict=True))
-        for old, new in pairs:
-            if old in self._inclusions:
-                self._expand(new, self._inclusions[old], result)
-        return result
+    def _expand_in(self, root: XmlElement, files: tuple[str, ...]) -> None:
+        """Replace the includes in a tree; ``files`` led to it, each included by the one before."""
+        for include in list(root.iter('include')):
+            if all(parent.tag in _PARENT_TAGS for parent in include.iterancestors()):
+                self._expand_include(include, files)
 
-    def _expand(self, include: XmlElement, inclusion: Inclusion, document: Document) -> None:
-        if inclusion.document is None:
-            self.left[include] = inclusion
+    def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
+        for plugin in child_elements(include, 'plugin'):
+            check_element(plugin, definition_of('plugin'), self._sources, self._problems)
+        uri = self._uri(include)
+        if uri is None:
+            _remove(include)
             return
-        included = self.copy_of(inclusion.document)
-        holder = include.getparent()
-        if holder is None or not _is_replaceable(include, included, str(holder.tag)):
-            self.left[include] = inclusion._replace(document=included)
-            if is_merge(include):
-                _give_poses(included)
+        found = self._included_file(uri, self._sources.path(include), files)
+        if isinstance(found, str):
+            self._report_missing(include, uri, found)
             return
-        self.errors += inclusion.errors
-        self.warnings += inclusion.warnings
-        top = tops_of(included)[0]
-        origin = self.origins.setdefault(top, inclusion.document)
-        if _override(include, top):
-            # As everywhere, an element stands where its pose is written.
-            for child in top.iterchildren(etree.Element):
-                self.origins.setdefault(child, origin)
-            set_line(top, include.sourceline)
-            self.origins[top] = self.origins[_pose_of(top)] = document.origin(include)
-        holder.replace(include, top)
+        if found is None:
+            return
+        chosen = self._top(include, found)
+        if chosen is None:
+            return
+        self.may_hold_scoped_names |= found.may_hold_scoped_names
+        top = self._sources.copy_of(chosen)
+        self._sources.set_include(top, include)
+        self._override(include, top)
+        params = params_of(include)
+        if params is not None:
+            for added in apply_params(params, top, self._sources, self._problems):
+                self.may_hold_scoped_names = True
+                self._expand_in(added, files)
+        self._insert(include, top)
 
+    # What an include names
 
-def _is_replaceable(include: XmlElement, included: Document, holder: str) -> bool:
-    """Tell whether an include can go; one that has an error stays, so that it is reported."""
-    tops = tops_of(included)
-    if is_merge(include) or boolean_from_text(include.get('merge', 'false')) is None or (
-            len(tops) != 1 or (holder == 'model' and tops[0].tag != 'model')):
-        return False
-    values = {
-        str(child.tag): value_of(child)
-        for child in include.iterchildren('name', 'placement_frame', 'static')}
-    placement = values.get('placement_frame', '')
-    is_sound = '' not in values.values() and placement != ROOT_FRAME and (
-        boolean_from_text(values.get('static', 'false')) is not None) and not (
-        placement and next(include.iterchildren('pose'), None) is None)
-    return is_sound and _is_included_soundly(tops[0], included)
+    def _uri(self, include: XmlElement) -> str | None:
+        element = first_child(include, 'uri')
+        if element is None:
+            msg = 'the include has no <uri>, so it includes nothing'
+            self._problems.error(AttributeMissingError(msg, self._sources.place(include)))
+            return None
+        uri = value_of(element)
+        if not uri:
+            msg = 'the <uri> of the include is empty'
+            self._problems.error(ElementInvalidError(msg, self._sources.place(element)))
+            return None
+        return uri
 
+    def _included_file(
+        self, uri: str, including_file: str, files: tuple[str, ...],
+    ) -> Document | str | None:
+        """Return a file; the reason why it is not found; or None if it cannot be read."""
+        path = self._finder.path_from_uri(uri, including_file)
+        if path is None:
+            return ('nothing of that name was found beside the file or in the resource paths, to '
+                    'which the variable GZ_SIM_RESOURCE_PATH adds')
+        if os.path.isdir(path):  # noqa: PTH112
+            try:
+                path, manifest, warnings = model_file_from_directory(path)
+            except SdfError as error:
+                return f'{error.place}: {error.message}'
+            self._sources.add_path(manifest)
+            self._problems.extend(warnings)
+        real_path = os.path.realpath(path)
+        if real_path in files:
+            cycle = [*files[files.index(real_path):], real_path]
+            names = ' -> '.join(Path(file).name for file in cycle)
+            return f'the file includes itself: {names}'
+        if len(files) >= DEEPEST:
+            return f'files include one another more than {DEEPEST} levels deep'
+        if real_path not in self._files:
+            self._files[real_path] = self._read(path, (*files, real_path))
+        return self._files[real_path]
 
-def _is_included_soundly(top: XmlElement, included: Document) -> bool:
-    pose = next(top.iterchildren('pose'), None)
-    is_own = top not in included.origins
-    if is_own and pose is not None and pose.get('relative_to', '').strip(WHITE_SPACE):
-        return False
-    return may_hold_flat_names(version_of(included)) or not any(
-        SEPARATOR in xml.get('name', '') for xml in top.iter(etree.Element))
+    def _read(self, path: str, files: tuple[str, ...]) -> Document | None:
+        try:
+            document = document_from_file(path, self._sources, self._problems)
+        except SdfError as error:
+            self._problems.error(error)
+            return None
+        if next(document.root.iter('include'), None) is not None:
+            self._sources.set_composed(document.root)
+            self._expand_in(document.root, files)
+        return document
 
+    def _report_missing(self, include: XmlElement, uri: str, reason: str) -> None:
+        msg = f'"{uri}" cannot be included: {reason}'
+        place = self._sources.place(include)
+        if not self._skips_missing:
+            self._problems.error(UriLookupError(msg, place))
+        elif uri not in self._missing_uris:
+            self._problems.warning(f'{msg}; it is left out', place)
+        self._missing_uris.add(uri)
 
-def _override(include: XmlElement, top: XmlElement) -> bool:
-    """Write into an element what its include says differently; tell whether that is a pose."""
-    is_model = top.tag == 'model'
-    for tag in ('name', 'placement_frame', 'static', 'pose') if is_model else ('name', 'pose'):
-        new = next(include.iterchildren(tag), None)
+    def _top(self, include: XmlElement, document: Document) -> XmlElement | None:
+        """Return the model, actor or light that a file is included for."""
+        tops = [xml for xml in child_elements(document.root) if xml.tag in _TOP_TAGS]
+        if len(tops) > 1:
+            names = ', '.join(described(xml) for xml in tops)
+            msg = f'{document.path} has more than one element at its top: {names}'
+            self._problems.error(ElementIncorrectTypeError(msg, self._sources.place(include)))
+        if tops:
+            return min(tops, key=lambda xml: _TOP_TAGS.index(str(xml.tag)))
+        # An include at its top that was not found is reported already.
+        if first_child(document.root, 'include') is None:
+            msg = f'{document.path} cannot be included: no model, light or actor is at its top'
+            self._problems.error(ElementMissingError(msg, self._sources.place(include)))
+            _remove(include)
+        return None
+
+    # What an include overrides
+
+    def _override(self, include: XmlElement, top: XmlElement) -> None:
+        """Write the name, the pose and the rest of what an include has into what it includes."""
+        name = self._override_value(include, 'name')
+        if name:
+            top.set('name', name)
+        if top.tag == 'model':
+            self._override_element(include, top, 'static')
+            placement = self._placement_frame(include)
+            if placement:
+                top.set('placement_frame', placement)
+        if self._override_element(include, top, 'pose'):
+            # An element stands where its pose is written.
+            path = self._sources.path(top)
+            for child in child_elements(top):
+                self._sources.set_source(child, self._sources.path_at(child, path))
+            including_file = self._sources.path(include)
+            self._sources.set_source(top, including_file, self._sources.line(include))
+
+    def _override_value(self, include: XmlElement, tag: str) -> str:
+        element = first_child(include, tag)
+        value = '' if element is None else value_of(element)
+        if element is not None and not value:
+            msg = f'<{tag}> of the include is empty'
+            self._problems.error(ElementInvalidError(msg, self._sources.place(element)))
+        return value
+
+    def _override_element(self, include: XmlElement, top: XmlElement, tag: str) -> bool:
+        new = first_child(include, tag)
         if new is None:
-            continue
-        if tag in ('name', 'placement_frame'):
-            top.set(tag, value_of(new))
-            continue
-        new = copy.deepcopy(new)
-        old = next(top.iterchildren(tag), None)
+            return False
+        old = first_child(top, tag)
+        replacement = copy.deepcopy(new)
         if old is None:
-            top.insert(0, new)
+            top.insert(0, replacement)
         else:
-            top.replace(old, new)
-    return next(include.iterchildren('pose'), None) is not None
+            top.replace(old, replacement)
+        self._sources.set_source(replacement, self._sources.path(new), self._sources.line(new))
+        return True
+
+    def _placement_frame(self, include: XmlElement) -> str:
+        placement = self._override_value(include, 'placement_frame')
+        if placement and first_child(include, 'pose') is None:
+            msg = (f'<placement_frame> "{placement}" needs a <pose> in the same include, which '
+                   'says where that frame is')
+            self._problems.error(PlacementFrameError(msg, self._sources.place(include)))
+            return ''
+        if placement == ROOT_FRAME:
+            msg = f'"{placement}" is reserved; it cannot be a placement frame'
+            self._problems.error(ReservedNameError(msg, self._sources.place(include)))
+            return ''
+        return placement
+
+    # Where it goes
+
+    def _insert(self, include: XmlElement, top: XmlElement) -> None:
+        parent = include.getparent()
+        if parent is None:
+            return
+        written = include.get('merge', 'false')
+        is_merge = boolean_from_text(written)
+        if is_merge is None:
+            msg = f'merge="{written}" is not a boolean (true, false, 1 or 0)'
+            self._problems.error(AttributeInvalidError(msg, self._sources.place(include)))
+        if is_merge:
+            merge(include, top, self._sources, self._problems, self._canonical_link_of)
+        elif parent.tag == 'model' and top.tag != 'model':
+            msg = f'the included {written_tag(top)} is left out; a model can include only models'
+            self._problems.warning(msg, self._sources.place(include))
+            _remove(include)
+        else:
+            parent.replace(include, top)
 
 
-def _give_poses(merged: Document) -> None:
-    """Let each link and model that is merged have a pose, as it has when libsdformat did it."""
-    for top in tops_of(merged):
-        for xml in top.iterchildren('link', 'model'):
-            if next(xml.iterchildren('pose'), None) is None:
-                pose = etree.Element('pose')
-                xml.insert(0, pose)
-                set_line(pose, xml.sourceline)
-
-
-def _pose_of(top: XmlElement) -> XmlElement:
-    return next(top.iterchildren('pose'))
+def _remove(xml: XmlElement) -> None:
+    parent = xml.getparent()
+    if parent is not None:
+        parent.remove(xml)

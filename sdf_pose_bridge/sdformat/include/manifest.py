@@ -1,6 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Find the SDFormat file of a model directory: its ``model.config`` names one for each version."""
+"""
+Find the SDFormat file of a model directory: its ``model.config`` names one for each version.
+
+Source: ``getModelFilePath`` and ``getBestSupportedModelVersion`` of libsdformat.
+"""
 
 from __future__ import annotations
 
@@ -12,19 +16,23 @@ from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.sdformat.document import text_of
-from sdf_pose_bridge.sdformat.document import WHITE_SPACE
-from sdf_pose_bridge.sdformat.xml_file import root_from_file
+from sdf_pose_bridge.sdformat.versions import NEWEST
+from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
+from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
+from sdf_pose_bridge.sdformat.xml_tree import child_elements
+from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import text_of
+from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 
-_NAMES = ('model.config', 'manifest.xml')
-_NEWEST = (1, 12)
+_NAME = 'model.config'
+_DEPRECATED_NAME = 'manifest.xml'
 
 
 class ModelFile(NamedTuple):
-    """What a model directory offers."""
+    """The file that a model directory offers."""
 
     path: str
-    """The SDFormat file to read."""
+    """The SDFormat file."""
     manifest: str
     """The file that names it."""
     warnings: tuple[SdfWarning, ...]
@@ -32,44 +40,45 @@ class ModelFile(NamedTuple):
 
 def model_file_from_directory(directory: str) -> ModelFile:
     """
-    Choose the file of the newest version that can be read.
+    Choose the file of the newest version that is supported.
 
     :param directory: a model directory.
     :return: the file, which need not exist.
     :raises FileReadError: if there is no manifest, or it is not XML.
-    :raises ParsingError: if the manifest names no file.
+    :raises ParsingError: if the manifest does not name a file.
     """
-    # Unlike Path's, this raises no error for what may not be looked at.
+    # Unlike Path.exists, this returns False for a directory that may not be read.
     manifests = [
-        path for path in (Path(directory, name) for name in _NAMES)
-        if os.path.exists(path)]  # noqa: PTH110
+        name for name in (_NAME, _DEPRECATED_NAME)
+        if os.path.exists(Path(directory, name))]  # noqa: PTH110
     if not manifests:
-        msg = 'the directory has no model.config, which would name the file to read'
+        msg = f'the directory has no {_NAME}, which would name the file to read'
         raise FileReadError(msg, Place(directory))
-    manifest = str(manifests[0])
+    manifest = str(Path(directory, manifests[0]))
     warnings = []
-    if manifests[0].name != _NAMES[0]:
-        msg = f'{_NAMES[1]} is deprecated; it should be called {_NAMES[0]}'
+    if manifests[0] == _DEPRECATED_NAME:
+        msg = f'{_DEPRECATED_NAME} is deprecated; it should be called {_NAME}'
         warnings.append(SdfWarning('WARNING', msg, Place(manifest)))
-    root = root_from_file(manifest)
+    root, xml_warnings, _ = xml_from_bytes(bytes_from_file(manifest), manifest)
+    warnings += xml_warnings
     best: tuple[int, ...] = (0, 0)
     chosen = None
-    for entry in root.iterchildren('sdf'):
+    for entry in child_elements(root, 'sdf'):
         version = _version_from_text(entry.get('version', ''))
-        if version > _NEWEST:
-            msg = f'version {entry.get("version")} of the model is newer than 1.12 and left out'
+        if version > NEWEST:
+            msg = f'version {entry.get("version")} of the model is newer than 1.12 and skipped'
             place = Place(manifest, entry.sourceline or 0, '/model/sdf')
             warnings.append(SdfWarning('WARNING', msg, place))
         elif chosen is None or version > best:
             best, chosen = version, entry
     if chosen is None:
-        chosen = next(root.iterchildren('sdf'), None)
+        chosen = first_child(root, 'sdf')
     name = '' if chosen is None else text_of(chosen).strip(WHITE_SPACE)
     if root.tag != 'model' or chosen is None or not name:
         msg = 'the manifest names no file: it has no <sdf> in a <model>'
         raise ParsingError(msg, Place(manifest, root.sourceline or 0))
     if chosen.get('version') is None:
-        msg = '<sdf> says for no version that it is'
+        msg = '<sdf> does not say which version the file has'
         place = Place(manifest, chosen.sourceline or 0, '/model/sdf')
         warnings.append(SdfWarning('WARNING', msg, place))
     return ModelFile(str(Path(directory, name)), manifest, tuple(warnings))

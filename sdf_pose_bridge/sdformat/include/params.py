@@ -1,16 +1,16 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Change an included file as the parameters of its include say.
+Change an included model by the parameters of its include (``<experimental:params>``).
 
-``<experimental:params>`` names elements of the included file by ``element_id``, and says by
-``action`` what becomes of each: of the whole element, or of its children one by one.
+Each parameter names an element of the model by ``element_id`` and says by ``action`` what becomes
+of it: of the whole element, or of its children one by one. Source: libsdformat's
+``ParamPassing.cc``.
 """
 
 from __future__ import annotations
 
 import copy
-from typing import NamedTuple
 
 from lxml import etree
 
@@ -20,84 +20,79 @@ from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.sdformat.document import Document
-from sdf_pose_bridge.sdformat.document import set_line
-from sdf_pose_bridge.sdformat.document import text_of
-from sdf_pose_bridge.sdformat.document import XmlElement
-from sdf_pose_bridge.sdformat.elements import step
-from sdf_pose_bridge.sdformat.include.element_ids import ElementIds
-from sdf_pose_bridge.sdformat.include.element_ids import written_tag
-from sdf_pose_bridge.sdformat.include.expansion import Expansion
-from sdf_pose_bridge.sdformat.include.inclusion import TOP_TAGS
-from sdf_pose_bridge.sdformat.include.inclusion import tops_of
-from sdf_pose_bridge.sdformat.include.params_grammar import CHILDREN
-from sdf_pose_bridge.sdformat.include.params_grammar import DEFAULT_CHILDREN
-from sdf_pose_bridge.sdformat.include.params_grammar import DEFINED
-from sdf_pose_bridge.sdformat.include.params_grammar import has_attribute
-from sdf_pose_bridge.sdformat.include.params_grammar import has_value
+from sdf_pose_bridge.sdformat.grammar import Definition
+from sdf_pose_bridge.sdformat.grammar import definition_of
+from sdf_pose_bridge.sdformat.include.element_ids import element_by_id
+from sdf_pose_bridge.sdformat.include.element_ids import hint_for_id
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.xml_tree import child_elements
+from sdf_pose_bridge.sdformat.xml_tree import described
+from sdf_pose_bridge.sdformat.xml_tree import text_of
+from sdf_pose_bridge.sdformat.xml_tree import written_tag
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _PARAMS = 'experimental:params'
 _OWN_ATTRIBUTES = ('element_id', 'action')
 _ACTIONS = ('add', 'modify', 'remove', 'replace')
-_HOW_TO_READ = frozenset({'degrees', 'rotation_format'})
+_POSE_FORMAT_ATTRIBUTES = frozenset({'degrees', 'rotation_format'})
 _PARTS = ('pose', 'parent', 'child', 'axis', 'axis2')
-"""What an element says of itself, in whose file it therefore stands."""
+"""Children that stand in the file of their parent element."""
 
-_NO_FRAME = '__default__'
-"""What a joint's parent or child is called where no value is given."""
+_DEFAULT_JOINT_END = '__default__'
+"""The value of a joint's parent or child for which none is given."""
 
-
-class Changes(NamedTuple):
-    """What came of parameters."""
-
-    errors: tuple[SdfError, ...]
-    warnings: tuple[SdfWarning, ...]
+_DEFINED_ALONE = frozenset(
+    'actor air_pressure air_speed altimeter atmosphere audio_sink audio_source battery box_shape '
+    'camera capsule_shape collision cone_shape contact cylinder_shape ellipsoid_shape forcetorque '
+    'frame geometry gps gripper gui heightmap_shape image_shape imu inertial joint lidar light '
+    'light_state link link_state logical_camera magnetometer material mesh_shape mimic model '
+    'model_state navsat noise particle_emitter physics plane_shape plugin polyline_shape '
+    'population pose projector ray rfid rfidtag road root scene sensor sonar sphere_shape '
+    'spherical_coordinates state surface transceiver visual world'.split())
+"""The elements that parameters can add, replace or change child by child: those that have a file
+of the specification to themselves."""
 
 
 def params_of(include: XmlElement) -> XmlElement | None:
     """
     Return the parameters of an include.
 
-    :param include: the element.
-    :return: its first ``<experimental:params>``; None if it has none.
+    :param include: the ``<include>``.
+    :return: its first ``<experimental:params>``, or None.
     """
-    return next(
-        (xml for xml in include.iterchildren(etree.Element) if written_tag(xml) == _PARAMS), None)
+    return next((xml for xml in child_elements(include) if written_tag(xml) == _PARAMS), None)
 
 
-def apply_params(params: XmlElement, expansion: Expansion, source: Document) -> Changes:
+def apply_params(
+    params: XmlElement, top: XmlElement, sources: Sources, problems: Problems,
+) -> list[XmlElement]:
     """
-    Change an included file.
+    Change an included element.
 
     :param params: the ``<experimental:params>``; it is not changed.
-    :param expansion: the file, which is changed; its ``origins`` tell afterwards what was.
-    :param source: the file that the parameters stand in.
-    :return: what is wrong with the parameters. What has an error is left as it is.
+    :param top: the included element.
+    :param sources: where elements were written.
+    :param problems: takes what is wrong with the parameters. What has an error is not applied.
+    :return: the elements that were added.
     """
-    tops = tops_of(expansion.document)
-    if not tops:
-        return Changes((), ())
-    top = min(tops, key=lambda xml: TOP_TAGS.index(str(xml.tag)))
-    changer = _Changer(expansion, top, source)
-    for xml in params.iterchildren(etree.Element):
+    changer = _Changer(top, sources, problems)
+    for xml in child_elements(params):
         changer.apply(xml)
-    return Changes(tuple(changer.errors), tuple(changer.warnings))
+    return changer.added
 
 
 class _Changer:
 
-    def __init__(self, expansion: Expansion, top: XmlElement, source: Document) -> None:
-        self.errors: list[SdfError] = []
-        self.warnings: list[SdfWarning] = []
-        self._ids = ElementIds(expansion, top)
-        self._origins = expansion.origins
-        self._document = expansion.document
-        self._source = source
+    def __init__(self, top: XmlElement, sources: Sources, problems: Problems) -> None:
+        self.added: list[XmlElement] = []
+        self._top = top
+        self._sources = sources
+        self._problems = problems
 
-    # One element of the parameters
+    # One parameter
 
     def apply(self, xml: XmlElement) -> None:
         tag = written_tag(xml)
@@ -110,14 +105,21 @@ class _Changer:
             self._error(AttributeInvalidError, xml, msg)
             return
         action = xml.get('action')
-        if action is None:
-            self._change_children(xml, tag, element_id)
-        elif action == 'add':
+        if action is not None and not self._is_action(xml, action):
+            return
+        if action == 'add':
             self._add(xml, tag, element_id)
-        elif self._is_action(xml, action):
-            target = self._target(xml, tag, element_id)
-            if target is not None:
-                self._act(action, xml, tag, target)
+            return
+        target = element_by_id(self._top, element_id, tag)
+        if target is None:
+            msg = (f'the included model has no <{tag}> "{element_id}"'
+                   f'{hint_for_id(self._top, element_id, tag)}')
+            self._error(ElementMissingError, xml, msg)
+        elif action is not None:
+            self._act(action, xml, tag, target)
+        elif self._is_defined(xml, tag):
+            for child in child_elements(xml):
+                self._change_child(child, tag, target)
 
     def _act(self, action: str, xml: XmlElement, tag: str, target: XmlElement) -> None:
         if action == 'modify':
@@ -134,35 +136,28 @@ class _Changer:
             self._error(missing, xml, f'<{tag}> is to be added, so it needs a name')
             return
         scoped = f'{element_id}{SEPARATOR}{name}'
-        if tag != 'plugin' and self._ids.element(scoped, tag) is not None:
+        if tag != 'plugin' and element_by_id(self._top, scoped, tag) is not None:
             msg = f'<{tag}> cannot be added: the included model has a <{tag}> "{scoped}" already'
             self._error(DuplicateNameError, xml, msg)
             return
-        holder = self._ids.holder(element_id)
-        if holder is None:
+        parent = element_by_id(self._top, element_id) if element_id else self._top
+        if parent is None:
             msg = (f'<{tag}> cannot be added to element_id="{element_id}": the included model has '
-                   f'no such element{self._ids.hint(element_id, "")}')
+                   f'no such element{hint_for_id(self._top, element_id)}')
             self._error(ElementMissingError, xml, msg)
         elif self._is_defined(xml, tag):
-            holder.append(self._new_element(xml))
+            parent.append(self._new_element(xml))
 
-    def _change_children(self, xml: XmlElement, tag: str, element_id: str) -> None:
-        target = self._target(xml, tag, element_id)
-        if target is None or not self._is_defined(xml, tag):
+    def _change_child(self, xml: XmlElement, parent_tag: str, target: XmlElement) -> None:
+        tag, action = written_tag(xml), xml.get('action')
+        if action is None:
+            msg = f'<{tag}> has no action; it must have one, as <{parent_tag}> has none'
+            self._error(AttributeMissingError, xml, msg)
             return
-        for child in xml.iterchildren(etree.Element):
-            action = child.get('action')
-            if action is None:
-                msg = (f'<{written_tag(child)}> has no action; it must have one, as <{tag}> has '
-                       'none')
-                self._error(AttributeMissingError, child, msg)
-            elif self._is_action(child, action):
-                self._change_child(child, action, target)
-
-    def _change_child(self, xml: XmlElement, action: str, target: XmlElement) -> None:
-        tag, target_tag = written_tag(xml), written_tag(target)
-        if action in ('add', 'replace') and tag not in CHILDREN.get(target_tag, ()):
-            msg = f'SDFormat knows no <{tag}> in a <{target_tag}>'
+        if not self._is_action(xml, action):
+            return
+        if action in ('add', 'replace') and tag not in definition_of(parent_tag).children:
+            msg = f'SDFormat defines no <{tag}> in a <{parent_tag}>'
             self._error(ElementInvalidError, xml, msg)
             return
         if action == 'add' and tag == 'include':
@@ -172,11 +167,9 @@ class _Changer:
             target.append(self._new_element(xml))
             return
         found = self._child(target, xml, takes_first=action == 'modify')
-        if found is None:
-            self._error(ElementMissingError, xml, self._missing_child(xml, target))
-        elif action == 'replace':
+        if found is not None and action == 'replace':
             self._replace(xml, tag, found)
-        else:
+        elif found is not None:
             self._act(action, xml, tag, found)
 
     # Actions
@@ -186,26 +179,25 @@ class _Changer:
         element.tail = None
         for attribute in _OWN_ATTRIBUTES:
             element.attrib.pop(attribute, None)
-        self._origins[element] = self._source
+        self._sources.set_source(element, self._sources.path(xml), self._sources.line(xml))
+        self.added.append(element)
         return element
 
     def _replace(self, xml: XmlElement, tag: str, target: XmlElement) -> None:
-        holder = target.getparent()
+        parent = target.getparent()
         if target.get('name') is not None and xml.get('name') is None:
             msg = f'<{tag}> is to replace <{tag} name="{target.get("name")}">, so it needs a name'
             self._error(AttributeMissingError, xml, msg)
-        elif holder is not None:
-            holder.replace(target, self._new_element(xml))
+        elif parent is not None:
+            parent.replace(target, self._new_element(xml))
 
     def _remove(self, xml: XmlElement, target: XmlElement) -> None:
         if _is_empty(xml):
             _take_out(target)
             return
-        for child in xml.iterchildren(etree.Element):
-            found = self._child(target, child, takes_first=False)
-            if found is None:
-                self._error(ElementMissingError, child, self._missing_child(child, target))
-            else:
+        for child in child_elements(xml):
+            found = self._child(target, child)
+            if found is not None:
                 _take_out(found)
 
     def _modify(self, xml: XmlElement, target: XmlElement) -> None:
@@ -214,112 +206,114 @@ class _Changer:
         # A text that comes with its attributes is read by them; one that stays is not read again.
         self._change_attributes(xml, target, is_read_before=not has_text)
         if not has_text:
-            self._modify_children(xml, target)
-        elif _holds_value(target):
+            for child in child_elements(xml):
+                self._modify_child(child, target)
+        elif self._holds_value(target):
             self._set_text(text, xml, target)
 
-    def _modify_children(self, xml: XmlElement, target: XmlElement) -> None:
-        for child in xml.iterchildren(etree.Element):
-            found = self._child(target, child, takes_first=True)
-            text = text_of(child)
-            if found is None:
-                self._error(ElementMissingError, child, self._missing_child(child, target))
-            elif text.strip():
-                if _holds_value(found):
-                    self._set_text(text, child, found)
-                # Unlike where a pose is changed by itself, its text has been read by now.
-                self._change_attributes(child, found, is_read_before=True)
-            elif not _is_empty(child):
-                self._modify(child, found)
-            elif _holds_value(found):
-                is_end = written_tag(target) == 'joint' and found.tag in ('parent', 'child')
-                self._set_text(_NO_FRAME if is_end else '', child, found)
-                self._change_attributes(child, found, is_read_before=False)
-            else:
-                msg = f'<{written_tag(child)}> holds nothing, so it changes nothing'
-                self._warning(child, msg)
+    def _modify_child(self, xml: XmlElement, target: XmlElement) -> None:
+        found = self._child(target, xml, takes_first=True)
+        if found is None:
+            return
+        text = text_of(xml)
+        if text.strip():
+            if self._holds_value(found):
+                self._set_text(text, xml, found)
+            # Unlike in _modify, the text of a pose has been read by now.
+            self._change_attributes(xml, found, is_read_before=True)
+        elif not _is_empty(xml):
+            self._modify(xml, found)
+        elif self._holds_value(found):
+            is_end = written_tag(target) == 'joint' and found.tag in ('parent', 'child')
+            self._set_text(_DEFAULT_JOINT_END if is_end else '', xml, found)
+            self._change_attributes(xml, found, is_read_before=False)
+        else:
+            self._warning(xml, f'<{written_tag(xml)}> holds nothing, so it changes nothing')
 
     def _set_text(self, text: str, xml: XmlElement, target: XmlElement) -> None:
-        for child in list(target):
-            target.remove(child)
+        target[:] = []
         target.text = text
-        self._take_over(target, xml)
+        self._set_source(target, xml)
 
     def _change_attributes(
         self, xml: XmlElement, target: XmlElement, *, is_read_before: bool,
     ) -> None:
-        tag, holder = written_tag(target), _holder_tag(target)
+        tag = written_tag(target)
+        definition = self._definition(target)
         for attribute, value in xml.attrib.items():
             if attribute in _OWN_ATTRIBUTES or ':' in attribute:
                 continue
-            if attribute not in target.attrib and not has_attribute(
-                    holder, tag, attribute):
-                msg = f'SDFormat knows no attribute {attribute} of <{tag}>'
+            if attribute not in target.attrib and (
+                    definition is None or attribute not in definition.attributes):
+                msg = f'SDFormat defines no attribute {attribute} of <{tag}>'
                 self._error(AttributeInvalidError, xml, msg)
-            elif (tag == 'pose' and attribute in _HOW_TO_READ and is_read_before
+            elif (tag == 'pose' and attribute in _POSE_FORMAT_ATTRIBUTES and is_read_before
                     and text_of(target).strip()):
                 if target.get(attribute) != value:
-                    msg = (f'{attribute}="{value}" comes too late: libsdformat has read the '
+                    msg = (f'{attribute}="{value}" has no effect: libsdformat has read the '
                            'numbers of this pose before')
                     self._warning(xml, msg)
             else:
                 target.set(attribute, str(value))
-                self._take_over(target, xml)
+                self._set_source(target, xml)
 
-    def _take_over(self, target: XmlElement, xml: XmlElement) -> None:
-        """Note that an element now stands in the parameters."""
+    def _set_source(self, target: XmlElement, xml: XmlElement) -> None:
+        """Set that an element, and the elements around it that are named, stand in the parameters."""
+        path = self._sources.path(xml)
         while True:
-            for child in target.iterchildren(etree.Element):
-                self._origins.setdefault(child, self._document.origin(child))
-            parts = (
-                part for child in target.iterchildren(*_PARTS)
-                for part in child.iter(etree.Element))
+            for child in child_elements(target):
+                self._sources.set_source(child, self._sources.path(child))
+            parts = (part for child in child_elements(target, *_PARTS)
+                     for part in child.iter(etree.Element))
             for part in (target, *parts):
-                if self._origins.get(part) is not self._source:
-                    self._origins[part] = self._source
-                    set_line(part, xml.sourceline)
-            holder, above = target.getparent(), xml.getparent()
-            if holder is None or above is None or xml.get('element_id') is not None:
+                if self._sources.path(part) != path:
+                    self._sources.set_source(part, path, self._sources.line(xml))
+            parent, above = target.getparent(), xml.getparent()
+            if parent is None or above is None or xml.get('element_id') is not None:
                 return
-            target, xml = holder, above
+            target, xml = parent, above
 
-    # What is looked for
-
-    def _target(self, xml: XmlElement, tag: str, element_id: str) -> XmlElement | None:
-        target = self._ids.element(element_id, tag)
-        if target is None:
-            msg = (f'the included model has no <{tag}> "{element_id}"'
-                   f'{self._ids.hint(element_id, tag)}')
-            self._error(ElementMissingError, xml, msg)
-        return target
+    # Look-ups
 
     def _child(
-        self, holder: XmlElement, xml: XmlElement, *, takes_first: bool,
+        self, parent: XmlElement, xml: XmlElement, *, takes_first: bool = False,
     ) -> XmlElement | None:
-        """Find the child that has the tag and the name of an element of the parameters."""
+        """Find the child with the tag and the name of a parameter; report it if there is none."""
         tag, name = written_tag(xml), xml.get('name')
-        children = [child for child in self._ids.children(holder) if written_tag(child) == tag]
-        if not children and tag in DEFAULT_CHILDREN.get(written_tag(holder), ()):
-            children = [etree.SubElement(holder, tag)]
-            self._origins[children[0]] = self._source
-            set_line(children[0], xml.sourceline)
+        children = [child for child in child_elements(parent) if written_tag(child) == tag]
+        definition = self._definition(parent)
+        if not children and definition is not None and tag in definition.required_children:
+            children = [etree.SubElement(parent, tag)]
+            self._sources.set_source(
+                children[0], self._sources.path(xml), self._sources.line(xml))
         if name is None and children and children[0].get('name') is not None:
             msg = f'<{tag}> has no name; <{tag} name="{children[0].get("name")}"> is taken'
             self._warning(xml, msg)
-        if name is None:
-            return children[0] if children else None
-        same = (child for child in children if child.get('name') == name)
-        return next(same, children[0] if children and takes_first else None)
-
-    def _missing_child(self, xml: XmlElement, holder: XmlElement) -> str:
-        tag, name = written_tag(xml), xml.get('name')
+        same = [child for child in children if name is None or child.get('name') == name]
+        found = same[:1] or (children[:1] if takes_first else [])
+        if found:
+            return found[0]
         wanted = f'<{tag}>' if name is None else f'<{tag} name="{name}">'
-        holder_name = holder.get('name')
-        label = written_tag(holder) if holder_name is None else (
-            f'{written_tag(holder)} name="{holder_name}"')
-        return f'<{label}> of the included model has no {wanted}'
+        parent_name = parent.get('name')
+        label = written_tag(parent) if parent_name is None else (
+            f'{written_tag(parent)} name="{parent_name}"')
+        self._error(
+            ElementMissingError, xml, f'<{label}> of the included model has no {wanted}')
+        return None
 
-    # What is wrong
+    def _definition(self, xml: XmlElement) -> Definition | None:
+        """Return the definition of an element of the included model; None if there is none."""
+        parent = xml.getparent()
+        if parent is None:
+            return definition_of(str(xml.tag))
+        definition = self._definition(parent)
+        return None if definition is None else definition.children.get(str(xml.tag))
+
+    def _holds_value(self, xml: XmlElement) -> bool:
+        definition = self._definition(xml)
+        return definition is None or definition.value_type is not None
+
+    # Errors
 
     def _is_action(self, xml: XmlElement, action: str) -> bool:
         if action in _ACTIONS:
@@ -329,45 +323,34 @@ class _Changer:
         return False
 
     def _is_defined(self, xml: XmlElement, tag: str) -> bool:
-        if tag in DEFINED:
+        if tag in _DEFINED_ALONE:
             return True
-        msg = f'<{tag}> is none of the elements that SDFormat defines by themselves'
+        msg = f'<{tag}> is not an element that SDFormat defines by itself'
         self._error(ElementInvalidError, xml, msg)
         return False
 
     def _error(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
-        self.errors.append(error_class(message, self._place(xml)))
+        self._problems.error(error_class(message, self._place(xml)))
 
     def _warning(self, xml: XmlElement, message: str) -> None:
-        self.warnings.append(SdfWarning('WARNING', message, self._place(xml)))
+        self._problems.warning(message, self._place(xml))
 
     def _place(self, xml: XmlElement) -> Place:
-        steps = [_step(holder) for holder in (xml, *xml.iterancestors())]
-        return Place(
-            self._source.origin(xml).path, xml.sourceline or 0, '/' + '/'.join(reversed(steps)))
+        steps = [_step(each) for each in (xml, *xml.iterancestors())]
+        return self._sources.place(xml)._replace(element='/' + '/'.join(reversed(steps)))
 
 
 def _step(xml: XmlElement) -> str:
-    element_id, name = xml.get('element_id'), xml.get('name')
-    if element_id is not None:
-        return f'{written_tag(xml)}[@element_id="{element_id}"]'
-    return written_tag(xml) if name is None else step(written_tag(xml), name)
+    element_id = xml.get('element_id')
+    return described(xml) if element_id is None else (
+        f'{written_tag(xml)}[@element_id="{element_id}"]')
 
 
 def _is_empty(xml: XmlElement) -> bool:
     return len(xml) == 0 and not (xml.text or '').strip()
 
 
-def _holder_tag(xml: XmlElement) -> str:
-    holder = xml.getparent()
-    return '' if holder is None else written_tag(holder)
-
-
-def _holds_value(xml: XmlElement) -> bool:
-    return has_value(_holder_tag(xml), written_tag(xml))
-
-
 def _take_out(xml: XmlElement) -> None:
-    holder = xml.getparent()
-    if holder is not None:
-        holder.remove(xml)
+    parent = xml.getparent()
+    if parent is not None:
+        parent.remove(xml)

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Follow chains in a graph in which every node points to one other or to none."""
+"""Follow a graph in which each node points to one other node or to none."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from sdf_pose_bridge.sdformat.elements import Indices
 
 def ends_from_pointers(pointers: Indices) -> Indices:
     """
-    Follow every node to the end of its chain.
+    Follow every node to the end of its path.
 
     :param pointers: the node that each node points to; -1 for none.
-    :return: the end of each node's chain, which points to none. Of a node that leads into a ring,
-        any node of that ring.
+    :return: for each node the one without a pointer that it leads to; for a node that leads into
+        a cycle, any node of that cycle.
     """
     ends = np.where(pointers < 0, np.arange(len(pointers), dtype=np.int32), pointers)
     # Each round doubles the length of what has been followed.
@@ -27,23 +27,22 @@ def ends_from_pointers(pointers: Indices) -> Indices:
     return ends
 
 
-def rings_from_pointers(pointers: Indices) -> list[list[int]]:
+def cycles_from_pointers(pointers: Indices) -> list[list[int]]:
     """
-    Find the rings.
+    Find the cycles.
 
     :param pointers: the node that each node points to; -1 for none.
-    :return: the nodes of each ring, each pointing to the next.
+    :return: the nodes of each cycle, each pointing to the next.
     """
     ends = ends_from_pointers(pointers)
-    nodes = ends[pointers[ends] >= 0]
-    rings: list[list[int]] = []
+    cycles: list[list[int]] = []
     found: set[int] = set()
-    for node in nodes.tolist():
-        ring: list[int] = []
+    for node in ends[pointers[ends] >= 0].tolist():
+        cycle: list[int] = []
         while node not in found:
             found.add(node)
-            ring.append(node)
+            cycle.append(node)
             node = int(pointers[node])
-        if ring:
-            rings.append(ring)
-    return rings
+        if cycle:
+            cycles.append(cycle)
+    return cycles

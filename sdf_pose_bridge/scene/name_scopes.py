@@ -1,0 +1,168 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Look up the frames that references name: siblings and downwards, never upwards.
+
+Source: ``ScopedGraph.hh`` of libsdformat. A reference in a scope is the absolute name
+``scope::reference``; nothing is searched in outer scopes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from collections.abc import Sequence
+from itertools import islice
+
+import numpy as np
+
+from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.names import MODEL_FRAME
+from sdf_pose_bridge.names import ROOT_FRAME
+from sdf_pose_bridge.names import scoped_name
+from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.sdformat.elements import Elements
+from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
+from sdf_pose_bridge.sdformat.grammar import FRAME_KINDS
+from sdf_pose_bridge.sdformat.grammar import Kind
+
+_OWN_FRAME = SEPARATOR + MODEL_FRAME
+_MOST_NAMES_COMPARED = 2000
+
+IS_FRAME_KIND = np.isin(np.arange(len(Kind)), list(FRAME_KINDS))
+"""For each kind whether references can name elements of it."""
+
+
+class NameScopes:
+    """
+    The absolute names of all elements, and the frames that they name.
+
+    :param elements: the elements.
+
+    ``names[i]`` is the absolute name of element i, such as ``robot::arm::hand``, without the name
+    of the world. ``roots[i]`` is the index of its world or implicit root; each of these is a name
+    space of its own.
+    """
+
+    def __init__(self, elements: Elements) -> None:
+        self._elements = elements
+        self.names = _absolute_names(elements)
+        self.roots = _roots(elements)
+        self._is_model: list[bool] = (elements.kinds == Kind.MODEL).tolist()
+        self._frames: dict[int, dict[str, int]] = {}
+        frames = np.flatnonzero(IS_FRAME_KIND[elements.kinds])
+        roots = np.array(self.roots, dtype=np.intp)
+        for root in np.flatnonzero(elements.parents < 0).tolist():
+            # Of equal names, which are errors, the first one counts.
+            indices = frames[roots[frames] == root][::-1].tolist()
+            self._frames[root] = {self.names[index]: index for index in indices}
+
+    def frame(self, scope: int, reference: str) -> int | None:
+        """
+        Find the frame that a reference names.
+
+        :param scope: index of the model, world or root in which the reference is written.
+        :param reference: the name as written, not empty.
+        :return: index of the frame, or None if there is none.
+        """
+        if self._is_model[scope]:
+            if reference == MODEL_FRAME:
+                return scope
+            name = f'{self.names[scope]}{SEPARATOR}{reference}'
+        else:
+            if reference == WORLD_FRAME and self._elements.kinds[scope] == Kind.WORLD:
+                return scope
+            name = reference
+        frames = self._frames[self.roots[scope]]
+        found = frames.get(name)
+        if found is None and name.endswith(_OWN_FRAME):
+            found = frames.get(name[:-len(_OWN_FRAME)])
+            if found is not None and not self._is_model[found]:
+                return None
+        return found
+
+    def missing_uri(self, scope: int, reference: str) -> str:
+        """
+        Return the URI of the missing include that a reference would lead into.
+
+        :param scope: index of the model, world or root in which the reference is written.
+        :param reference: the name as written.
+        :return: the URI; empty if the reference leads into none.
+        """
+        missing = self._elements.missing_includes
+        if not missing:
+            return ''
+        steps = reference.split(SEPARATOR)
+        for count, step in enumerate(steps):
+            outer = self.frame(scope, SEPARATOR.join(steps[:count])) if count else scope
+            uris = missing.get(NO_ELEMENT if outer is None else outer, {})
+            uri = uris.get(step) or uris.get('')
+            if uri:
+                return uri
+        return ''
+
+    def described(self, scope: int) -> str:
+        """
+        Return a scope as part of a message.
+
+        :param scope: index of a model, world or root.
+        :return: such as ``model "robot::arm"``.
+        """
+        kind = self._elements.kind(scope)
+        if kind is Kind.ROOT:
+            return 'the top of the file'
+        name = self._elements.names[scope] if kind is Kind.WORLD else self.names[scope]
+        return f'{kind.label} "{name}"'
+
+    def hint(self, scope: int, reference: str) -> str:
+        """
+        Return the end of a message about a reference that names no frame.
+
+        :param scope: index of the model, world or root in which the reference is written.
+        :param reference: the name as written.
+        :return: the likely reason, or the nearest name that exists; else an empty string.
+        """
+        first = reference.split(SEPARATOR)[0]
+        if self._is_model[scope]:
+            if first == self._elements.names[scope]:
+                rest = reference[len(first) + len(SEPARATOR):]
+                return (f'; inside a model its own name is not visible, write '
+                        f'"{rest or MODEL_FRAME}"')
+            outer = int(self._elements.parents[scope])
+            while outer >= 0:
+                if self.frame(outer, reference) is not None:
+                    return (f'; {self.described(outer)} has a frame of that name, but names of '
+                            'enclosing scopes cannot be used')
+                outer = int(self._elements.parents[outer])
+        return hint_from_names(
+            reference, islice(self._visible_names(scope), _MOST_NAMES_COMPARED))
+
+    def _visible_names(self, scope: int) -> Iterator[str]:
+        is_model = self._is_model[scope]
+        yield MODEL_FRAME if is_model else WORLD_FRAME
+        prefix = self.names[scope] + SEPARATOR if is_model else ''
+        for name in self._frames[self.roots[scope]]:
+            if name.startswith(prefix):
+                yield name[len(prefix):]
+
+
+def _absolute_names(elements: Elements) -> list[str]:
+    names: list[str] = []
+    scopes: list[str] = []
+    for name, parent, kind in zip(
+            elements.names, elements.parents.tolist(), elements.kinds.tolist(), strict=True):
+        if parent >= 0:
+            names.append(scoped_name(scopes[parent], name))
+            scopes.append(names[-1])
+        else:
+            names.append(WORLD_FRAME if kind == Kind.WORLD else ROOT_FRAME)
+            scopes.append('')
+    return names
+
+
+def _roots(elements: Elements) -> Sequence[int]:
+    tops = np.flatnonzero(elements.parents < 0)
+    # Elements stand in file order, so each belongs to the top before it.
+    counts = np.diff(np.append(tops, len(elements.names)))
+    roots: list[int] = np.repeat(tops, counts).tolist()
+    return roots

@@ -1,0 +1,202 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Read what only models, frames, joints, sensors and visuals have besides a name and a pose."""
+
+from __future__ import annotations
+
+from itertools import chain
+
+from sdf_pose_bridge.errors import AttributeInvalidError
+from sdf_pose_bridge.errors import ElementInvalidError
+from sdf_pose_bridge.errors import ElementMissingError
+from sdf_pose_bridge.errors import JointChildError
+from sdf_pose_bridge.errors import JointParentError
+from sdf_pose_bridge.errors import Problems
+from sdf_pose_bridge.errors import ReservedNameError
+from sdf_pose_bridge.names import ROOT_FRAME
+from sdf_pose_bridge.sdformat.elements import FrameDetails
+from sdf_pose_bridge.sdformat.elements import JointDetails
+from sdf_pose_bridge.sdformat.elements import ModelDetails
+from sdf_pose_bridge.sdformat.elements import Reference
+from sdf_pose_bridge.sdformat.elements import SensorDetails
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.values import boolean_from_text
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of
+from sdf_pose_bridge.sdformat.xml_tree import child_elements
+from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import value_of
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+CAMERA_TYPES = frozenset({
+    'boundingbox', 'boundingbox_camera', 'camera', 'depth', 'depth_camera', 'multicamera', 'rgbd',
+    'rgbd_camera', 'segmentation', 'segmentation_camera', 'thermal', 'thermal_camera',
+    'wideanglecamera',
+})
+"""Types of sensors that take images."""
+
+JOINT_TYPES = frozenset({
+    'ball', 'continuous', 'fixed', 'gearbox', 'prismatic', 'revolute', 'revolute2', 'screw',
+    'universal',
+})
+"""Types of joints."""
+
+PLACEMENT_OF_MERGED_MODEL = '{sdf_pose_bridge}placement_frame'
+"""Attribute of the frame that replaces a merged model's frame: the model's placement frame."""
+
+_SHADER_TYPES = (
+    'normal_map_object_space', 'normal_map_tangent_space', 'pixel', 'vertex')
+
+
+class DetailsReader:
+    """
+    Reads what only some kinds of elements have.
+
+    :param sources: where elements were written.
+    :param problems: takes what is wrong.
+    """
+
+    def __init__(self, sources: Sources, problems: Problems) -> None:
+        self._sources = sources
+        self._problems = problems
+
+    def reference(self, xml: XmlElement, attribute: str) -> str:
+        """
+        Read an attribute that names a frame.
+
+        :param xml: the element.
+        :param attribute: name of the attribute.
+        :return: the name of the frame; empty if there is none, or a reserved one, which is then
+            reported.
+        """
+        name = attribute_of(xml, attribute)
+        if name != ROOT_FRAME:
+            return name
+        msg = f'{attribute}="{name}": this name is reserved, nothing can refer to it'
+        self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
+        return ''
+
+    def model(self, xml: XmlElement) -> ModelDetails:
+        """
+        Read a model.
+
+        :param xml: a ``<model>``.
+        :return: its details.
+        """
+        static = first_child(xml, 'static')
+        return ModelDetails(
+            static is not None and bool(boolean_from_text(value_of(static))),
+            self.reference(xml, 'canonical_link'), self.reference(xml, 'placement_frame'))
+
+    def frame(self, xml: XmlElement) -> FrameDetails:
+        """
+        Read an explicit frame.
+
+        :param xml: a ``<frame>``.
+        :return: its details.
+        """
+        return FrameDetails(
+            self.reference(xml, 'attached_to'), xml.get(PLACEMENT_OF_MERGED_MODEL, ''))
+
+    def joint(self, xml: XmlElement) -> JointDetails:
+        """
+        Read a joint.
+
+        :param xml: a ``<joint>``.
+        :return: its details. References are empty where they are missing or reserved.
+        """
+        joint_type = attribute_of(xml, 'type').lower()
+        if joint_type and joint_type not in JOINT_TYPES:
+            known = ', '.join(sorted(JOINT_TYPES))
+            msg = f'"{xml.get("type")}" is not a type of joints; known are {known}'
+            self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
+        expressed_in = (
+            Reference(attribute_of(xyz, 'expressed_in'), self._sources.line(xyz))
+            for axis in child_elements(xml, 'axis', 'axis2')
+            for xyz in child_elements(axis, 'xyz'))
+        return JointDetails(
+            joint_type, self._joint_end(xml, 'parent', joint_type),
+            self._joint_end(xml, 'child', joint_type),
+            tuple(reference for reference in expressed_in if reference.name))
+
+    def _joint_end(self, xml: XmlElement, tag: str, joint_type: str) -> Reference:
+        element = first_child(xml, tag)
+        if element is None:
+            error = ElementMissingError if joint_type != 'ball' else (
+                JointParentError if tag == 'parent' else JointChildError)
+            msg = f'the joint has no <{tag}>; it must name a frame'
+            self._problems.error(error(msg, self._sources.place(xml)))
+            return Reference('')
+        name = value_of(element)
+        if not name:
+            msg = f'<{tag}> is empty; it must name a frame'
+            self._problems.error(ElementInvalidError(msg, self._sources.place(element)))
+        elif name == ROOT_FRAME:
+            msg = f'"{name}" is reserved; it cannot be the {tag} of a joint'
+            self._problems.error(ReservedNameError(msg, self._sources.place(element)))
+            name = ''
+        return Reference(name, self._sources.line(element))
+
+    def sensor(self, xml: XmlElement) -> SensorDetails:
+        """
+        Read a sensor.
+
+        :param xml: a ``<sensor>``.
+        :return: its details.
+        """
+        frame_ids = chain(
+            child_elements(xml, 'gz_frame_id'), child_elements(xml, 'ignition_frame_id'))
+        camera = first_child(xml, 'camera')
+        optical = None if camera is None else first_child(camera, 'optical_frame_id')
+        sensor_type = attribute_of(xml, 'type')
+        return SensorDetails(
+            sensor_type, next(filter(None, map(value_of, frame_ids)), ''),
+            camera is not None or sensor_type in CAMERA_TYPES,
+            '' if optical is None else value_of(optical))
+
+    def missing_include(self, xml: XmlElement) -> tuple[str, str]:
+        """
+        Read what is missing where an include was not found.
+
+        :param xml: an ``<include>``.
+        :return: the name that the included model would have, as far as it can be known, and the
+            URI. The name is empty for a merge, whose elements have names of their own.
+        """
+        uri = first_child(xml, 'uri')
+        uri_value = '' if uri is None else value_of(uri)
+        if boolean_from_text(xml.get('merge', '')):
+            return '', uri_value
+        name = first_child(xml, 'name')
+        return ('' if name is None else value_of(name)) or _name_from_uri(uri_value), uri_value
+
+    def check_visual(self, xml: XmlElement) -> None:
+        """
+        Check the material of a visual (``Material::Load``).
+
+        :param xml: a ``<visual>``.
+        """
+        material = first_child(xml, 'material')
+        if material is None:
+            return
+        for script in child_elements(material, 'script'):
+            for tag, error in (('uri', ElementInvalidError), ('name', ElementMissingError)):
+                element = first_child(script, tag)
+                if element is None or value_of(element) in ('', '__default__'):
+                    msg = f'the <script> of a material has no <{tag}>, or an empty one'
+                    self._problems.error(error(msg, self._sources.place(script)))
+        for shader in child_elements(material, 'shader'):
+            shader_type = attribute_of(shader, 'type')
+            if shader_type not in _SHADER_TYPES:
+                msg = (f'type="{shader_type}" of a shader must be one of '
+                       f'{", ".join(_SHADER_TYPES)}')
+                self._problems.error(ElementInvalidError(msg, self._sources.place(shader)))
+            elif shader_type.startswith('normal_map') and first_child(shader, 'normal_map') is None:
+                msg = f'a shader of type="{shader_type}" needs a <normal_map>'
+                self._problems.error(ElementMissingError(msg, self._sources.place(shader)))
+
+
+def _name_from_uri(uri: str) -> str:
+    """Return the likely name of a model that was not found: that of its directory."""
+    steps = [part for part in uri.split('/') if part]
+    if len(steps) > 1 and steps[-1].endswith(('.sdf', '.world', '.urdf')):
+        steps.pop()
+    return steps[-1] if steps else ''

@@ -1,0 +1,103 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Read SDFormat files into trees of the newest version."""
+
+from __future__ import annotations
+
+from sdf_pose_bridge.errors import AttributeInvalidError
+from sdf_pose_bridge.errors import FileReadError
+from sdf_pose_bridge.errors import ParsingError
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import Problems
+from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.sdformat.sources import Document
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.versions import convert
+from sdf_pose_bridge.sdformat.versions import version_from_text
+from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
+from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of
+from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import written_tag
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+
+def document_from_file(path: str, sources: Sources, problems: Problems) -> Document:
+    """
+    Read a file.
+
+    :param path: path of an SDFormat file.
+    :param sources: takes the file and the places of its elements.
+    :param problems: takes what is wrong with the file but does not keep it from being read.
+    :return: the file, in the newest version.
+    :raises FileReadError: if it is missing, unreadable or not XML, or declares no version.
+    :raises ParsingError: if its outermost element is not ``sdf``.
+    :raises ConversionError: if its version is not supported, or names in it cannot be converted.
+    """
+    sources.add_path(path)
+    return _document_from_bytes(bytes_from_file(path), path, None, sources, problems)
+
+
+def document_from_text(
+    text: bytes | str, path: str, sources: Sources, problems: Problems,
+) -> Document:
+    """
+    Read the content of a file.
+
+    :param text: XML; bytes are in the encoding that it declares.
+    :param path: the name to use in errors.
+    :param sources: as for :func:`document_from_file`.
+    :param problems: as for :func:`document_from_file`.
+    :return: as for :func:`document_from_file`.
+    :raises SdfError: as for :func:`document_from_file`.
+    """
+    if isinstance(text, str):
+        encoded = text.encode(errors='surrogatepass')
+        return _document_from_bytes(encoded, path, 'utf-8', sources, problems)
+    return _document_from_bytes(text, path, None, sources, problems)
+
+
+def _document_from_bytes(
+    text: bytes, path: str, encoding: str | None, sources: Sources, problems: Problems,
+) -> Document:
+    root, warnings, lines = xml_from_bytes(text, path, encoding)
+    problems.extend(warnings)
+    version = version_from_text(_declared_version(root, path), Place(path, root.sourceline or 0))
+    document = Document(path, root, version, _may_hold_scoped_names(text))
+    sources.add_document(document, lines)
+    convert(document, sources)
+    _check_top_model(root, sources, problems)
+    return document
+
+
+def _declared_version(root: XmlElement, path: str) -> str:
+    place = Place(path, root.sourceline or 0, f'/{written_tag(root)}')
+    if root.tag == 'robot':
+        msg = ('this is URDF, not SDFormat; publish it with robot_state_publisher, or convert it '
+               'with "gz sdf -p" first')
+        raise ParsingError(msg, place)
+    if root.tag != 'sdf':
+        msg = f'the outermost element is <{written_tag(root)}>, it must be <sdf>'
+        raise ParsingError(msg, place)
+    version = root.get('version')
+    if version is None:
+        msg = '<sdf> declares no version, such as version="1.10"'
+        raise FileReadError(msg, place)
+    return version
+
+
+def _may_hold_scoped_names(text: bytes) -> bool:
+    # A colon may be written as a character reference, or in an encoding of two bytes.
+    return SEPARATOR.encode() in text or b'&#' in text or b'\0' in text[:4]
+
+
+def _check_top_model(root: XmlElement, sources: Sources, problems: Problems) -> None:
+    """Refuse ``relative_to`` in the pose of a file's top model (``checkXmlFromRoot``)."""
+    model = first_child(root, 'model')
+    pose = None if model is None else first_child(model, 'pose')
+    relative_to = '' if pose is None else attribute_of(pose, 'relative_to')
+    if pose is not None and relative_to:
+        msg = (f'relative_to="{relative_to}": a model at the top of a file is placed in the '
+               'implicit root, which has no frames')
+        problems.error(AttributeInvalidError(msg, sources.place(pose)))
+        del pose.attrib['relative_to']

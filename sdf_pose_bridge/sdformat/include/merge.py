@@ -1,0 +1,165 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Merge an included model into the model or world that includes it.
+
+The content of the model moves into the scope of its new parent. A proxy frame named
+``_merged__NAME__model__`` takes the place of its model frame. Source: ``insertIncludedElement`` in
+libsdformat's ``parser.cc``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+import copy
+
+from lxml import etree
+
+from sdf_pose_bridge.errors import MergeIncludeError
+from sdf_pose_bridge.errors import Problems
+from sdf_pose_bridge.names import MODEL_FRAME
+from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.sdformat.details import PLACEMENT_OF_MERGED_MODEL
+from sdf_pose_bridge.sdformat.sibling_names import MERGED_MODEL_PREFIX
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of
+from sdf_pose_bridge.sdformat.xml_tree import child_elements
+from sdf_pose_bridge.sdformat.xml_tree import described
+from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import value_of
+from sdf_pose_bridge.sdformat.xml_tree import written_tag
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+_MOVED_TAGS = frozenset({'frame', 'gripper', 'include', 'joint', 'link', 'model', 'plugin'})
+_NOT_IN_WORLDS = frozenset({'gripper', 'link'})
+
+
+def merge(
+    include: XmlElement, model: XmlElement, sources: Sources, problems: Problems,
+    canonical_link_of: Callable[[XmlElement], str | None],
+) -> None:
+    """
+    Replace an include by the content of the model that it merges.
+
+    :param include: the ``<include merge="true">``.
+    :param model: the included element, with what the include overrides.
+    :param sources: where elements were written.
+    :param problems: takes what cannot be merged.
+    :param canonical_link_of: as for
+        :class:`~sdf_pose_bridge.sdformat.include.expansion.IncludeExpansion`.
+    """
+    parent = include.getparent()
+    assert parent is not None
+    if model.tag != 'model' or parent.tag not in ('model', 'world'):
+        msg = (f'merge="true" on the include of {described(model)}: only a model can be merged, '
+               'into a model or a world')
+        problems.error(MergeIncludeError(msg, sources.place(include)))
+    else:
+        proxy = _proxy_frame(include, model, parent, sources, canonical_link_of)
+        if proxy is not None:
+            include.addprevious(proxy)
+            _move_children(include, model, attribute_of(proxy, 'name'), sources, problems)
+    parent.remove(include)
+
+
+def _proxy_frame(
+    include: XmlElement, model: XmlElement, parent: XmlElement, sources: Sources,
+    canonical_link_of: Callable[[XmlElement], str | None],
+) -> XmlElement | None:
+    """Return the frame that takes the place of the model frame; None for an invalid model."""
+    pose = first_child(model, 'pose')
+    proxy_pose = etree.Element('pose')
+    if pose is not None:
+        proxy_pose = copy.deepcopy(pose)
+        sources.set_source(proxy_pose, sources.path(pose), sources.line(pose))
+        # By itself, the model has nothing to be relative to.
+        pose.attrib.pop('relative_to', None)
+    if not attribute_of(proxy_pose, 'relative_to'):
+        proxy_pose.set('relative_to', MODEL_FRAME if parent.tag == 'model' else WORLD_FRAME)
+    canonical_link = _canonical_link(include, model, sources, canonical_link_of)
+    if canonical_link is None:
+        return None
+    name = f'{MERGED_MODEL_PREFIX}{attribute_of(model, "name")}__model__'
+    proxy = etree.Element('frame', {
+        'name': name, 'attached_to': attribute_of(model, 'canonical_link') or canonical_link})
+    placement = attribute_of(model, 'placement_frame')
+    if placement:
+        proxy.set(PLACEMENT_OF_MERGED_MODEL, name if placement == MODEL_FRAME else placement)
+    proxy.append(proxy_pose)
+    sources.set_source(proxy, sources.path(model), sources.line(model))
+    sources.set_include(proxy, include)
+    return proxy
+
+
+def _canonical_link(
+    include: XmlElement, model: XmlElement, sources: Sources,
+    canonical_link_of: Callable[[XmlElement], str | None],
+) -> str | None:
+    root = etree.Element('sdf')
+    root.append(model)
+    sources.set_source(root, sources.path(include), sources.line(include))
+    return canonical_link_of(root)
+
+
+def _move_children(
+    include: XmlElement, model: XmlElement, proxy: str, sources: Sources, problems: Problems,
+) -> None:
+    parent = include.getparent()
+    assert parent is not None
+    for child in list(child_elements(model)):
+        tag = written_tag(child)
+        if tag not in _MOVED_TAGS and ':' not in tag:
+            continue
+        if parent.tag == 'world' and tag in _NOT_IN_WORLDS:
+            msg = (f'{described(child)} cannot be merged into a world, which has no links of its '
+                   'own')
+            problems.error(MergeIncludeError(msg, sources.place(child)))
+            continue
+        _warn_of_model_frame_in(child, sources, problems)
+        _replace_model_frame(child, proxy)
+        sources.set_source(child, sources.path(child))
+        include.addprevious(child)
+
+
+def _replace_model_frame(xml: XmlElement, proxy: str) -> None:
+    """Let references to the model frame refer to the proxy frame."""
+    pose = first_child(xml, 'pose')
+    if xml.tag in ('link', 'model'):
+        if pose is None:
+            pose = etree.Element('pose')
+            xml.insert(0, pose)
+        _replace_reference(pose, 'relative_to', proxy, replaces_empty=True)
+        return
+    if pose is not None and xml.tag in ('frame', 'joint'):
+        _replace_reference(pose, 'relative_to', proxy)
+    if xml.tag == 'frame':
+        _replace_reference(xml, 'attached_to', proxy, replaces_empty=True)
+    elif xml.tag == 'joint':
+        for end in child_elements(xml, 'parent', 'child'):
+            if value_of(end) == MODEL_FRAME:
+                end[:] = []
+                end.text = proxy
+        for axis in child_elements(xml, 'axis', 'axis2'):
+            for xyz in child_elements(axis, 'xyz'):
+                _replace_reference(xyz, 'expressed_in', proxy)
+
+
+def _replace_reference(
+    xml: XmlElement, attribute: str, proxy: str, *, replaces_empty: bool = False,
+) -> None:
+    name = attribute_of(xml, attribute)
+    if name == MODEL_FRAME or (replaces_empty and not name):
+        xml.set(attribute, proxy)
+
+
+def _warn_of_model_frame_in(xml: XmlElement, sources: Sources, problems: Problems) -> None:
+    """Libsdformat does not adapt the poses of visuals and the like."""
+    if xml.tag not in ('link', 'joint'):
+        return
+    for pose in xml.iterfind('*/pose'):
+        parent = pose.getparent()
+        if attribute_of(pose, 'relative_to') == MODEL_FRAME and (
+                parent is not None and parent.tag != 'inertial'):
+            msg = ('relative_to="__model__" means the model that this is merged into, not the one '
+                   'that it was written in')
+            problems.warning(msg, sources.place(pose))

@@ -1,0 +1,193 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Find the files that URIs name: in search paths, in ROS packages and in Gazebo's Fuel cache.
+
+Nothing is ever downloaded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from collections.abc import Iterator
+from collections.abc import Mapping
+import os
+from pathlib import Path
+import re
+from typing import NamedTuple
+from urllib.parse import unquote
+from urllib.parse import urlsplit
+
+_SCHEME = re.compile(r'([A-Za-z][A-Za-z0-9+.-]*)://')
+_SCHEME_OF_ADDRESS = re.compile(r'[A-Za-z][A-Za-z0-9+.-]+(?=:/)')
+_PATH_VARIABLES = ('GZ_SIM_RESOURCE_PATH', 'SDF_PATH')
+
+
+class AddressError(ValueError):
+    """An address does not name a file."""
+
+
+class ResourceFinder(NamedTuple):
+    """Where to look for files."""
+
+    search_paths: tuple[str, ...]
+    """Directories that are searched first, for every scheme."""
+    environment_paths: tuple[str, ...]
+    """Directories that are searched last but for the working directory."""
+    package_prefixes: tuple[str, ...]
+    """Installation prefixes of ROS packages."""
+    fuel_cache: str
+    """Directory in which Gazebo keeps the models that it downloaded."""
+
+    def path_from_uri(self, uri: str, including_file: str) -> str | None:
+        """
+        Find a file or directory.
+
+        The order is: the search paths; an absolute path; the share directory of a package for
+        ``package://``; the Fuel cache for ``https://``; the directory of the including file for a
+        relative path or ``file://``; the paths of the environment; the working directory.
+
+        :param uri: such as ``model://box``, ``package://pkg/models/box`` or ``box.sdf``.
+        :param including_file: path of the file that holds the include.
+        :return: the path, or None.
+        """
+        # Unlike Path.exists, this returns False for a name that is too long.
+        found = (
+            os.fspath(path) for path in self._candidates(uri, including_file)
+            if os.path.exists(path))  # noqa: PTH110
+        return next(found, None)
+
+    def path_from_address(self, address: str) -> Path:
+        """
+        Return the path that a user's address of a file means.
+
+        :param address: an absolute path, a path relative to the working directory (``~`` is the
+            home directory), ``file:///absolute/path``, ``package://name/path`` relative to the
+            share directory of a package, or ``model://name/path`` relative to a directory that is
+            searched for models. Per cent escapes are decoded in the first two kinds of URI.
+        :return: an absolute path, which need not exist.
+        :raises AddressError: for other URIs, and for packages and models that are not found.
+        """
+        if _SCHEME_OF_ADDRESS.match(address) is None:
+            return Path(address).expanduser().absolute()
+        try:
+            parts = urlsplit(address)
+        except ValueError as error:
+            msg = f'"{address}" is not a URI: {error}'
+            raise AddressError(msg) from error
+        path = unquote(parts.path)
+        if parts.query or parts.fragment:
+            msg = f'"{address}" has a "?" or "#" in it; write %3F or %23 in a URI'
+            raise AddressError(msg)
+        if parts.scheme == 'file':
+            if parts.netloc not in ('', 'localhost'):
+                msg = (f'"{address}" names the host "{parts.netloc}"; a file:// URI has three '
+                       f'slashes before an absolute path')
+                raise AddressError(msg)
+            return Path(path)
+        if parts.scheme == 'package':
+            share = next(self._package_shares(parts.netloc), None)
+            if share is None:
+                msg = f'"{address}" names the package "{parts.netloc}", which is not installed here'
+                raise AddressError(msg)
+            return Path(share, path.lstrip('/')).absolute()
+        if parts.scheme == 'model':
+            found = self.path_from_uri(address, including_file='')
+            if found is None:
+                msg = (f'"{address}" is found neither in resource_paths nor in the directories of '
+                       f'GZ_SIM_RESOURCE_PATH and SDF_PATH')
+                raise AddressError(msg)
+            return Path(found).absolute()
+        msg = (f'"{address}" is a {parts.scheme}:// URI; it must be a path, or a file://, '
+               f'package:// or model:// URI')
+        raise AddressError(msg)
+
+    def _candidates(self, uri: str, including_file: str) -> Iterator[Path]:
+        scheme = _SCHEME.match(uri)
+        name = uri[scheme.end():] if scheme else uri
+        scheme_name = scheme[1].lower() if scheme else ''
+        if scheme_name in ('http', 'https'):
+            yield from self._paths_in_fuel_cache(uri)
+            return
+        if not name:
+            return
+        # Joined to another path, an absolute path stays as it is.
+        for directory in self.search_paths:
+            yield Path(directory, name)
+        if scheme_name == 'package':
+            package, _, rest = name.partition('/')
+            for share in self._package_shares(package):
+                yield share / rest
+        if scheme_name in ('', 'file'):
+            yield Path(Path(including_file).parent, name)
+        for directory in self.environment_paths:
+            yield Path(directory, name)
+        yield Path(name)
+
+    def _package_shares(self, package: str) -> Iterator[Path]:
+        """Find the share directories of an installed ROS package, by the marker in ament's index."""
+        for prefix in self.package_prefixes:
+            marker = Path(prefix, 'share', 'ament_index', 'resource_index', 'packages', package)
+            if package and os.path.exists(marker):  # noqa: PTH110
+                yield Path(prefix, 'share', package)
+
+    def _paths_in_fuel_cache(self, uri: str) -> Iterator[Path]:
+        """
+        Find a Fuel model in the cache.
+
+        Its URI is ``https://SERVER/1.0/OWNER/models/NAME[/VERSION][/files/REST]``, and the cache
+        has it as ``SERVER/owner/models/name/VERSION/REST``.
+        """
+        try:
+            parts = urlsplit(uri)
+        except ValueError:  # a host with one square bracket
+            return
+        steps = [unquote(part) for part in parts.path.split('/') if part]
+        if steps and re.fullmatch(r'[0-9]+\.[0-9]+', steps[0]):
+            steps = steps[1:]
+        if len(steps) < 3 or steps[1] != 'models' or '..' in steps:
+            return
+        version, rest = (steps[3] if len(steps) > 3 else 'tip'), steps[4:]
+        model = Path(self.fuel_cache, parts.netloc)
+        for part in steps[:3]:
+            model = _entry_in_any_case(model, part)
+        versions = [version]
+        if version == 'tip' and os.path.isdir(model):  # noqa: PTH112
+            numbers = [int(entry.name) for entry in model.iterdir() if entry.name.isdigit()]
+            versions = [str(number) for number in sorted(numbers, reverse=True)]
+        for candidate in versions:
+            yield model.joinpath(candidate, *(rest[1:] if rest[:1] == ['files'] else rest))
+
+
+def resource_finder(
+    resource_paths: Iterable[str | os.PathLike[str]], environment: Mapping[str, str],
+) -> ResourceFinder:
+    """
+    Read from the environment where to look.
+
+    :param resource_paths: directories to search first.
+    :param environment: such as ``os.environ``: ``GZ_SIM_RESOURCE_PATH``, ``SDF_PATH``,
+        ``AMENT_PREFIX_PATH``, ``GZ_FUEL_CACHE_PATH`` and ``HOME``.
+    :return: the finder.
+    """
+    def paths(variable: str) -> list[str]:
+        return [path for path in environment.get(variable, '').split(os.pathsep) if path]
+
+    home = environment.get('HOME', '~')
+    return ResourceFinder(
+        tuple(os.fspath(path) for path in resource_paths),
+        tuple(path for variable in _PATH_VARIABLES for path in paths(variable)),
+        tuple(paths('AMENT_PREFIX_PATH')),
+        environment.get('GZ_FUEL_CACHE_PATH') or os.path.join(home, '.gz', 'fuel'),  # noqa: PTH118
+    )
+
+
+def _entry_in_any_case(directory: Path, name: str) -> Path:
+    """Return the entry of a name; Gazebo writes owners and models in lower case."""
+    plain = directory / name
+    if os.path.exists(plain) or not os.path.isdir(directory):  # noqa: PTH110, PTH112
+        return plain
+    for entry in directory.iterdir():
+        if entry.name.lower() == name.lower():
+            return entry
+    return plain

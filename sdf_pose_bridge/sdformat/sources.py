@@ -1,0 +1,187 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Remember where each XML element was written: a tree may be put together from several files.
+
+lxml knows the line of an element, but not its file, and no line beyond 65,535.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from collections.abc import Mapping
+import copy
+from typing import NamedTuple
+
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.sdformat.xml_tree import described
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+
+class Version(NamedTuple):
+    """A version of SDFormat."""
+
+    major: int
+    minor: int
+
+
+class Document(NamedTuple):
+    """One file as a tree."""
+
+    path: str
+    """The path that it was opened by."""
+    root: XmlElement
+    """The ``sdf`` element."""
+    version: Version
+    """The version that the file declares."""
+    may_hold_scoped_names: bool = True
+    """False if no name in the file can hold ``::``."""
+
+
+class Sources:
+    """
+    The files of a load, and where each XML element was written.
+
+    An element stands in the file that :meth:`set_source` gave to it or to its nearest ancestor.
+    """
+
+    def __init__(self) -> None:
+        self.paths: list[str] = []
+        """All files that were read, in the order of reading."""
+        self.versions: dict[str, Version] = {}
+        """The version of each SDFormat file by its path."""
+        self._files: dict[XmlElement, str] = {}
+        self._lines: dict[XmlElement, int] = {}
+        self._includes: dict[XmlElement, Place] = {}
+        self._composed_trees: set[XmlElement] = set()
+
+    def add_path(self, path: str) -> None:
+        """
+        Add a file, unless it is known already.
+
+        :param path: its path.
+        """
+        if path not in self.paths:
+            self.paths.append(path)
+
+    def add_document(self, document: Document, lines: Mapping[XmlElement, int]) -> None:
+        """
+        Add a file that was read.
+
+        :param document: the file.
+        :param lines: the lines of those of its elements whose lines lxml does not know.
+        """
+        self.add_path(document.path)
+        self.versions[document.path] = document.version
+        self._files[document.root] = document.path
+        self._lines.update(lines)
+        if lines:
+            self.set_composed(document.root)
+
+    def set_composed(self, root: XmlElement) -> None:
+        """
+        Set that elements in a tree have sources of their own.
+
+        :param root: the outermost element of the tree.
+        """
+        self._composed_trees.add(root)
+
+    def set_source(self, xml: XmlElement, path: str, line: int | None = None) -> None:
+        """
+        Set where an element was written, with the elements in it that have no other source.
+
+        :param xml: the element.
+        :param path: path of its file.
+        :param line: its line; None for the line that it has.
+        """
+        self._files[xml] = path
+        if line is not None:
+            self._lines[xml] = line
+
+    def set_include(self, xml: XmlElement, include: XmlElement) -> None:
+        """
+        Set which include an element came from. The include has to be in its tree still.
+
+        :param xml: the included element.
+        :param include: the ``<include>``.
+        """
+        self._includes[xml] = self.place(include)
+
+    def path_at(self, xml: XmlElement, default: str) -> str:
+        """
+        Return the file of an element whose parent's file is known.
+
+        :param xml: the element.
+        :param default: the file of its parent.
+        :return: its file.
+        """
+        return self._files.get(xml, default)
+
+    def path(self, xml: XmlElement) -> str:
+        """
+        Return the file of an element.
+
+        :param xml: the element.
+        :return: the path of its file.
+        """
+        return next(self.enclosing_paths(xml))
+
+    def enclosing_paths(self, xml: XmlElement) -> Iterator[str]:
+        """
+        Iterate over the files that lead to an element, from its own to the outermost.
+
+        :param xml: the element.
+        :return: the path of its file, of the file that includes that one, and so on.
+        """
+        for element in (xml, *xml.iterancestors()):
+            if element in self._files:
+                yield self._files[element]
+
+    def line(self, xml: XmlElement) -> int:
+        """
+        Return the line of an element.
+
+        :param xml: the element.
+        :return: the line of the end of its start tag, from 1; 0 if it is not known.
+        """
+        return self._lines.get(xml) or xml.sourceline or 0
+
+    def place(self, xml: XmlElement, part: str = '') -> Place:
+        """
+        Return where an element was written.
+
+        :param xml: the element.
+        :param part: path of a missing element in it; empty for the element itself.
+        :return: its file, its line and its path in the tree.
+        """
+        steps = [described(each) for each in xml.iterancestors()]
+        path = '/'.join(['', *reversed(steps), described(xml)])
+        return Place(self.path(xml), self.line(xml), f'{path}/{part}' if part else path)
+
+    def place_of_name(self, xml: XmlElement) -> Place:
+        """
+        Return where the name of an element was decided.
+
+        :param xml: the element.
+        :return: its place; of an included element that of the ``<include>``.
+        """
+        return self._includes.get(xml) or self.place(xml)
+
+    def copy_of(self, xml: XmlElement) -> XmlElement:
+        """
+        Copy an element with all that it holds.
+
+        :param xml: the element.
+        :return: the copy, in a tree of its own, written where the original was.
+        """
+        result = copy.deepcopy(xml)
+        if xml.getroottree().getroot() in self._composed_trees:
+            for old, new in zip(xml.iter(), result.iter(), strict=True):
+                if old in self._files:
+                    self._files[new] = self._files[old]
+                if old in self._lines:
+                    self._lines[new] = self._lines[old]
+                if old in self._includes:
+                    self._includes[new] = self._includes[old]
+        self._files[result] = self.path(xml)
+        return result

@@ -1,0 +1,137 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Read values from XML elements as SDFormat does.
+
+libsdformat reads XML with TinyXML-2, which knows prefixes but no namespaces. An element with a
+prefix, and everything in a ``<plugin>``, belongs to others and is not read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+import re
+from typing import TypeAlias
+
+from lxml import etree
+
+XmlElement: TypeAlias = etree._Element  # noqa: SLF001  # lxml has no public name for it
+
+WHITE_SPACE = ' \t\n\r\f\v'
+"""ASCII white space. SDFormat knows no other, so a no-break space is part of a name."""
+
+_WHITE_SPACE_RUN = re.compile(r'[ \t\n\r\f\v]+')
+_COMMENT: object = etree.Comment
+
+
+def child_elements(xml: XmlElement, *tags: str) -> Iterator[XmlElement]:
+    """
+    Iterate over the child elements.
+
+    :param xml: an element.
+    :param tags: the tags to find; all if none is given.
+    :return: the children in file order, without comments.
+    """
+    return xml.iterchildren(*tags) if tags else xml.iterchildren(etree.Element)
+
+
+def first_child(xml: XmlElement, tag: str) -> XmlElement | None:
+    """
+    Return the first child element with a tag.
+
+    :param xml: an element.
+    :param tag: the tag.
+    :return: the child, or None.
+    """
+    return next(xml.iterchildren(tag), None)
+
+
+def written_tag(xml: XmlElement) -> str:
+    """
+    Return the tag of an element as it is written.
+
+    :param xml: an element.
+    :return: the tag, with its prefix where it has one.
+    """
+    tag = str(xml.tag)
+    if not tag.startswith('{'):
+        return tag
+    local = tag[tag.index('}') + 1:]
+    return f'{xml.prefix}:{local}' if xml.prefix else local
+
+
+def is_foreign(xml: XmlElement) -> bool:
+    """
+    Return whether an element belongs to others than SDFormat.
+
+    :param xml: an element.
+    :return: True in a ``<plugin>`` and in an element with a prefix.
+    """
+    return any(
+        element.tag == 'plugin' or ':' in written_tag(element)
+        for element in (xml, *xml.iterancestors()))
+
+
+def text_of(xml: XmlElement) -> str:
+    """
+    Return the text that is the value of an element.
+
+    The value is the first run of character data. Comments before it are skipped. A comment or an
+    element in it ends it.
+
+    :param xml: an element.
+    :return: the text with its white space; empty if there is none.
+    """
+    text = xml.text
+    if text is not None and not text.isspace():
+        return text
+    for child in xml:
+        if child.tag is not _COMMENT:
+            break
+        tail = child.tail
+        if tail is not None and not tail.isspace():
+            return tail
+    return ''
+
+
+def value_of(xml: XmlElement) -> str:
+    """
+    Return the value of an element that holds a single word or name.
+
+    :param xml: an element.
+    :return: its text, stripped, each run of white space in it as one blank.
+    """
+    return _WHITE_SPACE_RUN.sub(' ', text_of(xml)).strip(' ')
+
+
+def attribute_of(xml: XmlElement, name: str) -> str:
+    """
+    Return the value of an attribute.
+
+    :param xml: an element.
+    :param name: name of the attribute.
+    :return: its value, stripped; empty if there is none.
+    """
+    value = xml.get(name)
+    return '' if value is None else value.strip(WHITE_SPACE)
+
+
+def described(xml: XmlElement) -> str:
+    """
+    Return an element as one step of a path.
+
+    :param xml: an element.
+    :return: such as ``link[@name="l"]``, or the tag alone where it has no name.
+    """
+    return path_step(written_tag(xml), attribute_of(xml, 'name'))
+
+
+def path_step(tag: str, name: str) -> str:
+    """
+    Return one step of the path of an element.
+
+    :param tag: the tag.
+    :param name: the name; empty for none.
+    :return: such as ``link[@name="l"]``.
+    """
+    return f'{tag}[@name="{name}"]' if name else tag
