@@ -23,13 +23,12 @@ from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
-from sdf_pose_bridge.sdformat.grammar import FRAME_KINDS
 from sdf_pose_bridge.sdformat.grammar import Kind
 
 _OWN_FRAME = SEPARATOR + MODEL_FRAME
 _MOST_NAMES_COMPARED = 2000
 
-IS_FRAME_KIND = np.isin(np.arange(len(Kind)), list(FRAME_KINDS))
+IS_FRAME_KIND = np.array([kind.is_frame for kind in Kind])
 """For each kind whether references can name elements of it."""
 
 

@@ -19,7 +19,6 @@ from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.elements import SensorDetails
-from sdf_pose_bridge.sdformat.grammar import FRAME_KINDS
 from sdf_pose_bridge.sdformat.grammar import Kind
 
 if TYPE_CHECKING:
@@ -227,4 +226,5 @@ class Scene:
         return UnknownFrameError(msg, place)
 
 
-_FRAMES_AND_ROOTS = FRAME_KINDS | {Kind.WORLD, Kind.ROOT}
+_FRAMES_AND_ROOTS = frozenset(
+    kind for kind in Kind if kind.is_frame or kind in (Kind.WORLD, Kind.ROOT))

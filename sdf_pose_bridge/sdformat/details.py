@@ -109,10 +109,11 @@ class DetailsReader:
             known = ', '.join(sorted(JOINT_TYPES))
             msg = f'"{xml.get("type")}" is not a type of joints; known are {known}'
             self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
+        axes = (first_child(xml, tag) for tag in ('axis', 'axis2'))
+        xyzs = (first_child(axis, 'xyz') for axis in axes if axis is not None)
         expressed_in = (
             Reference(attribute_of(xyz, 'expressed_in'), self._sources.line(xyz))
-            for axis in child_elements(xml, 'axis', 'axis2')
-            for xyz in child_elements(axis, 'xyz'))
+            for xyz in xyzs if xyz is not None)
         return JointDetails(
             joint_type, self._joint_end(xml, 'parent', joint_type),
             self._joint_end(xml, 'child', joint_type),
@@ -168,30 +169,28 @@ class DetailsReader:
         name = first_child(xml, 'name')
         return ('' if name is None else value_of(name)) or _name_from_uri(uri_value), uri_value
 
-    def check_visual(self, xml: XmlElement) -> None:
+    def check_content(self, xml: XmlElement, identifier: str) -> None:
         """
-        Check the material of a visual (``Material::Load``).
+        Check what only some elements must hold (``Material::Load``).
 
-        :param xml: a ``<visual>``.
+        :param xml: an element without a frame.
+        :param identifier: the identifier of its definition.
         """
-        material = first_child(xml, 'material')
-        if material is None:
-            return
-        for script in child_elements(material, 'script'):
+        if identifier == 'material/script':
             for tag, error in (('uri', ElementInvalidError), ('name', ElementMissingError)):
-                element = first_child(script, tag)
+                element = first_child(xml, tag)
                 if element is None or value_of(element) in ('', '__default__'):
                     msg = f'the <script> of a material has no <{tag}>, or an empty one'
-                    self._problems.error(error(msg, self._sources.place(script)))
-        for shader in child_elements(material, 'shader'):
-            shader_type = attribute_of(shader, 'type')
+                    self._problems.error(error(msg, self._sources.place(xml)))
+        elif identifier == 'shader':
+            shader_type = attribute_of(xml, 'type')
             if shader_type not in _SHADER_TYPES:
                 msg = (f'type="{shader_type}" of a shader must be one of '
                        f'{", ".join(_SHADER_TYPES)}')
-                self._problems.error(ElementInvalidError(msg, self._sources.place(shader)))
-            elif shader_type.startswith('normal_map') and first_child(shader, 'normal_map') is None:
+                self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
+            elif shader_type.startswith('normal_map') and first_child(xml, 'normal_map') is None:
                 msg = f'a shader of type="{shader_type}" needs a <normal_map>'
-                self._problems.error(ElementMissingError(msg, self._sources.place(shader)))
+                self._problems.error(ElementMissingError(msg, self._sources.place(xml)))
 
 
 def _name_from_uri(uri: str) -> str:

@@ -30,26 +30,28 @@ from typing import NamedTuple
 
 
 class ValueType(enum.Enum):
-    """Type of a value, by the name that definitions use."""
+    """Type of a value: its name in definitions, what a value has to be, and how many numbers."""
 
-    STRING = 'string', 'a text'
-    BOOLEAN = 'bool', 'a boolean (true, false, 1 or 0)'
-    INTEGER = 'int', 'an integer'
-    NUMBER = 'double', 'a number'
-    TWO_NUMBERS = 'vector2', 'two numbers'
-    THREE_NUMBERS = 'vector3', 'three numbers'
-    AXIS = 'axis', 'three numbers'
+    STRING = 'string', 'a text', 0
+    BOOLEAN = 'bool', 'a boolean (true, false, 1 or 0)', 0
+    INTEGER = 'int', 'an integer', 1
+    NUMBER = 'double', 'a number', 1
+    TWO_NUMBERS = 'vector2', 'two numbers', 2
+    THREE_NUMBERS = 'vector3', 'three numbers', 3
+    AXIS = 'axis', 'three numbers', 3
     """A direction: not all of the numbers are zero."""
-    COLOR = 'color', 'a color of three or four numbers from 0 to 1'
-    POSE = 'pose', 'a pose'
+    COLOR = 'color', 'a color of three or four numbers from 0 to 1', 4
+    POSE = 'pose', 'a pose', 6
 
     description: str
-    """What the value has to be, for messages."""
+    count: int
 
-    def __new__(cls, value: str, description: str = '') -> ValueType:
+    # A call with a name finds the member of that name, hence the defaults.
+    def __new__(cls, value: str, description: str = '', count: int = 0) -> ValueType:
         member = object.__new__(cls)
         member._value_ = value
         member.description = description
+        member.count = count
         return member
 
 
@@ -57,19 +59,22 @@ class Kind(enum.IntEnum):
     """
     Kind of an element that has a pose.
 
-    Each member has the elements in which the kind may stand, and the definition of its content. A
-    kind has a name space of its own among its siblings, unless it is one of :data:`FRAME_KINDS`.
+    Each member has the elements in which the kind may stand, the definition of its content, and
+    whether references can name elements of the kind. Such elements share a name space in their
+    scope. Other kinds have name spaces of their own among siblings.
     """
 
     parents: tuple[str, ...]
     content: str
+    is_frame: bool
 
     # A call with an integer finds the member of that value, hence the types.
-    def __new__(cls, parents: Any, content: str = '') -> Kind:
+    def __new__(cls, parents: Any, content: str = '', is_frame: bool = False) -> Kind:
         member = int.__new__(cls, len(cls.__members__))
         member._value_ = len(cls.__members__)
         member.parents = tuple(parents.split())
         member.content = content
+        member.is_frame = is_frame
         return member
 
     # An Enum's own hash is a function in Python, and kinds are keys wherever elements are read.
@@ -82,14 +87,14 @@ class Kind(enum.IntEnum):
         'physics! scene! plugin road spherical_coordinates state population')
     MODEL = 'sdf world model', (
         '@name! @canonical_link @placement_frame pose static:bool self_collide:bool '
-        'allow_auto_disable:bool enable_wind:bool plugin gripper include')
+        'allow_auto_disable:bool enable_wind:bool plugin gripper include'), True
     LINK = 'model', (
         '@name! pose gravity:bool enable_wind:bool self_collide:bool kinematic:bool '
-        'must_be_base_link:bool velocity_decay audio_sink audio_source battery')
+        'must_be_base_link:bool velocity_decay audio_sink audio_source battery'), True
     JOINT = 'model world', (
         '@name! @type! pose parent! child! gearbox_ratio:double gearbox_reference_body '
-        'thread_pitch:double screw_thread_pitch:double axis axis2 physics')
-    FRAME = 'model world', '@name! @attached_to pose'
+        'thread_pitch:double screw_thread_pitch:double axis axis2 physics'), True
+    FRAME = 'model world', '@name! @attached_to pose', True
     VISUAL = 'link', (
         '@name! pose cast_shadows:bool laser_retro:double transparency:double '
         'visibility_flags:int meta material geometry! plugin')
@@ -121,9 +126,6 @@ class Kind(enum.IntEnum):
         """Tag of the element: ``particle_emitter``."""
         return self.name.lower()
 
-
-FRAME_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.JOINT, Kind.FRAME})
-"""The kinds that references can name. Those of one scope share a name space."""
 
 ELEMENTS = {
     'sdf': '@version! include',
@@ -394,6 +396,16 @@ class Definition:
         for item in self._items:
             if not item['name']:
                 self.value_type = ValueType(item['type'])
+        # Python takes longer to look up a member of an Enum than to read an attribute.
+        self.is_pose = self.value_type is ValueType.POSE
+        self.is_unchecked = self.value_type is ValueType.STRING
+        """Whether any text is a right value."""
+
+    @cached_property
+    def takes_any_number(self) -> bool:
+        """Whether the value is a number or an integer of any size."""
+        return self.minimum == -math.inf and (
+            self.value_type in (ValueType.NUMBER, ValueType.INTEGER))
 
     @cached_property
     def attributes(self) -> Mapping[str, Attribute]:

@@ -9,8 +9,6 @@ of the table, a value is checked, and what the grammar does not know is skipped.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import AttributeMissingError
 from sdf_pose_bridge.errors import DuplicateNameError
@@ -27,7 +25,6 @@ from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.pose_text import pose_from_text
 from sdf_pose_bridge.sdformat.pose_text import PoseFormat
 from sdf_pose_bridge.sdformat.pose_text import PoseTextError
@@ -46,17 +43,6 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _DEEPEST = 300
 """How deep elements may be nested. libxml2 allows 256 levels in a file."""
-
-
-class _Parent(NamedTuple):
-    """The nearest element with a frame around the one that is read."""
-
-    element: int
-    """Its index."""
-    scope: int
-    """Index of the model, world or root whose names references use."""
-    path: str
-    """Its file."""
 
 
 def elements_from_tree(
@@ -116,7 +102,7 @@ class _Reader:
         self._file_indices = {path: index for index, path in enumerate(sources.paths)}
 
     def check(self, xml: XmlElement, definition: Definition) -> None:
-        self._read(xml, definition, None, 1)
+        self._read(xml, definition, NO_ELEMENT, NO_ELEMENT, '', 1)
 
     def elements(self, root: XmlElement) -> Elements:
         self._read_file(root)
@@ -136,7 +122,7 @@ class _Reader:
             if definition is None:
                 continue
             if definition.kind is Kind.WORLD:
-                self._read(child, definition, _Parent(NO_ELEMENT, NO_ELEMENT, path), 1)
+                self._read(child, definition, NO_ELEMENT, NO_ELEMENT, path, 1)
             elif first:
                 self._report_second_top(child, first)
             else:
@@ -144,7 +130,7 @@ class _Reader:
                 index = self._builder.add(
                     Kind.ROOT, ROOT_FRAME, NO_ELEMENT, NO_ELEMENT, self._file_indices[path],
                     self._sources.line(child))
-                self._read(child, definition, _Parent(index, index, path), 1)
+                self._read(child, definition, index, index, path, 1)
 
     def _report_second_top(self, xml: XmlElement, first: str) -> None:
         if described(xml) == first:
@@ -155,65 +141,67 @@ class _Reader:
                    'model, light or actor may')
             self._problems.error(ElementIncorrectTypeError(msg, self._sources.place_of_name(xml)))
 
+    # The walk. ``parent`` is the index of the parent element, if that has a frame, ``scope`` that
+    # of the model, world or root whose names references use, and ``path`` the file around.
+
     def _read(
-        self, xml: XmlElement, definition: Definition, parent: _Parent | None, depth: int,
+        self, xml: XmlElement, definition: Definition, parent: int, scope: int, path: str,
+        depth: int,
     ) -> None:
-        """Read an element; ``parent`` is None where no element has a frame."""
+        """Read an element that holds others."""
         if definition.checked_attributes:
             self._check_attributes(xml, definition)
-        value_type = definition.value_type
-        if value_type is None:
-            if depth > _DEEPEST:
-                msg = f'elements are nested more than {_DEEPEST} deep'
-                self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
-            elif definition.kind is not None and parent is not None:
-                self._read_frame(xml, definition, definition.kind, parent, depth)
-            elif definition.identifier != 'include':
-                self._read_children(xml, definition, parent, depth)
-            elif parent is not None:
-                self._note_missing_include(xml, parent.element)
-        elif value_type is ValueType.POSE:
-            self._check_pose(xml)
-        elif value_type is not ValueType.STRING:
-            fault = value_fault(text_of(xml), definition)
-            if fault:
-                self._problems.error(ElementInvalidError(fault, self._sources.place(xml)))
-
-    def _read_children(
-        self, xml: XmlElement, definition: Definition, parent: _Parent | None, depth: int,
-    ) -> None:
-        children = definition.children
-        for child in xml:
-            child_definition = children.get(child.tag)
-            if child_definition is not None:
-                self._read(child, child_definition, parent, depth + 1)
+        if depth > _DEEPEST:
+            msg = f'elements are nested more than {_DEEPEST} deep'
+            self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
+        elif definition.kind is not None:
+            self._read_frame(xml, definition, definition.kind, parent, scope, path, depth)
+        elif definition.identifier == 'include':
+            if parent != NO_ELEMENT:
+                name, uri = self._details.missing_include(xml)
+                self._builder.missing_includes.setdefault(parent, {})[name] = uri
+        else:
+            self._details.check_content(xml, definition.identifier)
+            self._read_children(xml, definition, NO_ELEMENT, scope, path, depth)
 
     def _read_frame(
-        self, xml: XmlElement, definition: Definition, kind: Kind, parent: _Parent, depth: int,
+        self, xml: XmlElement, definition: Definition, kind: Kind, parent: int, scope: int,
+        parent_path: str, depth: int,
     ) -> None:
         """Add an element to the table, with all that it holds."""
         has_name = 'name' in definition.attributes
-        name = self._names.add(kind, xml, parent.element) if has_name else kind.label
+        name = self._names.add(kind, xml, parent) if has_name else kind.label
         if name is None:
-            self._read_children(xml, definition_of(kind.label), None, depth)
+            without_frames = definition_of(kind.label)
+            self._read_children(xml, without_frames, NO_ELEMENT, scope, parent_path, depth)
             return
-        path = self._sources.path_at(xml, parent.path)
+        path = self._sources.path_at(xml, parent_path)
         index = self._builder.add(
-            kind, name, parent.element, parent.scope, self._file_indices[path],
-            self._sources.line(xml))
+            kind, name, parent, scope, self._file_indices[path], self._sources.line(xml))
+        if kind is Kind.WORLD or kind is Kind.MODEL:
+            scope = index
         self._read_details(xml, kind, index)
-        scope = index if kind in (Kind.WORLD, Kind.MODEL) else parent.scope
-        children, own = definition.children, _Parent(index, scope, path)
-        has_pose = False
+        self._read_children(xml, definition, index, scope, path, depth)
+
+    def _read_children(
+        self, xml: XmlElement, definition: Definition, parent: int, scope: int, path: str,
+        depth: int,
+    ) -> None:
+        definitions = definition.children
         for child in xml:
-            child_definition = children.get(child.tag)
-            if child_definition is None:
+            child_definition = definitions.get(child.tag)
+            if child_definition is None or child_definition.is_unchecked:
                 continue
-            if child_definition.value_type is ValueType.POSE and not has_pose:
-                has_pose = True
-                self._read_pose(child, child_definition, index)
+            if child_definition.value_type is None:
+                self._read(child, child_definition, parent, scope, path, depth + 1)
+            elif not child_definition.is_pose:
+                fault = value_fault(text_of(child), child_definition)
+                if fault:
+                    self._problems.error(ElementInvalidError(fault, self._sources.place(child)))
+            elif parent != NO_ELEMENT and not self._builder.pose_lines[parent]:
+                self._read_pose(child, child_definition, parent)
             else:
-                self._read(child, child_definition, own, depth + 1)
+                self._check_pose(child)
 
     def _read_details(self, xml: XmlElement, kind: Kind, index: int) -> None:
         if kind is Kind.MODEL:
@@ -224,12 +212,6 @@ class _Reader:
             self._builder.joints[index] = self._details.joint(xml)
         elif kind is Kind.SENSOR:
             self._builder.sensors[index] = self._details.sensor(xml)
-        elif kind is Kind.VISUAL:
-            self._details.check_visual(xml)
-
-    def _note_missing_include(self, xml: XmlElement, parent: int) -> None:
-        name, uri = self._details.missing_include(xml)
-        self._builder.missing_includes.setdefault(parent, {})[name] = uri
 
     # Attributes and poses
 

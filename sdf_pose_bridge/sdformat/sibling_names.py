@@ -21,7 +21,6 @@ from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import is_reserved
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
-from sdf_pose_bridge.sdformat.grammar import FRAME_KINDS
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.versions import renames_duplicates
@@ -49,7 +48,7 @@ class SiblingNames:
         self._builder = builder
         self._sources = sources
         self._problems = problems
-        self._used: dict[tuple[int, Kind, str], tuple[Kind, int]] = {}
+        self._used: dict[tuple[int, Kind | None, str], tuple[Kind, int]] = {}
 
     def add(self, kind: Kind, xml: XmlElement, parent: int) -> str | None:
         """
@@ -64,7 +63,7 @@ class SiblingNames:
         name = self._checked_name(kind, xml)
         if name is None:
             return None
-        key = (parent, Kind.FRAME if kind in FRAME_KINDS else kind, name)
+        key = (parent, None if kind.is_frame else kind, name)
         if key not in self._used:
             self._used[key] = (kind, len(self._builder.names))
             return name
@@ -87,8 +86,8 @@ class SiblingNames:
             msg = f'the name of the {kind.label} is empty'
             self._problems.error(AttributeInvalidError(msg, self._sources.place_of_name(xml)))
             return None
-        if is_reserved(name) and kind is not Kind.ACTOR and not (
-                name.startswith(MERGED_MODEL_PREFIX)):
+        if is_reserved(name) and kind is not Kind.ACTOR and (
+                not name.startswith(MERGED_MODEL_PREFIX)):
             rule = ('it means the frame of the world' if name == WORLD_FRAME else
                     'so are all that begin and end with two underscores')
             msg = f'the name "{name}" is reserved; {rule}'
@@ -96,7 +95,7 @@ class SiblingNames:
         return name
 
     def _is_renamed(self, kind: Kind, parent: int) -> bool:
-        if parent < 0 or kind not in FRAME_KINDS or kind is Kind.MODEL:
+        if parent < 0 or not kind.is_frame or kind is Kind.MODEL:
             return False
         path = self._sources.paths[self._builder.file_indices[parent]]
         return renames_duplicates(self._sources.versions[path]) and (
@@ -106,8 +105,8 @@ class SiblingNames:
         candidates = chain(
             [f'{name}_{kind.label}'], (f'{name}_{kind.label}{number}' for number in count()))
         new_name = next(
-            each for each in candidates if (parent, Kind.FRAME, each) not in self._used)
-        self._used[parent, Kind.FRAME, new_name] = (kind, len(self._builder.names))
+            each for each in candidates if (parent, None, each) not in self._used)
+        self._used[parent, None, new_name] = (kind, len(self._builder.names))
         msg = (f'the name "{name}" is that of another kind of element in this scope; this '
                f'{kind.label} is called "{new_name}" instead, and references to "{name}" mean the '
                'other one')

@@ -17,16 +17,18 @@ from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 
-_COUNTS = {ValueType.TWO_NUMBERS: 2, ValueType.THREE_NUMBERS: 3, ValueType.AXIS: 3}
-_SINGLE_NUMBERS = (ValueType.NUMBER, ValueType.INTEGER)
-
 # Like C's strtod, libsdformat takes the number at the beginning of a word and drops the rest.
-_NUMBER_START = re.compile(r'[+-]?(?:[0-9]|\.[0-9]|inf|nan)', re.IGNORECASE)
-_INTEGER_START = re.compile(r'[+-]?[0-9]')
-_BOOLEAN_START = re.compile(r'true|false', re.IGNORECASE)
-_LEADING_NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?')
+_LEADING_NUMBER = re.compile(
+    r'[+-]?(?:[0-9]+\.?[0-9]*(?:[eE][+-]?[0-9]+)?|\.[0-9]+(?:[eE][+-]?[0-9]+)?|inf|nan)',
+    re.IGNORECASE)
+_LEADING_INTEGER_OR_BOOLEAN = re.compile(r'[+-]?[0-9]|true|false', re.IGNORECASE)
+_LEADING_BOOLEAN = re.compile(r'true|false', re.IGNORECASE)
 _DIGITS = frozenset('0123456789')
 _SHORTEST_AXIS = 1e-6
+_FEWEST_COLOR_NUMBERS = 3
+# Python takes longer to look up a member of an Enum than a global variable.
+_AXIS, _BOOLEAN, _COLOR = ValueType.AXIS, ValueType.BOOLEAN, ValueType.COLOR
+_INTEGER, _NUMBER = ValueType.INTEGER, ValueType.NUMBER
 
 
 def boolean_from_text(text: str) -> bool | None:
@@ -52,17 +54,19 @@ def value_fault(text: str, definition: Definition) -> str:
     :param definition: the definition of the element; not that of a pose.
     :return: the value and the rule that it breaks; empty if it is right.
     """
+    if definition.takes_any_number and text[:1] in _DIGITS:
+        return ''
     value_type = definition.value_type
     stripped = text.strip()
-    if not stripped or value_type is None or value_type is ValueType.STRING:
+    if not stripped or value_type is None or definition.is_unchecked:
         return ''
-    if not is_of_type(stripped, value_type):
+    numbers = _leading_numbers(stripped, value_type.count)
+    if not _is_of_type(stripped, numbers, value_type):
         return f'"{stripped[:80]}" is not {value_type.description}'
-    if value_type is ValueType.AXIS and math.hypot(*_numbers(stripped)) <= _SHORTEST_AXIS:
+    if value_type is _AXIS and math.hypot(*numbers) <= _SHORTEST_AXIS:
         return f'"{stripped}" is not a valid axis: its length is zero'
     minimum, maximum = definition.minimum, definition.maximum
-    if minimum == -math.inf or all(
-            minimum <= number <= maximum for number in _numbers(stripped)[:1]):
+    if minimum == -math.inf or not numbers or minimum <= numbers[0] <= maximum:
         return ''
     rule = f'at least {minimum:g}' if maximum == math.inf else f'from {minimum:g} to {maximum:g}'
     return f'"{stripped}" must be {rule}'
@@ -76,23 +80,27 @@ def is_of_type(text: str, value_type: ValueType) -> bool:
     :param value_type: any type but ``POSE``.
     :return: True if it does.
     """
-    if value_type in _SINGLE_NUMBERS:
-        if text[0] in _DIGITS:
-            return True
-        start = _NUMBER_START if value_type is ValueType.NUMBER else _INTEGER_START
-        return bool(start.match(text) or _BOOLEAN_START.match(text))
-    if value_type is ValueType.BOOLEAN:
-        return boolean_from_text(text) is not None
-    words = text.split()
-    if value_type is ValueType.COLOR:
-        numbers = _numbers(text)
-        return len(numbers) == len(words) and len(words) in (3, 4) and all(
+    return _is_of_type(text, _leading_numbers(text, value_type.count), value_type)
+
+
+def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> bool:
+    if value_type is _COLOR:
+        return len(numbers) == len(text.split()) >= _FEWEST_COLOR_NUMBERS and all(
             0.0 <= number <= 1.0 for number in numbers)
-    count = _COUNTS.get(value_type, 0)
-    return len(words) >= count and all(map(_NUMBER_START.match, words[:count]))
+    if value_type is _NUMBER:
+        return bool(numbers) or _LEADING_BOOLEAN.match(text) is not None
+    if value_type is _INTEGER:
+        return _LEADING_INTEGER_OR_BOOLEAN.match(text) is not None
+    if value_type is _BOOLEAN:
+        return boolean_from_text(text) is not None
+    return len(numbers) == value_type.count
 
 
-def _numbers(text: str) -> Sequence[float]:
-    """Return the number that each word begins with, without words that begin with none."""
-    matches = map(_LEADING_NUMBER.match, text.split())
-    return [float(number.group()) for number in matches if number]
+def _leading_numbers(text: str, count: int) -> Sequence[float]:
+    """Return the numbers that the first words begin with, without words that begin with none."""
+    words = text.split()[:count]
+    try:
+        return [float(word) for word in words]
+    except ValueError:
+        matches = map(_LEADING_NUMBER.match, words)
+        return [float(number[0]) for number in matches if number]

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from collections.abc import Sequence
-import contextlib
 from pathlib import Path
 import re
 from typing import NamedTuple
 from xml.parsers import expat
 
 from lxml import etree
+import numpy as np
 
 from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import Place
@@ -45,7 +45,10 @@ _LAST_LINE = 65_535
 
 _COMMENT_OR_VERBATIM = re.compile(
     rb'<!--(?:(.*?)-->|.*)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)', re.DOTALL)
-_START_TAG = re.compile(rb'<(?:"[^"]*"|\'[^\']*\'|[^"\'>])*')
+_START_TAG = re.compile(
+    rb'<(?:([^/!?][^"\'>]*(?:"[^"]*"[^"\'>]*|\'[^\']*\'[^"\'>]*)*)>'
+    rb'|!--.*?-->|!\[CDATA\[.*?\]\]>|\?.*?\?>)', re.DOTALL)
+"""A start tag, or what may hold something that looks like one."""
 
 
 class XmlFile(NamedTuple):
@@ -177,7 +180,8 @@ def _check_with_expat(text: bytes, encoding: str | None, path: str) -> None:
     :raises FileReadError: if the text is not well-formed, apart from what follows the outermost
         element. Encodings that expat does not know are not checked.
     """
-    skipped, stripped = _without_leading_white_space(text)
+    stripped = text.lstrip(WHITE_SPACE.encode())
+    skipped = text.count(b'\n', 0, len(text) - len(stripped))
     try:
         expat.ParserCreate(encoding).Parse(stripped, True)
     except (LookupError, ValueError):
@@ -206,24 +210,12 @@ def _lines_beyond_last(root: XmlElement, text: bytes) -> dict[XmlElement, int]:
     """
     if text.count(b'\n') < _LAST_LINE:
         return {}
-    skipped, stripped = _without_leading_white_space(text)
-    lines: list[int] = []
-
-    def add_line(_tag: str, _attributes: object) -> None:
-        tag = _START_TAG.match(stripped, parser.CurrentByteIndex)
-        lines.append(skipped + parser.CurrentLineNumber + (tag[0].count(b'\n') if tag else 0))
-
-    parser = expat.ParserCreate()
-    parser.StartElementHandler = add_line
-    # Elements after an error keep the line of libxml2.
-    with contextlib.suppress(expat.ExpatError, LookupError, ValueError):
-        parser.Parse(stripped, True)
+    encoding = root.getroottree().docinfo.encoding or ''
+    if encoding.upper().startswith(('UTF-16', 'UTF-32')):
+        text = text.decode(encoding).encode()
+    ends = [tag.end(1) for tag in _START_TAG.finditer(text) if tag[1]]
+    line_ends = np.flatnonzero(np.frombuffer(text, np.uint8) == ord('\n'))
+    lines = (np.searchsorted(line_ends, ends) + 1).tolist()
     return {
-        element: line for element, line in zip(root.iter(etree.Element), lines, strict=False)
+        element: line for element, line in zip(root.iter(etree.Element), lines, strict=True)
         if line >= _LAST_LINE}
-
-
-def _without_leading_white_space(text: bytes) -> tuple[int, bytes]:
-    """Return how many lines the white space has that is left out, and the text without it."""
-    stripped = text.lstrip(WHITE_SPACE.encode())
-    return text.count(b'\n', 0, len(text) - len(stripped)), stripped

@@ -43,7 +43,11 @@ def first_child(xml: XmlElement, tag: str) -> XmlElement | None:
     :param tag: the tag.
     :return: the child, or None.
     """
-    return next(xml.iterchildren(tag), None)
+    # For the few children that most elements have, this is faster than iterchildren.
+    for child in xml:
+        if child.tag == tag:
+            return child
+    return None
 
 
 def written_tag(xml: XmlElement) -> str:
@@ -101,7 +105,9 @@ def value_of(xml: XmlElement) -> str:
     :param xml: an element.
     :return: its text, stripped, each run of white space in it as one blank.
     """
-    return _WHITE_SPACE_RUN.sub(' ', text_of(xml)).strip(' ')
+    text = text_of(xml)
+    # Most values are plain names, which this recognises in a tenth of the time.
+    return text if text.isidentifier() else _WHITE_SPACE_RUN.sub(' ', text).strip(' ')
 
 
 def attribute_of(xml: XmlElement, name: str) -> str:
