@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The resolved, immutable content of a file: names, kinds, parents and poses as arrays."""
+"""The scene: all elements of a file with their resolved poses, as arrays."""
 
 from collections.abc import Mapping
 from functools import cached_property
@@ -26,61 +26,61 @@ if TYPE_CHECKING:
 
 
 class Joint(NamedTuple):
-    """A joint and what it joins, all as indices into the scene."""
+    """A joint with its ends, all as indices into the scene."""
 
     element: int
     type: str
     """As SDFormat spells it: ``revolute``, ``fixed``, ..."""
     parent: int
-    """The frame that is the parent; a world or implicit root for ``world``."""
+    """The parent frame; a world or implicit root for ``world``."""
     child: int
-    """The frame that is the child."""
+    """The child frame."""
 
 
 class Scene:
     """
-    Everything in a file that has a pose.
+    All elements of a file that have a pose.
 
     Entry i of each sequence and array is about element i. Elements stand in file order, each after
-    the one that holds it. Arrays are read-only, and what a scene holds cannot be exchanged.
+    its parent element. A scene is immutable, and its arrays are read-only.
     """
 
-    # By hand what a dataclass would do, as a start would have to wait for dataclasses.
+    # Not a dataclass, because the import of dataclasses delays the start of the node.
 
     path: str
-    """The file, as it was opened."""
+    """Path of the file, as it was opened."""
     files: tuple[str, ...]
-    """All files that were read, the first one included."""
+    """All files that were read, this one included."""
     names: tuple[str, ...]
     """Absolute names such as ``robot::arm::hand``; ``world`` for a world's own frame."""
     kinds: 'npt.NDArray[np.uint8]'
     """Values of :class:`~sdf_pose_bridge.names.Kind`."""
     parents: Indices
-    """The element that holds each one in the file; -1 for a world and the implicit root."""
+    """The parent element of each element; -1 for a world and the implicit root."""
     roots: Indices
-    """The world or implicit root that each belongs to: each of them is a tree of its own."""
+    """The world or implicit root of each element; each of these is a tree of its own."""
     poses: PoseArray
     """Shape (n, 7): pose of each in its root, x y z in metres, unit quaternion x y z w, w >= 0."""
     attachments: Indices
-    """The frame that each frame is fixed to; -1 for links, static models and roots."""
+    """The frame that each frame is attached to; -1 for links, static models and roots."""
     bodies: Indices
-    """The link, static model or root that carries each frame; -1 for what is no frame."""
+    """The link, static model or root that each frame is attached to in the end; -1 for others."""
     canonical_links: Indices
-    """The canonical link of each model; -1 for one without links and for other kinds."""
+    """The canonical link of each model; -1 for a model without links and for other kinds."""
     static_models: frozenset[int]
-    """The models that are static."""
+    """The static models."""
     joints: tuple[Joint, ...]
     """All joints, in file order."""
     sensors: Mapping[int, SensorDetails]
-    """What is known of each sensor."""
+    """Details of each sensor, by its index."""
     lines: Indices
-    """The line that each stands in; 0 where none can be named."""
+    """The line of each element; 0 where it is not known."""
     file_indices: Indices
-    """Which of the files each stands in."""
+    """The file of each element, as an index into ``files``."""
     world_names: Mapping[int, str]
-    """The name of each world; a model file has none."""
+    """The name of each world, by its index."""
     warnings: tuple[SdfWarning, ...]
-    """What libsdformat would accept but its author should know of, in file order."""
+    """What libsdformat accepts, but the author of the file should know of, in file order."""
 
     def __init__(
         self, *,
@@ -97,11 +97,11 @@ class Scene:
             file_indices=file_indices, world_names=world_names, warnings=warnings)
 
     def __setattr__(self, name: str, value: object) -> None:
-        msg = f'{name} cannot be set: a scene is never changed'
+        msg = f'{name} cannot be set: a scene is immutable'
         raise AttributeError(msg)
 
     def __delattr__(self, name: str) -> None:
-        msg = f'{name} cannot be deleted: a scene is never changed'
+        msg = f'{name} cannot be deleted: a scene is immutable'
         raise AttributeError(msg)
 
     def __repr__(self) -> str:
@@ -154,7 +154,7 @@ class Scene:
 
     def world_of(self, index: int) -> str:
         """
-        Name the world that an element belongs to.
+        Return the world of an element.
 
         :param index: its index.
         :return: the world's name; empty in a model file.
@@ -163,18 +163,16 @@ class Scene:
 
     def has(self, name: str) -> bool:
         """
-        Tell whether a name is that of an element, in whichever world.
+        Return whether an element exists, in any world.
 
         :param name: absolute name such as ``robot::arm::hand``.
-        :return: whether there is such an element.
+        :return: True if it does.
         """
         return name in self._indices
 
     def index(self, name: str, *, world: str = '') -> int:
         """
-        Find an element by its name.
-
-        Where a frame and something else share a name, the frame is meant.
+        Find an element by its name. Where a frame and another element share it, the frame is found.
 
         :param name: absolute name such as ``robot::arm::hand``.
         :param world: the world to look in, for a file that holds several.
@@ -194,7 +192,7 @@ class Scene:
 
     def place(self, index: int) -> Place:
         """
-        Tell where an element stands.
+        Return the place of an element.
 
         :param index: its index.
         :return: its file and line.
