@@ -271,7 +271,7 @@ class _Builder:
     def _add_dependents(
         self, references: Indices, attachments: Indices, joints: Mapping[int, JointEnds],
     ) -> None:
-        """Add to the unresolved elements those that depend on one, and report how many there are."""
+        """Add the elements that depend on an unresolved one, and report how many there are."""
         if not self._unresolved:
             return
         columns = self._elements.parents.tolist(), references.tolist(), attachments.tolist()

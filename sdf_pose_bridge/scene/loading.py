@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import contextlib
 import enum
 import gc
+from itertools import compress
 import os
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -170,7 +171,7 @@ def _scene_from_graph(
     return Scene(
         path=path,
         files=tuple(elements.paths),
-        names=tuple(name for name, is_in in zip(graph.names, is_kept.tolist(), strict=True) if is_in),
+        names=tuple(compress(graph.names, is_kept.tolist())),
         kinds=_frozen(elements.kinds[is_kept]),
         parents=reindexed(elements.parents),
         roots=reindexed(graph.roots),

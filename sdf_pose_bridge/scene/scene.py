@@ -172,7 +172,9 @@ class Scene:
 
     def index(self, name: str, *, world: str = '') -> int:
         """
-        Find an element by its name. Where a frame and another element share it, the frame is found.
+        Find an element by its name.
+
+        Where a frame and another element have the same name, the frame is found.
 
         :param name: absolute name such as ``robot::arm::hand``.
         :param world: the world to look in, for a file that holds several.

@@ -50,7 +50,8 @@ class FrameDetails(NamedTuple):
     attached_to: str
     """Value of the attribute; empty for the frame of its scope."""
     placement_frame: str = ''
-    """The frame that the pose places; empty for this one. Only proxies of merged models have it."""
+    """The frame that the pose places; empty for this one. Only proxies of merged models have
+    one."""
 
 
 class JointDetails(NamedTuple):

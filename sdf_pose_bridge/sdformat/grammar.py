@@ -1,10 +1,11 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-The elements of SDFormat: what each may hold, what it must have, and which values it takes.
+The grammar of SDFormat: what each element may hold, what it must have, and which values it takes.
 
-Facts of the specification, version 1.11 (http://sdformat.org/spec). A definition lists what an
-element holds, separated by blanks:
+Elements with a pose are members of :class:`Kind`, all others are in
+:mod:`~sdf_pose_bridge.sdformat.specification`. The content of an element is a list of items,
+separated by blanks:
 
 * ``tag``: a child element; its definition is that of ``parent/tag`` or ``tag``, or it is a string.
 * ``tag:type`` or ``tag:type[min,max]``: a child element with a value, see :class:`ValueType`.
@@ -28,6 +29,8 @@ import re
 from typing import Any
 from typing import NamedTuple
 
+from sdf_pose_bridge.sdformat.specification import ELEMENTS
+
 
 class ValueType(enum.Enum):
     """Type of a value: its name in definitions, what a value has to be, and how many numbers."""
@@ -46,8 +49,8 @@ class ValueType(enum.Enum):
     description: str
     count: int
 
-    # A call with a name finds the member of that name, hence the defaults.
     def __new__(cls, value: str, description: str = '', count: int = 0) -> ValueType:
+        """Make a member. The defaults are for calls that find a member by its value."""
         member = object.__new__(cls)
         member._value_ = value
         member.description = description
@@ -68,8 +71,10 @@ class Kind(enum.IntEnum):
     content: str
     is_frame: bool
 
-    # A call with an integer finds the member of that value, hence the types.
-    def __new__(cls, parents: Any, content: str = '', is_frame: bool = False) -> Kind:
+    def __new__(
+        cls, parents: Any, content: str = '', is_frame: bool = False,  # noqa: FBT001, FBT002
+    ) -> Kind:
+        """Make a member. The defaults are for calls that find a member by its value."""
         member = int.__new__(cls, len(cls.__members__))
         member._value_ = len(cls.__members__)
         member.parents = tuple(parents.split())
@@ -126,233 +131,6 @@ class Kind(enum.IntEnum):
         """Tag of the element: ``particle_emitter``."""
         return self.name.lower()
 
-
-ELEMENTS = {
-    'sdf': '@version! include',
-    'actor/animation': '@name! filename! scale:double interpolate_x:bool',
-    'actor/script': 'loop:bool delay_start:double auto_start:bool trajectory',
-    'air_pressure': 'reference_altitude:double pressure',
-    'air_speed': 'pressure',
-    'altimeter': 'vertical_position vertical_velocity',
-    'angular_velocity': 'x y z',
-    'atmosphere': '@type! temperature:double pressure:double temperature_gradient:double',
-    'attenuation': 'range!:double linear:double constant:double quadratic:double',
-    'audio': 'device!',
-    'audio_sink': '',
-    'audio_source': 'uri! pitch:double gain:double contact loop:bool pose',
-    'audio_source/contact': 'collision!:string',
-    'auto_inertia_params': '*',
-    'axis': 'xyz! dynamics limit! mimic',
-    'axis/limit': (
-        'lower!:double upper!:double effort:double velocity:double stiffness:double '
-        'dissipation:double'),
-    'axis2': 'xyz! dynamics limit! mimic',
-    'axis2/limit': (
-        'lower:double upper:double effort:double velocity:double stiffness:double '
-        'dissipation:double'),
-    'battery': '@name! voltage!:double',
-    'blend': 'min_height!:double fade_dist!:double',
-    'bounce': 'restitution_coefficient:double[0,1] threshold:double',
-    'box': 'size!:vector3',
-    'bullet': 'solver! constraints!',
-    'bullet/constraints': (
-        'cfm!:double erp!:double contact_surface_layer!:double split_impulse!:bool '
-        'split_impulse_penetration_threshold!:double'),
-    'bullet/solver': 'type! min_step_size:double iters!:int sor!:double',
-    'camera': (
-        '@name triggered:bool camera_info_topic trigger_topic '
-        'horizontal_fov!:double[0.1,6.283186] image! clip! save depth_camera segmentation_type '
-        'box_type noise distortion lens visibility_mask:int optical_frame_id pose'),
-    'camera/clip': 'near!:double[0,] far!:double[0.1,]',
-    'camera/image': 'width!:int height!:int format anti_aliasing:int',
-    'camera/noise': 'type! mean:double stddev:double',
-    'capsule': 'radius!:double length!:double',
-    'clouds': (
-        'speed:double[0,] direction:double[0,3.1456] humidity:double[0,1] '
-        'mean_size:double[0,1] ambient:color'),
-    'cone': 'radius!:double length!:double',
-    'contact': 'collision!:string topic!',
-    'convex_decomposition': 'max_convex_hulls:int voxel_resolution:int',
-    'custom_function': 'c1:double c2:double c3:double f:double fun!',
-    'custom_rpy': ':vector3 @parent_frame',
-    'cylinder': 'radius!:double length!:double',
-    'dart': 'solver! collision_detector',
-    'dart/solver': 'solver_type!',
-    'deletions': 'name!',
-    'depth_camera': 'output! clip',
-    'depth_camera/clip': 'near:double[0,] far:double[0.1,]',
-    'distortion': 'k1:double k2:double k3:double p1:double p2:double center:vector2',
-    'dynamics': (
-        'damping:double friction:double spring_reference!:double spring_stiffness!:double'),
-    'ellipsoid': 'radii!:vector3',
-    'empty': '',
-    'fluid_added_mass': (
-        'xx:double xy:double xz:double xp:double xq:double xr:double yy:double yz:double '
-        'yp:double yq:double yr:double zz:double zp:double zq:double zr:double pp:double '
-        'pq:double pr:double qq:double qr:double rr:double'),
-    'fog': 'color:color type start:double[0,] end:double[0,] density:double[0,]',
-    'force': 'x y z',
-    'force_torque': 'frame:string measure_direction force torque',
-    'friction': 'torsional ode bullet',
-    'friction/bullet': (
-        'friction:double[0,] friction2:double[0,] fdir1:vector3 rolling_friction:double'),
-    'friction/ode': 'mu:double[0,] mu2:double[0,] fdir1:vector3 slip1:double slip2:double',
-    'geometry': (
-        'empty box capsule cone cylinder ellipsoid heightmap image mesh plane polyline sphere'),
-    'gps': 'position_sensing velocity_sensing',
-    'grasp_check': 'detach_steps:int attach_steps:int min_contact_count:int',
-    'grav_dir_x': ':vector3 @parent_frame',
-    'gripper': '@name! grasp_check gripper_link! palm_link!',
-    'gui': '@fullscreen:bool plugin camera=gui_camera',
-    'gui_camera': '@name! view_controller projection_type track_visual pose',
-    'heightmap': (
-        'uri! size:vector3 pos:vector3 texture blend use_terrain_paging:bool sampling:int'),
-    'horizontal': 'samples!:int resolution!:double min_angle!:double max_angle!:double',
-    'image': 'uri! scale!:double threshold!:int height!:double granularity!:int',
-    'imu': (
-        'orientation_reference_frame angular_velocity linear_acceleration '
-        'enable_orientation:bool'),
-    'include': '@merge:bool uri! pose plugin name static:bool placement_frame',
-    'inertia': 'ixx!:double ixy!:double ixz!:double iyy!:double iyz!:double izz!:double',
-    'inertial/pose': ':pose @rotation_format @degrees:bool',
-    'insertions': 'model!=model light!=light',
-    'intrinsics': 'fx!:double fy!:double cx!:double cy!:double s!:double',
-    'joint/physics': 'simbody=joint_simbody ode=joint_ode provide_feedback:bool',
-    'joint_ode': (
-        'cfm_damping:bool implicit_spring_damper:bool fudge_factor:double cfm:double erp:double '
-        'bounce:double max_force:double velocity:double limit suspension'),
-    'joint_simbody': 'must_be_loop_joint:bool',
-    'lens': (
-        'type! scale_to_hfov!:bool custom_function cutoff_angle:double[0,3.141592653] '
-        'env_texture_size:int[4,2048] intrinsics projection'),
-    'lidar': 'scan! range! noise=camera/noise visibility_mask:int',
-    'light_map': ':string @uv_set:int',
-    'light_state': '@name! pose',
-    'limit': 'cfm!:double erp!:double',
-    'linear_acceleration': 'x y z',
-    'link_state': '@name! velocity:pose acceleration:pose wrench:pose collision pose',
-    'link_state/collision': '@name!',
-    'logical_camera': 'near!:double far!:double aspect_ratio!:double horizontal_fov!:double',
-    'magnetometer': 'x y z',
-    'material': (
-        'script shader render_order:double lighting:bool ambient:color diffuse:color '
-        'specular:color shininess:double emissive:color double_sided:bool pbr'),
-    'material/script': 'uri! name!',
-    'mesh': '@optimization convex_decomposition uri! submesh scale:vector3',
-    'meta': 'layer:int',
-    'metal': (
-        'albedo_map roughness_map roughness metalness_map metalness environment_map '
-        'ambient_occlusion_map normal_map emissive_map light_map'),
-    'mimic': '@joint! @axis multiplier!:double offset!:double reference!:double',
-    'model_state': (
-        '@name! joint=joint_state model=model_state frame=frame pose scale:vector3 '
-        'link=link_state'),
-    'joint_state': '@name! angle!',
-    'joint_state/angle': ':double @axis!:int',
-    'navsat': 'position_sensing velocity_sensing',
-    'noise': (
-        '@type! mean:double stddev:double[0,] bias_mean:double bias_stddev:double[0,] '
-        'dynamic_bias_stddev:double[0,] dynamic_bias_correlation_time:double precision:double'),
-    'normal_map': ':string @type',
-    'ode': 'solver! constraints!',
-    'ode/constraints': (
-        'cfm!:double erp!:double contact_max_correcting_vel!:double '
-        'contact_surface_layer!:double'),
-    'ode/solver': (
-        'type! min_step_size:double island_threads:int iters!:int precon_iters:int sor!:double '
-        'thread_position_correction:bool use_dynamic_moi_rescaling!:bool friction_model'),
-    'orientation_reference_frame': 'localization! custom_rpy grav_dir_x',
-    'pbr': 'metal specular',
-    'physics': (
-        '@name @default:bool @type! max_step_size!:double real_time_factor!:double '
-        'real_time_update_rate!:double max_contacts:int dart simbody bullet ode'),
-    'plane': 'normal!:vector3 size!:vector2',
-    'plugin': '@name @filename! *',
-    'polyline': 'point!:vector2 height!:double',
-    'population': '@name! box cylinder model_count!:int distribution! pose model!=model',
-    'distribution': 'type! rows:int cols:int step:vector3',
-    'pose': ':pose @relative_to @rotation_format @degrees:bool',
-    'position_sensing': 'horizontal vertical',
-    'position_sensing/horizontal': 'noise',
-    'position_sensing/vertical': 'noise',
-    'pressure': 'noise',
-    'projection': (
-        'p_fx:double p_fy:double p_cx:double p_cy:double tx:double ty:double'),
-    'range': 'min!:double max!:double resolution:double',
-    'ray': 'scan! range! noise=camera/noise visibility_mask:int',
-    'rfid': '',
-    'rfidtag': '',
-    'road': '@name! width!:double point!:vector3 material',
-    'save': '@enabled!:bool path!',
-    'scan': 'horizontal! vertical',
-    'scene': (
-        'ambient!:color background!:color sky shadows!:bool fog grid:bool origin_visual:bool'),
-    'shader': '@type! normal_map:string',
-    'simbody': (
-        'min_step_size:double accuracy:double max_transient_velocity:double contact'),
-    'simbody/contact': (
-        'stiffness:double dissipation:double plastic_coef_restitution:double '
-        'plastic_impact_velocity:double static_friction:double dynamic_friction:double '
-        'viscous_friction:double override_impact_capture_velocity:double '
-        'override_stiction_transition_velocity:double'),
-    'skin': 'filename! scale:double',
-    'sky': 'time:double sunrise:double sunset:double clouds cubemap_uri',
-    'soft_contact': 'dart',
-    'soft_contact/dart': (
-        'bone_attachment!:double stiffness!:double damping!:double flesh_mass_fraction!:double'),
-    'sonar': 'geometry:string min!:double max!:double radius:double',
-    'specular': (
-        'albedo_map specular_map glossiness_map glossiness environment_map '
-        'ambient_occlusion_map normal_map emissive_map light_map'),
-    'sphere': 'radius!:double',
-    'spherical_coordinates': (
-        'surface_model! world_frame_orientation latitude_deg!:double longitude_deg!:double '
-        'elevation!:double surface_axis_equatorial:double surface_axis_polar:double '
-        'heading_deg!:double'),
-    'spot': 'inner_angle!:double outer_angle!:double falloff!:double',
-    'state': (
-        '@world_name! sim_time wall_time real_time iterations!:int insertions deletions '
-        'model=model_state light=light_state'),
-    'submesh': 'name! center:bool',
-    'surface': 'bounce friction contact soft_contact',
-    'surface/contact': (
-        'collide_without_contact:bool collide_without_contact_bitmask:int collide_bitmask:int '
-        'category_bitmask:int poissons_ratio:double elastic_modulus:double ode=contact_ode '
-        'bullet=contact_bullet'),
-    'contact_bullet': (
-        'soft_cfm:double soft_erp:double kp:double kd:double split_impulse!:bool '
-        'split_impulse_penetration_threshold!:double'),
-    'contact_ode': (
-        'soft_cfm:double soft_erp:double kp:double kd:double max_vel:double min_depth:double'),
-    'suspension': 'cfm!:double erp!:double',
-    'texture': 'size!:double diffuse! normal!',
-    'torque': 'x y z',
-    'torsional': (
-        'coefficient:double[0,] use_patch_radius:bool patch_radius:double[0,] '
-        'surface_radius:double[0,] ode'),
-    'torsional/ode': 'slip:double',
-    'track_visual': (
-        'name min_dist:double max_dist:double static:bool use_model_frame:bool xyz:vector3 '
-        'inherit_yaw:bool'),
-    'trajectory': '@id!:int @type! @tension:double waypoint',
-    'transceiver': (
-        'essid frequency:double min_frequency:double max_frequency:double gain!:double '
-        'power!:double sensitivity:double'),
-    'velocity_decay': 'linear:double angular:double',
-    'velocity_sensing': 'horizontal vertical',
-    'velocity_sensing/horizontal': 'noise',
-    'velocity_sensing/vertical': 'noise',
-    'vertical': 'samples!:int resolution:double min_angle!:double max_angle!:double',
-    'vertical_position': 'noise',
-    'vertical_velocity': 'noise',
-    'waypoint': 'time!:double pose!:pose',
-    'wind': 'linear_velocity:vector3',
-    'x': 'noise',
-    'xyz': ':axis @expressed_in',
-    'y': 'noise',
-    'z': 'noise',
-}
-"""Definitions of the elements that have no pose, by tag, ``parent/tag`` or another name."""
 
 _ITEM = re.compile(
     r'(?P<attribute>@?)(?P<name>[\w*]*)(?P<required>!?)(?:=(?P<identifier>\w+(?:/\w+)?))?'

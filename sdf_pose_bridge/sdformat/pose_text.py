@@ -3,9 +3,10 @@
 """
 Convert the text of ``<pose>`` elements to poses: x y z and a unit quaternion.
 
-Rules: http://sdformat.org/spec, ``pose.sdf`` (``rotation_format``, ``degrees``), and the checks of
-libsdformat's ``Param.cc``. Of the numbers that C's ``strtod`` takes, only decimal ones are accepted
-here: no ``0x10``, no ``1.5abc``. Quaternions are normalised, which libsdformat does not do.
+Rules: http://sdformat.org/spec, ``pose.sdf`` (``rotation_format``, ``degrees``), and the checks
+of libsdformat's ``Param.cc``. Of the numbers that C's ``strtod`` takes, only decimal ones are
+accepted here: no ``0x10``, no ``1.5abc``. Quaternions are normalised, which libsdformat does not
+do.
 """
 
 from __future__ import annotations

@@ -258,7 +258,7 @@ class _Changer:
                 self._set_source(target, xml)
 
     def _set_source(self, target: XmlElement, xml: XmlElement) -> None:
-        """Set that an element, and the elements around it that are named, stand in the parameters."""
+        """Set that an element and those around it, up to the one with the id, stand in params."""
         path = self._sources.path(xml)
         while True:
             for child in child_elements(target):

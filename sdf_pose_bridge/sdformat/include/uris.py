@@ -88,7 +88,8 @@ class ResourceFinder(NamedTuple):
         if parts.scheme == 'package':
             share = next(self._package_shares(parts.netloc), None)
             if share is None:
-                msg = f'"{address}" names the package "{parts.netloc}", which is not installed here'
+                msg = (f'"{address}" names the package "{parts.netloc}", which is not installed '
+                       f'here')
                 raise AddressError(msg)
             return Path(share, path.lstrip('/')).absolute()
         if parts.scheme == 'model':
@@ -125,7 +126,7 @@ class ResourceFinder(NamedTuple):
         yield Path(name)
 
     def _package_shares(self, package: str) -> Iterator[Path]:
-        """Find the share directories of an installed ROS package, by the marker in ament's index."""
+        """Find the share directories of a ROS package, by the markers in ament's index."""
         for prefix in self.package_prefixes:
             marker = Path(prefix, 'share', 'ament_index', 'resource_index', 'packages', package)
             if package and os.path.exists(marker):  # noqa: PTH110
