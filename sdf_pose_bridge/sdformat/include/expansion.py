@@ -94,6 +94,7 @@ class IncludeExpansion:
                 self._expand_include(include, files)
 
     def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
+        is_merge = self._is_merge(include)
         for plugin in child_elements(include, 'plugin'):
             check_element(plugin, definition_of('plugin'), self._sources, self._problems)
         uri = self._uri(include)
@@ -118,7 +119,7 @@ class IncludeExpansion:
             for added in apply_params(params, top, self._sources, self._problems):
                 self.may_hold_scoped_names = True
                 self._expand_in(added, files)
-        self._insert(include, top)
+        self._insert(include, top, is_merge=is_merge)
 
     # What an include names
 
@@ -253,15 +254,18 @@ class IncludeExpansion:
 
     # Where it goes
 
-    def _insert(self, include: XmlElement, top: XmlElement) -> None:
+    def _is_merge(self, include: XmlElement) -> bool:
+        written = include.get('merge', 'false')
+        value = boolean_from_text(written)
+        if value is None:
+            msg = f'merge="{written}" is not a boolean (true, false, 1 or 0)'
+            self._problems.error(AttributeInvalidError(msg, self._sources.place(include)))
+        return bool(value)
+
+    def _insert(self, include: XmlElement, top: XmlElement, *, is_merge: bool) -> None:
         parent = include.getparent()
         if parent is None:
             return
-        written = include.get('merge', 'false')
-        is_merge = boolean_from_text(written)
-        if is_merge is None:
-            msg = f'merge="{written}" is not a boolean (true, false, 1 or 0)'
-            self._problems.error(AttributeInvalidError(msg, self._sources.place(include)))
         if is_merge:
             merge(include, top, self._sources, self._problems, self._canonical_link_of)
         elif parent.tag == 'model' and top.tag != 'model':
