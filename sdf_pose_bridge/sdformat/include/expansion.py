@@ -4,7 +4,7 @@
 Replace every ``<include>`` by what it includes, so that one tree is left.
 
 Source: ``readXml`` and ``insertIncludedElement`` in libsdformat's ``parser.cc``. An include that
-is not found stays in the tree.
+is not found or not valid is reported and stays in the tree, so that no error follows from it.
 """
 
 from __future__ import annotations
@@ -99,7 +99,6 @@ class IncludeExpansion:
             check_element(plugin, definition_of('plugin'), self._sources, self._problems)
         uri = self._uri(include)
         if uri is None:
-            _remove(include)
             return
         found = self._included_file(uri, self._sources.path(include), files)
         if isinstance(found, str):
@@ -195,7 +194,6 @@ class IncludeExpansion:
         if first_child(document.root, 'include') is None:
             msg = f'{document.path} cannot be included: no model, light or actor is at its top'
             self._problems.error(ElementMissingError(msg, self._sources.place(include)))
-            _remove(include)
         return None
 
     # What an include overrides
@@ -271,12 +269,6 @@ class IncludeExpansion:
         elif parent.tag == 'model' and top.tag != 'model':
             msg = f'the included {written_tag(top)} is left out; a model can include only models'
             self._problems.warning(msg, self._sources.place(include))
-            _remove(include)
+            parent.remove(include)
         else:
             parent.replace(include, top)
-
-
-def _remove(xml: XmlElement) -> None:
-    parent = xml.getparent()
-    if parent is not None:
-        parent.remove(xml)
