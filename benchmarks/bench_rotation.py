@@ -12,10 +12,10 @@ from benchmarks.harness import AtMostTimes
 from benchmarks.harness import benchmark
 from benchmarks.harness import TimesAsFast
 from sdf_pose_bridge.geometry.formats import converted_poses
-from sdf_pose_bridge.geometry.rotation import matrix_from_quaternion
-from sdf_pose_bridge.geometry.rotation import quaternion_from_matrix
-from sdf_pose_bridge.geometry.rotation import quaternion_from_rpy
-from sdf_pose_bridge.geometry.rotation import rpy_from_quaternion
+from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
+from sdf_pose_bridge.geometry.rotations import quaternion_from_matrix
+from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
+from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 
 MANY = 1_000_000
 ONE_RPY = (0.1, -0.2, 2.3)
