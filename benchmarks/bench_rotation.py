@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Rotations and pose formats, against the floor that numpy sets and against other libraries."""
+"""Rotations and pose formats, compared with sine and cosine of numpy and with other libraries."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ def random_rpy(count):
 
 
 @benchmark('rpy to quaternion, 1e6', counterpart="numpy's sin and cos", goal=AtMostTimes(2.0))
-def many_to_quaternion_and_floor():
+def many_to_quaternion_and_sines():
     rpy = random_rpy(MANY)
     yield lambda: quaternion_from_rpy(rpy), lambda: (np.sin(rpy), np.cos(rpy))
 
 
 @benchmark('quaternion to rpy, 1e6', counterpart="numpy's sin and cos", goal=AtMostTimes(2.0))
-def many_to_rpy_and_floor():
+def many_to_rpy_and_sines():
     rpy = random_rpy(MANY)
     quats = quaternion_from_rpy(rpy)
     yield lambda: rpy_from_quaternion(quats), lambda: (np.sin(rpy), np.cos(rpy))

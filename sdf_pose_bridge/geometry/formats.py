@@ -198,7 +198,7 @@ def _converted(
         row = int(np.argmin(is_finite.all(axis=1)))
         place = _without_only_row(f'row {row}: ', len(rows))
         msg = (
-            f'{source.name}: {place}{tuple(rows[row].tolist())} is too large a number for'
+            f'{source.name}: {place}{tuple(rows[row].tolist())} has too large a number for'
             f' {target.name}')
         raise PoseFormatError(msg)
     return result.reshape(-1) if is_flat else result

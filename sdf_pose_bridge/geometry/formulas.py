@@ -39,7 +39,7 @@ BLOCK = 8192
 
 GIMBAL_LOCK = 1e-31
 """
-Below this (1 - |sin(pitch)|) / 2, roll and yaw cannot be told apart, and yaw becomes 0.
+Below this (1 - |sin(pitch)|) / 2, roll and yaw cannot be distinguished, and yaw becomes 0.
 
 Pitch is then within 6.4e-16 of a right angle; rounding moves a quaternion at lock by up to 5e-16.
 gz-math's tolerance allows 4.5e-8; yaw set to 0 there would change the rotation by as much.
@@ -73,9 +73,9 @@ def row_blocks(count: int) -> Iterator[slice]:
 
 def radians_from_degrees(xp: Any, angle_deg: Component) -> Component:
     """
-    Return radians as libsdformat does, ``deg * pi / 180``, without whole turns.
+    Return radians as libsdformat does, ``deg * pi / 180``, after removing multiples of 360.
 
-    Whole turns are exact in degrees but not in radians, so they are removed first.
+    These are exact in degrees but not in radians.
     """
     return xp.fmod(angle_deg, 360.0) * math.pi / 180.0
 

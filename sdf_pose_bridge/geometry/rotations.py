@@ -55,7 +55,7 @@ Many: TypeAlias = 'Floats | Sequence[Sequence[float]]'
 ManyMatrices: TypeAlias = 'Floats | Sequence[Sequence[Sequence[float]]]'
 
 LOCK_TOLERANCE = 1e-15
-"""gz-math's: at gimbal lock the sine of pitch differs from 1 or -1 by less."""
+"""Of gz-math: at gimbal lock the sine of pitch differs from 1 or -1 by less than this."""
 
 
 class RotationError(ValueError):
