@@ -25,8 +25,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sdf_pose_bridge.geometry import floats
 from sdf_pose_bridge.geometry.formulas import degrees_from_radians
-from sdf_pose_bridge.geometry.formulas import FLOATS
 from sdf_pose_bridge.geometry.formulas import radians_from_degrees
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.geometry.rotations import Floats
@@ -141,7 +141,7 @@ def converted_rotation(
         rpy_rad: Sequence[float] = rpy
         # Angles that are not finite are left alone: the error shows them as they are given.
         if degrees and all(map(math.isfinite, rpy)):
-            rpy_rad = [radians_from_degrees(FLOATS, angle) for angle in rpy]
+            rpy_rad = [radians_from_degrees(floats, angle) for angle in rpy]
         quat = quaternion_from_rpy(rpy_rad)
     elif given == Given.QUATERNION:
         quat = canonical_quaternion(quat_xyzw)

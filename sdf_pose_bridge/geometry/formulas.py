@@ -4,12 +4,11 @@
 Formulas of rotations, each written once for one rotation and for many.
 
 The formulas are elementwise: a component is a float, or an array with an element for each
-rotation. Their argument ``xp`` is the namespace of the functions that they call: numpy for arrays,
-and :data:`FLOATS`, which has the same functions under the same names, for floats. Where only a few
-rotations need another formula, ``if xp.any(...)`` skips it when there are none.
+rotation. Their argument ``xp`` is the module whose functions they call: numpy for arrays, and
+:mod:`sdf_pose_bridge.geometry.floats` for floats. Where only a few rotations need another formula,
+``if xp.any(...)`` skips it when there are none.
 
-Input is expected to be valid, see the functions ``..._is_valid``. Conventions, ranges and accuracy
-are described in :mod:`sdf_pose_bridge.geometry.rotations`.
+Conventions, ranges and accuracy are described in :mod:`sdf_pose_bridge.geometry.rotations`.
 """
 
 from __future__ import annotations
@@ -17,7 +16,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 import functools
 import math
-from types import SimpleNamespace
 from typing import Any
 from typing import TypeAlias
 
@@ -26,13 +24,6 @@ Component: TypeAlias = Any
 Triple: TypeAlias = tuple[Component, Component, Component]
 Quaternion: TypeAlias = tuple[Component, Component, Component, Component]
 Matrix: TypeAlias = tuple[Triple, Triple, Triple]
-
-FLOATS = SimpleNamespace(
-    any=bool, arctan2=math.atan2, copysign=math.copysign, cos=math.cos, fmod=math.fmod,
-    frexp=math.frexp, isfinite=math.isfinite, ldexp=math.ldexp, maximum=max, minimum=min,
-    sin=math.sin, sqrt=math.sqrt,
-    where=lambda condition, if_true, if_false: if_true if condition else if_false)
-"""The functions of numpy that the formulas call, for floats."""
 
 BLOCK = 8192
 """Rows in a block. Its columns and the intermediate results of a formula fit in cache."""
@@ -65,6 +56,15 @@ NEAREST_STEPS = 3
 """Steps of the power iteration that reduce an error of 1e-5 to less than rounding."""
 
 
+class InvalidRotationError(ValueError):
+    """The components of a rotation are not valid."""
+
+    def __init__(self, is_valid: Component) -> None:
+        super().__init__(is_valid)
+        self.is_valid = is_valid
+        """False, or an array with False for each rotation that is not valid."""
+
+
 def row_blocks(count: int) -> Iterator[slice]:
     """Divide the rows of an array into blocks; large arrays then take half the time."""
     for start in range(0, count, BLOCK):
@@ -83,27 +83,6 @@ def radians_from_degrees(xp: Any, angle_deg: Component) -> Component:
 def degrees_from_radians(angle_rad: Component) -> Component:
     """Return degrees; a right angle is exactly 90."""
     return angle_rad * 180.0 / math.pi
-
-
-def rpy_is_valid(xp: Any, roll: Component, pitch: Component, yaw: Component) -> Component:
-    """Return True where roll, pitch and yaw are finite."""
-    return xp.isfinite(roll) & xp.isfinite(pitch) & xp.isfinite(yaw)
-
-
-def quaternion_is_valid(
-    xp: Any, x: Component, y: Component, z: Component, w: Component,
-) -> Component:
-    """Return True where a quaternion is finite and not zero."""
-    is_finite = xp.isfinite(x) & xp.isfinite(y) & xp.isfinite(z) & xp.isfinite(w)
-    return is_finite & ((w != 0.0) | (x != 0.0) | (y != 0.0) | (z != 0.0))
-
-
-def matrix_is_valid(xp: Any, *matrix: Triple) -> Component:
-    """Return True where three rows are a rotation matrix to :data:`MATRIX_TOLERANCE`."""
-    is_valid = determinant(*matrix) > 0.0
-    for value, expected, _ in orthonormality(xp, *matrix):
-        is_valid = is_valid & (abs(value - expected) <= MATRIX_TOLERANCE)
-    return is_valid
 
 
 def orthonormality(xp: Any, *matrix: Triple) -> Iterator[tuple[Component, float, str]]:
@@ -133,6 +112,7 @@ def quaternion_from_rpy(
     xp: Any, roll: Component, pitch: Component, yaw: Component,
 ) -> Quaternion:
     """Return the canonical quaternion of roll, pitch, yaw."""
+    _check(xp, xp.isfinite(roll) & xp.isfinite(pitch) & xp.isfinite(yaw))
     sin_r, cos_r = xp.sin(0.5 * roll), xp.cos(0.5 * roll)
     sin_p, cos_p = xp.sin(0.5 * pitch), xp.cos(0.5 * pitch)
     sin_y, cos_y = xp.sin(0.5 * yaw), xp.cos(0.5 * yaw)
@@ -208,6 +188,10 @@ def quaternion_from_matrix(xp: Any, *matrix: Triple) -> Quaternion:
     matrix", 2000). The other eigenvalues are up to 1e-5 of it, so each step of the power iteration
     gains five digits.
     """
+    is_valid = determinant(*matrix) > 0.0
+    for value, expected, _ in orthonormality(xp, *matrix):
+        is_valid = is_valid & (abs(value - expected) <= MATRIX_TOLERANCE)
+    _check(xp, is_valid)
     (m00, m01, m02), (m10, m11, m12), (m20, m21, m22) = matrix
     xx = 1.0 + m00 - m11 - m22
     yy = 1.0 - m00 + m11 - m22
@@ -237,6 +221,7 @@ def matrix_from_rpy(xp: Any, roll: Component, pitch: Component, yaw: Component) 
 
     By way of the quaternion the elements at gimbal lock would not be exact.
     """
+    _check(xp, xp.isfinite(roll) & xp.isfinite(pitch) & xp.isfinite(yaw))
     sin_r, cos_r = xp.sin(roll), xp.cos(roll)
     sin_p, cos_p = xp.sin(pitch), xp.cos(pitch)
     sin_y, cos_y = xp.sin(yaw), xp.cos(yaw)
@@ -270,12 +255,14 @@ def canonical_quaternion(
 def _scaled(
     xp: Any, x: Component, y: Component, z: Component, w: Component,
 ) -> tuple[Component, Component, Component, Component, Component]:
-    """Return the components and the square; an extreme one is scaled by a power of two."""
+    """Return the components and the square, scaled by a power of two if it is extreme."""
     square = x * x + y * y + z * z + w * w
-    is_extreme = (square <= SMALLEST_SQUARE) | (square >= LARGEST_SQUARE)
-    if xp.any(is_extreme):
+    is_usual = (square > SMALLEST_SQUARE) & (square < LARGEST_SQUARE)
+    if not xp.all(is_usual):
         largest = functools.reduce(xp.maximum, (abs(x), abs(y), abs(z), abs(w)))
-        exponent = xp.where(is_extreme, -xp.frexp(largest)[1], 0)
+        is_finite = xp.isfinite(x) & xp.isfinite(y) & xp.isfinite(z) & xp.isfinite(w)
+        _check(xp, is_finite & (largest > 0.0))
+        exponent = xp.where(is_usual, 0, -xp.frexp(largest)[1])
         x, y, z, w = (xp.ldexp(component, exponent) for component in (x, y, z, w))
         square = x * x + y * y + z * z + w * w
     return x, y, z, w, square
@@ -307,3 +294,8 @@ def _corrected(
         sign = xp.where(is_half_turn, xp.copysign(1.0, first), sign)
     # Adding zero makes -0.0 positive.
     return x * sign + 0.0, y * sign + 0.0, z * sign + 0.0, w * sign + 0.0
+
+
+def _check(xp: Any, is_valid: Component) -> None:
+    if not xp.all(is_valid):
+        raise InvalidRotationError(is_valid)

@@ -40,6 +40,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from sdf_pose_bridge.geometry import floats
 from sdf_pose_bridge.geometry import formulas
 
 if TYPE_CHECKING:
@@ -206,7 +207,7 @@ def _matrix_message(*matrix: Any) -> str:
     rows = tuple(map(tuple, matrix))
     if not np.isfinite(matrix).all():
         return f'rotation matrix {rows} is not finite'
-    for value, expected, name in formulas.orthonormality(formulas.FLOATS, *matrix):
+    for value, expected, name in formulas.orthonormality(floats, *matrix):
         if not abs(value - expected) <= formulas.MATRIX_TOLERANCE:
             return (
                 f'rotation matrix {rows} is not orthonormal: {name} {value!r}, which differs from'
@@ -217,20 +218,17 @@ def _matrix_message(*matrix: Any) -> str:
 
 
 class _Representation(NamedTuple):
-    """What the numbers of a rotation are, and which of them are refused."""
+    """What the numbers of a rotation are."""
 
     name: str
     shape: tuple[int, ...]
-    are_valid: Callable[..., Any]
-    """Returns True for the numbers of a rotation; elementwise, as the formulas."""
     message: Callable[..., str]
-    """Returns what is wrong with the numbers if they are not valid."""
+    """Returns what is wrong with numbers that are not valid."""
 
 
-_RPY = _Representation('roll, pitch, yaw', (3,), formulas.rpy_is_valid, _rpy_message)
-_QUATERNION = _Representation(
-    'quaternion', (4,), formulas.quaternion_is_valid, _quaternion_message)
-_MATRIX = _Representation('rotation matrix', (3, 3), formulas.matrix_is_valid, _matrix_message)
+_RPY = _Representation('roll, pitch, yaw', (3,), _rpy_message)
+_QUATERNION = _Representation('quaternion', (4,), _quaternion_message)
+_MATRIX = _Representation('rotation matrix', (3, 3), _matrix_message)
 
 
 def _converted(
@@ -240,7 +238,7 @@ def _converted(
     """
     Evaluate a formula for one rotation, or for all of an array.
 
-    :param formula: takes a namespace and the components of a rotation.
+    :param formula: takes numpy or floats, and the components of a rotation.
     :param values: one rotation as a tuple or list, or an array of shape (..., *given.shape).
     :param given: what the values are.
     :param shape: shape of what the formula returns.
@@ -249,10 +247,9 @@ def _converted(
     """
     if not isinstance(values, np.ndarray):
         try:
-            if given.are_valid(formulas.FLOATS, *values):
-                return formula(formulas.FLOATS, *values)
+            return formula(floats, *values)
         except (TypeError, ValueError, OverflowError):
-            pass  # not one rotation in floats
+            pass  # not one valid rotation
     array = _array(values, given)
     leading = array.shape[:array.ndim - len(given.shape)]
     rows = array.reshape(-1, math.prod(given.shape))
@@ -260,12 +257,13 @@ def _converted(
     with np.errstate(all='ignore'):
         for block in formulas.row_blocks(len(rows)):
             columns = np.ascontiguousarray(rows[block].T).reshape(*given.shape, -1)
-            are_valid = given.are_valid(np, *columns)
-            if not are_valid.all():
-                row = block.start + int(np.argmin(are_valid))
+            try:
+                components = formula(np, *columns)
+            except formulas.InvalidRotationError as error:
+                row = block.start + int(np.argmin(error.is_valid))
                 message = given.message(*rows[row].reshape(given.shape).tolist())
-                raise RotationError(f'row {row}: {message}' if leading else message)
-            results[block] = np.reshape(formula(np, *columns), (results.shape[1], -1)).T
+                raise RotationError(f'row {row}: {message}' if leading else message) from error
+            results[block] = np.reshape(components, (results.shape[1], -1)).T
     return results.reshape(leading + shape)
 
 

@@ -81,6 +81,15 @@ def test_quaternions_must_not_be_zero(function):
         function(np.array([IDENTITY] * 9000 + [(0.0, 0.0, 0.0, 0.0)]))
 
 
+@pytest.mark.parametrize('function', FROM_QUATERNION)
+def test_the_first_invalid_row_is_named(function):
+    zero, not_finite = (0.0, 0.0, 0.0, 0.0), (math.nan, 0.0, 0.0, 0.0)
+    with pytest.raises(RotationError, match=r'row 1: .*zero'):
+        function(np.array([IDENTITY, zero, not_finite]))
+    with pytest.raises(RotationError, match=r'row 1: .*not finite'):
+        function(np.array([IDENTITY, not_finite, zero]))
+
+
 @pytest.mark.parametrize('values', [(), (1.0,), (1.0, 2.0), (0.0,) * 5, 'abc', (1.0, 'x', 0.0)])
 @pytest.mark.parametrize('function', [*FROM_RPY, *FROM_QUATERNION])
 def test_wrong_shapes_are_errors(function, values):
