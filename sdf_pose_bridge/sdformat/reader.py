@@ -151,10 +151,7 @@ class _Reader:
         depth: int,
     ) -> None:
         """Read an element that holds others."""
-        if depth > _DEEPEST:
-            msg = f'elements are nested more than {_DEEPEST} deep'
-            self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
-        elif definition.kind is not None:
+        if definition.kind is not None:
             self._read_frame(xml, definition, definition.kind, parent, scope, path, depth)
         elif definition.identifier == 'include':
             if parent != NO_ELEMENT:
@@ -187,6 +184,10 @@ class _Reader:
         self, xml: XmlElement, definition: Definition, parent: int, scope: int, path: str,
         depth: int,
     ) -> None:
+        if depth > _DEEPEST:
+            msg = f'elements are nested more than {_DEEPEST} deep'
+            self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
+            return
         definitions = definition.children
         for child in xml:
             child_definition = definitions.get(child.tag)
