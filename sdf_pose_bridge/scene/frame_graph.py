@@ -23,8 +23,8 @@ from sdf_pose_bridge.errors import RelativeToCycleError
 from sdf_pose_bridge.errors import RelativeToError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import WORLD_FRAME
-from sdf_pose_bridge.scene.joints import check_joints
 from sdf_pose_bridge.scene.joints import JointEnds
+from sdf_pose_bridge.scene.joints import valid_joints
 from sdf_pose_bridge.scene.name_scopes import IS_FRAME_KIND
 from sdf_pose_bridge.scene.name_scopes import NameScopes
 from sdf_pose_bridge.scene.pointers import cycles_from_pointers
@@ -58,7 +58,7 @@ class FrameGraph(NamedTuple):
     canonical_links: Indices
     """The canonical link of each model; -1 for a model without one and for other kinds."""
     joints: Sequence[JointEnds]
-    """All joints, in file order."""
+    """The joints that join two bodies, in file order."""
     unresolved: frozenset[int]
     """Elements without a pose in the root: those in links whose reference does not exist, which
     libsdformat loads all the same, and those that refer to an include that was not found."""
@@ -93,7 +93,7 @@ class _Builder:
         attachments = self._attachments(joints, canonical)
         bodies = ends_from_pointers(attachments)
         bodies[(elements.parents >= 0) & ~IS_FRAME_KIND[elements.kinds]] = NO_ELEMENT
-        check_joints(
+        joints_of_bodies = valid_joints(
             elements, self._scopes,
             [ends for ends in joints.values() if ends.joint not in self._unresolved],
             bodies, self._problems)
@@ -102,7 +102,7 @@ class _Builder:
         self._add_dependents(references, attachments, joints)
         return FrameGraph(
             self._scopes.names, self._scopes.roots, references, placements, attachments, bodies,
-            self._canonical_links(canonical, bodies), tuple(joints.values()),
+            self._canonical_links(canonical, bodies), joints_of_bodies,
             frozenset(self._unresolved))
 
     # Attachment

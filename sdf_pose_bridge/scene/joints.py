@@ -3,8 +3,8 @@
 """
 Check that every joint joins two bodies.
 
-Source: ``checkJointParentChildNames`` and ``checkJointAxisExpressedInValues`` of libsdformat,
-which leave out joints of deeper nested models; here they are checked too.
+Source: ``checkJointParentChildNames`` and ``checkJointAxisExpressedInValues`` of libsdformat. They
+skip joints of models in models, except for unknown children; here these are warnings.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ class JointEnds(NamedTuple):
     child: int
 
 
-def check_joints(
+def valid_joints(
     elements: Elements, scopes: NameScopes, joints: Iterable[JointEnds], bodies: Indices,
     problems: Problems,
-) -> None:
+) -> list[JointEnds]:
     """
     Check the ends and the axes of joints.
 
@@ -45,12 +45,10 @@ def check_joints(
     :param joints: the joints to check.
     :param bodies: for each frame the link, static model or root that it is attached to.
     :param problems: takes what is wrong.
+    :return: the joints that join two bodies.
     """
     checks = _JointChecks(elements, scopes, bodies.tolist(), problems)
-    for ends in joints:
-        if checks.are_ends_valid(ends):
-            checks.check_bodies(ends)
-        checks.check_axes(ends.joint)
+    return [ends for ends in joints if checks.is_valid(ends)]
 
 
 class _JointChecks:
@@ -64,7 +62,14 @@ class _JointChecks:
         self._bodies = bodies
         self._problems = problems
 
-    def are_ends_valid(self, ends: JointEnds) -> bool:
+    def is_valid(self, ends: JointEnds) -> bool:
+        for reference in self._elements.joints[ends.joint].expressed_in:
+            if self._scopes.frame(self._scope_of[ends.joint], reference.name) is None:
+                self._report_unknown(
+                    ExpressedInError, ends.joint, reference, 'expressed_in', 'axis')
+        return self._are_ends_valid(ends) and self._are_bodies_valid(ends)
+
+    def _are_ends_valid(self, ends: JointEnds) -> bool:
         joint, parent_index, child_index = ends
         details = self._elements.joints[joint]
         parent, child = details.parent, details.child
@@ -77,30 +82,27 @@ class _JointChecks:
             self._report_unknown(JointParentError, joint, parent, 'parent')
         elif parent_index == joint:
             msg = f'the joint names itself, "{parent.name}", as its parent'
-            self._error(JointParentError, msg, joint, parent.line, 'parent')
+            self._report(JointParentError, msg, joint, parent.line, 'parent')
         return (
             min(parent_index, child_index) >= 0 and joint not in (parent_index, child_index)
             and child.name != WORLD_FRAME)
 
-    def check_bodies(self, ends: JointEnds) -> None:
+    def _are_bodies_valid(self, ends: JointEnds) -> bool:
         joint = ends.joint
         parent_body, child_body = self._bodies[ends.parent], self._bodies[ends.child]
-        if child_body != parent_body and child_body != self._scopes.roots[joint]:
-            return
+        root = self._scopes.roots[joint]
+        if child_body not in (parent_body, root):
+            return True
         details = self._elements.joints[joint]
         parent, child = details.parent, details.child
-        if child_body == self._scopes.roots[joint]:
+        if child_body == root:
             msg = f'child "{child.name}" is attached to the world, so nothing can move it'
             self._error(JointChildError, msg, joint, child.line, 'child')
         else:
             msg = (f'parent "{parent.name}" and child "{child.name}" are both attached to '
                    f'"{self._scopes.names[child_body]}"; a joint joins two bodies')
-            self._error(JointSameLinkError, msg, joint, 0, '')
-
-    def check_axes(self, joint: int) -> None:
-        for reference in self._elements.joints[joint].expressed_in:
-            if self._scopes.frame(self._scope_of[joint], reference.name) is None:
-                self._report_unknown(ExpressedInError, joint, reference, 'expressed_in', 'axis')
+            self._report(JointSameLinkError, msg, joint, 0, '')
+        return False
 
     def _report_unknown(
         self, error_class: type[SdfError], joint: int, reference: Reference, what: str,
@@ -109,7 +111,20 @@ class _JointChecks:
         scope = self._scope_of[joint]
         msg = (f'{what} "{reference.name}" names no frame in {self._scopes.described(scope)}'
                f'{self._scopes.hint(scope, reference.name)}')
-        self._error(error_class, msg, joint, reference.line, part or what)
+        report = self._error if error_class is JointChildError else self._report
+        report(error_class, msg, joint, reference.line, part or what)
+
+    def _report(
+        self, error_class: type[SdfError], message: str, joint: int, line: int, part: str,
+    ) -> None:
+        """Report what libsdformat does not check in models in models."""
+        scope = self._scope_of[joint]
+        if scope == self._scopes.roots[joint] or (
+                self._elements.parents[scope] == self._scopes.roots[joint]):
+            self._error(error_class, message, joint, line, part)
+        else:
+            place = self._elements.place(joint, line, part)
+            self._problems.warning(f'{message}; the joint moves nothing', place, error_class.code)
 
     def _error(
         self, error_class: type[SdfError], message: str, joint: int, line: int, part: str,

@@ -47,6 +47,19 @@ _SHADER_TYPES = (
     'normal_map_object_space', 'normal_map_tangent_space', 'pixel', 'vertex')
 
 
+def reference_of(xml: XmlElement, attribute: str) -> str:
+    """
+    Return the frame that an attribute names.
+
+    :param xml: an element.
+    :param attribute: name of the attribute.
+    :return: the name; empty if there is none, and for the implicit root, which is an error that
+        the check of attributes reports.
+    """
+    name = attribute_of(xml, attribute)
+    return '' if name == ROOT_FRAME else name
+
+
 class DetailsReader:
     """
     Reads what only some kinds of elements have.
@@ -59,22 +72,6 @@ class DetailsReader:
         self._sources = sources
         self._problems = problems
 
-    def reference(self, xml: XmlElement, attribute: str) -> str:
-        """
-        Read an attribute that names a frame.
-
-        :param xml: the element.
-        :param attribute: name of the attribute.
-        :return: the name of the frame; empty if there is none, or a reserved one, which is then
-            reported.
-        """
-        name = attribute_of(xml, attribute)
-        if name != ROOT_FRAME:
-            return name
-        msg = f'{attribute}="{name}": this name is reserved, nothing can refer to it'
-        self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
-        return ''
-
     def model(self, xml: XmlElement) -> ModelDetails:
         """
         Read a model.
@@ -85,7 +82,7 @@ class DetailsReader:
         static = first_child(xml, 'static')
         return ModelDetails(
             static is not None and bool(boolean_from_text(value_of(static))),
-            self.reference(xml, 'canonical_link'), self.reference(xml, 'placement_frame'))
+            reference_of(xml, 'canonical_link'), reference_of(xml, 'placement_frame'))
 
     def frame(self, xml: XmlElement) -> FrameDetails:
         """
@@ -95,7 +92,7 @@ class DetailsReader:
         :return: its details.
         """
         return FrameDetails(
-            self.reference(xml, 'attached_to'), xml.get(PLACEMENT_OF_MERGED_MODEL, ''))
+            reference_of(xml, 'attached_to'), xml.get(PLACEMENT_OF_MERGED_MODEL, ''))
 
     def joint(self, xml: XmlElement) -> JointDetails:
         """

@@ -16,7 +16,6 @@ from sdf_pose_bridge.sdformat.versions import convert
 from sdf_pose_bridge.sdformat.versions import version_from_text
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
@@ -95,7 +94,8 @@ def _check_top_model(root: XmlElement, sources: Sources, problems: Problems) -> 
     """Refuse ``relative_to`` in the pose of a file's top model (``checkXmlFromRoot``)."""
     model = first_child(root, 'model')
     pose = None if model is None else first_child(model, 'pose')
-    relative_to = '' if pose is None else attribute_of(pose, 'relative_to')
+    # Blanks count here, unlike elsewhere.
+    relative_to = '' if pose is None else pose.get('relative_to', '')
     if pose is not None and relative_to:
         msg = (f'relative_to="{relative_to}": a model at the top of a file is placed in the '
                'implicit root, which has no frames')

@@ -45,6 +45,8 @@ class ValueType(enum.Enum):
     """A direction: not all of the numbers are zero."""
     COLOR = 'color', 'a color of three or four numbers from 0 to 1', 4
     POSE = 'pose', 'a pose', 6
+    FRAME = 'frame', 'a frame that can be named', 0
+    """The name of a frame; any but that of the implicit root."""
 
     description: str
     count: int
@@ -91,7 +93,7 @@ class Kind(enum.IntEnum):
         '@name! audio wind include gravity!:vector3 magnetic_field!:vector3 atmosphere! gui '
         'physics! scene! plugin road spherical_coordinates state population')
     MODEL = 'sdf world model', (
-        '@name! @canonical_link @placement_frame pose static:bool self_collide:bool '
+        '@name! @canonical_link:frame @placement_frame:frame pose static:bool self_collide:bool '
         'allow_auto_disable:bool enable_wind:bool plugin gripper include'), True
     LINK = 'model', (
         '@name! pose gravity:bool enable_wind:bool self_collide:bool kinematic:bool '
@@ -99,7 +101,7 @@ class Kind(enum.IntEnum):
     JOINT = 'model world', (
         '@name! @type! pose parent! child! gearbox_ratio:double gearbox_reference_body '
         'thread_pitch:double screw_thread_pitch:double axis axis2 physics'), True
-    FRAME = 'model world', '@name! @attached_to pose', True
+    FRAME = 'model world', '@name! @attached_to:frame pose', True
     VISUAL = 'link', (
         '@name! pose cast_shadows:bool laser_retro:double transparency:double '
         'visibility_flags:int meta material geometry! plugin')

@@ -19,6 +19,7 @@ from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.details import DetailsReader
+from sdf_pose_bridge.sdformat.details import reference_of
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
@@ -227,7 +228,7 @@ class _Reader:
                     msg = f'<{written_tag(xml)}> has no {name}'
                     self._problems.error(AttributeMissingError(msg, self._sources.place(xml)))
             elif value.strip() and not is_of_type(value.strip(), attribute.value_type):
-                msg = f'{name}="{value}" is not {attribute.value_type.description}'
+                msg = f'{name}="{value.strip()}" is not {attribute.value_type.description}'
                 self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
             elif attribute.is_required and not value.strip():
                 msg = f'{name}="{value}" of <{written_tag(xml)}> is empty'
@@ -258,7 +259,7 @@ class _Reader:
         if xml.get('frame') is not None:
             msg = f'frame="{xml.get("frame")}" has no meaning since 1.7; relative_to has'
             self._problems.warning(msg, self._sources.place(xml))
-        relative_to = self._details.reference(xml, 'relative_to')
+        relative_to = reference_of(xml, 'relative_to')
         if not relative_to:
             return
         reason = ''

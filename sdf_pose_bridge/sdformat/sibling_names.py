@@ -49,6 +49,8 @@ class SiblingNames:
         self._sources = sources
         self._problems = problems
         self._used: dict[tuple[int, Kind | None, str], tuple[Kind, int]] = {}
+        self._renamed: set[tuple[int, Kind, str]] = set()
+        self._new_names: set[tuple[int, Kind | None, str]] = set()
 
     def add(self, kind: Kind, xml: XmlElement, parent: int) -> str | None:
         """
@@ -71,7 +73,10 @@ class SiblingNames:
             self._used[key] = (kind, len(self._builder.names))
             return name
         other, index = self._used[key]
-        if other is not kind and self._is_renamed(kind, parent):
+        has_duplicate = (other is kind and key not in self._new_names) or (
+            (parent, kind, name) in self._renamed)
+        if not has_duplicate and self._is_renamed(kind, parent):
+            self._renamed.add((parent, kind, name))
             return self._new_name(kind, xml, parent, name)
         msg = (f'the name "{name}" belongs to {_ARTICLES.get(other, "a")} {other.label} of this '
                f'scope already, {self._described_place(index)}')
@@ -106,6 +111,7 @@ class SiblingNames:
         new_name = next(
             each for each in candidates if (parent, None, each) not in self._used)
         self._used[parent, None, new_name] = (kind, len(self._builder.names))
+        self._new_names.add((parent, None, new_name))
         msg = (f'the name "{name}" is that of another kind of element in this scope; this '
                f'{kind.label} is called "{new_name}" instead, and references to "{name}" mean the '
                'other one')

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import math
 import re
 
+from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
@@ -28,7 +29,7 @@ _SHORTEST_AXIS = 1e-6
 _FEWEST_COLOR_NUMBERS = 3
 # Python takes longer to look up a member of an Enum than a global variable.
 _AXIS, _BOOLEAN, _COLOR = ValueType.AXIS, ValueType.BOOLEAN, ValueType.COLOR
-_INTEGER, _NUMBER = ValueType.INTEGER, ValueType.NUMBER
+_FRAME, _INTEGER, _NUMBER = ValueType.FRAME, ValueType.INTEGER, ValueType.NUMBER
 
 
 def boolean_from_text(text: str) -> bool | None:
@@ -94,6 +95,8 @@ def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> b
         return _LEADING_INTEGER_OR_BOOLEAN.match(text) is not None
     if value_type is _BOOLEAN:
         return boolean_from_text(text) is not None
+    if value_type is _FRAME:
+        return text != ROOT_FRAME
     return len(numbers) == value_type.count  # 0 for a text
 
 

@@ -9,7 +9,7 @@ Depth and sizes are limited as libxml2 does without its option ``huge``.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from collections.abc import Sequence
+from itertools import chain
 from itertools import islice
 from pathlib import Path
 import re
@@ -22,6 +22,7 @@ import numpy as np
 from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.sdformat.xml_repair import repaired
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
@@ -29,23 +30,12 @@ _IGNORED_ERRORS = frozenset({
     'NS_ERR_UNDEFINED_NAMESPACE', 'NS_ERR_QNAME', 'NS_ERR_COLON', 'DTD_ID_REDEFINED'})
 """SDFormat has prefixes without namespaces, and ``xml:id`` has no meaning in it."""
 
-_AFTER_ROOT_ERROR = 'ERR_DOCUMENT_END'
-"""Something follows the outermost element. libsdformat reads the file all the same."""
-
-_DECLARATION_ERROR = 'ERR_RESERVED_XML_NAME'
-"""The declaration is not at the start. Only white space before it is accepted."""
-
-_HYPHENS_ERROR = 'ERR_HYPHEN_IN_COMMENT'
-"""Two hyphens in a comment, after which libxml2 may miss the end of the comment."""
-
 _MOST_ERRORS = 100
 """Releases 2.11 to 2.13 of libxml2 report no more errors."""
 
 _LAST_LINE = 65_535
 """libxml2 reports this line for all elements in later lines."""
 
-_COMMENT_OR_VERBATIM = re.compile(
-    rb'<!--(?:(.*?)-->|.*)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)', re.DOTALL)
 _START_TAG = re.compile(
     rb'<(?:([^/!?][^"\'>]*(?:"[^"]*"[^"\'>]*|\'[^\']*\'[^"\'>]*)*)>'
     rb'|!--.*?-->|!\[CDATA\[.*?\]\]>|\?.*?\?>)', re.DOTALL)
@@ -88,31 +78,25 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
     :return: the tree.
     :raises FileReadError: if it is not well-formed, apart from what libsdformat accepts.
     """
-    warnings = []
-    root, failure, log = _parsed(text, encoding)
-    if len(log) >= _MOST_ERRORS or any(entry.type_name == _HYPHENS_ERROR for entry in log):
-        text, line, count = _without_hyphens_in_comments(text)
-        if count:
-            what = 'a comment holds' if count == 1 else f'{count} comments hold'
-            msg = f'this is not well-formed XML: {what} two hyphens in a row'
-            warnings.append(SdfWarning('WARNING', msg, Place(path, line)))
-            root, failure, log = _parsed(text, encoding)
-    for entry in log:
-        msg = f'this is not well-formed XML: {entry.message.strip()}'
-        if (entry.type_name == _AFTER_ROOT_ERROR and root is not None) or (
-                entry.type_name == _DECLARATION_ERROR and text.lstrip().startswith(b'<?xml')):
-            warnings.append(SdfWarning('WARNING', msg, Place(path, entry.line)))
-        elif entry.type_name not in _IGNORED_ERRORS:
-            raise FileReadError(msg, Place(path, entry.line)) from None
-    if failure is not None:
-        msg = f'this is not XML: {failure.msg}'
-        raise FileReadError(msg, Place(path, failure.lineno or 0))
+    warnings: list[SdfWarning] = []
+    root, error, is_complete = _parsed(text, path, encoding)
+    if error is not None:
+        repair = repaired(text, encoding)
+        if repair is None:
+            raise error
+        text = repair.text
+        root, second_error, is_complete = _parsed(text, path, 'utf-8')
+        if second_error is not None:
+            raise error
+        warnings = [
+            SdfWarning('WARNING', f'this is not well-formed XML: {fault}', Place(path, line))
+            for line, fault in repair.faults]
     if root is None:
         msg = 'this is not XML: it has no element'
         raise FileReadError(msg, Place(path))
     _check_document_type(root, path)
     _check_instructions(root, text, path)
-    if len(log) >= _MOST_ERRORS:
+    if not is_complete:
         _check_with_expat(text, encoding, path)
     if b'xmlns' in text:
         _remove_default_namespaces(root)
@@ -120,38 +104,29 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
 
 
 def _parsed(
-    text: bytes, encoding: str | None,
-) -> tuple[XmlElement | None, etree.XMLSyntaxError | None, Sequence[etree._LogEntry]]:
-    """Return the outermost element, or what kept it from being read; and the log of errors."""
+    text: bytes, path: str, encoding: str | None,
+) -> tuple[XmlElement | None, FileReadError | None, bool]:
+    """
+    Parse text.
+
+    :return: the outermost element; the first error that is not ignored; and whether there can be
+        no other errors.
+    """
     parser = etree.XMLParser(
         encoding=encoding, recover=True, resolve_entities=False, no_network=True, load_dtd=False,
         huge_tree=False, remove_blank_text=True)
+    root = None
+    error = None
     try:
-        return etree.fromstring(text, parser), None, list(parser.error_log)
-    except etree.XMLSyntaxError as error:
-        return None, error, list(parser.error_log)
-
-
-def _without_hyphens_in_comments(text: bytes) -> tuple[bytes, int, int]:
-    """
-    Replace the hyphens in comments by blanks.
-
-    A comment ends with the first ``-->``, as in TinyXML-2.
-
-    :return: a text of the same length, the line of the first comment that holds two hyphens in a
-        row, and the number of such comments.
-    """
-    starts = []
-
-    def with_blanks(found: re.Match[bytes]) -> bytes:
-        comment = found[1]
-        if comment is None:
-            return found[0]
-        if b'--' in comment or comment.endswith(b'-'):
-            starts.append(found.start())
-        return b'<!--%b-->' % comment.replace(b'-', b' ')
-    text = _COMMENT_OR_VERBATIM.sub(with_blanks, text)
-    return text, text.count(b'\n', 0, min(starts, default=0)) + 1, len(starts)
+        root = etree.fromstring(text, parser)
+    except etree.XMLSyntaxError as failure:
+        error = FileReadError(f'this is not XML: {failure.msg}', Place(path, failure.lineno or 0))
+    for entry in parser.error_log:
+        if entry.type_name not in _IGNORED_ERRORS:
+            msg = f'this is not well-formed XML: {entry.message.strip()}'
+            error = FileReadError(msg, Place(path, entry.line))
+            break
+    return root, error, len(parser.error_log) < _MOST_ERRORS
 
 
 def _check_document_type(root: XmlElement, path: str) -> None:
@@ -164,12 +139,12 @@ def _check_document_type(root: XmlElement, path: str) -> None:
 
 
 def _check_instructions(root: XmlElement, text: bytes, path: str) -> None:
-    """Refuse processing instructions in the tree, which end the text of an element in lxml."""
+    """Refuse processing instructions in and after the outermost element, as TinyXML-2 does."""
     # The search of a large tree takes long, and mostly the declaration has the only "?".
     declaration = text.find(b'?>') + 2 if text.startswith(b'<?xml') else 0
-    has_more = text.find(b'?', declaration) >= 0
-    instruction = next(root.iter(etree.PI), None) if has_more else None
-    if instruction is not None:
+    if text.find(b'?', declaration) < 0:
+        return
+    for instruction in chain(root.iter(etree.PI), root.itersiblings(etree.PI)):
         msg = f'the processing instruction <?{instruction.text}?> can only stand before <sdf>'
         raise FileReadError(msg, Place(path, instruction.sourceline or 0))
 

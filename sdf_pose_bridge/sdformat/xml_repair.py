@@ -1,0 +1,171 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Rewrite text that TinyXML-2 accepts, and libsdformat with it, but that is not well-formed XML.
+
+TinyXML-2 knows the five predefined entities and takes any other ``&`` as text. It takes ``<`` in
+attribute values, ``]]>`` in text, two hyphens in comments, attributes without white space between
+them, bytes that are not UTF-8, and any XML version and encoding. It skips text before the
+outermost element, and what follows it if that is not text alone. Lines stay where they are.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+_NAME = r'[^\W\d][\w:.\-]*|:[\w:.\-]*'
+_ATTRIBUTE = re.compile(rf'(\s*)((?:{_NAME})\s*=\s*)("[^"]*"|\'[^\']*\')')
+_TOKEN = re.compile(
+    rf'(?P<comment><!--.*?-->)|(?P<verbatim><!\[CDATA\[.*?\]\]>)|(?P<instruction><\?.*?\?>)'
+    rf'|(?P<other><![^>]*>)|(?P<text>[^<]+)'
+    rf'|<(?P<end>/?)(?P<tag>{_NAME})(?P<attributes>(?:{_ATTRIBUTE.pattern})*)'
+    rf'(?P<rest>\s*(?P<empty>/?)>)', re.DOTALL)
+_BARE_AMPERSAND = re.compile(r'&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)')
+_DECLARED_ENCODING = re.compile(rb'\s*<\?xml[^>]*?encoding\s*=\s*["\']([A-Za-z0-9._-]+)["\']')
+_NOT_NEW_LINE = re.compile(r'[^\n]')
+
+
+class Repair(NamedTuple):
+    """Well-formed XML with the meaning of text that is not."""
+
+    text: bytes
+    """In UTF-8, without a declaration."""
+    faults: list[tuple[int, str]]
+    """What was wrong: the line and a sentence for each sort of fault."""
+
+
+def repaired(text: bytes, encoding: str | None) -> Repair | None:
+    """
+    Rewrite text.
+
+    :param text: text that is not well-formed XML.
+    :param encoding: its encoding; None for the one that it declares.
+    :return: the repair; None if TinyXML-2 would not accept the text either. Nesting and names of
+        end tags are not checked.
+    """
+    return _Repairer().repaired(text, encoding)
+
+
+class _Repairer:
+
+    def __init__(self) -> None:
+        self._faults: dict[str, int] = {}
+        self._line = 1
+        self._depth = 0
+        self._has_root = False
+        self._may_declare = True
+
+    def repaired(self, text: bytes, encoding: str | None) -> Repair | None:
+        decoded = self._decoded(text, encoding).partition('\0')[0]
+        parts = []
+        position = 0
+        while position < len(decoded):
+            token = _TOKEN.match(decoded, position)
+            if token is None:
+                return None
+            position = token.end()
+            if token['instruction'] and not self._may_declare:
+                return None
+            is_last = position == len(decoded)
+            if self._is_after_root() and is_last and (token['text'] or '').strip():
+                return None
+            self._may_declare &= not token['comment'] and not token['tag']
+            parts.append(self._repaired_token(token))
+            self._line += token[0].count('\n')
+        return Repair(
+            ''.join(parts).encode(errors='replace'),
+            sorted((line, fault) for fault, line in self._faults.items()))
+
+    def _is_after_root(self) -> bool:
+        return self._has_root and not self._depth
+
+    def _repaired_token(self, token: re.Match[str]) -> str:
+        whole = token[0]
+        is_outside = not self._depth
+        if token['comment']:
+            inside = whole[4:-3]
+            if '--' not in inside and not inside.endswith('-'):
+                return whole
+            self._note('a comment holds two hyphens in a row')
+            return f'<!--{_blank(inside)}-->'
+        if token['tag']:
+            return self._repaired_tag(token)
+        if token['text']:
+            if not is_outside:
+                return self._repaired_text(whole)
+            if whole.strip('\ufeff \t\r\n'):
+                self._note(f'text {"after" if self._has_root else "before"} the outermost element')
+            return _blank(whole)
+        if token['instruction']:
+            if token.start():
+                self._note('the declaration is not at the beginning')
+            elif not re.search(r'version\s*=\s*["\']1\.0', whole):
+                self._note('the declared XML version is not 1.0')
+            return _blank(whole)
+        if (token['verbatim'] and is_outside) or (token['other'] and self._is_after_root()):
+            return _blank(whole)
+        return whole
+
+    def _repaired_tag(self, token: re.Match[str]) -> str:
+        if self._is_after_root():
+            self._note('elements after the outermost element')
+            return _blank(token[0])
+        if token['end']:
+            self._depth -= 1
+        elif not token['empty']:
+            self._depth += 1
+        self._has_root = True
+        attributes = ''.join(
+            f'{self._space(space)}{name}{self._repaired_value(value)}'
+            for space, name, value in _ATTRIBUTE.findall(token['attributes']))
+        return f'<{token["end"]}{token["tag"]}{attributes}{token["rest"]}'
+
+    def _space(self, space: str) -> str:
+        if not space:
+            self._note('no white space before an attribute')
+        return space or ' '
+
+    def _repaired_value(self, value: str) -> str:
+        if '<' in value:
+            self._note('"<" in the value of an attribute')
+        return self._repaired_ampersands(value).replace('<', '&lt;')
+
+    def _repaired_text(self, text: str) -> str:
+        if ']]>' in text:
+            self._note('"]]>" in text')
+        return self._repaired_ampersands(text).replace(']]>', ']]&gt;')
+
+    def _repaired_ampersands(self, text: str) -> str:
+        if _BARE_AMPERSAND.search(text):
+            self._note('"&" is not the beginning of a known entity')
+        return _BARE_AMPERSAND.sub('&amp;', text)
+
+    def _decoded(self, text: bytes, encoding: str | None) -> str:
+        declared = _DECLARED_ENCODING.match(text)
+        if text.startswith((b'\xff\xfe', b'\xfe\xff')):
+            encoding = 'utf-16'
+        encoding = encoding or (declared[1].decode() if declared else 'utf-8')
+        try:
+            return text.decode(encoding)
+        except (LookupError, UnicodeDecodeError):
+            if encoding.lower() not in ('utf-8', 'utf8'):
+                self._note(f'the text is not in the encoding "{encoding}"; UTF-8 is used')
+        result = ''
+        while True:
+            try:
+                return result + text.decode('utf-8')
+            except UnicodeDecodeError as error:
+                result += text[:error.start].decode('utf-8')
+                self._note('bytes that are not UTF-8, which are read as Latin-1',
+                           1 + result.count('\n'))
+                result += text[error.start:error.end].decode('latin-1')
+                text = text[error.end:]
+
+    def _note(self, fault: str, line: int = 0) -> None:
+        """Note the first line with a fault."""
+        self._faults.setdefault(fault, line or self._line)
+
+
+def _blank(text: str) -> str:
+    return _NOT_NEW_LINE.sub(' ', text)
