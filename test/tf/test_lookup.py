@@ -79,14 +79,6 @@ def test_a_name_that_means_nothing_is_named(lookup, frame, relative_to, sentence
     assert sentence in caught.value.message
 
 
-def test_what_is_asked_again_has_the_same_answer(lookup, monkeypatch):
-    monkeypatch.setattr('sdf_pose_bridge.tf.lookup.MOST_KEPT', 2)
-    names = ['robot::grip', 'robot', 'robot::base', 'robot::base::eye']
-    answers = [lookup.pose(name, reference) for name in names for reference in names]
-    assert [lookup.pose(name, reference) for name in names for reference in names] == answers
-    assert len(set(answers)) > len(names)
-
-
 def test_where_a_text_is_both_the_name_of_sdf_is_meant():
     lookup = lookup_in(
         world_file('<model name="a"><link name="b"><pose>1 0 0 0 0 0</pose></link></model>'
