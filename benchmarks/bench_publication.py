@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Coroutine
 from collections.abc import Iterable
 from collections.abc import Iterator
 import contextlib
@@ -11,6 +12,7 @@ import os
 from pathlib import Path
 import random
 import tempfile
+from typing import Any
 from typing import TYPE_CHECKING
 
 from benchmarks.harness import AtMostTimes
@@ -64,16 +66,20 @@ def scene_of(models: int) -> Scene:
 
 @contextlib.contextmanager
 def node() -> Iterator[Node]:
-    """Make a node of this process, in a ROS context of its own."""
+    """Make a node of this process with an executor, in a ROS context of its own."""
     import rclpy
     from rclpy.context import Context
+    from rclpy.executors import SingleThreadedExecutor
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
     context = Context()
     rclpy.init(args=[], context=context, domain_id=random.randint(1, 100))
     made = rclpy.create_node('benchmark', context=context)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(made)
     try:
         yield made
     finally:
+        executor.shutdown()
         made.destroy_node()
         context.shutdown()
         context.destroy()
@@ -86,10 +92,10 @@ def latched_publisher(node: Node, message_type: type, name: str, depth: int) -> 
         message_type, name, QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL))
 
 
-def all_steps_of(steps: Iterable[object]) -> None:
-    """Do at once what the node does between its services."""
-    for _ in steps:
-        pass
+def run(node: Node, coroutine: Coroutine[Any, Any, object]) -> None:
+    """Run a coroutine to its end, as the executor of the node does between other callbacks."""
+    executor = node.executor
+    executor.spin_until_future_complete(executor.create_task(coroutine))
 
 
 def transforms_of_tree(tree: TfTree) -> Iterator[tuple[str, str, Pose]]:
@@ -129,7 +135,7 @@ def transform_messages(node: Node, transforms: Iterable[tuple[str, str, Pose]]) 
 
 class Bench:
     """
-    The bridge's publications, and a publisher as any program has it.
+    The bridge's publishers, and a publisher as any program has it.
 
     :param ros: the node of both.
     """
@@ -137,14 +143,12 @@ class Bench:
     def __init__(self, ros: Node) -> None:
         from tf2_msgs.msg import TFMessage
 
-        from sdf_pose_bridge.ros.publishers import Publications
-        from sdf_pose_bridge.ros.tf_static import TfStatic
+        from sdf_pose_bridge.ros.publishers import FramePublishers
         self.ros = ros
         self.scene = scene_of(MODELS)
         self.tree = tf_tree_from_scene(self.scene)
         assert len(self.tree.frame_ids) == FRAMES
-        self.tf_static = TfStatic(ros)
-        self.publications = Publications(ros, self.tf_static)
+        self.publishers = FramePublishers(ros)
         self._message_type = TFMessage
         self._publisher = latched_publisher(ros, TFMessage, '/objects', 1)
 
@@ -165,7 +169,7 @@ def first_tf_static() -> Iterator[tuple[Function, Function | None]]:
     with node() as ros:
         bench = Bench(ros)
         yield (
-            lambda: bench.tf_static.publish(tf_tree_from_scene(bench.scene)),
+            lambda: bench.publishers.publish_tf_static(tf_tree_from_scene(bench.scene)),
             lambda: bench.send_objects(transforms_of_scene(bench.scene)))
 
 
@@ -176,7 +180,7 @@ def first_tf_static_and_objects_alone() -> Iterator[tuple[Function, Function | N
     with node() as ros:
         bench = Bench(ros)
         yield (
-            lambda: bench.tf_static.publish(tf_tree_from_scene(bench.scene)),
+            lambda: bench.publishers.publish_tf_static(tf_tree_from_scene(bench.scene)),
             bench.send_objects_of_tree)
 
 
@@ -187,7 +191,7 @@ def tf_static_from_tree() -> Iterator[tuple[Function, Function | None]]:
     with node() as ros:
         bench = Bench(ros)
         yield (
-            lambda: bench.tf_static.publish(bench.tree), bench.send_objects_of_tree)
+            lambda: bench.publishers.publish_tf_static(bench.tree), bench.send_objects_of_tree)
 
 
 @benchmark(
@@ -196,8 +200,8 @@ def tf_static_from_tree() -> Iterator[tuple[Function, Function | None]]:
 def tf_static_again() -> Iterator[tuple[Function, Function | None]]:
     with node() as ros:
         bench = Bench(ros)
-        bench.tf_static.publish(bench.tree)
-        yield bench.tf_static.publish_again, bench.send_objects_of_tree
+        bench.publishers.publish_tf_static(bench.tree)
+        yield bench.publishers.publish_tf_static_again, bench.send_objects_of_tree
 
 
 @benchmark(
@@ -207,13 +211,14 @@ def transforms_one_by_one() -> Iterator[tuple[Function, Function | None]]:
     from geometry_msgs.msg import TransformStamped
     with node() as ros:
         bench = Bench(ros)
-        all_steps_of(bench.publications.publish(bench.tree, ()))
+        bench.publishers.publish_tf_static(bench.tree)
+        run(ros, bench.publishers.publish_topics(()))
         publisher = latched_publisher(ros, TransformStamped, '/one_by_one', FRAMES)
 
         def send_one_by_one() -> None:
             for message in transform_messages(ros, transforms_of_tree(bench.tree)):
                 publisher.publish(message)
-        yield lambda: all_steps_of(bench.publications.publish_again()), send_one_by_one
+        yield lambda: run(ros, bench.publishers.publish_again()), send_one_by_one
 
 
 @benchmark(
@@ -222,29 +227,29 @@ def transforms_one_by_one() -> Iterator[tuple[Function, Function | None]]:
 def topics_of_poses() -> Iterator[tuple[Function, Function | None]]:
     from geometry_msgs.msg import PoseStamped
 
-    from sdf_pose_bridge.ros.publishers import Publications
-    from sdf_pose_bridge.ros.tf_static import TfStatic
+    from sdf_pose_bridge.ros.publishers import FramePublishers
     tree = tf_tree_from_scene(scene_of(TOPICS // 10))
     assert len(tree.frame_ids) == TOPICS
     with node() as ros:
-        publications = Publications(ros, TfStatic(ros))
+        publishers = FramePublishers(ros)
+        publishers.publish_tf_static(tree)
 
         def ours() -> None:
-            all_steps_of(publications.publish(tree, ('*',)))
-            all_steps_of(publications.publish(tree, ()))
+            run(ros, publishers.publish_topics(('*',)))
+            run(ros, publishers.publish_topics(()))
 
         def counterpart() -> None:
             stamp = ros.get_clock().now().to_msg()
-            publishers = []
+            others = []
             for frame_id, numbers in zip(tree.frame_ids, tree.poses.tolist(), strict=True):
                 publisher = latched_publisher(ros, PoseStamped, f'/poses/{frame_id}', 1)
-                publishers.append(publisher)
+                others.append(publisher)
                 message = PoseStamped()
                 message.header.stamp = stamp
                 message.header.frame_id = tree.root_frame
                 place, turn = message.pose.position, message.pose.orientation
                 place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w = numbers
                 publisher.publish(message)
-            for publisher in publishers:
+            for publisher in others:
                 ros.destroy_publisher(publisher)
         yield ours, counterpart

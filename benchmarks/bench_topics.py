@@ -23,13 +23,12 @@ PROGRAM = """
 import sys
 import time
 
-from benchmarks.bench_publication import all_steps_of
 from benchmarks.bench_publication import latched_publisher
 from benchmarks.bench_publication import node
+from benchmarks.bench_publication import run
 from benchmarks.bench_publication import scene_of
 from geometry_msgs.msg import PoseStamped
-from sdf_pose_bridge.ros.publishers import Publications
-from sdf_pose_bridge.ros.tf_static import TfStatic
+from sdf_pose_bridge.ros.publishers import FramePublishers
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 def memory_kb():
@@ -37,7 +36,7 @@ def memory_kb():
         return next(int(line.split()[1]) for line in status if line.startswith('VmRSS:'))
 
 def publish_as_the_bridge(ros, tree):
-    all_steps_of(publications.publish(tree, ('*',)))
+    run(ros, bridge.publish_topics(('*',)))
 
 def publish_as_rclpy(ros, tree):
     stamp = ros.get_clock().now().to_msg()
@@ -55,9 +54,10 @@ publish = publish_as_the_bridge if sys.argv[1] == 'bridge' else publish_as_rclpy
 tree = tf_tree_from_scene(scene_of(int(sys.argv[2]) // 10))
 assert len(tree.frame_ids) == int(sys.argv[2])
 with node() as ros:
-    publications = Publications(ros, TfStatic(ros))
-    # Whatever is needed only once is there after this.
-    all_steps_of(publications.publish(tree, tree.frame_ids[:1]))
+    bridge = FramePublishers(ros)
+    bridge.publish_tf_static(tree)
+    # What is needed only once exists after this.
+    run(ros, bridge.publish_topics(tree.frame_ids[:1]))
     latched_publisher(ros, PoseStamped, '/first', 1).publish(PoseStamped())
     held = memory_kb()
     begin = time.perf_counter()

@@ -11,11 +11,11 @@ pytest.importorskip('yaml', reason='PyYAML is not installed')
 
 import yaml
 
-from sdf_pose_bridge.ros.parameters import PARAMETERS
+from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.ros.parameters import settings_from_node
 
 FILE = Path(__file__).resolve().parents[1] / 'config/bridge.yaml'
-DEFAULTS = {parameter.name: parameter.default for parameter in PARAMETERS}
+DEFAULTS = {name: declaration.default for name, declaration in DECLARATIONS.items()}
 
 
 def values_in_file():
@@ -54,4 +54,4 @@ def test_a_node_takes_it(make_node, tmp_path):
     copy.write_text(text, encoding='utf-8')
     with_file = make_node('with_file', '--params-file', str(copy))
     without = make_node('without', '-p', 'sdf_file:=cell.sdf')
-    assert settings_from_node(with_file) == settings_from_node(without)
+    assert settings_from_node(with_file).values == settings_from_node(without).values

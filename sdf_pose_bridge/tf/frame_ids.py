@@ -23,9 +23,6 @@ from sdf_pose_bridge.scene.pointer_chains import ends_from_pointers
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.elements import Indices
 
-OPTICAL_SUFFIX = '_optical'
-"""Appended to a camera's frame id for its optical frame, unless the file names that frame."""
-
 _LABELLED_KINDS = (
     Kind.VISUAL, Kind.COLLISION, Kind.LIGHT, Kind.PARTICLE_EMITTER, Kind.PROJECTOR, Kind.ACTOR)
 

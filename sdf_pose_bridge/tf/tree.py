@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from collections.abc import Sequence
 import enum
 from typing import NamedTuple
@@ -18,7 +17,6 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.poses import relative_poses
 from sdf_pose_bridge.geometry.rotation import canonical_quaternion
@@ -29,15 +27,13 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
-from sdf_pose_bridge.tf.frame_ids import OPTICAL_SUFFIX
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 from sdf_pose_bridge.tf.parents import TfParents
+from sdf_pose_bridge.tf.sensor_frames import optical_frames_of_cameras
+from sdf_pose_bridge.tf.sensor_frames import with_ids_of_sensors
 
 DEFAULT_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.FRAME, Kind.SENSOR})
 """The kinds of element that become frames unless the options say otherwise."""
-
-OPTICAL_POSE = Pose(0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
-"""Pose of an optical frame (REP 103: z forward, x right, y down) in its camera (x forward)."""
 
 ROOT_IS_PARENT = -1
 """Parent of a frame whose parent is the root frame."""
@@ -103,6 +99,11 @@ class TfTree(NamedTuple):
         ids = (*self.frame_ids, '', self.root_frame)
         return tuple(map(ids.__getitem__, self.parents.tolist()))
 
+    @property
+    def transform_count(self) -> int:
+        """How many frames have a transform."""
+        return int(np.count_nonzero(self.parents != NO_PARENT))
+
 
 def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree:
     """
@@ -119,10 +120,10 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     problems = Problems(scene.files)
     elements = _published_elements(scene, options, problems)
     frame_ids = naming.frame_ids_from_scene(scene, elements)
-    elements, frame_ids, sensor_ids = _with_ids_of_sensors(
+    elements, frame_ids, sensor_ids = with_ids_of_sensors(
         elements, frame_ids, scene, naming, options.root_frame)
     owners = elements.tolist()
-    optical_frames = _optical_frames(
+    optical_frames = optical_frames_of_cameras(
         owners, frame_ids, sensor_ids, scene, naming) if options.optical_frames else []
     owners += [frame.camera for frame in optical_frames]
     frame_ids += [frame.frame_id for frame in optical_frames]
@@ -136,7 +137,8 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     problems.raise_any()
     parents = np.concatenate([
         _parents_of_frames(scene, tf_parents, options.anchor_models, elements),
-        np.array([frame.parent for frame in optical_frames], np.int32)])
+        np.array([ROOT_IS_PARENT if frame.parent is None else frame.parent
+                  for frame in optical_frames], np.int32)])
     # The last two poses serve the two negative indices among the parents.
     others = np.array([*(frame.pose for frame in optical_frames), Pose(), Pose()])
     poses = np.concatenate([scene.poses[elements], others])
@@ -184,94 +186,6 @@ def _model_from_name(scene: Scene, name: str) -> int:
         msg = f'there is no model "{name}" to publish{hint_from_names(name, models)}'
         raise UnknownFrameError(msg, Place(scene.path))
     return models[name]
-
-
-def _with_ids_of_sensors(
-    elements: Indices, frame_ids: list[str], scene: Scene, naming: FrameNaming, root_frame: str,
-) -> tuple[Indices, list[str], dict[int, str]]:
-    """
-    Use the frame ids that the file sets for sensors.
-
-    :param elements: the published elements.
-    :param frame_ids: the frame id of each, made of its name.
-    :param scene: the scene.
-    :param naming: how frame ids are made of names.
-    :param root_frame: frame id of the root.
-    :return: the elements and frame ids without those of sensors whose id is that of another kind
-        of element, or of a sensor in the same place; and the frame id of each published sensor.
-    """
-    sensor_ids = {
-        int(elements[index]): frame_ids[index]
-        for index in np.flatnonzero(scene.kinds[elements] == int(Kind.SENSOR)).tolist()}
-    names = {sensor: scene.sensors[sensor].frame_id for sensor in sensor_ids}
-    if not any(names.values()):
-        return elements, frame_ids, sensor_ids
-    pairs = list(zip(elements.tolist(), frame_ids, strict=True))
-    other_ids = {frame_id for element, frame_id in pairs if element not in sensor_ids}
-    other_ids.add(root_frame)
-    first_sensors: dict[str, int] = {}
-    without_frame = []
-    for sensor, name in names.items():
-        if name:
-            frame_id = sensor_ids[sensor] = naming.frame_id_from_name(name)
-            first = first_sensors.get(frame_id)
-            if frame_id in other_ids or (
-                    first is not None and scene.parents[first] == scene.parents[sensor]
-                    and scene.pose_of(first) == scene.pose_of(sensor)):
-                without_frame.append(sensor)
-                continue
-        first_sensors.setdefault(sensor_ids[sensor], sensor)
-    return (
-        elements[~np.isin(elements, without_frame)],
-        [sensor_ids.get(element, frame_id) for element, frame_id in pairs
-         if element not in without_frame],
-        sensor_ids)
-
-
-class _OpticalFrame(NamedTuple):
-    frame_id: str
-    camera: int
-    """The element of the camera."""
-    pose: Pose
-    """Pose in the root frame."""
-    parent: int
-    """Index of the camera's frame, or :data:`ROOT_IS_PARENT`."""
-
-
-def _optical_frames(
-    elements: Sequence[int], frame_ids: Sequence[str], sensor_ids: Mapping[int, str],
-    scene: Scene, naming: FrameNaming,
-) -> list[_OpticalFrame]:
-    """
-    Make the optical frames of cameras.
-
-    :param elements: the elements that have a frame.
-    :param frame_ids: the frame id of each.
-    :param sensor_ids: the frame id of each published sensor.
-    :param scene: the scene.
-    :param naming: how frame ids are made of names.
-    :return: the optical frames, without those that the file has already.
-    """
-    cameras = [sensor for sensor in sensor_ids if scene.sensors[sensor].is_camera]
-    if not cameras:
-        return []
-    indices: dict[str, int] = {}
-    for index, frame_id in enumerate(frame_ids):
-        indices.setdefault(frame_id, index)
-    poses: dict[str, Pose] = {}
-    frames = []
-    for camera in cameras:
-        name = scene.sensors[camera].optical_frame_id
-        frame_id = naming.frame_id_from_name(name) if name else sensor_ids[camera] + OPTICAL_SUFFIX
-        pose = pose_product(scene.pose_of(camera), OPTICAL_POSE)
-        other = elements[indices[frame_id]] if frame_id in indices else None
-        if name and other is not None and other not in scene.sensors:
-            continue
-        if pose != (poses.get(frame_id) if other is None else scene.pose_of(other)):
-            poses.setdefault(frame_id, pose)
-            parent = indices.get(sensor_ids[camera], ROOT_IS_PARENT)
-            frames.append(_OpticalFrame(frame_id, camera, pose, parent))
-    return frames
 
 
 def _check_frame_ids(

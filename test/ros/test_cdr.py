@@ -151,7 +151,7 @@ def test_names_of_every_length_are_read_back(serialized, rows):
     assert deserialize_message(ours, TFMessage) == tf_message_object(rows, (12, 34))
 
 
-def test_texts_around_the_size_of_a_chunk_have_the_bytes_of_the_serializer(serialized):
+def test_long_names_have_the_bytes_of_the_serializer(serialized):
     lengths = [0, 1, 3, *range(50, 64), *range(108, 116), 1000]
     rows = [('p' * first, 'c' * second, [1.0] * 7) for first in lengths for second in lengths]
     mask = mask_of_list([row[:2] for row in rows])
@@ -177,7 +177,8 @@ def test_messages_can_be_stamped_again(rows, first, second):
 
 
 def test_no_transforms_are_one_empty_message():
-    assert tf_message([], [], np.empty((0, 7))).with_stamp(1, 2) == [bytes([0, 1, 0, 0, 0, 0, 0, 0])]
+    messages = tf_message([], [], np.empty((0, 7))).with_stamp(1, 2)
+    assert messages == [bytes([0, 1, 0, 0, 0, 0, 0, 0])]
 
 
 def test_no_poses_are_no_messages():
