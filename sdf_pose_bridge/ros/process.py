@@ -118,18 +118,15 @@ def _interrupted_by_signals() -> Iterator[None]:
 
 
 def _spin_until_signal(executor: SingleThreadedExecutor) -> None:
-    has_stopped = threading.Event()
+    has_to_stop = threading.Event()
 
     def wait_for_signal() -> None:
         signal.sigwait(STOP_SIGNALS)
-        has_stopped.set()
-        executor.wake()
+        executor.create_task(has_to_stop.set)
 
-    thread = threading.Thread(target=wait_for_signal, name='signals', daemon=True)
-    thread.start()
-    while not has_stopped.is_set():
+    threading.Thread(target=wait_for_signal, name='signals', daemon=True).start()
+    while not has_to_stop.is_set():
         executor.spin_once()
-    thread.join()
 
 
 def _log_failure(node: Node, error: Exception) -> None:

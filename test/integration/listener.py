@@ -55,12 +55,16 @@ class Listener:
         assert message.child_frame_id not in self.transforms, 'sent twice'
         self.transforms[message.child_frame_id] = message
 
+    def spin_once(self):
+        """Handle a message if there is one."""
+        self._executor.spin_once(timeout_sec=0.1)
+
     def wait(self, condition, what):
         """Handle messages until a condition is true."""
         deadline = time.monotonic() + SECONDS
         while not condition():
             assert time.monotonic() < deadline, f'waited in vain for {what()}'
-            self._executor.spin_once(timeout_sec=0.1)
+            self.spin_once()
 
     def wait_for_keys(self, collection, keys):
         self.wait(
