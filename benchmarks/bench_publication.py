@@ -212,7 +212,7 @@ def transforms_one_by_one() -> Iterator[tuple[Function, Function | None]]:
     with node() as ros:
         bench = Bench(ros)
         bench.publishers.publish_tf_static(bench.tree)
-        run(ros, bench.publishers.publish_topics(()))
+        run(ros, bench.publishers.publish_topics({}))
         publisher = latched_publisher(ros, TransformStamped, '/one_by_one', FRAMES)
 
         def send_one_by_one() -> None:
@@ -228,6 +228,7 @@ def topics_of_poses() -> Iterator[tuple[Function, Function | None]]:
     from geometry_msgs.msg import PoseStamped
 
     from sdf_pose_bridge.ros.publishers import FramePublishers
+    from sdf_pose_bridge.ros.topic_names import topics_from_patterns
     tree = tf_tree_from_scene(scene_of(TOPICS // 10))
     assert len(tree.frame_ids) == TOPICS
     with node() as ros:
@@ -235,8 +236,9 @@ def topics_of_poses() -> Iterator[tuple[Function, Function | None]]:
         publishers.publish_tf_static(tree)
 
         def ours() -> None:
-            run(ros, publishers.publish_topics(('*',)))
-            run(ros, publishers.publish_topics(()))
+            topics = topics_from_patterns(tree.frame_ids, ['*']).names
+            run(ros, publishers.publish_topics(topics))
+            run(ros, publishers.publish_topics({}))
 
         def counterpart() -> None:
             stamp = ros.get_clock().now().to_msg()

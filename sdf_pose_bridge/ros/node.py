@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Awaitable
 from collections.abc import Callable
+from collections.abc import Mapping
 from collections.abc import Sequence
 import contextlib
 import time
@@ -40,6 +41,13 @@ from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.publishers import FramePublishers
 from sdf_pose_bridge.ros.services import add_services
+from sdf_pose_bridge.ros.topic_names import are_too_many_by_default
+from sdf_pose_bridge.ros.topic_names import LONGEST_FULL_NAME
+from sdf_pose_bridge.ros.topic_names import LONGEST_NAME
+from sdf_pose_bridge.ros.topic_names import MOST_BY_DEFAULT
+from sdf_pose_bridge.ros.topic_names import SHORTEST_LIMIT
+from sdf_pose_bridge.ros.topic_names import Topics
+from sdf_pose_bridge.ros.topic_names import topics_from_patterns
 from sdf_pose_bridge.sdformat.include.file_address import AddressError
 
 
@@ -117,11 +125,36 @@ class SdfPoseBridge:
         self._diagnostics.update(loaded)
 
     async def _publish_topics(self) -> None:
-        vanished = await self._publishers.publish_topics(self._settings.pose_topics)
+        vanished = await self._publishers.publish_topics(await self._pose_topics())
         if vanished:
             self._logger.warning(
                 f'{_count(len(vanished), "frame")} no longer published, which TF listeners keep '
                 f'until they are restarted: {names_in_line(vanished)}')
+
+    async def _pose_topics(self) -> Mapping[str, str]:
+        """Return the names of the pose topics by frame id."""
+        patterns = self._settings.pose_topics
+        frame_ids = self._loaded.tree.frame_ids
+        if are_too_many_by_default(frame_ids, patterns):
+            self._logger.warning(
+                f'no ~/poses/... topics: {len(frame_ids)} frames are more than {MOST_BY_DEFAULT}; '
+                'name those that you want in pose_topics, such as "robot/*", or ask for all with '
+                '"?*"')
+            return {}
+        room = LONGEST_FULL_NAME - len(f'{self._node.get_fully_qualified_name()}/poses/')
+        if room < SHORTEST_LIMIT:
+            self._logger.warning(
+                'no ~/poses/... topics: the name of the node and its namespace are so long that '
+                'the names of topics would be longer than the middleware allows')
+            return {}
+        topics: Topics = await run_in_thread(
+            self._node,
+            lambda: topics_from_patterns(frame_ids, patterns, min(room, LONGEST_NAME)))
+        if topics.unmatched:
+            self._logger.warning(
+                f'no ~/poses/... topics for {names_in_line(topics.unmatched)} in pose_topics: no '
+                'frame id matches')
+        return topics.names
 
     async def _reload(self) -> list[str]:
         """Read the file again; return the errors, which leave everything as it was."""

@@ -21,18 +21,13 @@ from rclpy.qos import ReliabilityPolicy
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.ros.background import run_in_thread
 from sdf_pose_bridge.ros.background import run_other_callbacks
 from sdf_pose_bridge.ros.cdr import pose_stamped_messages
 from sdf_pose_bridge.ros.cdr import StampedMessages
 from sdf_pose_bridge.ros.cdr import tf_message
 from sdf_pose_bridge.ros.cdr import transform_stamped_messages
-from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.tf.tree import NO_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
-
-LONGEST_FULL_NAME = 246
-"""The most characters that the middleware allows in the full name of a topic."""
 
 MESSAGES_AT_ONCE = 200
 """How many messages are published before other callbacks run, which takes milliseconds."""
@@ -67,11 +62,11 @@ class FramePublishers:
         self._tf_message = tf_message(*_transforms(tree))
         self.publish_tf_static_again()
 
-    async def publish_topics(self, patterns: Sequence[str]) -> list[str]:
+    async def publish_topics(self, topics: Mapping[str, str]) -> list[str]:
         """
         Publish the tree on all other topics, with the stamp that it has on ``/tf_static``.
 
-        :param patterns: glob patterns for the frame ids that get a pose topic.
+        :param topics: names of pose topics by frame id.
         :return: the frames that had a transform before and have none now, sorted.
         """
         tree, self._published = self._tree, []
@@ -81,7 +76,6 @@ class FramePublishers:
             [publisher] * len(child_ids),
             transform_stamped_messages(parent_ids, child_ids, transforms)))
         await self._send(*self._published[-1])
-        topics = await self._topics(patterns)
         await self._replace_pose_publishers(topics)
         indices = [index for index, frame_id in enumerate(tree.frame_ids) if frame_id in topics]
         self._published.append((
@@ -121,36 +115,6 @@ class FramePublishers:
                 self._node, TransformStamped, '~/transforms', depth=max(1, count))
             self._depth = count
         return self._transforms
-
-    async def _topics(self, patterns: Sequence[str]) -> dict[str, str]:
-        """Return the names of the pose topics by frame id."""
-        # Imported here because /tf_static is published before it is needed.
-        from sdf_pose_bridge.ros import topic_names
-        logger = self._node.get_logger()
-        frame_ids = self._tree.frame_ids
-        if topic_names.are_too_many_by_default(frame_ids, patterns):
-            logger.warning(
-                f'no ~/poses/... topics: {len(frame_ids)} frames are more than '
-                f'{topic_names.MOST_BY_DEFAULT}; name those that you want in pose_topics, such as '
-                '"robot/*", or ask for all with "?*"')
-            return {}
-        room = LONGEST_FULL_NAME - len(f'{self._node.get_fully_qualified_name()}/poses/')
-        limit = min(room, topic_names.LONGEST_NAME)
-        try:
-            topics = await run_in_thread(
-                self._node,
-                lambda: topic_names.topics_from_patterns(frame_ids, patterns, limit))
-        except ValueError:
-            logger.warning(
-                'no ~/poses/... topics: the name of the node and its namespace are so long that '
-                'the names of topics would be longer than the middleware allows')
-            return {}
-        if topics.unmatched:
-            logger.warning(
-                f'no ~/poses/... topics for {names_in_line(topics.unmatched)} in pose_topics: no '
-                'frame id matches')
-        names: dict[str, str] = topics.names
-        return names
 
     async def _replace_pose_publishers(self, topics: Mapping[str, str]) -> None:
         wanted = set(topics.values())

@@ -35,12 +35,11 @@ import re
 import string
 from typing import NamedTuple
 
-LONGEST_NAME = 160
-"""
-Default limit of a name in characters.
+LONGEST_FULL_NAME = 246
+"""The most characters that the middleware allows in the full name of a topic."""
 
-ROS allows 247 for a full topic name; the rest is for the node's namespace, its name and ``poses``.
-"""
+LONGEST_NAME = 160
+"""Default limit of a name; the rest is for the node's namespace, its name and ``poses``."""
 
 SHORTEST_LIMIT = 48
 """With a lower limit a cut name would have nothing readable before its hash."""
