@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Publishing many frames, through real publishers, beside what most programs with rclpy do."""
+"""Publishing many frames with real publishers, compared with what most rclpy programs do."""
 
 from __future__ import annotations
 
@@ -99,22 +99,22 @@ def run(node: Node, coroutine: Coroutine[Any, Any, object]) -> None:
 
 
 def transforms_of_tree(tree: TfTree) -> Iterator[tuple[str, str, Pose]]:
-    """Give the frames of a transform and the pose of the second in the first."""
+    """Give the parent frame, the child frame and the pose of each transform."""
     return zip(tree.parent_ids, tree.frame_ids, tree.transforms.tolist(), strict=True)
 
 
 def transforms_of_scene(scene: Scene) -> Iterator[tuple[str, str, Pose]]:
     """
-    Give the same of a scene, as a loop over its elements finds it.
+    Give the same of a scene, in a loop over its elements.
 
-    Each hangs on what holds it, which is less than the bridge's own choice of parents.
+    The parent of each frame is its parent element, which is less work than the bridge's parents.
     """
     for index, name in enumerate(scene.names):
         if scene.kinds[index] in DEFAULT_KINDS:
-            holder = int(scene.parents[index])
+            parent = int(scene.parents[index])
             yield (
-                scene.names[holder].replace(SEPARATOR, '/'), name.replace(SEPARATOR, '/'),
-                scene.relative_pose_of(index, holder))
+                scene.names[parent].replace(SEPARATOR, '/'), name.replace(SEPARATOR, '/'),
+                scene.relative_pose_of(index, parent))
 
 
 def transform_messages(node: Node, transforms: Iterable[tuple[str, str, Pose]]) -> list:
@@ -127,8 +127,8 @@ def transform_messages(node: Node, transforms: Iterable[tuple[str, str, Pose]]) 
         message.header.stamp = stamp
         message.header.frame_id = parent_id
         message.child_frame_id = child_id
-        move, turn = message.transform.translation, message.transform.rotation
-        move.x, move.y, move.z, turn.x, turn.y, turn.z, turn.w = numbers
+        xyz, quat = message.transform.translation, message.transform.rotation
+        xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w = numbers
         messages.append(message)
     return messages
 
@@ -158,7 +158,7 @@ class Bench:
             self._message_type(transforms=transform_messages(self.ros, transforms)))
 
     def send_objects_of_tree(self) -> None:
-        """Send those of the tree so."""
+        """Send those of the tree."""
         self.send_objects(transforms_of_tree(self.tree))
 
 
@@ -249,8 +249,8 @@ def topics_of_poses() -> Iterator[tuple[Function, Function | None]]:
                 message = PoseStamped()
                 message.header.stamp = stamp
                 message.header.frame_id = tree.root_frame
-                place, turn = message.pose.position, message.pose.orientation
-                place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w = numbers
+                xyz, quat = message.pose.position, message.pose.orientation
+                xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w = numbers
                 publisher.publish(message)
             for publisher in others:
                 ros.destroy_publisher(publisher)

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a topic of poses costs the node, beside one of rclpy, each in a process of its own."""
+"""What a pose topic costs the node, compared with one of rclpy, each in its own process."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ def publish_as_rclpy(ros, tree):
         message = PoseStamped()
         message.header.stamp = stamp
         message.header.frame_id = tree.root_frame
-        place, turn = message.pose.position, message.pose.orientation
-        place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w = numbers
+        xyz, quat = message.pose.position, message.pose.orientation
+        xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w = numbers
         publishers.append(latched_publisher(ros, PoseStamped, f'/poses/{frame_id}', 1))
         publishers[-1].publish(message)
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The params file that is handed out has every parameter of the node, and its default."""
+"""The params file in config/ has every parameter of the node with its default."""
 
 from pathlib import Path
 
@@ -19,10 +19,10 @@ DEFAULTS = {name: declaration.default for name, declaration in DECLARATIONS.item
 
 
 def values_in_file():
-    (node, content), = yaml.safe_load(FILE.read_text(encoding='utf-8')).items()
+    (node, entries), = yaml.safe_load(FILE.read_text(encoding='utf-8')).items()
     assert node == '/**'
-    assert content.keys() == {'ros__parameters'}
-    return content['ros__parameters']
+    assert entries.keys() == {'ros__parameters'}
+    return entries['ros__parameters']
 
 
 def test_there_is_every_parameter_that_has_a_default_and_no_other():

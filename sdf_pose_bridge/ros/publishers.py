@@ -32,7 +32,7 @@ from sdf_pose_bridge.tf.tree import TfTree
 MESSAGES_AT_ONCE = 200
 """How many messages are published before other callbacks run, which takes milliseconds."""
 
-PUBLISHERS_AT_ONCE = 10
+PUBLISHERS_AT_ONCE = 25
 """How many publishers are made or destroyed before other callbacks run."""
 
 

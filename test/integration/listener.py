@@ -16,7 +16,7 @@ from rclpy.qos import ReliabilityPolicy
 from tf2_msgs.msg import TFMessage
 
 LOST_S = 2.0
-"""After so long an answer is taken for lost."""
+"""After this time an answer is considered lost."""
 
 
 def latched(depth):
@@ -82,7 +82,7 @@ class Listener:
 
         def is_answered():
             nonlocal asked_at
-            # The middleware may lose the first answer to a client that the server hardly knows.
+            # The middleware may lose the first answer to a client that it has just discovered.
             if is_new and time.monotonic() > asked_at + LOST_S:
                 futures.append(client.call_async(request))
                 asked_at = time.monotonic()

@@ -83,8 +83,8 @@ def transform_message(row, stamp):
     from geometry_msgs.msg import TransformStamped
     parent_id, child_id, numbers = row
     message = stamped(TransformStamped(child_frame_id=child_id), stamp, parent_id)
-    move, turn = message.transform.translation, message.transform.rotation
-    move.x, move.y, move.z, turn.x, turn.y, turn.z, turn.w = numbers
+    xyz, quat = message.transform.translation, message.transform.rotation
+    xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w = numbers
     return message
 
 
@@ -137,8 +137,8 @@ def test_poses_have_the_bytes_of_the_serializer(serialized, rows, stamp):
     assert len(ours) == len(rows)
     for data, (frame_id, _, values) in zip(ours, rows, strict=True):
         message = stamped(PoseStamped(), stamp, frame_id)
-        place, turn = message.pose.position, message.pose.orientation
-        place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w = values
+        xyz, quat = message.pose.position, message.pose.orientation
+        xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w = values
         mask = mask_of_records([frame_id])
         assert meant(data, mask) == meant(serialized(message), mask)
 

@@ -28,8 +28,8 @@ from sdf_pose_bridge_interfaces.srv import LookupPose
 def convert_rotation(given=0, rpy=(0.0, 0.0, 0.0), quat_xyzw=(0.0, 0.0, 0.0, 1.0), degrees=False):
     request = ConvertRotation.Request(given=given, degrees=degrees)
     request.rpy.x, request.rpy.y, request.rpy.z = rpy
-    turn = request.quaternion
-    turn.x, turn.y, turn.z, turn.w = quat_xyzw
+    quat = request.quaternion
+    quat.x, quat.y, quat.z, quat.w = quat_xyzw
     return answer_to_convert_rotation(request, ConvertRotation.Response())
 
 
@@ -78,9 +78,9 @@ def test_bad_poses_are_refused_with_the_rule(request_fields, word):
 def test_both_representations_are_answered():
     response = convert_rotation(rpy=(0.0, 0.0, 90.0), degrees=True)
     assert (response.success, response.message) == (True, '')
-    turn = response.quaternion
+    quat = response.quaternion
     half = math.sqrt(0.5)
-    assert (turn.x, turn.y, turn.z, turn.w) == pytest.approx((0.0, 0.0, half, half))
+    assert (quat.x, quat.y, quat.z, quat.w) == pytest.approx((0.0, 0.0, half, half))
     assert (response.rpy.x, response.rpy.y, response.rpy.z) == (0.0, 0.0, 90.0)
     assert not response.gimbal_lock
 
@@ -111,9 +111,9 @@ def test_an_unknown_frame_is_refused_with_its_name():
 def test_a_pose_has_every_number_in_its_place():
     response = look_up('m')
     assert (response.success, response.message) == (True, '')
-    place, turn = response.pose.pose.position, response.pose.pose.orientation
-    assert (place.x, place.y, place.z) == (0.1, -1e-300, 1e300)
-    assert (turn.x, turn.y, turn.z, turn.w) == (0.0, 0.0, math.sin(1.5), math.cos(1.5))
+    xyz, quat = response.pose.pose.position, response.pose.pose.orientation
+    assert (xyz.x, xyz.y, xyz.z) == (0.1, -1e-300, 1e300)
+    assert (quat.x, quat.y, quat.z, quat.w) == (0.0, 0.0, math.sin(1.5), math.cos(1.5))
 
 
 def test_a_pose_has_its_frame_and_stamp():

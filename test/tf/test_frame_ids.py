@@ -24,8 +24,8 @@ def ids_of(text, *arguments):
     return FrameNaming(*arguments).frame_ids_from_scene(scene, np.flatnonzero(scene.parents >= 0))
 
 
-def in_world(content):
-    return world_file(f'<model name="m">{content}</model>')
+def in_world(children):
+    return world_file(f'<model name="m">{children}</model>')
 
 
 @pytest.mark.parametrize(('text', 'names', 'ids'), [

@@ -36,8 +36,8 @@ def names_of(text, part):
     return [scene.names[joint.element] for joint in answer.loop_joints]
 
 
-def model(name, content):
-    return f'<model name="{name}">{content}</model>'
+def model(name, children):
+    return f'<model name="{name}">{children}</model>'
 
 
 def joints(*pairs):
