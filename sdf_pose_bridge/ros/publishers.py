@@ -29,11 +29,9 @@ from sdf_pose_bridge.ros.cdr import transform_stamped_messages
 from sdf_pose_bridge.tf.tree import NO_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
-MESSAGES_AT_ONCE = 200
-"""How many messages are published before other callbacks run, which takes milliseconds."""
-
-PUBLISHERS_AT_ONCE = 25
-"""How many publishers are made or destroyed before other callbacks run."""
+# How many can be published, or made, in the milliseconds that other callbacks can wait.
+MESSAGES_AT_ONCE = 500
+PUBLISHERS_AT_ONCE = 40
 
 
 class FramePublishers:

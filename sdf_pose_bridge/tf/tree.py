@@ -247,8 +247,9 @@ def _parents_of_frames(
     """
     is_root = scene.parents < 0
     is_detached = np.zeros(len(is_root), np.bool_)
-    for element in np.flatnonzero(is_root[tf_parents.parents] & ~is_root).tolist():
-        is_detached[element] = not _is_anchored(element, scene, tf_parents, anchor_models)
+    if anchor_models is not AnchorModels.ALL:
+        for element in np.flatnonzero(is_root[tf_parents.parents] & ~is_root).tolist():
+            is_detached[element] = not _is_anchored(element, scene, tf_parents, anchor_models)
     frames = np.full(len(is_root), NO_PARENT, np.int32)
     frames[is_root] = ROOT_IS_PARENT
     frames[elements] = np.arange(len(elements))
@@ -264,8 +265,7 @@ def _is_anchored(
     element: int, scene: Scene, tf_parents: TfParents, anchor_models: AnchorModels,
 ) -> bool:
     """Return whether an element whose TF parent is the root gets a transform from it."""
-    is_body = scene.kinds[element] in (int(Kind.LINK), int(Kind.MODEL))
-    if anchor_models is AnchorModels.ALL or not is_body:
+    if scene.kinds[element] not in (int(Kind.LINK), int(Kind.MODEL)):
         return True
     if anchor_models is AnchorModels.NONE:
         return False
