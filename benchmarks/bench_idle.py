@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the node costs while nothing happens, and it only looks whether its files have changed."""
+"""What the node costs while nothing happens but looking for changes of its files."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def processor_time_ns(process: subprocess.Popen) -> int:
     """Return the nanoseconds that the threads of a process have run so far."""
     files = list(Path(f'/proc/{process.pid}/task').glob('*/schedstat'))
     if not files:
-        msg = 'this system does not tell how long threads have run'
+        msg = 'this system does not report how long threads have run'
         raise Unavailable(msg)
     return sum(int(file.read_text(encoding='ascii').split()[0]) for file in files)
 
@@ -52,7 +52,7 @@ def idle_and_minimal_node() -> Iterator[tuple[Function, Function | None]]:
             return [
                 (processor_time_ns(process) - first) / window
                 for process, first in zip(processes, before, strict=True)]
-        # Both in the same time, of which each is asked in turn.
+        # Both are measured in the same time, and then returned one after the other.
         last: list[float] = []
 
         def ours() -> Took:

@@ -1,9 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Publishing many frames, through real publishers, beside what most programs with rclpy do."""
+"""Publishing many frames with real publishers, compared with what most rclpy programs do."""
 
 from __future__ import annotations
 
+from collections.abc import Coroutine
 from collections.abc import Iterable
 from collections.abc import Iterator
 import contextlib
@@ -11,6 +12,7 @@ import os
 from pathlib import Path
 import random
 import tempfile
+from typing import Any
 from typing import TYPE_CHECKING
 
 from benchmarks.harness import AtMostTimes
@@ -64,16 +66,20 @@ def scene_of(models: int) -> Scene:
 
 @contextlib.contextmanager
 def node() -> Iterator[Node]:
-    """Make a node of this process, in a ROS context of its own."""
+    """Make a node of this process with an executor, in a ROS context of its own."""
     import rclpy
     from rclpy.context import Context
+    from rclpy.executors import SingleThreadedExecutor
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
     context = Context()
     rclpy.init(args=[], context=context, domain_id=random.randint(1, 100))
     made = rclpy.create_node('benchmark', context=context)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(made)
     try:
         yield made
     finally:
+        executor.shutdown()
         made.destroy_node()
         context.shutdown()
         context.destroy()
@@ -86,29 +92,29 @@ def latched_publisher(node: Node, message_type: type, name: str, depth: int) -> 
         message_type, name, QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL))
 
 
-def all_steps_of(steps: Iterable[object]) -> None:
-    """Do at once what the node does between its services."""
-    for _ in steps:
-        pass
+def run(node: Node, coroutine: Coroutine[Any, Any, object]) -> None:
+    """Run a coroutine to its end, as the executor of the node does between other callbacks."""
+    executor = node.executor
+    executor.spin_until_future_complete(executor.create_task(coroutine))
 
 
 def transforms_of_tree(tree: TfTree) -> Iterator[tuple[str, str, Pose]]:
-    """Give the frames of a transform and the pose of the second in the first."""
+    """Give the parent frame, the child frame and the pose of each transform."""
     return zip(tree.parent_ids, tree.frame_ids, tree.transforms.tolist(), strict=True)
 
 
 def transforms_of_scene(scene: Scene) -> Iterator[tuple[str, str, Pose]]:
     """
-    Give the same of a scene, as a loop over its elements finds it.
+    Give the same of a scene, in a loop over its elements.
 
-    Each hangs on what holds it, which is less than the bridge's own choice of parents.
+    The parent of each frame is its parent element, which is less work than the bridge's parents.
     """
     for index, name in enumerate(scene.names):
         if scene.kinds[index] in DEFAULT_KINDS:
-            holder = int(scene.parents[index])
+            parent = int(scene.parents[index])
             yield (
-                scene.names[holder].replace(SEPARATOR, '/'), name.replace(SEPARATOR, '/'),
-                scene.relative_pose_of(index, holder))
+                scene.names[parent].replace(SEPARATOR, '/'), name.replace(SEPARATOR, '/'),
+                scene.relative_pose_of(index, parent))
 
 
 def transform_messages(node: Node, transforms: Iterable[tuple[str, str, Pose]]) -> list:
@@ -121,15 +127,15 @@ def transform_messages(node: Node, transforms: Iterable[tuple[str, str, Pose]]) 
         message.header.stamp = stamp
         message.header.frame_id = parent_id
         message.child_frame_id = child_id
-        move, turn = message.transform.translation, message.transform.rotation
-        move.x, move.y, move.z, turn.x, turn.y, turn.z, turn.w = numbers
+        xyz, quat = message.transform.translation, message.transform.rotation
+        xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w = numbers
         messages.append(message)
     return messages
 
 
 class Bench:
     """
-    The bridge's publications, and a publisher as any program has it.
+    The bridge's publishers, and a publisher as any program has it.
 
     :param ros: the node of both.
     """
@@ -137,14 +143,12 @@ class Bench:
     def __init__(self, ros: Node) -> None:
         from tf2_msgs.msg import TFMessage
 
-        from sdf_pose_bridge.ros.publishers import Publications
-        from sdf_pose_bridge.ros.tf_static import TfStatic
+        from sdf_pose_bridge.ros.publishers import FramePublishers
         self.ros = ros
         self.scene = scene_of(MODELS)
         self.tree = tf_tree_from_scene(self.scene)
         assert len(self.tree.frame_ids) == FRAMES
-        self.tf_static = TfStatic(ros)
-        self.publications = Publications(ros, self.tf_static)
+        self.publishers = FramePublishers(ros)
         self._message_type = TFMessage
         self._publisher = latched_publisher(ros, TFMessage, '/objects', 1)
 
@@ -154,7 +158,7 @@ class Bench:
             self._message_type(transforms=transform_messages(self.ros, transforms)))
 
     def send_objects_of_tree(self) -> None:
-        """Send those of the tree so."""
+        """Send those of the tree."""
         self.send_objects(transforms_of_tree(self.tree))
 
 
@@ -165,7 +169,7 @@ def first_tf_static() -> Iterator[tuple[Function, Function | None]]:
     with node() as ros:
         bench = Bench(ros)
         yield (
-            lambda: bench.tf_static.publish(tf_tree_from_scene(bench.scene)),
+            lambda: bench.publishers.publish_tf_static(tf_tree_from_scene(bench.scene)),
             lambda: bench.send_objects(transforms_of_scene(bench.scene)))
 
 
@@ -176,7 +180,7 @@ def first_tf_static_and_objects_alone() -> Iterator[tuple[Function, Function | N
     with node() as ros:
         bench = Bench(ros)
         yield (
-            lambda: bench.tf_static.publish(tf_tree_from_scene(bench.scene)),
+            lambda: bench.publishers.publish_tf_static(tf_tree_from_scene(bench.scene)),
             bench.send_objects_of_tree)
 
 
@@ -187,7 +191,7 @@ def tf_static_from_tree() -> Iterator[tuple[Function, Function | None]]:
     with node() as ros:
         bench = Bench(ros)
         yield (
-            lambda: bench.tf_static.publish(bench.tree), bench.send_objects_of_tree)
+            lambda: bench.publishers.publish_tf_static(bench.tree), bench.send_objects_of_tree)
 
 
 @benchmark(
@@ -196,8 +200,8 @@ def tf_static_from_tree() -> Iterator[tuple[Function, Function | None]]:
 def tf_static_again() -> Iterator[tuple[Function, Function | None]]:
     with node() as ros:
         bench = Bench(ros)
-        bench.tf_static.publish(bench.tree)
-        yield bench.tf_static.publish_again, bench.send_objects_of_tree
+        bench.publishers.publish_tf_static(bench.tree)
+        yield bench.publishers.publish_tf_static_again, bench.send_objects_of_tree
 
 
 @benchmark(
@@ -207,13 +211,14 @@ def transforms_one_by_one() -> Iterator[tuple[Function, Function | None]]:
     from geometry_msgs.msg import TransformStamped
     with node() as ros:
         bench = Bench(ros)
-        all_steps_of(bench.publications.publish(bench.tree, ()))
+        bench.publishers.publish_tf_static(bench.tree)
+        run(ros, bench.publishers.publish_topics({}))
         publisher = latched_publisher(ros, TransformStamped, '/one_by_one', FRAMES)
 
         def send_one_by_one() -> None:
             for message in transform_messages(ros, transforms_of_tree(bench.tree)):
                 publisher.publish(message)
-        yield lambda: all_steps_of(bench.publications.publish_again()), send_one_by_one
+        yield lambda: run(ros, bench.publishers.publish_again()), send_one_by_one
 
 
 @benchmark(
@@ -222,29 +227,31 @@ def transforms_one_by_one() -> Iterator[tuple[Function, Function | None]]:
 def topics_of_poses() -> Iterator[tuple[Function, Function | None]]:
     from geometry_msgs.msg import PoseStamped
 
-    from sdf_pose_bridge.ros.publishers import Publications
-    from sdf_pose_bridge.ros.tf_static import TfStatic
+    from sdf_pose_bridge.ros.publishers import FramePublishers
+    from sdf_pose_bridge.ros.topic_names import topics_from_patterns
     tree = tf_tree_from_scene(scene_of(TOPICS // 10))
     assert len(tree.frame_ids) == TOPICS
     with node() as ros:
-        publications = Publications(ros, TfStatic(ros))
+        publishers = FramePublishers(ros)
+        publishers.publish_tf_static(tree)
 
         def ours() -> None:
-            all_steps_of(publications.publish(tree, ('*',)))
-            all_steps_of(publications.publish(tree, ()))
+            topics = topics_from_patterns(tree.frame_ids, ['*']).names
+            run(ros, publishers.publish_topics(topics))
+            run(ros, publishers.publish_topics({}))
 
         def counterpart() -> None:
             stamp = ros.get_clock().now().to_msg()
-            publishers = []
+            others = []
             for frame_id, numbers in zip(tree.frame_ids, tree.poses.tolist(), strict=True):
                 publisher = latched_publisher(ros, PoseStamped, f'/poses/{frame_id}', 1)
-                publishers.append(publisher)
+                others.append(publisher)
                 message = PoseStamped()
                 message.header.stamp = stamp
                 message.header.frame_id = tree.root_frame
-                place, turn = message.pose.position, message.pose.orientation
-                place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w = numbers
+                xyz, quat = message.pose.position, message.pose.orientation
+                xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w = numbers
                 publisher.publish(message)
-            for publisher in publishers:
+            for publisher in others:
                 ros.destroy_publisher(publisher)
         yield ours, counterpart

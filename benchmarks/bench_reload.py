@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Reloads of the running node: how soon a listener has the new frames, and who waits meanwhile."""
+"""Reloads of the running node: how soon a listener has the new frames, and how long calls take."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ while True:
         longest = 0.0
     time.sleep(0.001)
 """
-"""Calls the bridge without end, and writes the longest call since it was last asked for it."""
+"""Calls the bridge again and again; writes the longest call whenever it is asked for it."""
 
 
 class RunningBridge:
@@ -103,7 +103,7 @@ class RunningBridge:
         return process
 
     def replace(self, text: str) -> None:
-        """Put another file in the place of the file, as editors do."""
+        """Replace the file, as editors do."""
         new = self.file.with_suffix('.new')
         new.write_text(text, encoding='utf-8')
         new.replace(self.file)
@@ -111,7 +111,7 @@ class RunningBridge:
 
 @contextlib.contextmanager
 def work_cell() -> Iterator[tuple[RunningBridge, Callable[[], bytes]]]:
-    """Run the bridge on a copy of the example; also give what waits for its next /tf_static."""
+    """Run the bridge on a copy of the example; also give a function that waits for /tf_static."""
     from rclpy.qos import DurabilityPolicy
     from rclpy.qos import QoSProfile
     from tf2_msgs.msg import TFMessage
@@ -174,7 +174,7 @@ def noticed_change() -> Iterator[tuple[Function, Function | None]]:
 
 
 def wide_world() -> str:
-    """Return a world of many models that stand beside each other."""
+    """Return a world of many models side by side."""
     links = ''.join(
         f'<link name="l{number}"><pose degrees="true">{number} 1 2 10 20 30</pose>'
         '<visual name="v"><pose>0 0 1 0 0 0</pose><geometry/></visual>'
@@ -189,7 +189,7 @@ def wide_world() -> str:
 
 @contextlib.contextmanager
 def wide_bridge() -> Iterator[tuple[RunningBridge, Callable[[], Took]]]:
-    """Run the bridge on a wide world; also give what tells the longest call since it was asked."""
+    """Run the bridge on a wide world; also give a function for the longest call since its last."""
     with contextlib.ExitStack() as stack:
         file = Path(stack.enter_context(tempfile.TemporaryDirectory()), 'wide.sdf')
         file.write_text(wide_world(), encoding='utf-8')
@@ -210,7 +210,7 @@ def wide_bridge() -> Iterator[tuple[RunningBridge, Callable[[], Took]]]:
 def measured(
     longest: Callable[[], Took], reload: Callable[[], object],
 ) -> tuple[Function, Function]:
-    """Return what tells the longest call during a reload, and during as much time without one."""
+    """Return functions for the longest call during a reload, and in as much time without one."""
     took = 0.0
 
     def ours() -> Took:

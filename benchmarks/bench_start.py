@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The start of the node, from the start of its process, beside one that publishes nothing."""
+"""The start of the node, from the start of its process, compared with a minimal node."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ DEADLINE_S = 20.0
 LISTENER_AGE_S = (0.8, 1.3)
 IMPORTS_MS = 60
 SLOW_S = 1.0
-"""Discovery mostly takes far less; where an announcement is lost, the next comes much later."""
+"""Discovery mostly takes far less, but much longer if an announcement gets lost."""
 
 MINIMAL_NODE = """
 import rclpy
@@ -54,11 +54,11 @@ class Changer:
         if publisher is not None:
             sys.meta_path.remove(Changer)
             publish = publisher.publish
-            def publish_and_tell(self, message):
+            def publish_and_report(self, message):
                 publish(self, message)
                 if self.topic_name == '/tf_static':
                     os.write(pipe, b'.')
-            publisher.publish = publish_and_tell
+            publisher.publish = publish_and_report
 
 del sys.argv[0]
 pipe = int(sys.argv.pop(0))
@@ -101,10 +101,10 @@ class Starter:
             [sys.executable, '-c', RUNNER, str(writer), *command], next(self._domains),
             pass_fds=[writer])
         os.close(writer)
-        told = os.read(reader, 1)
+        published = os.read(reader, 1)
         os.close(reader)
         process.kill()
-        if not told:
+        if not published:
             msg = f'{command[0]} ended before it published anything'
             raise Unavailable(msg)
 
@@ -143,7 +143,7 @@ class Starter:
 
 @contextlib.contextmanager
 def listener(domain: int) -> Iterator[Callable[[], bool]]:
-    """Listen to /tf_static; give a function that waits a little and tells whether it came."""
+    """Listen to /tf_static; give a function that waits a little and returns whether it came."""
     import rclpy
     from rclpy.context import Context
     from rclpy.executors import SingleThreadedExecutor
@@ -188,7 +188,7 @@ def report_imports(starter: Starter) -> None:
 
 
 def report(what: str, seconds: list[float]) -> None:
-    """Print all times to a first message: a median would hide that there are two kinds of them."""
+    """Print all times to a first message, because they fall into two groups."""
     slow = sum(each > SLOW_S for each in seconds)
     times = ' '.join(f'{1e3 * each:.0f}' for each in sorted(seconds))
     print(

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a topic of poses costs the node, beside one of rclpy, each in a process of its own."""
+"""What a pose topic costs the node, compared with one of rclpy, each in its own process."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ PROGRAM = """
 import sys
 import time
 
-from benchmarks.bench_publication import all_steps_of
 from benchmarks.bench_publication import latched_publisher
 from benchmarks.bench_publication import node
+from benchmarks.bench_publication import run
 from benchmarks.bench_publication import scene_of
 from geometry_msgs.msg import PoseStamped
-from sdf_pose_bridge.ros.publishers import Publications
-from sdf_pose_bridge.ros.tf_static import TfStatic
+from sdf_pose_bridge.ros.publishers import FramePublishers
+from sdf_pose_bridge.ros.topic_names import topics_from_patterns
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 def memory_kb():
@@ -37,7 +37,7 @@ def memory_kb():
         return next(int(line.split()[1]) for line in status if line.startswith('VmRSS:'))
 
 def publish_as_the_bridge(ros, tree):
-    all_steps_of(publications.publish(tree, ('*',)))
+    run(ros, bridge.publish_topics(topics_from_patterns(tree.frame_ids, ['*']).names))
 
 def publish_as_rclpy(ros, tree):
     stamp = ros.get_clock().now().to_msg()
@@ -45,8 +45,8 @@ def publish_as_rclpy(ros, tree):
         message = PoseStamped()
         message.header.stamp = stamp
         message.header.frame_id = tree.root_frame
-        place, turn = message.pose.position, message.pose.orientation
-        place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w = numbers
+        xyz, quat = message.pose.position, message.pose.orientation
+        xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w = numbers
         publishers.append(latched_publisher(ros, PoseStamped, f'/poses/{frame_id}', 1))
         publishers[-1].publish(message)
 
@@ -55,9 +55,10 @@ publish = publish_as_the_bridge if sys.argv[1] == 'bridge' else publish_as_rclpy
 tree = tf_tree_from_scene(scene_of(int(sys.argv[2]) // 10))
 assert len(tree.frame_ids) == int(sys.argv[2])
 with node() as ros:
-    publications = Publications(ros, TfStatic(ros))
-    # Whatever is needed only once is there after this.
-    all_steps_of(publications.publish(tree, tree.frame_ids[:1]))
+    bridge = FramePublishers(ros)
+    bridge.publish_tf_static(tree)
+    # What is needed only once exists after this.
+    run(ros, bridge.publish_topics(topics_from_patterns(tree.frame_ids[:1], ['*']).names))
     latched_publisher(ros, PoseStamped, '/first', 1).publish(PoseStamped())
     held = memory_kb()
     begin = time.perf_counter()

@@ -2,9 +2,9 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Show the bridge at work: start it on an example, and let another process tell what it receives.
+Demonstrate the bridge: start it on an example, and print what another process receives.
 
-The exit code is 0 if everything arrived, and 1 with the reason if anything did not.
+The exit code is 0 if everything arrived, otherwise 1.
 """
 
 import argparse
@@ -27,24 +27,26 @@ STOP_SECONDS = 10.0
 
 
 class DemoError(Exception):
-    """Says why the demonstration did not work."""
+    """The demonstration did not work."""
 
 
 def free_domain() -> tuple[int, socket.socket]:
     """
-    Find a ROS domain for this demonstration alone.
+    Find a ROS domain that no other demonstration uses.
 
-    Each domain has 250 UDP ports from 7400 + 250 * domain; of those the middleware leaves the
-    sixth alone, so whoever holds it holds the domain among programs that do the same.
+    Each domain has 250 UDP ports from 7400 + 250 * domain. The middleware does not use the sixth
+    of them, so a program that binds it reserves the domain among programs that do the same.
+
+    :return: the number of the domain, and the socket that reserves it.
     """
     for domain in random.sample(range(1, 101), 100):
-        claim = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        port = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
-            claim.bind(('127.0.0.1', 7405 + 250 * domain))
+            port.bind(('127.0.0.1', 7405 + 250 * domain))
         except OSError:
-            claim.close()
+            port.close()
         else:
-            return domain, claim
+            return domain, port
     msg = 'all ROS domains from 1 to 100 are taken'
     raise DemoError(msg)
 
@@ -91,11 +93,11 @@ def stop(bridge: subprocess.Popen) -> None:
 
 
 def demonstrate(file: Path) -> None:
-    domain, claim = free_domain()
+    domain, port = free_domain()
     environment = dict(
         os.environ, ROS_DOMAIN_ID=str(domain), ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST')
     processes = []
-    with claim:
+    with port:
         try:
             command = [str(bridge_executable()), '--ros-args', '-p', f'sdf_file:={file}']
             print(f'ROS_DOMAIN_ID={domain} ros2 run {PACKAGE} bridge {" ".join(command[1:])}',
@@ -122,7 +124,7 @@ def main() -> int:
         'file', nargs='?', type=Path, default=HERE / 'work_cell.sdf',
         help='an SDFormat file (%(default)s)')
     arguments = parser.parse_args()
-    # "make" and systemd stop with SIGTERM; the processes started here must not outlive this one.
+    # make and systemd send SIGTERM; the processes started here must end before this one.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         demonstrate(arguments.file.absolute())

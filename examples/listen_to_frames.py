@@ -2,10 +2,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Listen to a running bridge: receive its frames on every topic, ask it to convert, print it all.
+Receive the frames of a running bridge on every topic, call its services, and print the results.
 
-An example of how a program of yours can use the node. Start the node in one shell and this in
-another; it does not matter which comes first::
+An example of a program that uses the node. Start the node in one shell and this in another, in any
+order::
 
     ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=cell.sdf
     python3 listen_to_frames.py
@@ -37,18 +37,18 @@ WIDTH = 99
 
 
 class MissingError(Exception):
-    """Something that was expected did not arrive."""
+    """Something did not arrive."""
 
 
 def latched(depth: int) -> QoSProfile:
-    """Return the quality of service that also brings what was sent before we listened."""
+    """Return a quality of service with which messages also arrive that were sent earlier."""
     return QoSProfile(
         depth=depth, reliability=ReliabilityPolicy.RELIABLE,
         durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class FrameListener(Node):
-    """Collects what the bridge says; every collection is keyed by frame id."""
+    """Collects the messages of the bridge, by frame id."""
 
     def __init__(self, bridge: str) -> None:
         super().__init__('frame_listener')
@@ -57,13 +57,13 @@ class FrameListener(Node):
         self.transforms: dict[str, TransformStamped] = {}
         self.poses: dict[str, PoseStamped] = {}
         self.create_subscription(TFMessage, '/tf_static', self.take_tf_static, latched(1))
-        # They come one by one and at once, so there must be room for all of them.
+        # They arrive one by one and almost at once, so the queue must have room for all.
         self.create_subscription(
             TransformStamped, f'{bridge}/transforms', self.take_transform, latched(10000))
         self.converter = self.create_client(ConvertRotation, f'{bridge}/convert_rotation')
 
     def take_tf_static(self, message: TFMessage) -> None:
-        """Keep the last message, which has all transforms."""
+        """Keep the last message, which contains all transforms."""
         self.tf_static = {each.child_frame_id: each for each in message.transforms}
 
     def take_transform(self, message: TransformStamped) -> None:
@@ -89,7 +89,7 @@ class FrameListener(Node):
     def convert(
         self, request: ConvertRotation.Request, deadline: float,
     ) -> ConvertRotation.Response:
-        """Have the bridge convert a rotation."""
+        """Call the conversion service."""
         future = self.converter.call_async(request)
         self.wait(deadline, future.done, lambda: 'no answer from the conversion service')
         response = future.result()
@@ -100,7 +100,7 @@ class FrameListener(Node):
 
 
 def receive_frames(listener: FrameListener, deadline: float) -> None:
-    """Wait until all three ways to learn about frames tell of the same ones."""
+    """Wait until the same frames have arrived on all three kinds of topics."""
     listener.wait(
         deadline, lambda: bool(listener.tf_static), lambda: 'nothing arrived on /tf_static')
     frames = set(listener.tf_static)
@@ -121,30 +121,30 @@ def receive_frames(listener: FrameListener, deadline: float) -> None:
 
 
 def tree_lines(parents: dict[str, str], parent: str, indent: str = '  ') -> Iterator[str]:
-    """Write a tree of frames, those that nothing hangs on in shared lines."""
+    """Write a tree of frames, those without children in shared lines."""
     children = [child for child, its_parent in parents.items() if its_parent == parent]
-    holders = set(parents.values())
-    leaves = [child for child in children if child not in holders]
+    inner = set(parents.values())
+    leaves = [child for child in children if child not in inner]
     if leaves:
         yield from textwrap.wrap(
             ', '.join(leaves), WIDTH, initial_indent=indent, subsequent_indent=indent,
             break_long_words=False, break_on_hyphens=False)
     for child in children:
-        if child in holders:
+        if child in inner:
             yield f'{indent}{child}'
             yield from tree_lines(parents, child, f'{indent}  ')
 
 
 def text_from_pose(message: PoseStamped) -> str:
     """Write a pose in one line."""
-    position, turn = message.pose.position, message.pose.orientation
+    xyz, quat = message.pose.position, message.pose.orientation
     return (
-        f'xyz {position.x:8.4f} {position.y:8.4f} {position.z:8.4f}   '
-        f'quaternion xyzw {turn.x:7.4f} {turn.y:7.4f} {turn.z:7.4f} {turn.w:7.4f}')
+        f'xyz {xyz.x:8.4f} {xyz.y:8.4f} {xyz.z:8.4f}   '
+        f'quaternion xyzw {quat.x:7.4f} {quat.y:7.4f} {quat.z:7.4f} {quat.w:7.4f}')
 
 
 def print_frames(listener: FrameListener) -> None:
-    """Print how many frames came in which way, and what they hang on."""
+    """Print how many frames arrived on which topics, and the tree of frames."""
     print(
         f'{len(listener.tf_static)} transforms on /tf_static, {len(listener.transforms)} on '
         f'{listener.bridge}/transforms, {len(listener.poses)} poses on '
@@ -158,7 +158,7 @@ def print_frames(listener: FrameListener) -> None:
 
 
 def print_poses(listener: FrameListener, count: int) -> None:
-    """Print the poses of a few frames from all over the tree."""
+    """Print the poses of a few frames of the tree."""
     frames = list(listener.tf_static)
     count = min(count, len(frames))
     chosen = [frames[(2 * index + 1) * len(frames) // (2 * count)] for index in range(count)]
@@ -169,7 +169,7 @@ def print_poses(listener: FrameListener, count: int) -> None:
 
 
 def print_conversions(listener: FrameListener, deadline: float) -> None:
-    """Have the bridge convert one rotation given as roll, pitch, yaw, and one as a quaternion."""
+    """Convert one rotation given as roll, pitch, yaw, and one as a quaternion."""
     listener.wait(
         deadline, listener.converter.service_is_ready,
         lambda: f'there is no service {listener.bridge}/convert_rotation')
@@ -187,7 +187,7 @@ def print_conversions(listener: FrameListener, deadline: float) -> None:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description='Print what a running bridge says of its frames.')
+    parser = argparse.ArgumentParser(description='Print the frames of a running bridge.')
     parser.add_argument(
         '--bridge', default='/sdf_pose_bridge', help='full name of its node (%(default)s)')
     parser.add_argument(

@@ -5,9 +5,8 @@ Start the bridge on one file.
 
     ros2 launch sdf_pose_bridge bridge.launch.py sdf_file:=cell.sdf
 
-An argument that is not given leaves its parameter to the params file, and without that to the
-node's own default. ``config/bridge.yaml`` of this package is such a file, with every parameter
-explained.
+A parameter whose argument is not given comes from the params file, or else is the default of the
+node. ``config/bridge.yaml`` of this package is a params file that explains every parameter.
 """
 
 from __future__ import annotations
@@ -23,26 +22,26 @@ from launch_ros.parameter_descriptions import ParameterValue
 
 PARAMETERS = {
     'sdf_file': 'SDFormat file to publish: a path, or a file://, package:// or model:// URI.',
-    'frame_prefix': 'Stands before every frame id but that of root_frame, such as robot1/.',
-    'root_frame': "TF frame that stands for the SDF world, or for a model file's root.",
+    'frame_prefix': 'Precedes every frame id but that of root_frame, such as robot1/.',
+    'root_frame': "TF frame of the SDF world, or of a model file's root.",
 }
 """Arguments that set the parameter of the same name."""
 
 
 def generate_launch_description() -> LaunchDescription:
     """
-    Describe what to start.
+    Describe the node.
 
     :return: the arguments and the node.
     """
     return LaunchDescription([
         *(DeclareLaunchArgument(
             name, default_value='',
-            description=f'{description} Left to params_file if empty.')
+            description=f'{description} If empty, params_file decides.')
           for name, description in PARAMETERS.items()),
         DeclareLaunchArgument(
             'namespace', default_value='',
-            description='Namespace of the node, for its topics and services; /tf_static stays.'),
+            description='Namespace of the node, its topics and services; not of /tf_static.'),
         DeclareLaunchArgument(
             'params_file', default_value='',
             description='YAML file with parameters of the node; none if empty.'),
@@ -56,12 +55,12 @@ def _nodes(context: LaunchContext) -> list[Node]:
     return [Node(
         package='sdf_pose_bridge',
         executable='bridge',
-        # With its full name the values below win over whatever a params file calls the node.
+        # With the full name of the node the values below override those of any params file.
         name='sdf_pose_bridge',
         namespace=LaunchConfiguration('namespace'),
         parameters=[
             *([ParameterFile(params_file)] if params_file else []),
-            # As text, whatever it looks like: a frame may be called 1 or yes.
+            # As a string, even if it looks like a number: a frame may be called 1 or yes.
             {name: ParameterValue(value, value_type=str) for name, value in given.items()
              if value},
         ],

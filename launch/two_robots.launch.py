@@ -5,12 +5,12 @@ Start two robots of one file, side by side in one world.
 
     ros2 launch sdf_pose_bridge two_robots.launch.py
 
-Each robot has a node of its own. The namespace keeps their topics and services apart
+Each robot has a node of its own. The namespace separates their topics and services
 (``/left/sdf_pose_bridge/...``), the prefix their frames (``left/chassis``). A model file does not
-say where in the world the robot stands, so each hangs on a root frame of its own, ``left_start``
-and ``right_start``; a third node publishes where these are in ``world``, from
-``examples/starting_places.sdf``. On robots that drive, leave that third node out and let
-odometry or localization say where ``left_start`` and ``right_start`` are.
+say where in the world the robot is, so each robot has its own root frame, ``left_start`` and
+``right_start``; a third node publishes the poses of these in ``world``, from
+``examples/starting_places.sdf``. For robots that drive, leave that node out and let odometry or
+localization publish them.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ EXAMPLES = 'package://sdf_pose_bridge/examples'
 
 def generate_launch_description() -> LaunchDescription:
     """
-    Describe what to start.
+    Describe the three nodes.
 
     :return: the arguments and three nodes.
     """
@@ -50,7 +50,7 @@ def generate_launch_description() -> LaunchDescription:
 
 
 def _bridge(**arguments: str | LaunchConfiguration) -> GroupAction:
-    # In a group, since the arguments of an included file would hold for what follows it too.
+    # In a group, or the arguments would also apply to what is included next.
     return GroupAction([IncludeLaunchDescription(
         PathJoinSubstitution([ThisLaunchFileDir(), 'bridge.launch.py']),
         launch_arguments=arguments.items())])

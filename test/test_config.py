@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The params file that is handed out has every parameter of the node, and its default."""
+"""The params file in config/ has every parameter of the node with its default."""
 
 from pathlib import Path
 
@@ -11,18 +11,18 @@ pytest.importorskip('yaml', reason='PyYAML is not installed')
 
 import yaml
 
-from sdf_pose_bridge.ros.parameters import PARAMETERS
+from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.ros.parameters import settings_from_node
 
 FILE = Path(__file__).resolve().parents[1] / 'config/bridge.yaml'
-DEFAULTS = {parameter.name: parameter.default for parameter in PARAMETERS}
+DEFAULTS = {name: declaration.default for name, declaration in DECLARATIONS.items()}
 
 
 def values_in_file():
-    (node, content), = yaml.safe_load(FILE.read_text(encoding='utf-8')).items()
+    (node, entries), = yaml.safe_load(FILE.read_text(encoding='utf-8')).items()
     assert node == '/**'
-    assert content.keys() == {'ros__parameters'}
-    return content['ros__parameters']
+    assert entries.keys() == {'ros__parameters'}
+    return entries['ros__parameters']
 
 
 def test_there_is_every_parameter_that_has_a_default_and_no_other():
@@ -54,4 +54,4 @@ def test_a_node_takes_it(make_node, tmp_path):
     copy.write_text(text, encoding='utf-8')
     with_file = make_node('with_file', '--params-file', str(copy))
     without = make_node('without', '-p', 'sdf_file:=cell.sdf')
-    assert settings_from_node(with_file) == settings_from_node(without)
+    assert settings_from_node(with_file).values == settings_from_node(without).values

@@ -7,12 +7,12 @@ import pickle
 import pytest
 
 from sdf_pose_bridge import errors
-from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.errors import LoadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.names import hint_from_names
 
 PLACE = Place('a.sdf', 7, '/sdf')
 CLASSES = [

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Launch files load, explain their arguments and hand them to the right nodes."""
+"""Launch files load, describe their arguments and pass them to the right nodes."""
 
 from pathlib import Path
 import xml.etree.ElementTree as ET
@@ -28,18 +28,18 @@ def declared(name):
 
 
 def parameters_of_nodes(name, **arguments):
-    """Return what each node of a file would be given, by executable, without starting any."""
+    """Return the parameters that each node of a file would get, by executable; start none."""
     context = LaunchContext()
     found = {}
 
     def visit(entity):
         if isinstance(entity, Node):
-            # What a node's action does itself before it starts the process.
+            # The action itself does this before it starts the process.
             entity._perform_substitutions(context)
             (file, is_file), = entity._Node__expanded_parameter_arguments
             assert is_file
-            content, = yaml.safe_load(Path(file).read_text(encoding='utf-8')).values()
-            found[entity.node_executable] = content['ros__parameters']
+            entries, = yaml.safe_load(Path(file).read_text(encoding='utf-8')).values()
+            found[entity.node_executable] = entries['ros__parameters']
             return
         for each in entity.visit(context) or []:
             visit(each)

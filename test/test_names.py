@@ -4,10 +4,10 @@
 
 import pytest
 
-from sdf_pose_bridge.sdformat.grammar import FRAME_KINDS
 from sdf_pose_bridge.names import is_reserved
-from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.names import scoped_name
+from sdf_pose_bridge.sdformat.grammar import FRAME_KINDS
+from sdf_pose_bridge.sdformat.grammar import Kind
 
 
 @pytest.mark.parametrize('name', ['world', '__model__', '__root__', '____', '__a__', '_____'])

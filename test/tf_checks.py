@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Lay short SDF texts out as TF trees, and check that they are trees."""
+"""Make TF trees of short SDF texts, and check that they are trees."""
 
 from matrices import matrix_from_pose
 import numpy as np
@@ -12,8 +12,8 @@ from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
 
 
-def model(name, content, pose=''):
-    return f'<model name="{name}">{pose}{content}</model>'
+def model(name, children, pose=''):
+    return f'<model name="{name}">{pose}{children}</model>'
 
 
 def tree_of(text, **options):
@@ -44,11 +44,11 @@ def only_tree_error(text, **options):
 
 
 def assert_is_tree(tree):
-    """Check that TF takes the frames, and that its way of composing them gives their poses."""
+    """Check that TF accepts the frames, and that composing the transforms gives their poses."""
     ids = tree.frame_ids
-    rows = {frame_id: row for row, frame_id in enumerate(ids)}
-    assert len(rows) == len(ids) == len(tree.parent_ids) == len(tree.poses)
-    assert tree.root_frame not in rows
+    indices = {frame_id: index for index, frame_id in enumerate(ids)}
+    assert len(indices) == len(ids) == len(tree.parent_ids) == len(tree.poses)
+    assert tree.root_frame not in indices
     assert all(frame_id and not frame_id.startswith('/') for frame_id in ids)
     assert set(tree.parent_ids) <= {*ids, tree.root_frame, ''}
     assert np.isfinite(tree.transforms).all()
@@ -57,18 +57,18 @@ def assert_is_tree(tree):
     assert (tree.transforms[:, 6] >= 0.0).all()
     poses = [matrix_from_pose(pose) for pose in tree.poses.tolist()]
     transforms = [matrix_from_pose(pose) for pose in tree.transforms.tolist()]
-    for row in range(len(ids)):
+    for index in range(len(ids)):
         matrix = np.eye(4)
-        last = row
+        last = index
         for _ in ids:
             matrix = transforms[last] @ matrix
             parent = tree.parent_ids[last]
-            if parent not in rows:
+            if parent not in indices:
                 break
-            last = rows[parent]
+            last = indices[parent]
         else:
-            pytest.fail(f'"{ids[row]}" hangs on itself')
+            pytest.fail(f'"{ids[index]}" is its own ancestor')
         start = poses[last] if parent == '' else np.eye(4)
         if parent == '':
             np.testing.assert_array_equal(transforms[last], np.eye(4))
-        np.testing.assert_allclose(start @ matrix, poses[row], rtol=0.0, atol=1e-9)
+        np.testing.assert_allclose(start @ matrix, poses[index], rtol=0.0, atol=1e-9)

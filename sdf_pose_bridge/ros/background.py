@@ -1,95 +1,50 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Let a callback take its time while the executor goes on with the others."""
+"""Keep callbacks that take long from delaying the other callbacks of a node."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from collections.abc import Coroutine
-from collections.abc import Generator
 import contextlib
 import threading
-from typing import Any
-from typing import TypeVar
 
 from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
 from rclpy.task import Future
 
-Result = TypeVar('Result')
 
-
-class Background:
+def run_in_thread(node: Node, function: Callable[[], object]) -> Future:
     """
-    What coroutines wait with that are callbacks of a node.
+    Run a function in a thread of its own, which does not keep the process from ending.
 
-    :param node: the node; it has an executor whenever something is waited for.
+    :param node: a node with an executor.
+    :param function: what to run; it must not use the node.
+    :return: a future for its result or exception, which a coroutine on the executor can await.
     """
+    executor = node.executor
+    future = Future()
 
-    def __init__(self, node: Node) -> None:
-        self._node = node
-
-    def started(self, work: Callable[[], object]) -> Future:
-        """
-        Begin to do something in a thread of its own.
-
-        The thread does not keep the process from ending. What it does must not touch the node.
-
-        :param work: what to do.
-        :return: has what it returns or raises in the end; to be awaited.
-        """
-        future = Future()
-        executor = self._node.executor
-
-        def do() -> None:
-            try:
-                future.set_result(work())
-            except Exception as error:  # noqa: BLE001 - it is for whoever waits
-                future.set_exception(error)
-            # An executor that was shut down has nobody waiting.
-            with contextlib.suppress(InvalidHandle):
-                executor.wake()
-
-        threading.Thread(target=do, name='background', daemon=True).start()
-        return future
-
-    async def all_of(self, steps: Generator[None, None, Result]) -> Result:
-        """
-        Take many steps and let the executor go on with other callbacks between them.
-
-        :param steps: takes one step after another.
-        :return: what it returns in the end.
-        """
-        while True:
-            try:
-                next(steps)
-            except StopIteration as end:
-                result: Result = end.value
-                return result
-            await self._turn()
-
-    async def _turn(self) -> None:
-        # The executor resumes what waits whenever it wakes, which has to be now.
-        if self._node.executor is not None:
-            self._node.executor.wake()
-        await _Turn()
-
-
-class _Turn:
-    def __await__(self) -> Generator[None, None, None]:
-        yield
-
-
-def at_once(coroutine: Coroutine[Any, Any, Result]) -> Result:
-    """
-    Run a coroutine to its end where there is no executor yet.
-
-    :param coroutine: waits for nothing but its turn.
-    :return: what it returns.
-    """
-    while True:
+    def run() -> None:
         try:
-            coroutine.send(None)
-        except StopIteration as end:
-            result: Result = end.value
-            return result
+            future.set_result(function())
+        except Exception as error:  # noqa: BLE001 - raised where the future is awaited
+            future.set_exception(error)
+        # The executor resumes coroutines only when it wakes up. It may have been shut down.
+        with contextlib.suppress(InvalidHandle):
+            executor.wake()
+
+    threading.Thread(target=run, name='background', daemon=True).start()
+    return future
+
+
+async def run_other_callbacks(node: Node) -> None:
+    """
+    Let the executor run other callbacks before it goes on with the coroutine that awaits this.
+
+    :param node: a node with an executor.
+    """
+    await node.executor.create_task(_do_nothing)
+
+
+def _do_nothing() -> None:
+    pass

@@ -1,15 +1,14 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The executable ``bridge``: runs the node from its start to a clean end."""
+"""The executable ``bridge``; it imports ROS only after signals end the process well."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 import gc
 import os
+import signal
 import sys
-
-from sdf_pose_bridge.ros.stop_request import StopRequest
 
 BUILD_COMMAND = 'colcon build --base-paths src src/<repo>/sdf_pose_bridge_interfaces'
 """Builds both packages in a workspace, where plain ``colcon build`` finds only one of them."""
@@ -24,38 +23,36 @@ MISSING_MODULE = (
     'the Python module {module} is missing; the node needs a shell with ROS 2 Jazzy, as after '
     '". /opt/ros/jazzy/setup.bash", and what "rosdep install --from-paths src --ignore-src" '
     'installs')
-"""What to do if anything else is missing that the node imports."""
+"""What to do if another module is missing that the node imports."""
 
 
 def main(args: Sequence[str] | None = None) -> int:
     """
-    Run the node until it is told to stop.
+    Run the node until a signal ends it.
 
     :param args: the command line with the program's name first; that of the process if None.
     :return: exit code: 0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
-    stop = StopRequest()
-    # Nothing that a start leaves behind is garbage; to look for some would take a tenth of it.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        # Not an exception, which the import that it interrupts could catch or report.
+        signal.signal(number, lambda _number, _frame: os._exit(0))
+    # Collecting garbage would take a tenth of the start, and there is none.
     gc.disable()
-    # numpy's threads for large matrices, which there are none of here, would spin for a while.
+    # Threads of numpy for large matrices, which the node does not have, would spin at first.
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
-    # Functions of ROS's libraries are looked up when they are called, as in programs in C++; most
-    # never are.
-    if sys.platform != 'win32':
-        sys.setdlopenflags(os.RTLD_LAZY)
+    # Look up the functions of ROS's libraries when they are called, as programs in C++ do.
+    sys.setdlopenflags(os.RTLD_LAZY)
     try:
         from sdf_pose_bridge.ros.process import run
-        return run(list(sys.argv if args is None else args), stop)
+        return run(list(sys.argv if args is None else args))
     except ImportError as error:
         print(f'sdf_pose_bridge: {sentence_from_import_error(error)}', file=sys.stderr)
         return 1
-    finally:
-        stop.ignore_further()
 
 
 def sentence_from_import_error(error: ImportError) -> str:
     """
-    Tell what to do about a failed import.
+    Explain what to do about a failed import.
 
     :param error: what the import raised.
     :return: one sentence.

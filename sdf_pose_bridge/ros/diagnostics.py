@@ -1,44 +1,35 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Say on ``/diagnostics`` what is served, and whether the last load went well."""
+"""
+Publish on ``/diagnostics`` what is served, and whether the last load succeeded.
+
+The package diagnostic_updater is not used because it would add parameters of its own to the node.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 import datetime
-from typing import NamedTuple
 
 from diagnostic_msgs.msg import DiagnosticArray
 from diagnostic_msgs.msg import DiagnosticStatus
 from diagnostic_msgs.msg import KeyValue
 from rclpy.node import Node
 
-from sdf_pose_bridge.ros.loaded_scene import Content
+from sdf_pose_bridge.ros.loaded_scene import LoadedScene
 
 PERIOD_S = 2.0
 """
 Seconds between two messages.
 
-Monitors call a state stale after five. To wake the executor is most of what an idle node costs.
+Monitors call a status stale after five seconds. Waking the executor is most of what an idle node
+costs.
 """
-
-
-class State(NamedTuple):
-    """What there is to say."""
-
-    content: Content
-    """What is served."""
-    transforms: int
-    """How many transforms are published."""
-    loaded_at: datetime.datetime
-    """When it was loaded."""
-    failure: Sequence[str] = ()
-    """What was wrong at the last load, a line for each thing; empty if it went well."""
 
 
 class Diagnostics:
     """
-    The publisher of a node's diagnostics.
+    The publisher of the diagnostics of a node.
 
     :param node: the node.
     """
@@ -46,56 +37,63 @@ class Diagnostics:
     def __init__(self, node: Node) -> None:
         self._node = node
         self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', 10)
-        self._state: State | None = None
         self._message = DiagnosticArray()
 
-    def publish(self, state: State) -> None:
+    def update(self, loaded: LoadedScene, failure: Sequence[str] = ()) -> None:
         """
-        Publish the state of the node.
+        Publish another status from now on.
 
-        :param state: what there is to say.
+        :param loaded: what is served.
+        :param failure: what was wrong at the last load, one line for each error; empty if the
+            last load succeeded.
         """
-        # It is the same for hours, and to put it into words costs more than to publish it.
-        if state is not self._state:
-            name = self._node.get_fully_qualified_name().lstrip('/')
-            self._message.status = [status_from_state(state, name)]
-            self._state = state
+        name = self._node.get_fully_qualified_name().lstrip('/')
+        self._message.status = [status_from_scene(loaded, failure, name)]
+        self.publish()
+
+    def publish(self) -> None:
+        """Publish the status."""
         self._message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(self._message)
 
 
-def status_from_state(state: State, name: str) -> DiagnosticStatus:
+def status_from_scene(
+    loaded: LoadedScene, failure: Sequence[str], name: str,
+) -> DiagnosticStatus:
     """
-    Put the state of the node into a status.
+    Describe what is served in a status.
 
-    :param state: what there is to say.
-    :param name: the node's name.
+    :param loaded: what is served.
+    :param failure: what was wrong at the last load; empty if it succeeded.
+    :param name: name of the node.
     :return: ERROR if the last load failed, while what was loaded before is still served; WARN if
-        what is served has warnings; else OK.
+        what is served has warnings; otherwise OK.
     """
-    content = state.content
+    warnings = loaded.warnings
+    loaded_at = datetime.datetime.fromtimestamp(
+        loaded.read_since_ns // 10**9, datetime.timezone.utc)
     values = {
-        'file': str(content.path),
-        'root frame': content.tree.root_frame,
-        'frames': str(len(content.tree.frame_ids)),
-        'transforms': str(state.transforms),
-        'files read': str(len(content.files)),
-        'last good load': state.loaded_at.isoformat(timespec='seconds'),
-        'time to load': f'{1e3 * content.seconds:.0f} ms',
-        'warnings': str(len(content.warnings)),
-        'first warning': str(content.warnings[0]) if content.warnings else '',
-        'last error': '\n'.join(state.failure),
+        'file': str(loaded.path),
+        'root frame': loaded.tree.root_frame,
+        'frames': str(len(loaded.tree.frame_ids)),
+        'transforms': str(loaded.tree.transform_count),
+        'files read': str(len(loaded.files)),
+        'last good load': loaded_at.isoformat(),
+        'time to load': f'{1e3 * loaded.seconds:.0f} ms',
+        'warnings': str(len(warnings)),
+        'first warning': str(warnings[0]) if warnings else '',
+        'last error': '\n'.join(failure),
     }
-    if state.failure:
+    if failure:
         level = DiagnosticStatus.ERROR
-        text = f'the last load failed, what was loaded before is served: {state.failure[0]}'
-    elif content.warnings:
+        text = f'the last load failed, what was loaded before is served: {failure[0]}'
+    elif warnings:
         level = DiagnosticStatus.WARN
-        number = len(content.warnings)
-        text = f'serving {content.path.name} with {number} warning{"s" if number > 1 else ""}'
+        number = len(warnings)
+        text = f'serving {loaded.path.name} with {number} warning{"s" if number > 1 else ""}'
     else:
         level = DiagnosticStatus.OK
-        text = f'serving {content.path.name}'
+        text = f'serving {loaded.path.name}'
     return DiagnosticStatus(
         level=level, name=f'{name}: file', message=text, hardware_id='',
         values=[KeyValue(key=key, value=value) for key, value in values.items()])

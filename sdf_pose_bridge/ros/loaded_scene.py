@@ -1,6 +1,8 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""From settings to what the node serves: find the file, read it, lay out its frames."""
+"""Find the file that the settings name, read it, and make its TF tree."""
+
+from __future__ import annotations
 
 import os
 from pathlib import Path
@@ -10,9 +12,8 @@ from typing import NamedTuple
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UriLookupError
-from sdf_pose_bridge.ros.settings import Settings
+from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.scene.loading import load
-from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import AddressError
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -20,31 +21,29 @@ from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfTree
 
 
-class Content(NamedTuple):
-    """What a file holds, as far as it is to be published."""
+class LoadedScene(NamedTuple):
+    """A file that was read."""
 
     path: Path
-    scene: Scene
     tree: TfTree
     lookup: PoseLookup
-    """Answers queries about the two."""
     warnings: tuple[SdfWarning, ...]
     files: tuple[str, ...]
-    """All files that were read, which tell when to read again."""
+    """All files that were read."""
     read_since_ns: int
-    """When the first of them began to be read, in nanoseconds since 1970."""
+    """When reading began, in nanoseconds since 1970."""
     seconds: float
-    """How long it took to get here from there."""
+    """How long reading took."""
 
 
-def content_from_settings(settings: Settings) -> Content:
+def loaded_scene_from_settings(settings: Settings) -> LoadedScene:
     """
-    Read the file and lay out its frames.
+    Read the file that the settings name.
 
-    :param settings: what the node is set to do.
-    :return: what to serve.
-    :raises AddressError: if ``sdf_file`` is a URI that leads nowhere.
-    :raises SdfError: if the file is not valid, or cannot be published as the settings say.
+    :param settings: the settings of the node.
+    :return: the loaded scene.
+    :raises AddressError: if ``sdf_file`` is a URI of a file that is not found.
+    :raises SdfError: if the file is not valid, or cannot be published with these settings.
     """
     read_since_ns = time.time_ns()
     begin = time.perf_counter()
@@ -53,42 +52,47 @@ def content_from_settings(settings: Settings) -> Content:
         path, resource_paths=settings.resource_paths,
         on_missing_include=settings.on_missing_include)
     tree = tf_tree_from_scene(scene, settings.tf_options)
-    lookup = PoseLookup(scene, tree)
-    return Content(
-        path, scene, tree, lookup,
-        (*warnings, *scene.warnings, *tree.warnings), (*manifests, *scene.files), read_since_ns,
-        time.perf_counter() - begin)
+    return LoadedScene(
+        path=path,
+        tree=tree,
+        lookup=PoseLookup(scene, tree),
+        warnings=(*warnings, *scene.warnings, *tree.warnings),
+        files=(*manifests, *scene.files),
+        read_since_ns=read_since_ns,
+        seconds=time.perf_counter() - begin,
+    )
 
 
-def files_behind_error(error: SdfError | AddressError, settings: Settings) -> list[str]:
+def files_behind_error(error: Exception, settings: Settings) -> list[str]:
     """
-    Tell where to look in order to notice that the cause of an error is mended.
+    Return the files that have to change before loading can succeed.
 
-    :param error: what :func:`content_from_settings` raised.
-    :param settings: what it was called with.
-    :return: paths of the files that are wrong; where something is missing, also of the directories
-        in which it may appear.
+    :param error: what :func:`loaded_scene_from_settings` raised.
+    :param settings: its argument.
+    :return: the files with errors; if something was not found, also the directories in which it
+        was looked for.
     """
     errors = error.errors if isinstance(error, SdfError) else ()
-    files = dict.fromkeys(each.place.file for each in errors)
+    files = [each.place.file for each in errors]
     missing = [each for each in errors if isinstance(each, UriLookupError)]
     if missing or isinstance(error, AddressError):
         finder = resource_finder(settings.resource_paths, os.environ)
-        files |= dict.fromkeys([
+        files += [
             *(str(Path(each.place.file).parent) for each in missing),
-            *finder.search_paths, *finder.environment_paths])
-    return list(files)
+            *finder.search_paths, *finder.environment_paths]
+    return list(dict.fromkeys(files))
 
 
 def _file_from_settings(
     settings: Settings,
 ) -> tuple[Path, tuple[str, ...], tuple[SdfWarning, ...]]:
+    """Return the path of the file, and the manifests and warnings met on the way to it."""
     finder = resource_finder(settings.resource_paths, os.environ)
     path = finder.path_from_address(settings.sdf_file)
-    # Unlike Path's, it says no of a path that is too long; reading the file says why.
+    # Path.is_dir raises for a path that is too long; reading the file gives a better message.
     if not os.path.isdir(path):  # noqa: PTH112
         return path, (), ()
-    # Mostly it is a file.
+    # Imported here because most often it is a file.
     from sdf_pose_bridge.sdformat.include.manifest import model_file_from_directory
     chosen = model_file_from_directory(str(path))
     return Path(chosen.path), (chosen.manifest,), chosen.warnings

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Put errors and warnings into single lines for a log."""
+"""Format errors and warnings as single lines for a log."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from collections.abc import Sequence
 import re
 
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.ros.settings import SettingsError
+from sdf_pose_bridge.ros.parameters import SettingsError
 
 MOST_WARNINGS = 20
-"""How many warnings of one load are written out."""
+"""How many warnings of a load are logged."""
 
 MOST_ERRORS = 20
-"""How many errors of one load are written out; a broken generated file may have thousands."""
+"""How many errors of a load are logged; a broken generated file may have thousands."""
 
 # C0 and C1 control characters and the two separators that also end a line.
 _CONTROL = re.compile('[\x00-\x1f\x7f-\x9f\u2028\u2029]')
@@ -22,24 +22,24 @@ _CONTROL = re.compile('[\x00-\x1f\x7f-\x9f\u2028\u2029]')
 
 def lines_from_error(error: Exception) -> list[str]:
     """
-    Return what is wrong, a line for each thing.
+    Return one line for each error.
 
-    :param error: an error of this package; one of a file starts its lines with file and line.
-    :return: at least one line; at most ``MOST_ERRORS``, and one more if there are more errors.
+    :param error: an error of this package; lines about a file start with its path and line.
+    :return: at least one line and at most ``MOST_ERRORS``, and one more if there are more errors.
     """
     if isinstance(error, SdfError):
         return _first_lines(error.errors, '; "sdf_pose check" shows all of them')
     if isinstance(error, SettingsError):
-        return _first_lines([problem.sentence for problem in error.problems], '')
+        return _first_lines(error.sentences, '')
     return [_line(str(error))]
 
 
 def lines_from_warnings(warnings: Sequence[object]) -> list[str]:
     """
-    Return warnings, a line for each, and the number of those beyond the first few.
+    Return one line for each warning.
 
-    :param warnings: anything with a text.
-    :return: at most ``MOST_WARNINGS`` lines, and one more if there were more warnings.
+    :param warnings: objects that ``str`` makes a text of.
+    :return: at most ``MOST_WARNINGS`` lines, and one more if there are more warnings.
     """
     lines = [_line(str(warning)) for warning in warnings[:MOST_WARNINGS]]
     rest = len(warnings) - len(lines)
@@ -50,10 +50,10 @@ def lines_from_warnings(warnings: Sequence[object]) -> list[str]:
 
 def names_in_line(names: Sequence[str]) -> str:
     """
-    Return names for the end of a line.
+    Return names separated by commas.
 
     :param names: at least one name.
-    :return: the first few of them, and how many more there are.
+    :return: at most ``MOST_WARNINGS`` names, and how many more there are.
     """
     shown = ', '.join(f'"{name}"' for name in names[:MOST_WARNINGS])
     rest = len(names) - MOST_WARNINGS
@@ -69,5 +69,5 @@ def _first_lines(errors: Sequence[object], hint: str) -> list[str]:
 
 
 def _line(text: str) -> str:
-    # A name in a file may hold a line break, and must not be able to write log lines of its own.
+    # A name in a file may contain a line break, and must not be able to forge log lines.
     return _CONTROL.sub(lambda match: match[0].encode('unicode_escape').decode(), text)

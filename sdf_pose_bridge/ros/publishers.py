@@ -1,171 +1,162 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The topics that say where frames are, latched for listeners that come later."""
+"""Publish the frames of a TF tree on latched topics."""
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Mapping
 from collections.abc import Sequence
-from typing import NamedTuple
+from itertools import compress
 
 from geometry_msgs.msg import PoseStamped
 from geometry_msgs.msg import TransformStamped
+from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.logging import LoggingSeverity
 from rclpy.node import Node
 from rclpy.publisher import Publisher
+from rclpy.qos import DurabilityPolicy
+from rclpy.qos import HistoryPolicy
+from rclpy.qos import QoSProfile
+from rclpy.qos import ReliabilityPolicy
+from tf2_msgs.msg import TFMessage
 
-from sdf_pose_bridge.ros.cdr import pose_stamped_bytes
-from sdf_pose_bridge.ros.cdr import StampedBytes
-from sdf_pose_bridge.ros.cdr import transform_stamped_bytes
-from sdf_pose_bridge.ros.log_lines import names_in_line
-from sdf_pose_bridge.ros.tf_static import latched_publisher
-from sdf_pose_bridge.ros.tf_static import TfStatic
-from sdf_pose_bridge.ros.topic_names import is_everything_too_much
-from sdf_pose_bridge.ros.topic_names import LONGEST_NAME
-from sdf_pose_bridge.ros.topic_names import MOST_BY_DEFAULT
-from sdf_pose_bridge.ros.topic_names import topics_from_patterns
+from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.ros.background import run_other_callbacks
+from sdf_pose_bridge.ros.cdr import pose_stamped_messages
+from sdf_pose_bridge.ros.cdr import StampedMessages
+from sdf_pose_bridge.ros.cdr import tf_message
+from sdf_pose_bridge.ros.cdr import transform_stamped_messages
+from sdf_pose_bridge.tf.tree import NO_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
-LONGEST_FULL_NAME = 246
-"""Most characters that the middleware takes in the full name of a topic."""
-
-SENT_IN_STEP = 200
-"""How many messages are sent in one step, which is a matter of milliseconds."""
-
-MADE_IN_STEP = 10
-"""How many publishers are made or destroyed in one step."""
+# How many can be published, or made, in the milliseconds that other callbacks can wait.
+MESSAGES_AT_ONCE = 500
+PUBLISHERS_AT_ONCE = 40
 
 
-class Outcome(NamedTuple):
-    """What there is to know of a tree that was published."""
-
-    transforms: int
-    """How many transforms it has."""
-    vanished: list[str]
-    """The frames that had a transform before and have none now, sorted."""
-
-
-class Publications:
+class FramePublishers:
     """
-    Publishers of one node for the frames of a tree.
+    Publishers of the frames of a tree: ``/tf_static``, ``~/transforms`` and ``~/poses/...``.
 
     :param node: the node that they belong to.
-    :param tf_static: the first of them, which may have published a tree already.
     """
 
-    def __init__(self, node: Node, tf_static: TfStatic) -> None:
+    def __init__(self, node: Node) -> None:
         self._node = node
-        self._tf_static = tf_static
+        self._tf_static = _latched_publisher(node, TFMessage, '/tf_static', depth=1)
         self._transforms: Publisher | None = None
-        self._children: frozenset[str] = frozenset()
+        self._depth = 0
         self._poses: dict[str, Publisher] = {}
-        self._sent: list[tuple[Sequence[Publisher], StampedBytes]] = []
+        self._children: frozenset[str] = frozenset()
+        self._published: list[tuple[Sequence[Publisher], StampedMessages]] = []
 
-    def publish(
-        self, tree: TfTree, patterns: Sequence[str],
-    ) -> Generator[None, None, Outcome]:
+    def publish_tf_static(self, tree: TfTree) -> None:
         """
-        Publish a tree, in the place of the one before, in steps of milliseconds.
-
-        The first step has ``/tf_static``, and the others have its stamp. All of them must be taken
-        before anything else is asked.
+        Publish a tree on ``/tf_static``; :meth:`publish_topics` must follow.
 
         :param tree: the tree.
-        :param patterns: glob patterns for the frame ids that get a topic of their own.
-        :return: what there is to know of it.
         """
-        if tree is not self._tf_static.tree:
-            self._tf_static.publish(tree)
-            yield
-        self._sent = []
-        now = self._tf_static.stamp
-        transforms = self._tf_static.transforms
-        count = len(transforms.child_ids)
-        publisher = self._transforms_publisher(count)
-        yield from self._send_also([publisher] * count, transform_stamped_bytes(*transforms), now)
-        topics = yield from self._topics_from_tree(tree, patterns)
-        yield from self._replace_pose_publishers(topics)
-        rows = [row for row, frame_id in enumerate(tree.frame_ids) if frame_id in topics]
-        yield from self._send_also(
-            [self._poses[topics[tree.frame_ids[row]]] for row in rows],
-            pose_stamped_bytes([tree.root_frame] * len(rows), tree.poses[rows]), now)
-        children = frozenset(transforms.child_ids)
-        vanished = sorted(self._children - children)
-        self._children = children
-        return Outcome(count, vanished)
+        self._tree = tree
+        self._tf_message = tf_message(*_transforms(tree))
+        self.publish_tf_static_again()
 
-    def publish_again(self) -> Generator[None, None, None]:
-        """Publish what was published last once more, with new stamps, in such steps."""
-        self._tf_static.publish_again()
-        for publishers, messages in self._sent:
-            yield from _sent(publishers, messages, self._tf_static.stamp)
+    async def publish_topics(self, topics: Mapping[str, str]) -> list[str]:
+        """
+        Publish the tree on all other topics, with the stamp that it has on ``/tf_static``.
 
-    def _send_also(
-        self, publishers: Sequence[Publisher], messages: StampedBytes, stamp: tuple[int, int],
-    ) -> Generator[None, None, None]:
-        self._sent.append((publishers, messages))
-        yield from _sent(publishers, messages, stamp)
+        :param topics: names of pose topics by frame id.
+        :return: the frames that had a transform before and have none now, sorted.
+        """
+        tree, self._published = self._tree, []
+        parent_ids, child_ids, transforms = _transforms(tree)
+        publisher = self._transforms_publisher(len(child_ids))
+        self._published.append((
+            [publisher] * len(child_ids),
+            transform_stamped_messages(parent_ids, child_ids, transforms)))
+        await self._send(*self._published[-1])
+        await self._replace_pose_publishers(topics)
+        indices = [index for index, frame_id in enumerate(tree.frame_ids) if frame_id in topics]
+        self._published.append((
+            [self._poses[topics[tree.frame_ids[index]]] for index in indices],
+            pose_stamped_messages([tree.root_frame] * len(indices), tree.poses[indices])))
+        await self._send(*self._published[-1])
+        before, self._children = self._children, frozenset(child_ids)
+        return sorted(before - self._children)
+
+    def publish_tf_static_again(self) -> None:
+        """Publish the tree on ``/tf_static`` with a new stamp."""
+        self._stamp: tuple[int, int] = self._node.get_clock().now().seconds_nanoseconds()
+        (message,) = self._tf_message.with_stamp(*self._stamp)
+        self._tf_static.publish(message)
+
+    async def publish_again(self) -> None:
+        """Publish everything again with a new stamp."""
+        self.publish_tf_static_again()
+        for publishers, messages in self._published:
+            await self._send(publishers, messages)
+
+    async def _send(self, publishers: Sequence[Publisher], messages: StampedMessages) -> None:
+        await run_other_callbacks(self._node)
+        pairs = zip(publishers, messages.with_stamp(*self._stamp), strict=True)
+        for number, (publisher, message) in enumerate(pairs, start=1):
+            publisher.publish(message)
+            if number % MESSAGES_AT_ONCE == 0:
+                await run_other_callbacks(self._node)
 
     def _transforms_publisher(self, count: int) -> Publisher:
-        # It keeps as many messages as there are transforms, so that the new ones push all the old
-        # ones out. Another number needs another publisher, which knows nothing of the old ones.
-        if self._transforms is None or count != len(self._children) or not count:
+        # It keeps as many messages as there are transforms, so new messages replace all old ones.
+        # For another number there is another publisher, which does not keep the old messages.
+        if self._transforms is None or count != self._depth:
             if self._transforms is not None:
                 self._node.destroy_publisher(self._transforms)
-            self._transforms = latched_publisher(
+            self._transforms = _latched_publisher(
                 self._node, TransformStamped, '~/transforms', depth=max(1, count))
+            self._depth = count
         return self._transforms
 
-    def _topics_from_tree(
-        self, tree: TfTree, patterns: Sequence[str],
-    ) -> Generator[None, None, dict[str, str]]:
-        logger = self._node.get_logger()
-        if is_everything_too_much(tree.frame_ids, patterns):
-            logger.warning(
-                f'no ~/poses/... topics: {len(tree.frame_ids)} frames are more than '
-                f'{MOST_BY_DEFAULT}; name those that you want in pose_topics, such as "robot/*", '
-                'or ask for all with "?*"')
-            return {}
-        room = LONGEST_FULL_NAME - len(f'{self._node.get_fully_qualified_name()}/poses/')
-        try:
-            names, idle = yield from topics_from_patterns(
-                tree.frame_ids, patterns, min(room, LONGEST_NAME))
-        except ValueError:
-            logger.warning(
-                'no ~/poses/... topics: the name of the node and its namespace are so long that '
-                'the names of topics would be longer than the middleware allows')
-            return {}
-        if idle:
-            logger.warning(
-                f'no ~/poses/... topics for {names_in_line(idle)} in pose_topics: no frame id '
-                'matches')
-        return names
-
-    def _replace_pose_publishers(self, topics: dict[str, str]) -> Generator[None, None, None]:
+    async def _replace_pose_publishers(self, topics: Mapping[str, str]) -> None:
         wanted = set(topics.values())
         for number, name in enumerate([name for name in self._poses if name not in wanted]):
-            if not number % MADE_IN_STEP:
-                yield
+            if number % PUBLISHERS_AT_ONCE == 0:
+                await run_other_callbacks(self._node)
             self._node.destroy_publisher(self._poses.pop(name))
         logger = self._node.get_logger()
         is_debugged = logger.is_enabled_for(LoggingSeverity.DEBUG)
         for frame_id, name in topics.items():
             if name not in self._poses:
-                if not len(self._poses) % MADE_IN_STEP:
-                    yield
-                self._poses[name] = latched_publisher(
+                if len(self._poses) % PUBLISHERS_AT_ONCE == 0:
+                    await run_other_callbacks(self._node)
+                self._poses[name] = _latched_publisher(
                     self._node, PoseStamped, f'~/poses/{name}', depth=1)
             if is_debugged:
                 logger.debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
 
 
-def _sent(
-    publishers: Sequence[Publisher], messages: StampedBytes, stamp: tuple[int, int],
-) -> Generator[None, None, None]:
-    # To lay out many messages took as long as a step.
-    yield
-    pairs = zip(publishers, messages.at(*stamp), strict=True)
-    for number, (publisher, message) in enumerate(pairs, start=1):
-        publisher.publish(message)
-        if not number % SENT_IN_STEP:
-            yield
+def _transforms(tree: TfTree) -> tuple[list[str], list[str], PoseArray]:
+    """Return the parent id and the child id of each transform, and the transforms."""
+    has_transform = tree.parents != NO_PARENT
+    selectors = has_transform.tolist()
+    return (
+        list(compress(tree.parent_ids, selectors)), list(compress(tree.frame_ids, selectors)),
+        tree.transforms[has_transform])
+
+
+def _latched_publisher(node: Node, message_type: type, name: str, *, depth: int) -> Publisher:
+    """
+    Make a publisher whose last messages also reach listeners that come later.
+
+    :param node: the node that it belongs to.
+    :param message_type: class of the messages.
+    :param name: name of the topic.
+    :param depth: how many messages it keeps.
+    :return: the publisher.
+    """
+    quality = QoSProfile(
+        history=HistoryPolicy.KEEP_LAST, depth=depth,
+        reliability=ReliabilityPolicy.RELIABLE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    # The default callbacks only report listeners that ask for more than is offered, and more
+    # cannot be offered; but the executor waits for each, a thousand of them in a large scene.
+    return node.create_publisher(
+        message_type, name, quality,
+        event_callbacks=PublisherEventCallbacks(use_default_callbacks=False))

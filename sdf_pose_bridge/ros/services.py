@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The services that convert rotations and poses; bad input is answered, never raised."""
+"""The services that convert rotations and poses and look poses up; bad input is answered."""
 
 from __future__ import annotations
 
@@ -10,32 +10,44 @@ import traceback
 from typing import Any
 from typing import TypeAlias
 
+from builtin_interfaces.msg import Time
 import numpy as np
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.node import Node
 
+from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.formats import converted_rotation
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 from sdf_pose_bridge.geometry.rotations import RotationError
+from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge_interfaces.srv import ConvertPoses
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
+from sdf_pose_bridge_interfaces.srv import LookupPose
 
 Answer: TypeAlias = Callable[[Any, Any], Any]
 """Fills the response to a request and returns it."""
 
 
-def add_conversion_services(node: Node) -> None:
+def add_services(node: Node, lookup: Callable[[], PoseLookup]) -> None:
     """
-    Offer ``~/convert_rotation`` and ``~/convert_poses``.
+    Offer ``~/convert_rotation``, ``~/convert_poses`` and ``~/lookup_pose``.
 
     :param node: the node that offers them.
+    :param lookup: returns what poses are looked up in.
     """
+    def answer_to_lookup(
+        request: LookupPose.Request, response: LookupPose.Response,
+    ) -> LookupPose.Response:
+        return answer_to_lookup_pose(request, response, lookup(), node.get_clock().now().to_msg())
+
     logger = node.get_logger()
-    node.create_service(
-        ConvertRotation, '~/convert_rotation', never_raising(answer_to_convert_rotation, logger))
-    node.create_service(
-        ConvertPoses, '~/convert_poses', never_raising(answer_to_convert_poses, logger))
+    for service_type, name, answer in (
+        (ConvertRotation, '~/convert_rotation', answer_to_convert_rotation),
+        (ConvertPoses, '~/convert_poses', answer_to_convert_poses),
+        (LookupPose, '~/lookup_pose', answer_to_lookup),
+    ):
+        node.create_service(service_type, name, never_raising(answer, logger))
 
 
 def answer_to_convert_rotation(
@@ -80,7 +92,7 @@ def answer_to_convert_poses(
     except PoseFormatError as error:
         response.message = str(error)
         return response
-    # The message would look at every element of anything but an array.array.
+    # The message would check every element of anything but an array.array.
     values = array.array('d')
     values.frombytes(np.ascontiguousarray(converted, dtype=np.float64).data.cast('B'))
     response.values = values
@@ -88,9 +100,37 @@ def answer_to_convert_poses(
     return response
 
 
+def answer_to_lookup_pose(
+    request: LookupPose.Request, response: LookupPose.Response, lookup: PoseLookup, stamp: Time,
+) -> LookupPose.Response:
+    """
+    Look up a pose.
+
+    :param request: the request.
+    :param response: an empty response, which is filled.
+    :param lookup: what the pose is looked up in.
+    :param stamp: the stamp of the pose.
+    :return: that response.
+    """
+    try:
+        found = lookup.pose(request.frame, request.relative_to)
+    except UnknownFrameError as error:
+        response.message = error.message
+        return response
+    # Filling the messages that are there is faster than making others.
+    pose = response.pose.pose
+    position, orientation = pose.position, pose.orientation
+    position.x, position.y, position.z = found.pose[:3]
+    orientation.x, orientation.y, orientation.z, orientation.w = found.pose[3:]
+    response.pose.header.frame_id = found.frame_id
+    response.pose.header.stamp = stamp
+    response.success = True
+    return response
+
+
 def never_raising(answer: Answer, logger: RcutilsLogger) -> Answer:
     """
-    Keep a defect in a service from ending the node, as an exception in a callback does.
+    Answer the client also when there is a defect; an exception in a callback would end the node.
 
     :param answer: answers a request.
     :param logger: gets the traceback of what was raised.

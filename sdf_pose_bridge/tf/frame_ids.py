@@ -1,147 +1,97 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Name the frames in TF: from scoped SDF names to frame ids.
+Make TF frame ids of scoped SDF names.
 
-``robot::arm::hand`` becomes ``robot/arm/hand``, which is how ros_gz_bridge passes on Gazebo's
-frame ids; so does a sensor, ``robot/link/sensor``, unless the file sets its ``gz_frame_id``. Kinds
-that may share a name with others have the kind before their name: ``robot/link/visual/name``.
+``robot::arm::hand`` becomes ``robot/arm/hand``, the form in which ros_gz_bridge passes on Gazebo's
+frame ids. Kinds that may share a name with elements of other kinds have the kind before their own
+name: ``robot/link/visual/name``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 import enum
-from operator import itemgetter
 from typing import NamedTuple
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.scene.pointers import ends_from_pointers
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.tf.texts import Texts
 
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
-OPTICAL_SUFFIX = '_optical'
-"""Follows a camera's frame id in that of its optical frame, where the file names none."""
-
-_KINDS_IN_NAMES = frozenset({
-    Kind.VISUAL, Kind.COLLISION, Kind.LIGHT, Kind.PARTICLE_EMITTER, Kind.PROJECTOR, Kind.ACTOR})
-_HAS_KIND_IN_NAME = np.array([Kind(value) in _KINDS_IN_NAMES for value in range(len(Kind))])
-_ROOT = int(Kind.ROOT)
-"""A plain number, as numpy takes long to find out what an Enum is."""
-_END = '\0'
-"""Stands between names that are changed together; XML has no such character."""
-_SLASH = ord('/')
+_LABELLED_KINDS = (
+    Kind.VISUAL, Kind.COLLISION, Kind.LIGHT, Kind.PARTICLE_EMITTER, Kind.PROJECTOR, Kind.ACTOR)
 
 
 class FrameNames(enum.Enum):
-    """How frame ids are made of scoped names."""
+    """How much of a scoped name goes into the frame id."""
 
     AUTO = 'auto'
     """Relative for a model file, scoped for a world."""
     SCOPED = 'scoped'
-    """With the names of all models around: ``robot/arm/tool``."""
+    """The names of all models around the element: ``robot/arm/tool``."""
     RELATIVE = 'relative'
-    """Without the name of the top-level model: ``arm/tool``."""
+    """All but the name of the top-level model: ``arm/tool``."""
 
 
 class FrameNaming(NamedTuple):
-    """
-    The rule by which frame ids are made.
-
-    :param names: how they are made of scoped names.
-    :param separator: what stands for ``::``.
-    :param prefix: what stands before every id.
-    """
+    """How frame ids are made of scoped names."""
 
     names: FrameNames = FrameNames.AUTO
     separator: str = '/'
+    """Replaces ``::``."""
     prefix: str = ''
-
-    def frame_ids_from_scene(self, scene: Scene, indices: Indices | None = None) -> Texts:
-        """
-        Name the frames of elements, as if no file gave any a frame id of its own.
-
-        :param scene: the scene.
-        :param indices: which of its elements; all if None.
-        :return: a frame id for each; empty for worlds, implicit roots, and names that are nothing
-            but slashes.
-        """
-        if indices is None:
-            indices = np.arange(len(scene.names), dtype=np.int32)
-        names = _taken(scene.names, indices.tolist())
-        holders = scene.parents.take(indices)
-        for row in np.flatnonzero(_HAS_KIND_IN_NAME.take(scene.kinds.take(indices))).tolist():
-            holder = holders[row]
-            is_at_top = scene.parents[holder] < 0
-            start = 0 if is_at_top else len(scene.names[holder]) + len(SEPARATOR)
-            label = Kind(scene.kinds[indices[row]]).label
-            names[row] = f'{names[row][:start]}{label}{SEPARATOR}{names[row][start:]}'
-        if self._is_any_relative(scene):
-            left_out = self._left_out(scene)[indices].tolist()
-            names = [name[count:] for name, count in zip(names, left_out, strict=True)]
-        for row in np.flatnonzero(holders < 0).tolist():
-            names[row] = ''
-        return self._frame_ids_from_names(names)
-
-    def _is_any_relative(self, scene: Scene) -> bool:
-        return self.names is FrameNames.RELATIVE or (
-            self.names is FrameNames.AUTO and bool((scene.kinds == _ROOT).any()))
-
-    def _left_out(self, scene: Scene) -> npt.NDArray[np.int64]:
-        """Return how many characters each name loses at its beginning."""
-        tops = _tops(scene.parents)
-        lengths = np.zeros(len(tops), np.int64)
-        for top in set(tops.tolist()):
-            lengths[top] = len(scene.names[top]) + len(SEPARATOR)
-        lengths = lengths[tops]
-        lengths[tops == np.arange(len(tops))] = 0
-        if self.names is FrameNames.AUTO:
-            lengths[scene.kinds[scene.roots] != _ROOT] = 0
-        return lengths
-
-    def _frame_ids_from_names(self, names: list[str]) -> Texts:
-        # All at once, unless some of them need more than a replacement.
-        joined = _END.join(['', *names, '']).replace(SEPARATOR, self.separator).encode()
-        data = np.frombuffer(joined, np.uint8)
-        ends = np.flatnonzero(data == 0)
-        firsts = data.take(ends[:-1] + 1)
-        if len(firsts) != len(names) or _END in self.prefix or (
-                (firsts == _SLASH) | (firsts == 0)).any():
-            return Texts.from_strings([self.frame_id_from_name(name) for name in names])
-        if self.prefix:
-            end = _END.encode()
-            joined = joined[:-1].replace(end, end + self.prefix.encode()) + end
-        return Texts(joined[1:])
+    """Precedes every frame id."""
 
     def frame_id_from_name(self, name: str) -> str:
         """
         Make a frame id of a name.
 
-        :param name: as in SDF, scopes set apart by ``::``.
-        :return: the frame id; empty if the name is nothing but slashes.
+        :param name: a name as in SDF, its parts separated by ``::``.
+        :return: the frame id; empty if the name consists of slashes only.
         """
-        rest = name.replace(SEPARATOR, self.separator).lstrip('/')
-        return self.prefix + rest if rest else ''
+        (frame_id,) = self._frame_ids_from_names([name])
+        return frame_id
+
+    def frame_ids_from_scene(self, scene: Scene, elements: Indices) -> list[str]:
+        """
+        Make the frame ids of elements; frame ids that the file sets for sensors are not used.
+
+        :param scene: the scene.
+        :param elements: indices of elements, all of the same world or model file; not the index
+            of a world or an implicit root.
+        :return: a frame id for each element; empty if its name consists of slashes only.
+        """
+        names = [scene.names[element] for element in elements.tolist()]
+        kinds, parents = scene.kinds[elements], scene.parents[elements]
+        for position in np.flatnonzero(np.isin(kinds, _LABELLED_KINDS)).tolist():
+            parent = parents[position]
+            scope = '' if scene.parents[parent] < 0 else scene.names[parent]
+            own_name = names[position][len(scoped_name(scope, '')):]
+            label = Kind(kinds[position]).label
+            names[position] = scoped_name(scope, f'{label}{SEPARATOR}{own_name}')
+        is_in_model_file = (scene.kinds[scene.roots[elements[:1]]] == int(Kind.ROOT)).any()
+        if self.names is FrameNames.RELATIVE or (
+                self.names is FrameNames.AUTO and is_in_model_file):
+            models = _top_level_elements(scene)[elements]
+            names = [
+                name if model == element else name[len(scoped_name(scene.names[model], '')):]
+                for name, element, model in zip(
+                    names, elements.tolist(), models.tolist(), strict=True)]
+        return self._frame_ids_from_names(names)
+
+    def _frame_ids_from_names(self, names: Iterable[str]) -> list[str]:
+        separator, prefix = self.separator, self.prefix
+        return [
+            prefix + rest if (rest := name.replace(SEPARATOR, separator).lstrip('/')) else ''
+            for name in names]
 
 
-def _taken(names: Sequence[str], indices: list[int]) -> list[str]:
-    # Of a single index itemgetter would not return a tuple.
-    if len(indices) < 2:
-        return [names[index] for index in indices]
-    return list(itemgetter(*indices)(names))
-
-
-def _tops(holders: Indices) -> Indices:
-    """Return the outermost element around each that is no world and no implicit root."""
-    own = np.arange(len(holders), dtype=np.int32)
-    tops = np.where((holders < 0) | (holders[holders] < 0), own, holders)
-    while not np.array_equal(tops, higher := tops[tops]):
-        tops = higher
-    return tops
+def _top_level_elements(scene: Scene) -> Indices:
+    """Return for each element the child of a world or implicit root that it is or belongs to."""
+    is_child_of_root = scene.parents[scene.parents] < 0
+    return ends_from_pointers(np.where(is_child_of_root, -1, scene.parents))

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Look up poses by the names of SDF or of TF, of everything in a scene."""
+"""Look up the pose of any element or frame relative to any other, by its name in SDF or in TF."""
 
 from __future__ import annotations
 
@@ -16,84 +16,67 @@ from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.tree import TfTree
 
-MOST_KEPT = 1000
-"""How many answers are kept; who asks often asks the same."""
-
 
 class FoundPose(NamedTuple):
-    """The answer to a query."""
+    """The result of a lookup."""
 
     pose: Pose
-    """Pose of the frame in the one that it is relative to; unit quaternion with w >= 0."""
+    """Pose of the frame in the reference frame; unit quaternion with w >= 0."""
     frame_id: str
-    """The frame that it is relative to, by its TF name where it has one."""
+    """The reference frame, by its TF name if it has one."""
 
 
 class PoseLookup:
     """
-    Answers queries about a scene and the frames that were made of it.
+    Looks up poses in a scene and its TF tree.
 
-    Names may be absolute names of SDF (``robot::arm::tool``), of every kind of element, or frame
-    ids (``robot/arm/tool``), optical frames among them. Where a text is both, SDF's name is meant.
+    Names are absolute names of SDF (``robot::arm::tool``) of any kind of element, or frame ids
+    (``robot/arm/tool``), including those of optical frames. A name that is both is taken as a name
+    of SDF.
 
     :param scene: the scene.
-    :param tree: its frames.
+    :param tree: the TF tree of the scene.
     """
 
     def __init__(self, scene: Scene, tree: TfTree) -> None:
         self._scene = scene
         self._tree = tree
-        self._rows = {frame_id: row for row, frame_id in enumerate(tree.frame_ids)}
-        self._ids = {
-            element: frame_id
-            for element, frame_id in zip(tree.elements.tolist(), tree.frame_ids, strict=True)
-            if element >= 0}
-        self._found: dict[tuple[str, str], FoundPose] = {}
-        # Made when it is first wanted, which takes too long while somebody waits for an answer.
-        scene.has('')
+        self._indices = {frame_id: index for index, frame_id in enumerate(tree.frame_ids)}
+        self._frame_ids = dict(zip(tree.elements.tolist(), tree.frame_ids, strict=True))
 
     def pose(self, frame: str, relative_to: str = '') -> FoundPose:
         """
-        Find the pose of one frame in another.
+        Look up the pose of a frame in another one.
 
         :param frame: a name of SDF or of TF.
-        :param relative_to: likewise; empty for the root frame.
+        :param relative_to: the reference frame, likewise; empty for the root frame.
         :return: the pose.
-        :raises UnknownFrameError: if a name means nothing, or more than one thing.
+        :raises UnknownFrameError: if a name is unknown or ambiguous.
         """
-        question = (frame, relative_to)
-        found = self._found.get(question)
-        if found is None:
-            found = self._find(frame, relative_to)
-            if len(self._found) >= MOST_KEPT:
-                self._found.clear()
-            self._found[question] = found
-        return found
-
-    def _find(self, frame: str, relative_to: str) -> FoundPose:
-        pose, _ = self._in_root(frame)
+        pose, _ = self._pose_in_root(frame)
         if not relative_to:
             return FoundPose(pose, self._tree.root_frame)
-        reference, frame_id = self._in_root(relative_to)
+        reference, frame_id = self._pose_in_root(relative_to)
         relative = pose_product(pose_inverse(reference), pose)
+        # Adding zero leaves no negative zeros.
         x, y, z = (value + 0.0 for value in relative[:3])
         return FoundPose(Pose(x, y, z, *canonical_quaternion(relative[3:])), frame_id)
 
-    def _in_root(self, name: str) -> tuple[Pose, str]:
-        if name == self._tree.root_frame:
+    def _pose_in_root(self, name: str) -> tuple[Pose, str]:
+        """Return the pose of a frame in the root frame, and its frame id or else its name."""
+        scene, tree = self._scene, self._tree
+        if name == tree.root_frame:
             return Pose(), name
-        row = self._rows.get(name)
-        if row is not None and not self._scene.has(name):
-            return Pose(*self._tree.poses[row].tolist()), name
-        if row is None and not self._scene.has(name):
-            names = [*self._rows, *self._scene.names]
-            msg = f'"{name}" is the name of nothing{hint_from_names(name, names)}'
-            raise UnknownFrameError(msg, Place(self._scene.path))
-        index = self._scene.index(name, world=self._tree.world)
-        # The first root of a file is the one that is published.
-        if self._scene.roots[index]:
-            msg = f'"{name}" is in world "{self._scene.world_of(index)}", which is not published'
-            raise UnknownFrameError(msg, Place(self._scene.path))
-        if not index:
-            return Pose(), self._tree.root_frame
-        return self._scene.pose_of(index), self._ids.get(index, name)
+        if not scene.has(name):
+            if name not in self._indices:
+                hint = hint_from_names(name, [*self._indices, *scene.names])
+                msg = f'"{name}" is the name of nothing{hint}'
+                raise UnknownFrameError(msg, Place(scene.path))
+            return Pose(*tree.poses[self._indices[name]].tolist()), name
+        element = scene.index(name, world=tree.world)
+        if scene.roots[element]:
+            msg = f'"{name}" is in world "{scene.world_of(element)}", which is not published'
+            raise UnknownFrameError(msg, Place(scene.path))
+        if element == 0:
+            return Pose(), tree.root_frame
+        return scene.pose_of(element), self._frame_ids.get(element, name)

@@ -1,9 +1,9 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Run a launch file until told to stop, as ``ros2 launch`` would: FILE [NAME:=VALUE ...].
+Run a launch file until a signal ends it, as ``ros2 launch`` does: FILE [NAME:=VALUE ...].
 
-Run as a program, since the service of launch wants the main thread and its signals.
+It is a program because the launch service needs the main thread and its signals.
 """
 
 import sys

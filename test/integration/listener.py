@@ -16,7 +16,7 @@ from rclpy.qos import ReliabilityPolicy
 from tf2_msgs.msg import TFMessage
 
 LOST_S = 2.0
-"""After so long an answer is taken for lost."""
+"""After this time an answer is considered lost."""
 
 
 def latched(depth):
@@ -55,12 +55,16 @@ class Listener:
         assert message.child_frame_id not in self.transforms, 'sent twice'
         self.transforms[message.child_frame_id] = message
 
+    def spin_once(self):
+        """Handle a message if there is one."""
+        self._executor.spin_once(timeout_sec=0.1)
+
     def wait(self, condition, what):
         """Handle messages until a condition is true."""
         deadline = time.monotonic() + SECONDS
         while not condition():
             assert time.monotonic() < deadline, f'waited in vain for {what()}'
-            self._executor.spin_once(timeout_sec=0.1)
+            self.spin_once()
 
     def wait_for_keys(self, collection, keys):
         self.wait(
@@ -78,7 +82,7 @@ class Listener:
 
         def is_answered():
             nonlocal asked_at
-            # The middleware may lose the first answer to a client that the server hardly knows.
+            # The middleware may lose the first answer to a client that it has just discovered.
             if is_new and time.monotonic() > asked_at + LOST_S:
                 futures.append(client.call_async(request))
                 asked_at = time.monotonic()

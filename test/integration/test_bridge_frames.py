@@ -113,9 +113,9 @@ def assert_expected_transforms(transforms):
     for each in transforms:
         parent, pose = PARENTS_AND_POSES[each.child_frame_id]
         parent_pose = PARENTS_AND_POSES.get(parent, (None, np.eye(4)))[1]
-        move, turn = each.transform.translation, each.transform.rotation
+        xyz, quat = each.transform.translation, each.transform.rotation
         assert_same_pose(
-            (move.x, move.y, move.z, turn.x, turn.y, turn.z, turn.w),
+            (xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w),
             np.linalg.inv(parent_pose) @ pose, name=each.child_frame_id)
 
 
@@ -143,9 +143,9 @@ def test_every_frame_has_its_pose_in_the_root_frame(listener):
     for frame, (_, pose) in PARENTS_AND_POSES.items():
         message = listener.poses[TOPICS[frame]]
         assert message.header.frame_id == 'world'
-        place, turn = message.pose.position, message.pose.orientation
+        xyz, quat = message.pose.position, message.pose.orientation
         assert_same_pose(
-            (place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w), pose, name=frame)
+            (xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w), pose, name=frame)
 
 
 def test_there_are_no_other_topics_of_poses(late_listener):
@@ -186,8 +186,8 @@ def test_models_that_are_not_anchored_still_have_poses(start_bridge, start_liste
     listener.wait_for_keys(listener.transforms, PARENTS_AND_POSES.keys() - {'robot/base'})
     (message,) = listener.tf_messages
     assert 'robot/base' not in {each.child_frame_id for each in message.transforms}
-    place = listener.poses[TOPICS['robot/base']].pose.position
-    assert (place.x, place.y, place.z) == (0.0, 0.0, 1.0)
+    xyz = listener.poses[TOPICS['robot/base']].pose.position
+    assert (xyz.x, xyz.y, xyz.z) == (0.0, 0.0, 1.0)
 
 
 def test_names_root_and_topics_follow_the_parameters(start_bridge, start_listener, sdf_file):
@@ -207,7 +207,7 @@ def test_names_root_and_topics_follow_the_parameters(start_bridge, start_listene
 
 def test_a_deep_history_keeps_every_transform_for_a_late_listener(
         start_bridge, start_listener, tmp_path):
-    # More than the 5000 samples that Fast DDS holds unless it is told otherwise.
+    # More than the 5000 samples that Fast DDS keeps by default.
     links = ''.join(f'<link name="l{number}"/>' for number in range(5200))
     path = tmp_path / 'many.sdf'
     path.write_text(f'<sdf version="1.10"><model name="m">{links}</model></sdf>', encoding='utf-8')

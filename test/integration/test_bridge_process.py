@@ -9,6 +9,8 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from changes import Monitor
+
 GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
 BAD = """\
 <sdf version="1.10">
@@ -97,6 +99,19 @@ def test_a_signal_ends_it_well(start_bridge, write_file, number):
     bridge.wait_until_started()
     bridge.send(number)
     assert_ended_well(bridge)
+
+
+def test_a_signal_ends_it_before_anything_else_happens(start_bridge, start_listener, write_file):
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={write_file(GOOD)}')
+    listener = start_listener()
+    monitor = Monitor(listener)
+    monitor.wait_for_more()
+    # The next diagnostics come in two seconds.
+    bridge.send(signal.SIGTERM)
+    count = monitor.count
+    assert_ended_well(bridge)
+    listener.spin_once()
+    assert monitor.count == count
 
 
 @STOP_SIGNALS

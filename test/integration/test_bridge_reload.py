@@ -111,7 +111,7 @@ def test_a_moved_frame_is_moved_on_every_topic(bridge, file, listener, quality):
         lambda: listener.node.count_publishers(f'{BRIDGE}/transforms')
         and listener.node.count_publishers(f'{BRIDGE}/poses/crate/body'), lambda: 'publishers')
     if quality == 10:
-        # Nothing tells a listener that a publisher knows of it, but what is published again does.
+        # A volatile listener gets nothing until the publisher has discovered it.
         set_parameters(listener, publish_rate=100.0)
         listener.wait(lambda: transforms and places, lambda: 'what is published again')
         set_parameters(listener, publish_rate=0.0)

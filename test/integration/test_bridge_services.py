@@ -35,8 +35,8 @@ def rotation_request(given, numbers, *, degrees=False):
     if given == ConvertRotation.Request.RPY:
         request.rpy.x, request.rpy.y, request.rpy.z = numbers
     else:
-        turn = request.quaternion
-        turn.x, turn.y, turn.z, turn.w = numbers
+        quat = request.quaternion
+        quat.x, quat.y, quat.z, quat.w = numbers
     return request
 
 
@@ -44,8 +44,8 @@ def test_rpy_becomes_a_quaternion(listener):
     request = rotation_request(ConvertRotation.Request.RPY, (0.0, 0.0, math.pi / 2))
     answer = listener.call(ConvertRotation, ROTATION, request)
     assert answer.success, answer.message
-    turn = answer.quaternion
-    assert (turn.x, turn.y, turn.z, turn.w) == pytest.approx(
+    quat = answer.quaternion
+    assert (quat.x, quat.y, quat.z, quat.w) == pytest.approx(
         (0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5)))
 
 

@@ -54,22 +54,22 @@ class Expected:
             for frame_id, element in zip(tree.frame_ids, tree.elements.tolist(), strict=True)
             if element >= 0}
         # An optical frame is no element of the file; its parent is its camera.
-        self._names_and_turns = {tree.root_frame: ('', np.eye(4))} | {
+        self._names_and_rotations = {tree.root_frame: ('', np.eye(4))} | {
             frame_id: (names[frame_id], np.eye(4)) if frame_id in names
             else (names[parents[frame_id]], OPTICAL)
             for frame_id in tree.frame_ids}
-        self.frame_ids = list(self._names_and_turns)
+        self.frame_ids = list(self._names_and_rotations)
 
     def pose(self, frame_id, relative_to):
-        name, turn = self._names_and_turns[frame_id]
-        reference, reference_turn = self._names_and_turns[relative_to]
+        name, rotation = self._names_and_rotations[frame_id]
+        reference, reference_rotation = self._names_and_rotations[relative_to]
         if name:
             pose = matrix_from_pose(self._scene.pose(name, relative_to=reference))
         elif reference:
             pose = np.linalg.inv(matrix_from_pose(self._scene.pose(reference)))
         else:
             pose = np.eye(4)
-        return np.linalg.inv(reference_turn) @ pose @ turn
+        return np.linalg.inv(reference_rotation) @ pose @ rotation
 
 
 @pytest.fixture
@@ -91,10 +91,10 @@ def start_buffer(start_listener):
 def found_pose(buffer, frame_id, relative_to):
     """Return x y z and a quaternion x y z w with w >= 0, which tf2 does not care for."""
     transform = buffer.lookup_transform(relative_to, frame_id, Time()).transform
-    place, turn = transform.translation, transform.rotation
-    sign = -1.0 if turn.w < 0.0 else 1.0
+    xyz, quat = transform.translation, transform.rotation
+    sign = -1.0 if quat.w < 0.0 else 1.0
     return (
-        place.x, place.y, place.z, sign * turn.x, sign * turn.y, sign * turn.z, sign * turn.w)
+        xyz.x, xyz.y, xyz.z, sign * quat.x, sign * quat.y, sign * quat.z, sign * quat.w)
 
 
 def wait_for_frames(buffer, listener, frame_ids, root_frame):

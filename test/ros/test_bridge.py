@@ -63,6 +63,7 @@ def test_the_readme_says_the_same_words():
 # Each of these takes milliseconds to import, or what imports it does.
 WAITS_FOR_THE_FIRST_MESSAGE = (
     'sdf_pose_bridge.ros.node', 'sdf_pose_bridge.ros.services', 'sdf_pose_bridge.ros.diagnostics',
+    'sdf_pose_bridge.ros.topic_names', 'sdf_pose_bridge.ros.log_lines',
     'diagnostic_msgs', 'std_srvs', 'difflib', 'hashlib', 'importlib.metadata', 'numpy.ma')
 
 
@@ -71,10 +72,10 @@ def test_what_can_wait_for_the_first_message_is_not_imported_before():
     program = (
         'import sdf_pose_bridge.ros.process\n'
         'from sdf_pose_bridge import load\n'
-        'from sdf_pose_bridge.ros.cdr import tf_message_bytes\n'
+        'from sdf_pose_bridge.ros.cdr import tf_message\n'
         'from sdf_pose_bridge.tf.tree import tf_tree_from_scene\n'
         'tree = tf_tree_from_scene(load("examples/work_cell.sdf"))\n'
-        'tf_message_bytes(tree.parent_ids, tree.frame_ids, tree.transforms).at(1, 2)\n'
+        'tf_message(tree.parent_ids, tree.frame_ids, tree.transforms).with_stamp(1, 2)\n'
         'import sys\n'
         f'print([name for name in {WAITS_FOR_THE_FIRST_MESSAGE} if name in sys.modules])')
     result = subprocess.run(

@@ -15,10 +15,9 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from sdf_pose_bridge.ros.cdr import pose_stamped_bytes
-from sdf_pose_bridge.ros.cdr import tf_message_bytes
-from sdf_pose_bridge.ros.cdr import transform_stamped_bytes
-from sdf_pose_bridge.tf.texts import Texts
+from sdf_pose_bridge.ros.cdr import pose_stamped_messages
+from sdf_pose_bridge.ros.cdr import tf_message
+from sdf_pose_bridge.ros.cdr import transform_stamped_messages
 
 STAMPS = st.tuples(st.integers(0, 2**31 - 1), st.integers(0, 999_999_999))
 NAMES = st.text(st.characters(codec='utf-8', exclude_characters='\0'), max_size=20)
@@ -84,12 +83,12 @@ def transform_message(row, stamp):
     from geometry_msgs.msg import TransformStamped
     parent_id, child_id, numbers = row
     message = stamped(TransformStamped(child_frame_id=child_id), stamp, parent_id)
-    move, turn = message.transform.translation, message.transform.rotation
-    move.x, move.y, move.z, turn.x, turn.y, turn.z, turn.w = numbers
+    xyz, quat = message.transform.translation, message.transform.rotation
+    xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w = numbers
     return message
 
 
-def tf_message(rows, stamp):
+def tf_message_object(rows, stamp):
     from tf2_msgs.msg import TFMessage
     return TFMessage(transforms=[transform_message(row, stamp) for row in rows])
 
@@ -106,9 +105,9 @@ def serialized():
 
 
 @pytest.mark.parametrize('make', [
-    lambda name: tf_message_bytes([name], ['a'], np.zeros((1, 7))),
-    lambda name: transform_stamped_bytes(['a'], [name], np.zeros((1, 7))),
-    lambda name: pose_stamped_bytes([name], np.zeros((1, 7)))])
+    lambda name: tf_message([name], ['a'], np.zeros((1, 7))),
+    lambda name: transform_stamped_messages(['a'], [name], np.zeros((1, 7))),
+    lambda name: pose_stamped_messages([name], np.zeros((1, 7)))])
 def test_a_zero_character_is_refused(make):
     with pytest.raises(ValueError, match='zero character'):
         make('a\0b')
@@ -117,13 +116,13 @@ def test_a_zero_character_is_refused(make):
 @given(rows=ROWS, stamp=STAMPS)
 def test_a_tf_message_has_the_bytes_of_the_serializer(serialized, rows, stamp):
     mask = mask_of_list([row[:2] for row in rows])
-    (ours,) = tf_message_bytes(*columns(rows)).at(*stamp)
-    assert meant(ours, mask) == meant(serialized(tf_message(rows, stamp)), mask)
+    (ours,) = tf_message(*columns(rows)).with_stamp(*stamp)
+    assert meant(ours, mask) == meant(serialized(tf_message_object(rows, stamp)), mask)
 
 
 @given(rows=ROWS, stamp=STAMPS)
 def test_transforms_have_the_bytes_of_the_serializer(serialized, rows, stamp):
-    ours = transform_stamped_bytes(*columns(rows)).at(*stamp)
+    ours = transform_stamped_messages(*columns(rows)).with_stamp(*stamp)
     assert len(ours) == len(rows)
     for data, row in zip(ours, rows, strict=True):
         mask = mask_of_records(row[:2])
@@ -134,12 +133,12 @@ def test_transforms_have_the_bytes_of_the_serializer(serialized, rows, stamp):
 def test_poses_have_the_bytes_of_the_serializer(serialized, rows, stamp):
     from geometry_msgs.msg import PoseStamped
     frame_ids, _, numbers = columns(rows)
-    ours = pose_stamped_bytes(frame_ids, numbers).at(*stamp)
+    ours = pose_stamped_messages(frame_ids, numbers).with_stamp(*stamp)
     assert len(ours) == len(rows)
     for data, (frame_id, _, values) in zip(ours, rows, strict=True):
         message = stamped(PoseStamped(), stamp, frame_id)
-        place, turn = message.pose.position, message.pose.orientation
-        place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w = values
+        xyz, quat = message.pose.position, message.pose.orientation
+        xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w = values
         mask = mask_of_records([frame_id])
         assert meant(data, mask) == meant(serialized(message), mask)
 
@@ -148,55 +147,48 @@ def test_poses_have_the_bytes_of_the_serializer(serialized, rows, stamp):
 def test_names_of_every_length_are_read_back(serialized, rows):
     from rclpy.serialization import deserialize_message
     from tf2_msgs.msg import TFMessage
-    (ours,) = tf_message_bytes(*columns(rows)).at(12, 34)
-    assert deserialize_message(ours, TFMessage) == tf_message(rows, (12, 34))
+    (ours,) = tf_message(*columns(rows)).with_stamp(12, 34)
+    assert deserialize_message(ours, TFMessage) == tf_message_object(rows, (12, 34))
 
 
-def test_texts_around_the_size_of_a_chunk_have_the_bytes_of_the_serializer(serialized):
+def test_long_names_have_the_bytes_of_the_serializer(serialized):
     lengths = [0, 1, 3, *range(50, 64), *range(108, 116), 1000]
     rows = [('p' * first, 'c' * second, [1.0] * 7) for first in lengths for second in lengths]
     mask = mask_of_list([row[:2] for row in rows])
-    (ours,) = tf_message_bytes(*columns(rows)).at(1, 2)
-    assert meant(ours, mask) == meant(serialized(tf_message(rows, (1, 2))), mask)
+    (ours,) = tf_message(*columns(rows)).with_stamp(1, 2)
+    assert meant(ours, mask) == meant(serialized(tf_message_object(rows, (1, 2))), mask)
     assert not any(byte for byte, counts in zip(ours, mask, strict=True) if not counts)
-
-
-def test_texts_that_are_taken_are_written_like_strings():
-    texts = Texts.from_strings(['a', 'größe', 'world'])
-    numbers = np.arange(21.0).reshape(3, 7)
-    taken = tf_message_bytes(texts.taken(np.array([-1, 0, 0])), texts, numbers).at(1, 2)
-    strings = tf_message_bytes(['world', 'a', 'a'], ['a', 'größe', 'world'], numbers).at(1, 2)
-    assert taken == strings
 
 
 @given(rows=ROWS)
 def test_what_is_between_the_fields_is_zero(rows):
     mask = mask_of_list([row[:2] for row in rows])
-    (ours,) = tf_message_bytes(*columns(rows)).at(1, 2)
+    (ours,) = tf_message(*columns(rows)).with_stamp(1, 2)
     assert not any(byte for byte, counts in zip(ours, mask, strict=True) if not counts)
 
 
 @given(rows=ROWS, first=STAMPS, second=STAMPS)
 def test_messages_can_be_stamped_again(rows, first, second):
-    messages = transform_stamped_bytes(*columns(rows))
-    before = messages.at(*first)
-    again = messages.at(*second)
-    assert again == transform_stamped_bytes(*columns(rows)).at(*second)
-    assert before == transform_stamped_bytes(*columns(rows)).at(*first)
+    messages = transform_stamped_messages(*columns(rows))
+    before = messages.with_stamp(*first)
+    again = messages.with_stamp(*second)
+    assert again == transform_stamped_messages(*columns(rows)).with_stamp(*second)
+    assert before == transform_stamped_messages(*columns(rows)).with_stamp(*first)
 
 
 def test_no_transforms_are_one_empty_message():
-    assert tf_message_bytes([], [], np.empty((0, 7))).at(1, 2) == [bytes([0, 1, 0, 0, 0, 0, 0, 0])]
+    messages = tf_message([], [], np.empty((0, 7))).with_stamp(1, 2)
+    assert messages == [bytes([0, 1, 0, 0, 0, 0, 0, 0])]
 
 
 def test_no_poses_are_no_messages():
-    assert pose_stamped_bytes([], np.empty((0, 7))).at(1, 2) == []
+    assert pose_stamped_messages([], np.empty((0, 7))).with_stamp(1, 2) == []
 
 
 def test_a_message_of_100000_transforms_ends_with_the_last_number():
     count = 100_000
     names = [f'frame_{number}' for number in range(count)]
     numbers = np.arange(7.0 * count).reshape(-1, 7)
-    (data,) = tf_message_bytes(['world'] * count, names, numbers).at(1, 2)
+    (data,) = tf_message(['world'] * count, names, numbers).with_stamp(1, 2)
     assert struct.unpack_from('<I', data, 4) == (count,)
     assert struct.unpack('<7d', data[-56:]) == tuple(numbers[-1])

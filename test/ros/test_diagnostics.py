@@ -2,37 +2,30 @@
 # SPDX-License-Identifier: Apache-2.0
 """What diagnostics say of a state: its level, its sentence and its values."""
 
-import datetime
-
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from sdf_pose_bridge.ros.diagnostics import State
-from sdf_pose_bridge.ros.diagnostics import status_from_state
-from sdf_pose_bridge.ros.loaded_scene import content_from_settings
-from sdf_pose_bridge.ros.settings import settings_from_values
+from sdf_pose_bridge.ros.diagnostics import status_from_scene
+from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
+from sdf_pose_bridge.ros.parameters import settings_from_node
 
-LOADED_AT = datetime.datetime(2026, 1, 2, 3, 4, 5, tzinfo=datetime.timezone.utc)
+LOADED_AT_NS = 1767323045_678900000
 GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
 LIGHT = '<light name="i" type="point"><pose relative_to="x"/></light>'
-VALUES = {
-    'root_frame': 'map', 'anchor_models': 'all', 'model': '', 'frame_names': 'auto',
-    'frame_separator': '/', 'frame_prefix': '', 'kinds': ['model', 'link'], 'pose_topics': [],
-    'optical_frames': True, 'resource_paths': [], 'on_missing_include': 'error',
-    'publish_rate': 0.0, 'watch': True,
-}
 
 
 @pytest.fixture
-def status_of(tmp_path):
+def status_of(make_node, tmp_path):
     def status(text, *failure):
         path = tmp_path / 'cell.sdf'
         path.write_text(text, encoding='utf-8')
-        content = content_from_settings(settings_from_values({**VALUES, 'sdf_file': str(path)}))
-        return status_from_state(State(content, 2, LOADED_AT, failure), 'left/bridge')
+        node = make_node('bridge', '-p', f'sdf_file:={path}', '-p', 'root_frame:=map')
+        loaded = loaded_scene_from_settings(settings_from_node(node))
+        return status_from_scene(
+            loaded._replace(read_since_ns=LOADED_AT_NS), failure, 'left/bridge')
     return status
 
 

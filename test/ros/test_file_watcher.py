@@ -7,9 +7,9 @@ import threading
 
 import pytest
 
-from sdf_pose_bridge.ros import file_watcher as file_watch
-from sdf_pose_bridge.ros.file_watcher import FileWatch
-from sdf_pose_bridge.ros.file_watcher import Watchman
+from sdf_pose_bridge.ros import file_watcher
+from sdf_pose_bridge.ros.file_watcher import FileWatcher
+from sdf_pose_bridge.ros.file_watcher import PollingThread
 
 LONG_AGO = 10 ** 18
 LATER = 10 ** 19
@@ -23,10 +23,10 @@ def path(tmp_path):
 
 
 @pytest.fixture
-def watch(path):
-    watch = FileWatch()
-    watch.watch([str(path)], LATER)
-    return watch
+def watcher(path):
+    watcher = FileWatcher()
+    watcher.watch([str(path)], LATER)
+    return watcher
 
 
 def rewrite(path):
@@ -71,128 +71,128 @@ CHANGES = pytest.mark.parametrize('change', [
     become_a_link])
 
 
-def test_without_a_change_there_is_nothing_to_notice(watch):
-    assert not watch.has_changed()
+def test_without_a_change_there_is_nothing_to_notice(watcher):
+    assert not watcher.has_changed()
 
 
 @CHANGES
-def test_a_change_is_noticed_once(watch, path, change):
+def test_a_change_is_noticed_once(watcher, path, change):
     change(path)
-    assert watch.has_changed()
-    assert not watch.has_changed()
+    assert watcher.has_changed()
+    assert not watcher.has_changed()
 
 
 @CHANGES
-def test_a_look_without_taking_note_leaves_the_change_to_be_noticed(watch, path, change):
-    assert not watch.would_differ()
+def test_a_look_from_another_thread_leaves_the_change_to_be_noticed(watcher, path, change):
+    assert not watcher.differs()
     change(path)
-    assert watch.would_differ()
-    assert watch.has_changed()
-    assert not watch.would_differ()
+    assert watcher.differs()
+    assert watcher.has_changed()
+    assert not watcher.differs()
 
 
 def test_a_file_that_appears_is_noticed(tmp_path):
     path = tmp_path / 'later.sdf'
-    watch = FileWatch()
-    watch.watch([str(path)], LONG_AGO)
-    assert not watch.has_changed()
+    watcher = FileWatcher()
+    watcher.watch([str(path)], LONG_AGO)
+    assert not watcher.has_changed()
     path.touch()
-    assert watch.has_changed()
+    assert watcher.has_changed()
 
 
 def test_a_link_that_points_elsewhere_is_noticed(tmp_path, path):
     link, other = tmp_path / 'link.sdf', tmp_path / 'other.sdf'
     other.write_text('old', encoding='utf-8')
     link.symlink_to(path)
-    watch = FileWatch()
-    watch.watch([str(link)], LATER)
+    watcher = FileWatcher()
+    watcher.watch([str(link)], LATER)
     link.unlink()
     link.symlink_to(other)
-    assert watch.has_changed()
+    assert watcher.has_changed()
 
 
-def test_other_files_are_watched_no_longer(watch, path):
-    watch.watch([], LATER)
+def test_other_files_are_watched_no_longer(watcher, path):
+    watcher.watch([], LATER)
     rewrite(path)
-    assert not watch.has_changed()
+    assert not watcher.has_changed()
 
 
 def test_a_file_that_changed_while_it_was_read_counts_as_changed_once(path):
-    watch = FileWatch()
+    watcher = FileWatcher()
     read_since_ns = path.stat().st_ctime_ns - 1
-    watch.watch([str(path)], read_since_ns)
-    assert watch.has_changed()
-    watch.watch([str(path)], read_since_ns)
-    assert not watch.has_changed()
+    watcher.watch([str(path)], read_since_ns)
+    assert watcher.has_changed()
+    watcher.watch([str(path)], read_since_ns)
+    assert not watcher.has_changed()
 
 
 def test_a_file_that_changed_in_the_same_tick_as_the_reading_began_counts_as_changed(path):
-    watch = FileWatch()
-    watch.watch([str(path)], path.stat().st_ctime_ns + 1)
-    assert watch.has_changed()
+    watcher = FileWatcher()
+    watcher.watch([str(path)], path.stat().st_ctime_ns + 1)
+    assert watcher.has_changed()
 
 
 def test_a_time_that_lies_ahead_does_not_make_a_file_change_for_ever(path):
-    watch = FileWatch()
+    watcher = FileWatcher()
     for _ in range(2):
-        watch.watch([str(path)], LONG_AGO)
-        watch.has_changed()
-    watch.watch([str(path)], LONG_AGO)
-    assert not watch.has_changed()
+        watcher.watch([str(path)], LONG_AGO)
+        watcher.has_changed()
+    watcher.watch([str(path)], LONG_AGO)
+    assert not watcher.has_changed()
 
 
-def test_more_files_can_be_watched_until_the_next_choice(watch, path, tmp_path):
-    watch.watch_also([str(tmp_path / 'models'), str(path)])
-    assert not watch.has_changed()
+def test_more_files_can_be_watched_until_the_next_choice(watcher, path, tmp_path):
+    watcher.watch_also([str(tmp_path / 'models'), str(path)])
+    assert not watcher.has_changed()
     (tmp_path / 'models').mkdir()
-    assert watch.has_changed()
+    assert watcher.has_changed()
     (tmp_path / 'models' / 'box').mkdir()
-    assert watch.has_changed()
-    watch.watch([str(path)], LATER)
+    assert watcher.has_changed()
+    watcher.watch([str(path)], LATER)
     (tmp_path / 'models' / 'crate').mkdir()
-    assert not watch.has_changed()
+    assert not watcher.has_changed()
 
 
-def test_to_watch_more_forgets_no_change(watch, path):
+def test_to_watch_more_forgets_no_change(watcher, path):
     rewrite(path)
-    watch.watch_also([str(path)])
-    assert watch.has_changed()
+    watcher.watch_also([str(path)])
+    assert watcher.has_changed()
 
 
 @pytest.mark.parametrize('name', ['', '\0', 'a' * 5000, '\udcff'])
 def test_a_path_that_cannot_exist_is_a_file_that_is_not_there(name):
-    watch = FileWatch()
-    watch.watch([name, f'{name}/x'], LONG_AGO)
-    assert not watch.has_changed() or not name
+    watcher = FileWatcher()
+    watcher.watch([name, f'{name}/x'], LONG_AGO)
+    assert not watcher.has_changed() or not name
 
 
 @pytest.fixture
 def calls(monkeypatch):
-    """What a watchman that always has something to do calls; a semaphore."""
-    monkeypatch.setattr(file_watch, 'PERIOD_S', 0.001)
+    """A semaphore that counts the calls of a thread with a short period."""
+    monkeypatch.setattr(file_watcher, 'PERIOD_S', 0.001)
     return threading.Semaphore(0)
 
 
-def test_a_watchman_calls_once_until_told_to_go_on(calls):
+def test_a_thread_calls_once_until_it_is_resumed(calls):
     is_due = threading.Event()
-    watchman = Watchman(is_due.is_set, calls.release)
+    thread = PollingThread(is_due.is_set, calls.release)
     is_due.set()
     assert calls.acquire(timeout=20)
     assert not calls.acquire(timeout=0.05)
-    watchman.go_on()
+    thread.resume()
     assert calls.acquire(timeout=20)
     is_due.clear()
-    watchman.go_on()
+    thread.resume()
 
 
-def test_a_watchman_with_nothing_to_do_only_looks(calls):
+def test_a_thread_calls_nothing_while_the_condition_is_false(calls):
     looks = threading.Semaphore(0)
 
     def is_due():
         looks.release()
         return False
 
-    Watchman(is_due, calls.release)
+    PollingThread(is_due, calls.release)
     for _ in range(3):
         assert looks.acquire(timeout=20)
     assert not calls.acquire(blocking=False)

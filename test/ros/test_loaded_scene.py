@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a load leaves behind, as a node may go through thousands of them; and paths that fail."""
+"""What a load leaves in memory, as a node may load thousands of times; and paths that fail."""
 
 import gc
 
@@ -11,28 +11,22 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from sdf_texts import world_file
 
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.ros.loaded_scene import content_from_settings
-from sdf_pose_bridge.ros.settings import settings_from_values
+from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
+from sdf_pose_bridge.ros.parameters import settings_from_node
 
 GOOD = '<model name="m"><link name="l"><pose>1 0 0 0 0 0</pose></link><frame name="f"/></model>'
 BAD = GOOD.replace('<pose>', '<pose relative_to="x">')
-VALUES = {
-    'root_frame': 'map', 'anchor_models': 'all', 'model': '', 'frame_names': 'auto',
-    'frame_separator': '/', 'frame_prefix': '', 'kinds': ['model', 'link'], 'pose_topics': [],
-    'optical_frames': True, 'resource_paths': [], 'on_missing_include': 'error',
-    'publish_rate': 0.0, 'watch': True,
-}
 
 
 @pytest.mark.parametrize('text', [GOOD, BAD], ids=['good', 'bad'])
-def test_nothing_is_left_that_only_a_search_for_garbage_would_free(tmp_path, text):
+def test_nothing_is_left_that_only_a_search_for_garbage_would_free(make_node, tmp_path, text):
     path = tmp_path / 'cell.sdf'
     path.write_text(world_file(text), encoding='utf-8')
-    settings = settings_from_values({**VALUES, 'sdf_file': str(path)})
+    settings = settings_from_node(make_node('bridge', '-p', f'sdf_file:={path}'))
 
     def load():
         try:
-            content_from_settings(settings)
+            loaded_scene_from_settings(settings)
         except SdfError:
             assert text is BAD
 
@@ -46,7 +40,7 @@ def test_nothing_is_left_that_only_a_search_for_garbage_would_free(tmp_path, tex
         gc.enable()
 
 
-def test_a_path_that_is_too_long_is_said_to_be():
-    settings = settings_from_values({**VALUES, 'sdf_file': '/' + 'x' * 1000})
+def test_a_path_that_is_too_long_is_said_to_be(make_node):
+    settings = settings_from_node(make_node('bridge', '-p', f'sdf_file:=/{"x" * 1000}'))
     with pytest.raises(SdfError, match='File name too long'):
-        content_from_settings(settings)
+        loaded_scene_from_settings(settings)

@@ -4,6 +4,8 @@
 
 import pytest
 
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
 from sdf_pose_bridge.errors import LoadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
@@ -11,8 +13,7 @@ from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
 from sdf_pose_bridge.ros.log_lines import MOST_ERRORS
 from sdf_pose_bridge.ros.log_lines import MOST_WARNINGS
-from sdf_pose_bridge.ros.settings import Problem
-from sdf_pose_bridge.ros.settings import SettingsError
+from sdf_pose_bridge.ros.parameters import SettingsError
 
 
 def test_each_error_of_a_file_has_its_line_with_its_place():
@@ -28,13 +29,13 @@ def test_a_flood_of_errors_ends_with_its_size():
     assert lines[-1] == '1 more error is not shown; "sdf_pose check" shows all of them'
 
 
-def test_each_problem_of_the_settings_has_its_line():
-    error = SettingsError([Problem('a', 'first'), Problem('b', 'second')])
+def test_each_sentence_about_settings_has_its_line():
+    error = SettingsError(['first', 'second'])
     assert lines_from_error(error) == ['first', 'second']
 
 
-def test_a_flood_of_problems_of_the_settings_ends_with_its_size():
-    error = SettingsError([Problem('kinds', 'wrong')] * (MOST_ERRORS + 2))
+def test_a_flood_of_sentences_about_settings_ends_with_its_size():
+    error = SettingsError(['wrong'] * (MOST_ERRORS + 2))
     lines = lines_from_error(error)
     assert len(lines) == MOST_ERRORS + 1
     assert lines[-1] == '2 more errors are not shown'

@@ -1,6 +1,8 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters on a real node: what is given wrong, what is given, and what people can read."""
+"""Parameters on a real node: wrong values, right values, and what people can read."""
+
+from pathlib import Path
 
 import pytest
 
@@ -8,13 +10,22 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from rclpy.parameter import Parameter
 
+from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.ros.parameters import changed_settings
-from sdf_pose_bridge.ros.parameters import PARAMETERS
+from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.ros.parameters import settings_from_node
-from sdf_pose_bridge.ros.settings import SettingsError
+from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.scene.loading import MissingInclude
+from sdf_pose_bridge.tf.frame_ids import FrameNames
+from sdf_pose_bridge.tf.tree import AnchorModels
 from sdf_pose_bridge.tf.tree import TfOptions
 
 FILE = ('-p', 'sdf_file:=cell.sdf')
+
+
+@pytest.fixture(name='settings')
+def default_settings(make_node):
+    return settings_from_node(make_node('defaults', *FILE))
 
 
 @pytest.mark.parametrize(('name', 'value', 'sentence'), [
@@ -24,15 +35,30 @@ FILE = ('-p', 'sdf_file:=cell.sdf')
     ('kinds', 'link', 'is link, which is a string; it must be a list of strings: -p "kinds:=['),
     ('pose_topics', '[1, 2]', 'is [1, 2], which is a list of integers; it must be a list of '),
     ('resource_paths', '[0.5]', 'is [0.5], which is a list of numbers; it must be a list of '),
+    ('publish_rate', '5', 'is 5, which is an integer; it must be a number with a decimal point'),
+    ('publish_rate', '500.0', 'must be 0.0 for never, else up to 100.0'),
     ('anchor_models', 'some', 'is "some"; it must be one of all, static, none'),
     ('kinds', '[]', 'is []; it must be at least one of'),
 ])
-def test_a_wrong_value_is_named_once_with_its_rule(make_node, name, value, sentence):
+def test_a_wrong_value_on_the_command_line_is_named_once(make_node, name, value, sentence):
     node = make_node('bridge', '-p', 'sdf_file:=cell.sdf', '-p', f'{name}:={value}')
     with pytest.raises(SettingsError) as refusal:
         settings_from_node(node)
-    (problem,) = refusal.value.problems
-    assert problem.sentence.startswith(f'parameter {name} {sentence}')
+    (found,) = refusal.value.sentences
+    assert found.startswith(f'parameter {name} {sentence}')
+
+
+def test_a_whole_number_for_a_rate_says_how_to_write_it(make_node):
+    with pytest.raises(SettingsError, match=r'such as: -p publish_rate:=5\.0'):
+        settings_from_node(make_node('bridge', *FILE, '-p', 'publish_rate:=5'))
+
+
+def test_all_wrong_values_are_named(make_node):
+    node = make_node('bridge', '-p', 'kinds:=[rope]', '-p', 'frame_names:=x', '-p', 'watch:=1')
+    with pytest.raises(SettingsError) as refusal:
+        settings_from_node(node)
+    assert [sentence.split()[1] for sentence in refusal.value.sentences] == [
+        'sdf_file', 'frame_names', 'kinds', 'watch']
 
 
 def test_without_a_file_the_sentence_says_how_to_name_one(make_node):
@@ -40,12 +66,38 @@ def test_without_a_file_the_sentence_says_how_to_name_one(make_node):
         settings_from_node(make_node('bridge'))
 
 
-def test_defaults(make_node):
-    settings = settings_from_node(make_node('bridge', *FILE))
+@pytest.mark.parametrize(('name', 'value', 'sentence'), [
+    ('sdf_file', '', 'is not set'),
+    ('root_frame', '', 'is ""; it must be a frame id'),
+    ('root_frame', '/map', 'is "/map"; it must be without a leading slash'),
+    ('root_frame', 'a\nb', r'is "a\nb"; it must be without control'),
+    ('root_frame', 5, 'is 5, which is an integer; it must be a string'),
+    ('anchor_models', 'some', 'is "some"; it must be one of all, static, none'),
+    ('on_missing_include', 'ignore', 'is "ignore"; it must be one of error, skip'),
+    ('frame_names', 'Auto', 'is "Auto"; it must be one of auto, scoped, relative'),
+    ('frame_separator', '', 'is ""; it must be at least one'),
+    ('frame_prefix', '/robot/', 'is "/robot/"; it must be without a'),
+    ('kinds', ['link', 'world'], 'is "world"; it must be made of model, link'),
+])
+def test_a_wrong_new_value_is_named_with_its_rule(settings, name, value, sentence):
+    with pytest.raises(SettingsError) as refusal:
+        changed_settings(settings, [Parameter(name, value=value)])
+    (found,) = refusal.value.sentences
+    assert found.startswith(f'parameter {name} {sentence}')
+
+
+def test_a_change_to_no_value_is_refused(settings):
+    with pytest.raises(SettingsError, match='parameter root_frame cannot be without a value'):
+        changed_settings(settings, [Parameter('root_frame', Parameter.Type.NOT_SET)])
+
+
+def test_defaults(settings):
     assert settings.sdf_file == 'cell.sdf'
     assert settings.tf_options == TfOptions()
     assert settings.pose_topics == ('*',)
     assert settings.resource_paths == ()
+    assert settings.on_missing_include is MissingInclude.ERROR
+    assert (settings.publish_rate, settings.watch) == (0.0, True)
 
 
 def test_an_empty_list_can_be_given(make_node):
@@ -63,38 +115,44 @@ def test_values_come_from_the_command_line(make_node):
     assert settings.tf_options == TfOptions(root_frame='map', optical_frames=False)
 
 
-def test_every_parameter_explains_itself(make_node):
+def test_new_values_are_converted_and_the_others_stay(make_node):
+    before = settings_from_node(make_node('bridge', *FILE, '-p', 'root_frame:=map'))
+    settings = changed_settings(before, [Parameter(name, value=value) for name, value in {
+        'sdf_file': 'a.sdf', 'anchor_models': 'static', 'model': 'r::arm',
+        'frame_names': 'scoped', 'frame_separator': '.', 'frame_prefix': 'left_',
+        'kinds': ['joint', 'joint', 'light'], 'pose_topics': ['r/*', 'tool'],
+        'optical_frames': False, 'resource_paths': ['/models', '', '/more'],
+        'on_missing_include': 'skip', 'publish_rate': 2.5, 'watch': False, 'use_sim_time': True,
+    }.items()])
+    assert settings.sdf_file == 'a.sdf'
+    assert settings.pose_topics == ('r/*', 'tool')
+    assert settings.resource_paths == (Path('/models'), Path('/more'))
+    assert settings.on_missing_include is MissingInclude.SKIP
+    assert (settings.publish_rate, settings.watch) == (2.5, False)
+    assert settings.tf_options == TfOptions(
+        root_frame='map', anchor_models=AnchorModels.STATIC, model='r::arm',
+        frame_names=FrameNames.SCOPED, frame_separator='.', frame_prefix='left_',
+        kinds=frozenset({Kind.JOINT, Kind.LIGHT}), optical_frames=False)
+    assert before.tf_options == TfOptions(root_frame='map')
+
+
+@pytest.mark.parametrize(('name', 'value', 'needs_load'), [
+    ('sdf_file', 'other.sdf', True), ('kinds', ['link'], True), ('resource_paths', ['/m'], True),
+    ('root_frame', 'world', False), ('pose_topics', ['a'], False), ('publish_rate', 1.0, False),
+    ('watch', False, False),
+])
+def test_the_file_is_read_again_where_that_changes_anything(settings, name, value, needs_load):
+    changed = changed_settings(settings, [Parameter(name, value=value)])
+    assert changed.needs_load_after(settings) is needs_load
+
+
+@pytest.mark.parametrize('name', DECLARATIONS)
+def test_every_parameter_explains_itself(make_node, name):
     node = make_node('bridge', *FILE)
     settings_from_node(node)
-    for declaration in PARAMETERS:
-        descriptor = node.describe_parameter(declaration.name)
-        assert descriptor.description.endswith('.')
-        assert descriptor.additional_constraints
-        typical = [''] if declaration.default == [] else declaration.default
-        assert Parameter.Type(descriptor.type) is Parameter.Type.from_parameter_value(typical)
-
-
-def test_a_rate_out_of_range_is_refused(make_node):
-    node = make_node('bridge', *FILE, '-p', 'publish_rate:=500.0')
-    with pytest.raises(SettingsError, match=r'parameter publish_rate must be 0\.0 for never'):
-        settings_from_node(node)
-
-
-def test_a_whole_number_for_a_rate_says_how_to_write_it(make_node):
-    node = make_node('bridge', *FILE, '-p', 'publish_rate:=5')
-    with pytest.raises(SettingsError, match=r'-p publish_rate:=5\.0'):
-        settings_from_node(node)
-
-
-def test_a_change_is_judged_together_with_what_stays(make_node):
-    node = make_node('bridge', *FILE, '-p', 'root_frame:=map')
-    settings_from_node(node)
-    settings = changed_settings(node, [Parameter('frame_prefix', value='a/')])
-    assert settings.tf_options == TfOptions(root_frame='map', frame_prefix='a/')
-
-
-def test_a_change_to_no_value_is_refused(make_node):
-    node = make_node('bridge', *FILE)
-    settings_from_node(node)
-    with pytest.raises(SettingsError, match='parameter root_frame cannot be without a value'):
-        changed_settings(node, [Parameter('root_frame', Parameter.Type.NOT_SET)])
+    descriptor = node.describe_parameter(name)
+    assert descriptor.description.endswith('.')
+    assert descriptor.additional_constraints
+    typical = DECLARATIONS[name].default or {'resource_paths': ['']}.get(
+        name, DECLARATIONS[name].default)
+    assert Parameter.Type(descriptor.type) is Parameter.Type.from_parameter_value(typical)

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Answers of the conversion services: refused with a sentence, or converted, and never raised."""
+"""Answers of the services: refused with a sentence, or given, and never raised."""
 
 import array
 import math
@@ -9,20 +9,27 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from builtin_interfaces.msg import Time
 from rclpy.logging import get_logger
+from sdf_texts import world_file
 
 from sdf_pose_bridge.ros.services import answer_to_convert_poses
 from sdf_pose_bridge.ros.services import answer_to_convert_rotation
+from sdf_pose_bridge.ros.services import answer_to_lookup_pose
 from sdf_pose_bridge.ros.services import never_raising
+from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.tf.lookup import PoseLookup
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge_interfaces.srv import ConvertPoses
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
+from sdf_pose_bridge_interfaces.srv import LookupPose
 
 
 def convert_rotation(given=0, rpy=(0.0, 0.0, 0.0), quat_xyzw=(0.0, 0.0, 0.0, 1.0), degrees=False):
     request = ConvertRotation.Request(given=given, degrees=degrees)
     request.rpy.x, request.rpy.y, request.rpy.z = rpy
-    turn = request.quaternion
-    turn.x, turn.y, turn.z, turn.w = quat_xyzw
+    quat = request.quaternion
+    quat.x, quat.y, quat.z, quat.w = quat_xyzw
     return answer_to_convert_rotation(request, ConvertRotation.Response())
 
 
@@ -30,6 +37,14 @@ def convert_poses(values, from_format='sdf_rpy', to_format='sdf_quat_xyzw'):
     request = ConvertPoses.Request(from_format=from_format, to_format=to_format)
     request.values = array.array('d', values)
     return answer_to_convert_poses(request, ConvertPoses.Response())
+
+
+def look_up(frame, relative_to=''):
+    scene = load_text(world_file(
+        '<model name="m"><pose>0.1 -1e-300 1e300 0 0 3</pose><link name="l"/></model>'))
+    return answer_to_lookup_pose(
+        LookupPose.Request(frame=frame, relative_to=relative_to), LookupPose.Response(),
+        PoseLookup(scene, tf_tree_from_scene(scene)), Time(sec=12, nanosec=34))
 
 
 @pytest.mark.parametrize(('request_fields', 'word'), [
@@ -63,9 +78,9 @@ def test_bad_poses_are_refused_with_the_rule(request_fields, word):
 def test_both_representations_are_answered():
     response = convert_rotation(rpy=(0.0, 0.0, 90.0), degrees=True)
     assert (response.success, response.message) == (True, '')
-    turn = response.quaternion
+    quat = response.quaternion
     half = math.sqrt(0.5)
-    assert (turn.x, turn.y, turn.z, turn.w) == pytest.approx((0.0, 0.0, half, half))
+    assert (quat.x, quat.y, quat.z, quat.w) == pytest.approx((0.0, 0.0, half, half))
     assert (response.rpy.x, response.rpy.y, response.rpy.z) == (0.0, 0.0, 90.0)
     assert not response.gimbal_lock
 
@@ -85,6 +100,26 @@ def test_poses_are_converted_row_by_row():
     assert (response.success, response.message) == (True, '')
     assert response.values == pytest.approx(
         [1, 2, 3, 0, 0, 1, 0, 4, 5, 6, 0, 0, 0, 1])
+
+
+def test_an_unknown_frame_is_refused_with_its_name():
+    response = look_up('m::k')
+    assert not response.success
+    assert response.message.startswith('"m::k" is the name of nothing')
+
+
+def test_a_pose_has_every_number_in_its_place():
+    response = look_up('m')
+    assert (response.success, response.message) == (True, '')
+    xyz, quat = response.pose.pose.position, response.pose.pose.orientation
+    assert (xyz.x, xyz.y, xyz.z) == (0.1, -1e-300, 1e300)
+    assert (quat.x, quat.y, quat.z, quat.w) == (0.0, 0.0, math.sin(1.5), math.cos(1.5))
+
+
+def test_a_pose_has_its_frame_and_stamp():
+    header = look_up('m', 'm::l').pose.header
+    assert header.frame_id == 'm/l'
+    assert (header.stamp.sec, header.stamp.nanosec) == (12, 34)
 
 
 def test_a_defect_is_answered_and_logged(capfd):

@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
-
 from sdf_pose_bridge.scene.pointer_chains import ends_from_pointers
 from sdf_pose_bridge.scene.pointer_chains import rings_from_pointers
 

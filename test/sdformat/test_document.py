@@ -5,6 +5,10 @@
 import socket
 
 import pytest
+from sdf_pose_bridge.sdformat.document import boolean_from_text
+from sdf_pose_bridge.sdformat.document import text_of
+from sdf_pose_bridge.sdformat.document import value_of
+from sdf_pose_bridge.sdformat.document_reading import document_from_text
 from sdf_texts import assert_at
 from sdf_texts import codes_of
 from sdf_texts import errors_of
@@ -13,10 +17,6 @@ from sdf_texts import names_of
 from sdf_texts import only_error
 
 import sdf_pose_bridge
-from sdf_pose_bridge.sdformat.document import boolean_from_text
-from sdf_pose_bridge.sdformat.document import text_of
-from sdf_pose_bridge.sdformat.document import value_of
-from sdf_pose_bridge.sdformat.document_reading import document_from_text
 from sdf_pose_bridge.sdformat.xml_file import fault_beyond_log
 
 LINK = '<link name="l"/>'

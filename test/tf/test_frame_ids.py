@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frame ids made of scoped names."""
 
+import numpy as np
 import pytest
 from sdf_texts import element
 from sdf_texts import fixed_joint
@@ -20,14 +21,11 @@ CHILDREN = ['visual', 'collision', 'light', 'particle_emitter', 'projector']
 def ids_of(text, *arguments):
     """Return the frame ids of all elements but roots."""
     scene = sdf_pose_bridge.load_text(text)
-    ids = FrameNaming(*arguments).frame_ids_from_scene(scene)
-    assert len(ids) == len(scene.names)
-    return [frame_id for frame_id, holder in zip(ids, scene.parents.tolist(), strict=True)
-            if holder >= 0]
+    return FrameNaming(*arguments).frame_ids_from_scene(scene, np.flatnonzero(scene.parents >= 0))
 
 
-def in_world(content):
-    return world_file(f'<model name="m">{content}</model>')
+def in_world(children):
+    return world_file(f'<model name="m">{children}</model>')
 
 
 @pytest.mark.parametrize(('text', 'names', 'ids'), [

@@ -10,8 +10,8 @@ from sdf_texts import model_file
 from sdf_texts import world_file
 
 from sdf_pose_bridge.errors import UnknownFrameError
-from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
@@ -77,14 +77,6 @@ def test_a_name_that_means_nothing_is_named(lookup, frame, relative_to, sentence
     with pytest.raises(UnknownFrameError) as caught:
         lookup.pose(frame, relative_to)
     assert sentence in caught.value.message
-
-
-def test_what_is_asked_again_has_the_same_answer(lookup, monkeypatch):
-    monkeypatch.setattr('sdf_pose_bridge.tf.lookup.MOST_KEPT', 2)
-    names = ['robot::grip', 'robot', 'robot::base', 'robot::base::eye']
-    answers = [lookup.pose(name, reference) for name in names for reference in names]
-    assert [lookup.pose(name, reference) for name in names for reference in names] == answers
-    assert len(set(answers)) > len(names)
 
 
 def test_where_a_text_is_both_the_name_of_sdf_is_meant():

@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parents in TF: what a frame is fixed to, or what a joint moves it on."""
 
-import itertools
-
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
@@ -14,7 +12,6 @@ from sdf_texts import posed
 from sdf_texts import world_file
 
 import sdf_pose_bridge
-from sdf_pose_bridge.tf.parents import _Builder
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 
 LINKS = '<link name="a"/><link name="b"/><link name="c"/>'
@@ -34,13 +31,13 @@ def parents_of(text):
 def names_of(text, part):
     scene = sdf_pose_bridge.load_text(text)
     answer = tf_parents_from_scene(scene)
-    if part == 'anchored':
-        return {scene.names[index] for index in answer.anchored}
+    if part == 'free':
+        return {scene.names[index] for index in answer.free_bodies}
     return [scene.names[joint.element] for joint in answer.loop_joints]
 
 
-def model(name, content):
-    return f'<model name="{name}">{content}</model>'
+def model(name, children):
+    return f'<model name="{name}">{children}</model>'
 
 
 def joints(*pairs):
@@ -230,8 +227,8 @@ def test_what_is_free():
     text = world_file(
         model('free', LINKS) + model('bolted', LINKS + joints(('world', 'a'), ('a', 'b')))
         + model('fixed', '<static>1</static><link name="l"/>') + '<frame name="f"/>')
-    assert {'free::a'} <= names_of(text, 'anchored')
-    assert not {'bolted::a', 'bolted::b'} & names_of(text, 'anchored')
+    assert {'free::a'} <= names_of(text, 'free')
+    assert not {'bolted::a', 'bolted::b'} & names_of(text, 'free')
 
 
 # Loops
@@ -269,57 +266,23 @@ def test_a_long_chain():
     assert parents[f'm::l{count - 1}'] == f'm::l{count - 2}'
 
 
-# Parents found for all at once
+# Any joints
 
 BODIES = [f'{name}::{link}' for name in 'pqr' for link in 'abc']
 
 
-def builder_of_joints(pairs, static=()):
-    models = ''.join(
-        model(name, f'<static>{name in static}</static>{LINKS}') for name in 'pqr')
-    return _Builder(sdf_pose_bridge.load_text(world_file(models + joints(*pairs))))
-
-
-@given(
-    edges=st.lists(
-        st.tuples(st.sampled_from(['world', *BODIES]), st.sampled_from(BODIES)),
-        unique_by=lambda edge: edge[1]),
-    static=st.sets(st.sampled_from('pqr'), max_size=1))
-def test_what_is_found_at_once_is_what_a_search_finds(edges, static):
-    pairs = [
-        (start, end) for start, end in edges
-        if start != end and (start[0] != end[0] or end[0] not in static)]
-    builder = builder_of_joints(pairs, static)
-    bodies, ranks = builder._ranked_bodies()
-    movers = builder._movers_if_trees_hang_on_first(bodies, ranks)
-    found, loops = builder._movers_of_any(bodies[ranks.argsort()].tolist())
-    assert movers is None or (movers.tolist(), []) == (found.tolist(), loops)
-
-
-def test_a_tree_below_the_first_link_is_found_at_once():
-    builder = builder_of_joints([('p::a', 'p::b'), ('p::b', 'p::c'), ('p::a', 'q::a')])
-    assert builder._movers_if_trees_hang_on_first(*builder._ranked_bodies()) is not None
-
-
-@pytest.mark.parametrize('pairs', [
-    [('p::a', 'p::b'), ('p::b', 'p::a')],
-    [('p::b', 'p::c'), ('p::c', 'q::a'), ('q::a', 'p::b')],
-    [('p::a', 'p::c'), ('p::b', 'p::c')],
-    [('p::b', 'p::a')],
-])
-def test_loops_two_parents_and_other_tops_need_a_search(pairs):
-    builder = builder_of_joints(pairs)
-    assert builder._movers_if_trees_hang_on_first(*builder._ranked_bodies()) is None
-
-
-@pytest.mark.parametrize('count', [1, 2, 3, 4, 5, 8, 9, 31, 33])
-def test_a_chain_of_any_length_is_found_at_once(count):
-    links = [f'l{number}' for number in range(count)]
-    text = model_file(
-        ''.join(f'<link name="{link}"/>' for link in links)
-        + joints(*reversed(list(itertools.pairwise(links)))))
-    builder = _Builder(sdf_pose_bridge.load_text(text))
-    movers = builder._movers_if_trees_hang_on_first(*builder._ranked_bodies())
-    names = builder._scene.names
-    assert {names[end]: names[start] for end, start in enumerate(movers) if start >= 0} == {
-        f'm::{end}': f'm::{start}' for start, end in itertools.pairwise(links)}
+@given(st.lists(st.tuples(st.sampled_from(['world', *BODIES]), st.sampled_from(BODIES))))
+def test_a_joint_connects_a_child_to_its_parent_or_closes_a_loop(pairs):
+    pairs = [(parent, child) for parent, child in pairs if parent != child]
+    text = world_file(
+        ''.join(model(name, LINKS) for name in 'pqr')
+        + ''.join(fixed_joint(f'j{i}', *pair) for i, pair in enumerate(pairs)))
+    parents, loops = parents_of(text), names_of(text, 'loops')
+    connected = {body: {body} for body in ['world', *BODIES]}
+    for i, (parent, child) in enumerate(pairs):
+        assert (f'j{i}' in loops) == (child in connected[parent])
+        if f'j{i}' not in loops:
+            assert parents[child] == parent or parents[parent] == child
+            connected[parent] |= connected[child]
+            for body in connected[parent]:
+                connected[body] = connected[parent]

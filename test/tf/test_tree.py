@@ -39,7 +39,7 @@ LINK = '<link name="l"/>'
 
 
 def assert_has_poses_of(tree, scene, ids):
-    """Check the poses of frames against the scene; ids tells the frame id of each element."""
+    """Check the poses of frames against the scene; ids has the frame id of each element."""
     for index, frame_id in ids.items():
         assert_same_pose(
             pose_of(tree, frame_id), matrix_from_pose(scene.poses[index].tolist()),
@@ -61,7 +61,7 @@ def scoped_ids(scene, kinds):
     return ids
 
 
-# Frames that TF, or a reader of it, could not tell apart
+# Frame ids that are not unique or not valid
 
 @pytest.mark.parametrize(('text', 'options', 'frame_id'), [
     (model_file('<link name="a/b"/><model name="a"><link name="b"/></model>'), {}, 'a/b'),

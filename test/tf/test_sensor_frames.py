@@ -19,8 +19,8 @@ from tf_checks import tree_of
 OPTICAL = matrix_from_rpy(0, 0, 0, -np.pi / 2, 0, -np.pi / 2)
 
 
-def camera(name='cam', content='', inside='', pose='1 0 0 0 0 0'):
-    return (f'<sensor name="{name}" type="camera"><pose>{pose}</pose>{content}'
+def camera(name='cam', children='', inside='', pose='1 0 0 0 0 0'):
+    return (f'<sensor name="{name}" type="camera"><pose>{pose}</pose>{children}'
             f'<camera>{inside}</camera></sensor>')
 
 
@@ -39,11 +39,11 @@ def test_a_frame_id_that_nothing_has_becomes_a_frame_at_the_sensor():
     assert pose_of(tree, 'laser')[:3] == [1, 0, 0]
 
 
-@pytest.mark.parametrize('content', [
+@pytest.mark.parametrize('children', [
     '<link name="l">{}</link><link name="laser"/>', '<link name="laser"/><link name="l">{}</link>',
     '<link name="l">{}</link><frame name="laser"/>'])
-def test_a_frame_id_that_a_frame_has_makes_none(content):
-    tree = tree_of(model_file(content.format(lidar('s', 'laser'))))
+def test_a_frame_id_of_another_frame_makes_no_frame(children):
+    tree = tree_of(model_file(children.format(lidar('s', 'laser'))))
     assert sorted(tree.frame_ids) == ['l', 'laser', 'm']
     assert pose_of(tree, 'laser')[:3] == [0, 0, 0]
 
@@ -124,13 +124,13 @@ def test_a_camera_names_its_optical_frame():
 
 
 def test_the_optical_frame_of_a_camera_with_a_frame_id():
-    text = model_file(f'<link name="l">{camera(content="<gz_frame_id>eye</gz_frame_id>")}</link>')
+    text = model_file(f'<link name="l">{camera(children="<gz_frame_id>eye</gz_frame_id>")}</link>')
     assert parents_of(text) == {'m': 'l', 'l': 'world', 'eye': 'l', 'eye_optical': 'eye'}
 
 
 def test_the_optical_frame_of_a_camera_with_the_frame_id_of_a_link():
     tree = tree_of(model_file(
-        f'<link name="l">{camera(content="<gz_frame_id>l</gz_frame_id>")}</link>'))
+        f'<link name="l">{camera(children="<gz_frame_id>l</gz_frame_id>")}</link>'))
     assert tree.frame_ids == ('m', 'l', 'l_optical')
     assert pose_of(tree, 'l_optical')[:3] == [1, 0, 0]
 

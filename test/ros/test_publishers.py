@@ -1,0 +1,78 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Publishers of frames on a real node: which topics there are, and which frames have vanished."""
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from rclpy.executors import SingleThreadedExecutor
+from tf_checks import tree_of
+
+from sdf_pose_bridge.ros.publishers import FramePublishers
+
+WORLD = '<sdf version="1.10"><world name="w">{}</world></sdf>'
+
+
+def tree_of_frames(*names):
+    return tree_of(WORLD.format(''.join(f'<frame name="{name}"/>' for name in names)))
+
+
+@pytest.fixture(name='node')
+def spinnable_node(make_node):
+    node = make_node('bridge')
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    yield node
+    executor.shutdown()
+
+
+@pytest.fixture(name='publish')
+def make_publish(node):
+    """Publishes frames and pose topics; ``publish(names, topics)`` returns what has vanished."""
+    publishers = FramePublishers(node)
+
+    def publish(names, topics=()):
+        publishers.publish_tf_static(tree_of_frames(*names))
+        task = node.executor.create_task(
+            publishers.publish_topics({name: f'topic_{name}' for name in topics}))
+        node.executor.spin_until_future_complete(task, timeout_sec=20.0)
+        assert task.done()
+        return task.result()
+
+    return publish
+
+
+def topics_of(node):
+    topics = {publisher.topic_name for publisher in node.publishers}
+    return topics - {'/rosout', '/parameter_events'}
+
+
+def test_frames_that_are_gone_are_returned(publish):
+    assert publish('abc') == []
+    assert publish('b') == ['a', 'c']
+    assert publish('bd') == []
+
+
+def test_no_frames_can_be_published(publish):
+    assert publish('') == []
+    assert publish('a') == []
+    assert publish('') == ['a']
+
+
+def test_pose_topics_are_made_and_removed(publish, node):
+    others = {'/tf_static', '/bridge/transforms'}
+    publish('abc', 'ab')
+    assert topics_of(node) == others | {'/bridge/poses/topic_a', '/bridge/poses/topic_b'}
+    publish('abc', 'bc')
+    assert topics_of(node) == others | {'/bridge/poses/topic_b', '/bridge/poses/topic_c'}
+    publish('abc')
+    assert topics_of(node) == others
+
+
+def test_many_topics_are_made_between_other_callbacks(publish, node):
+    calls = []
+    node.create_timer(0.0, lambda: calls.append(len(topics_of(node))))
+    names = [f'f{number}' for number in range(200)]
+    publish(names, names)
+    assert len(set(calls)) > 3
