@@ -319,6 +319,7 @@ def with_include_at_the_top(content):
 @pytest.mark.parametrize(('content', 'code'), [
     (include('none.sdf'), 'URI_LOOKUP'),
     (include(attributes='merge="true"'), 'MERGE_INCLUDE_UNSUPPORTED'),
+    (include(attributes='merge="true"'), 'ELEMENT_MISSING'),
     (include() + include(content='<name>b</name>'), 'ELEMENT_INCORRECT_TYPE'),
 ])
 def test_wrong_include_at_the_top_is_refused(errors_in, content, code):
