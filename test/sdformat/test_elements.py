@@ -4,13 +4,11 @@
 
 import numpy as np
 import pytest
-from sdf_texts import LINK
 from sdf_texts import model_file
 from sdf_texts import only_error
 from sdf_texts import world_file
 
 from sdf_pose_bridge import Kind
-from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.pose_text import PoseFormat
@@ -56,12 +54,6 @@ def test_element_without_a_pose_is_at_the_identity(builder):
     elements, _ = builder.elements()
     assert elements.poses.tolist() == [[0, 0, 0, 0, 0, 0, 1]] * 3
     assert elements.pose_lines.tolist() == [0, 0, 0]
-
-
-def test_elements_stand_after_their_parents():
-    scene = load_text(world_file(
-        f'<model name="m">{LINK}<frame name="f"/><model name="n">{LINK}</model></model>'))
-    assert all(parent < index for index, parent in enumerate(scene.parents.tolist()))
 
 
 def test_table_has_the_columns_of_all_elements(builder):

@@ -16,8 +16,8 @@ ARM = """<model name="arm">
 <link name="hand_left"><visual name="palm"/></link>
 <frame name="grip"/>
 <x:thing name="thing"/>
-<model name="tool"><link name="p"/><frame name="tip"/><model name="inner"><frame name="end"/></model>
-</model>
+<model name="tool"><link name="p"/><frame name="tip"/>
+<model name="inner"><frame name="end"/></model></model>
 </model>"""
 
 
