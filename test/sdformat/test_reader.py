@@ -98,6 +98,14 @@ def test_name_with_the_separator_in_an_old_file_is_accepted():
     assert names_of(scene) == ['m', 'm::a::b']
 
 
+@pytest.mark.parametrize('attributes', ['', 'merge="true"'])
+def test_name_of_an_include_with_the_separator_in_an_old_file_is_accepted(tmp_path, attributes):
+    include = f'<include {attributes}><uri>leaf.sdf</uri><name>a::b</name></include>'
+    main = model_file('<link name="k"/>' + include, version='1.6')
+    write_files(tmp_path, leaf=model_file(LINK), main=main)
+    assert 'm::k' in load(tmp_path / 'main.sdf').names
+
+
 @pytest.mark.parametrize('content', [
     '<plugin name="p" filename="f"><link name="a::b"><pose>no</pose></link></plugin>',
     '<plugin name="p" filename="f"><model name="world"/></plugin>',
@@ -105,6 +113,22 @@ def test_name_with_the_separator_in_an_old_file_is_accepted():
 ])
 def test_foreign_elements_are_not_read(content):
     assert names_of(load_text(model_file(LINK + content))) == ['m', 'm::l']
+
+
+# Elements of a state
+
+def test_light_of_a_state_needs_no_type():
+    light = '<light name="sun"><pose>0 0 1 0 0 0</pose></light>'
+    assert names_of(load_text(world_file(f'<state world_name="w">{light}</state>'))) == []
+
+
+@pytest.mark.parametrize(('content', 'code'), [
+    ('<light/>', 'ATTRIBUTE_MISSING'),
+    ('<insertions><light name="sun"/></insertions>', 'ATTRIBUTE_MISSING'),
+    ('<model name="m"><pose>1 2</pose></model>', 'ELEMENT_INVALID'),
+])
+def test_wrong_element_of_a_state_is_refused(content, code):
+    assert codes_of(world_file(f'<state world_name="w">{content}</state>')) == [code]
 
 
 # Poses

@@ -69,6 +69,14 @@ def test_wrong_include_gives_one_error_with_its_line(errors_in, tmp_path, wrong,
     assert (error.code, error.file, error.line) == (code, str(tmp_path / 'world.sdf'), 2)
 
 
+@pytest.mark.parametrize('content', ['<static>maybe</static>', '<pose>1 2</pose>'])
+def test_wrong_include_of_a_light_gives_one_error_with_its_line(errors_in, tmp_path, content):
+    light = '<sdf version="1.9"><light name="x" type="point"/></sdf>'
+    (error,) = errors_in('\n' + include('light.sdf', content), light=light)
+    assert (error.code, error.file, error.line) == (
+        'ELEMENT_INVALID', str(tmp_path / 'world.sdf'), 2)
+
+
 @pytest.mark.parametrize(('text', 'code'), [
     ('<sdf version="1.9"/>', 'ELEMENT_MISSING'),
     ('<sdf version="1.9"><world name="w"/></sdf>', 'ELEMENT_MISSING'),

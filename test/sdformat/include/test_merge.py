@@ -120,9 +120,11 @@ def test_model_is_not_merged_twice(errors_in):
      'MODEL_CANONICAL_LINK_INVALID'),
     (ARM, '<pose/><placement_frame>zzz</placement_frame>', 'POSE_RELATIVE_TO_INVALID'),
     (ARM, '<pose>1 2</pose>', 'ELEMENT_INVALID'),
+    (ARM, '<pose relative_to="zzz"/>', 'POSE_RELATIVE_TO_INVALID'),
+    (ARM, '<pose relative_to="__root__"/>', 'ATTRIBUTE_INVALID'),
     (ARM, '<static>maybe</static>', 'ELEMENT_INVALID'),
 ])
-def test_override_that_makes_the_merged_file_wrong_is_refused(errors_in, text, content, code):
+def test_wrong_override_gives_one_error(errors_in, text, content, code):
     (error,) = errors_in(in_model(include(content)), arm=text)
     assert error.code == code
 
