@@ -28,7 +28,7 @@ RELATIVE_TO = 'robot::l70'
     'Scene.pose(frame, relative_to)', counterpart='numpy: inverse of a 4x4 matrix times another',
     goal=TimesAsFast(longest_s=5e-6))
 def query_and_matrices() -> Iterator[tuple[Function, Function | None]]:
-    from sdf_pose_bridge.geometry.rotation import matrix_from_quaternion
+    from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
     from sdf_pose_bridge.scene.loading import load_text
     scene = load_text(WORLD)
     first, second = np.eye(4), np.eye(4)

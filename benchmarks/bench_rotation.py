@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Rotations and pose formats, against the floor that numpy sets and against other libraries."""
+"""Rotations and pose formats, compared with sine and cosine of numpy and with other libraries."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from benchmarks.harness import AtMostTimes
 from benchmarks.harness import benchmark
 from benchmarks.harness import TimesAsFast
 from sdf_pose_bridge.geometry.formats import converted_poses
-from sdf_pose_bridge.geometry.rotation import matrix_from_quaternion
-from sdf_pose_bridge.geometry.rotation import quaternion_from_matrix
-from sdf_pose_bridge.geometry.rotation import quaternion_from_rpy
-from sdf_pose_bridge.geometry.rotation import rpy_from_quaternion
+from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
+from sdf_pose_bridge.geometry.rotations import quaternion_from_matrix
+from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
+from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 
 MANY = 1_000_000
 ONE_RPY = (0.1, -0.2, 2.3)
@@ -27,13 +27,13 @@ def random_rpy(count):
 
 
 @benchmark('rpy to quaternion, 1e6', counterpart="numpy's sin and cos", goal=AtMostTimes(2.0))
-def many_to_quaternion_and_floor():
+def many_to_quaternion_and_sines():
     rpy = random_rpy(MANY)
     yield lambda: quaternion_from_rpy(rpy), lambda: (np.sin(rpy), np.cos(rpy))
 
 
 @benchmark('quaternion to rpy, 1e6', counterpart="numpy's sin and cos", goal=AtMostTimes(2.0))
-def many_to_rpy_and_floor():
+def many_to_rpy_and_sines():
     rpy = random_rpy(MANY)
     quats = quaternion_from_rpy(rpy)
     yield lambda: rpy_from_quaternion(quats), lambda: (np.sin(rpy), np.cos(rpy))

@@ -1,13 +1,13 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Poses as 4 x 4 matrices: a second way to calculate, which shares nothing with the package."""
+"""Poses as 4 x 4 matrices: a second way to compute, independent of the package."""
 
 import math
 
 import numpy as np
 
 
-def turn(axis, angle):
+def axis_rotation(axis, angle):
     """Return the rotation about one axis (0 x, 1 y, 2 z) by an angle in radians."""
     first, second = (axis + 1) % 3, (axis + 2) % 3
     matrix = np.eye(4)
@@ -19,7 +19,7 @@ def turn(axis, angle):
 
 def matrix_from_rpy(x, y, z, roll=0.0, pitch=0.0, yaw=0.0):
     """Return the matrix of a pose: metres, and radians about fixed axes."""
-    matrix = turn(2, yaw) @ turn(1, pitch) @ turn(0, roll)
+    matrix = axis_rotation(2, yaw) @ axis_rotation(1, pitch) @ axis_rotation(0, roll)
     matrix[:3, 3] = x, y, z
     return matrix
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Rotations that are hard on floating point, and references that are not: for the tests alone."""
+"""Rotations that are difficult for floating point, and references of high precision."""
 
 import itertools
 import math
@@ -8,14 +8,14 @@ import math
 import mpmath
 import numpy as np
 
-LARGEST_TURN = 3 * 4e-16
+MAX_ANGLE = 3 * 4e-16
 """
-Largest turn allowed between a rotation given and what comes out of it, or comes back.
+Largest angle allowed between a rotation and its conversion, in radians.
 
-4e-16 is about what rounding does to one angle near pi.
+Rounding changes an angle near pi by about 4e-16.
 """
 
-LONG_DOUBLE_HELPS = np.finfo(np.longdouble).eps < 2e-19
+HAS_LONG_DOUBLE = np.finfo(np.longdouble).eps < 2e-19
 
 DISTANCES = np.concatenate(([0.0], 10.0 ** np.arange(-16.0, -2.5, 0.25)))
 
@@ -30,7 +30,7 @@ def random_quaternions(count, seed=4):
 
 
 def lock_rpy(count, seed=4):
-    """Give pitch at right angles, up and down, from either side: +-0 and +-1e-16 to +-1e-3."""
+    """Return RPY whose pitch differs from a right angle by 0 or by 1e-16 to 1e-3."""
     rng = np.random.default_rng(seed)
     rpy = rng.uniform(-4.0, 4.0, (count, 3))
     sides = rng.choice((-1.0, 1.0), count)
@@ -39,7 +39,7 @@ def lock_rpy(count, seed=4):
 
 
 def fine_lock_rpy(count, seed=4):
-    """Give pitch where the rule for lock changes sides, a few steps of a float from it."""
+    """Return RPY whose pitch is within a few floats of the tolerance of gimbal lock."""
     rpy = lock_rpy(count, seed)
     rpy[:, 1] = np.copysign(0.5 * math.pi, rpy[:, 1]) + np.linspace(-3e-15, 3e-15, count)
     return rpy
@@ -56,38 +56,38 @@ def large_rpy(count, seed=4):
     return rng.uniform(-1e6, 1e6, (count, 3))
 
 
-def eighths_rpy():
-    """Give all multiples of an eighth of a turn, up to a whole turn: every edge of the ranges."""
-    eighths = np.arange(-8, 9) * (math.pi / 4.0)
-    return np.array(list(itertools.product(eighths, repeat=3)))
+def rpy_in_steps_of_45_degrees():
+    """Return all RPY in steps of 45 degrees up to 360: every edge of the ranges."""
+    angles = np.arange(-8, 9) * (math.pi / 4.0)
+    return np.array(list(itertools.product(angles, repeat=3)))
 
 
 RPY_SETS = {
     'random': random_rpy,
     'lock': lock_rpy,
-    'lock, step by step': fine_lock_rpy,
+    'edge of lock': fine_lock_rpy,
     'tiny': tiny_rpy,
     'large': large_rpy,
-    'eighths': lambda _: eighths_rpy(),
+    'steps of 45 degrees': lambda _: rpy_in_steps_of_45_degrees(),
 }
 
 
 def half_turn_axes():
-    """Give all axes through corners, edges and faces of a cube, and some between, not unit."""
+    """Return unit axes through corners, edges and faces of a cube, and some between."""
     steps = (-2.0, -1.0, -1e-9, 0.0, 1e-9, 1.0, 2.0)
     axes = np.array([axis for axis in itertools.product(steps, repeat=3) if any(axis)])
     return axes / np.linalg.norm(axes, axis=1)[:, None]
 
 
 def half_turns(angle=math.pi):
-    """Give quaternions of turns by an angle about all of them."""
+    """Return quaternions of rotations by an angle about all of these axes."""
     axes = half_turn_axes()
     real = math.cos(0.5 * angle) if angle != math.pi else 0.0
     return np.column_stack((math.sin(0.5 * angle) * axes, np.full(len(axes), real)))
 
 
 def extended_quaternions(rpy):
-    """Convert roll, pitch, yaw to quaternions with the processor's 64 bits of mantissa."""
+    """Convert RPY to quaternions in long double, with 64 bits of mantissa where it has them."""
     half = np.asarray(rpy, dtype=np.longdouble) * np.longdouble(0.5)
     (sin_r, sin_p, sin_y), (cos_r, cos_p, cos_y) = np.sin(half).T, np.cos(half).T
     return np.stack(
@@ -101,8 +101,8 @@ def extended_quaternions(rpy):
     )
 
 
-def largest_turn(quats_a, quats_b):
-    """Return the angle of the largest rotation between two rows of quaternions near unit."""
+def largest_angle(quats_a, quats_b):
+    """Return the largest angle between two arrays of rotations, given as quaternions."""
     a = np.asarray(quats_a, dtype=np.longdouble)
     b = np.asarray(quats_b, dtype=np.longdouble)
     a = a / np.sqrt(np.sum(a * a, axis=1))[:, None]
@@ -114,7 +114,7 @@ def largest_turn(quats_a, quats_b):
 
 
 def exact_quaternion(rpy):
-    """Convert roll, pitch, yaw to a quaternion of 50 digits."""
+    """Convert RPY to a quaternion with 50 digits."""
     with mpmath.workdps(50):
         (sin_r, cos_r), (sin_p, cos_p), (sin_y, cos_y) = (
             (mpmath.sin(half), mpmath.cos(half))
@@ -129,7 +129,7 @@ def exact_quaternion(rpy):
 
 
 def exact_matrix(quat):
-    """Convert a quaternion of any norm to nine numbers of 50 digits, row after row."""
+    """Convert a quaternion of any norm to the nine numbers of its matrix, with 50 digits."""
     with mpmath.workdps(50):
         x, y, z, w = exact_unit(quat)
         return (
@@ -150,8 +150,8 @@ def exact_unit(quat):
         return tuple(mpmath.mpf(value) / norm for value in quat)
 
 
-def exact_turn(quat_a, quat_b):
-    """Return the angle between two rotations, with 50 digits on the way."""
+def exact_angle(quat_a, quat_b):
+    """Return the angle between two rotations, computed with 50 digits."""
     with mpmath.workdps(50):
         a, b = exact_unit(quat_a), exact_unit(quat_b)
         chords = [

@@ -1,32 +1,43 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""``sdf_pose check``: say what is wrong with files."""
+"""``sdf_pose check``: print errors and warnings of files; other commands load files like it."""
 
 from __future__ import annotations
 
 import argparse
 import os
 import sys
+from typing import NamedTuple
 from typing import TextIO
 
-from sdf_pose_bridge.cli.files import add_file_arguments
-from sdf_pose_bridge.cli.files import load_file
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.scene.loading import load
+from sdf_pose_bridge.scene.loading import MissingInclude
+from sdf_pose_bridge.scene.scene import Scene
 
 _RED, _YELLOW, _BOLD, _PLAIN = '\x1b[31m', '\x1b[33m', '\x1b[1m', '\x1b[0m'
 
 
+class LoadedFile(NamedTuple):
+    """Result of loading a file."""
+
+    scene: Scene | None
+    """None if the file is not valid."""
+    errors: tuple[SdfError, ...]
+    warnings: tuple[SdfWarning, ...]
+
+
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """
-    Declare the command.
+    Add the command.
 
-    :param subparsers: where the commands are declared.
+    :param subparsers: the commands of the command line.
     """
     parser = subparsers.add_parser(
-        'check', help='say what is wrong with files',
-        description='Read files and print every error and warning in them, a line each: '
-                    'FILE:LINE: CODE: what is wrong. The exit code is 1 if a file has an error.')
+        'check', help='print the errors and warnings of files',
+        description='Print every error and warning of files, one per line: FILE:LINE: CODE: '
+                    'MESSAGE. The exit code is 1 if a file has an error.')
     add_file_arguments(parser)
     parser.set_defaults(run=run)
 
@@ -35,26 +46,58 @@ def run(options: argparse.Namespace) -> int:
     """
     Check files.
 
-    :param options: what was parsed.
-    :return: 0 if all are valid, else 1.
+    :param options: the parsed arguments.
+    :return: exit code: 0 if all files are valid, else 1.
     """
-    is_valid = True
+    are_valid = True
     for path in options.files:
         loaded = load_file(path, options)
         print_problems(loaded.errors, loaded.warnings, sys.stdout)
-        is_valid = is_valid and loaded.scene is not None
-    return 0 if is_valid else 1
+        are_valid = are_valid and loaded.scene is not None
+    return 0 if are_valid else 1
+
+
+def add_file_arguments(parser: argparse.ArgumentParser) -> None:
+    """
+    Add the arguments of :func:`load_file`.
+
+    :param parser: the parser of a command.
+    """
+    parser.add_argument('files', metavar='FILE', nargs='+', help='an SDFormat file')
+    parser.add_argument(
+        '-I', dest='resource_paths', metavar='DIR', action='append', default=[],
+        help='a directory to search for included models, before those of GZ_SIM_RESOURCE_PATH '
+             'and SDF_PATH; may be given more than once')
+    parser.add_argument(
+        '--skip-missing', action='store_true',
+        help='leave out includes that are not found, with a warning')
+
+
+def load_file(path: str, options: argparse.Namespace) -> LoadedFile:
+    """
+    Load a file.
+
+    :param path: path of the file.
+    :param options: the parsed arguments.
+    :return: the scene with its warnings, or the errors of the file.
+    """
+    missing = MissingInclude.SKIP if options.skip_missing else MissingInclude.ERROR
+    try:
+        scene = load(path, resource_paths=options.resource_paths, on_missing_include=missing)
+    except SdfError as error:
+        return LoadedFile(None, error.errors, error.warnings)
+    return LoadedFile(scene, (), scene.warnings)
 
 
 def print_problems(
     errors: tuple[SdfError, ...], warnings: tuple[SdfWarning, ...], stream: TextIO,
 ) -> None:
     """
-    Print errors and warnings, a line each, in colour on a terminal.
+    Print errors and warnings, one per line; in colour on a terminal.
 
     :param errors: the errors of a file.
-    :param warnings: its warnings.
-    :param stream: where to print them.
+    :param warnings: the warnings of a file.
+    :param stream: where they are printed.
     """
     is_coloured = stream.isatty() and not os.environ.get('NO_COLOR')
     bold, plain = (_BOLD, _PLAIN) if is_coloured else ('', '')

@@ -1,51 +1,46 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""``sdf_pose convert``: convert poses and rotations given on the command line or line by line."""
+"""``sdf_pose convert``: convert poses and rotations from arguments or from standard input."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Iterable
 from collections.abc import Iterator
+from collections.abc import Sequence
 import io
 from itertools import islice
 import re
 import sys
 from typing import NamedTuple
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.formats import converted_rotations
+from sdf_pose_bridge.geometry.formats import Format
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS
-from sdf_pose_bridge.geometry.formats import PoseFormat
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
-from sdf_pose_bridge.geometry.rotation_checks import Floats
-
-if TYPE_CHECKING:
-    # Only the stubs know the class by this name with its parameter.
-    Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]  # noqa: SLF001
 
 LINES_AT_A_TIME = 10_000
-"""Lines converted in one go: enough for speed, and memory stays small however long the input."""
+"""Lines that are converted together: fast, and memory stays bounded for input of any length."""
 
 NEGATIVE_NUMBER = re.compile(r'^-(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$|^-(inf|nan)', re.IGNORECASE)
 
 
 class _Line(NamedTuple):
     number: int
-    row: list[float]
-    fault: str
+    """Number of the line in standard input; 0 for the arguments."""
+    values: list[float]
+    error: str
 
 
-def add_parser(subparsers: Subparsers) -> argparse.ArgumentParser:
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """
-    Add the command to a command line.
+    Add the command.
 
-    :param subparsers: what ``ArgumentParser.add_subparsers`` returned.
-    :return: the command's parser; the arguments it makes are for :func:`run`.
+    :param subparsers: the commands of the command line.
     """
     parser = subparsers.add_parser(
         'convert',
@@ -58,55 +53,51 @@ def add_parser(subparsers: Subparsers) -> argparse.ArgumentParser:
         epilog=_formats_help(),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    # argparse takes -1e-3 for an option unless it is told what a negative number looks like.
+    # By default argparse parses -1e-3 as an option.
     parser._negative_number_matcher = NEGATIVE_NUMBER  # noqa: SLF001
     names = (*ROTATION_FORMATS, *POSE_FORMATS)
     parser.add_argument(
         '--from', dest='from_format', metavar='FORMAT', choices=names, required=True,
-        help='format of the numbers given',
-    )
+        help='format of the numbers')
     parser.add_argument(
         '--to', dest='to_format', metavar='FORMAT', choices=names,
-        help='format to print; all of them if not given',
-    )
+        help='format to print; by default all of them')
     parser.add_argument('numbers', nargs='*', metavar='NUMBER', help='one pose or rotation')
     parser.set_defaults(run=run)
-    return parser
 
 
-def run(args: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """
-    Convert what the arguments say, or the lines of standard input.
+    Convert the numbers of the arguments or the lines of standard input.
 
-    :param args: ``from_format``, ``to_format`` (or None) and ``numbers``, a list of text.
-    :return: exit code: 0, 1 if anything was not converted, 2 if the formats do not go together.
+    :param options: the parsed arguments.
+    :return: exit code: 0, 1 if anything was not converted, 2 for a pose and a rotation format.
     """
-    formats = POSE_FORMATS if args.from_format in POSE_FORMATS else ROTATION_FORMATS
-    if args.to_format is None:
+    formats = POSE_FORMATS if options.from_format in POSE_FORMATS else ROTATION_FORMATS
+    if options.to_format is None:
         targets = list(formats.values())
-    elif args.to_format in formats:
-        targets = [formats[args.to_format]]
+    elif options.to_format in formats:
+        targets = [formats[options.to_format]]
     else:
         kind, other = ('pose', 'rotation') if formats is POSE_FORMATS else ('rotation', 'pose')
         print(
-            f'sdf_pose convert: --from {args.from_format} is a {kind} and --to {args.to_format}'
-            f' a {other}; a {kind} converts to {", ".join(formats)}',
-            file=sys.stderr,
-        )
+            f'sdf_pose convert: --from {options.from_format} is a {kind} and'
+            f' --to {options.to_format} a {other}; a {kind} converts to {", ".join(formats)}',
+            file=sys.stderr)
         return 2
-    source = formats[args.from_format]
-    labelled = args.to_format is None
-    if args.numbers:
-        line = _parsed_line(0, ' '.join(args.numbers), source)
-        return _printed([line], source, targets, labelled=labelled)
+    source = formats[options.from_format]
+    has_labels = options.to_format is None
+    if options.numbers:
+        line = _line_from_text(0, ' '.join(options.numbers), source)
+        return _print_converted([line], source, targets, has_labels=has_labels)
     exit_code = 0
     if isinstance(sys.stdin, io.TextIOWrapper):
-        # Bytes that are no text make a bad line; they should not end the program.
+        # Bytes that are not text are an error of their line only.
         sys.stdin.reconfigure(errors='backslashreplace')
-    lines = _parsed_lines(sys.stdin, source)
+    lines = _lines_from_texts(sys.stdin, source)
     at_a_time = 1 if sys.stdin.isatty() else LINES_AT_A_TIME
     while batch := list(islice(lines, at_a_time)):
-        exit_code |= _printed(batch, source, targets, labelled=labelled)
+        exit_code |= _print_converted(batch, source, targets, has_labels=has_labels)
     return exit_code
 
 
@@ -119,93 +110,74 @@ def _formats_help() -> str:
     return '\n'.join(lines)
 
 
-def _parsed_lines(texts: Iterable[str], source: PoseFormat) -> Iterator[_Line]:
+def _lines_from_texts(texts: Iterable[str], source: Format) -> Iterator[_Line]:
     for number, text in enumerate(texts, start=1):
         stripped = text.strip()
         if stripped and not stripped.startswith('#'):
-            yield _parsed_line(number, stripped, source)
+            yield _line_from_text(number, stripped, source)
 
 
-def _parsed_line(number: int, text: str, source: PoseFormat) -> _Line:
-    words = text.split()
-    row = []
-    for word in words:
+def _line_from_text(number: int, text: str, source: Format) -> _Line:
+    values = []
+    for word in text.split():
         try:
-            # float() reads 1_000 as Python does, which no other reader of poses would.
-            row.append(float(word if '_' not in word else 'no number'))
+            if '_' in word:
+                raise ValueError  # float() takes 1_000, which other readers of poses do not
+            values.append(float(word))
         except ValueError:
-            return _Line(number, [], f'{word!r} is no number')
-    if len(row) != source.row_length:
-        fault = (
-            f'{source.name} has {source.row_length} numbers ({source.meaning}), but {len(row)}'
-            f' {"is" if len(row) == 1 else "are"} given'
-        )
-        return _Line(number, [], fault)
-    return _Line(number, row, '')
+            return _Line(number, [], f'{word!r} is not a number')
+    if len(values) != source.row_length:
+        error = (
+            f'{source.name} has {source.row_length} numbers ({source.meaning}), but {len(values)}'
+            f' {"is" if len(values) == 1 else "are"} given')
+        return _Line(number, [], error)
+    return _Line(number, values, '')
 
 
-def _printed(
-    lines: list[_Line], source: PoseFormat, targets: list[PoseFormat], *, labelled: bool
+def _print_converted(
+    lines: Sequence[_Line], source: Format, targets: Sequence[Format], *, has_labels: bool,
 ) -> int:
-    """Print one answer for each line and complain about those without; return the exit code."""
-    faults = {line.number: line.fault for line in lines if line.fault}
-    good = [line for line in lines if not line.fault]
-    columns = []
-    for target in targets:
-        answers: dict[int, list[float]] = {}
-        _convert(good, source, target, answers, faults)
-        columns.append(answers)
-    out = []
+    """Print the result or the error of each line and return the exit code."""
+    valid = [line for line in lines if not line.error]
+    columns = [_converted(valid, source, target) for target in targets]
+    results = dict(zip((line.number for line in valid), zip(*columns, strict=True), strict=True))
     width = max(len(target.name) for target in targets)
+    exit_code = 0
+    output = []
     for line in lines:
-        if line.number in faults:
-            # What follows stays beside what was given, and other readers skip a comment.
-            where = f'line {line.number}: ' if line.number else ''
-            if where:
-                out.append(f'# line {line.number} is not converted')
-            print(f'sdf_pose convert: {where}{faults[line.number]}', file=sys.stderr)
-        elif labelled:
-            out += [
-                f'{target.name:{width}}  {_text(answers[line.number])}'
-                for target, answers in zip(targets, columns, strict=True)
-            ]
+        row = results.get(line.number, (line.error,))
+        errors = [result for result in row if isinstance(result, str)]
+        if errors:
+            exit_code = 1
+            place = f'line {line.number}: ' if line.number else ''
+            print(f'sdf_pose convert: {place}{errors[0]}', file=sys.stderr)
+            if line.number:
+                # A comment keeps the lines of output beside those of input.
+                output.append(f'# line {line.number} is not converted')
         else:
-            out.append(_text(columns[0][line.number]))
-        if labelled and line.number:
-            out.append('')
-    sys.stdout.write(''.join(f'{text}\n' for text in out))
-    return 1 if faults else 0
+            for target, result in zip(targets, row, strict=True):
+                label = f'{target.name:{width}}  ' if has_labels else ''
+                output.append(label + ' '.join(map(repr, result)))
+        if has_labels and line.number:
+            output.append('')
+    sys.stdout.write(''.join(f'{text}\n' for text in output))
+    return exit_code
 
 
-def _convert(
-    lines: list[_Line],
-    source: PoseFormat,
-    target: PoseFormat,
-    answers: dict[int, list[float]],
-    faults: dict[int, str],
-) -> None:
-    """Convert all lines at once, and by halves where one of them is wrong."""
+def _converted(
+    lines: Sequence[_Line], source: Format, target: Format,
+) -> list[list[float] | str]:
+    """Return the numbers of each line in another format, or the error."""
     if not lines:
-        return
+        return []
     convert = converted_poses if source.name in POSE_FORMATS else converted_rotations
+    values = np.array([line.values for line in lines])
     try:
-        rows = convert(_array([line.row for line in lines]), source.name, target.name)
+        results: list[list[float] | str] = convert(values, source.name, target.name).tolist()
     except PoseFormatError as error:
         if len(lines) == 1:
-            faults[lines[0].number] = str(error)
-            return
+            return [str(error)]
         half = len(lines) // 2
-        _convert(lines[:half], source, target, answers, faults)
-        _convert(lines[half:], source, target, answers, faults)
-    else:
-        answers.update(
-            (line.number, row) for line, row in zip(lines, rows.tolist(), strict=True)
-        )
-
-
-def _array(rows: list[list[float]]) -> Floats:
-    return np.array(rows, dtype=np.float64)
-
-
-def _text(row: list[float]) -> str:
-    return ' '.join(map(repr, row))
+        return [
+            *_converted(lines[:half], source, target), *_converted(lines[half:], source, target)]
+    return results

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The command line ``sdf_pose``: one subcommand for each thing to be known of a file."""
+"""The command line ``sdf_pose``: a parser with one subcommand for each module of this room."""
 
 from __future__ import annotations
 
@@ -9,32 +9,32 @@ from collections.abc import Sequence
 import os
 import sys
 
-from sdf_pose_bridge.cli import check as check_command
-from sdf_pose_bridge.cli import convert as convert_command
-from sdf_pose_bridge.cli import poses as poses_command
+from sdf_pose_bridge.cli import check
+from sdf_pose_bridge.cli import convert
+from sdf_pose_bridge.cli import poses
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """
-    Run a subcommand.
+    Run a command.
 
-    :param arguments: the words after the program's name; None for those it was called with.
-    :return: the exit code: 0 if all went well, 1 if a file or a value was wrong, 2 if the call
-        was.
+    :param arguments: the arguments after the name of the program; by default those of the process.
+    :return: exit code: 0 for success, 1 if a file or a value is wrong, 2 if the arguments are, 130
+        after Ctrl-C.
     """
     parser = argparse.ArgumentParser(
         prog='sdf_pose',
         description='Poses and frames of SDFormat files, exactly as libsdformat resolves them.')
     subparsers = parser.add_subparsers(
         dest='command', required=True, metavar='COMMAND', title='commands')
-    for command in (check_command, poses_command, convert_command):
+    for command in (check, poses, convert):
         command.add_parser(subparsers)
     options = parser.parse_args(arguments)
     try:
         code: int = options.run(options)
         sys.stdout.flush()
     except BrokenPipeError:
-        # The reader, such as head, has what it wanted; there is no one left to tell anything.
+        # The reader, such as head, has closed the pipe; closing stdout must not raise again.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except KeyboardInterrupt:

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""``sdf_pose poses``: print every pose of files, as a table or as JSON."""
+"""``sdf_pose poses``: print the poses of files as tables or as JSON."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import json
 import sys
 from typing import Any
 
+from sdf_pose_bridge.cli.check import add_file_arguments
+from sdf_pose_bridge.cli.check import load_file
 from sdf_pose_bridge.cli.check import print_problems
-from sdf_pose_bridge.cli.files import add_file_arguments
-from sdf_pose_bridge.cli.files import load_file
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UnknownFrameError
@@ -27,18 +27,18 @@ _KIND_NAMES = ', '.join(_SHOWN_BY_NAME)
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """
-    Declare the command.
+    Add the command.
 
-    :param subparsers: where the commands are declared.
+    :param subparsers: the commands of the command line.
     """
     parser = subparsers.add_parser(
-        'poses', help='print every pose of files',
+        'poses', help='print the poses of files',
         description='Print the pose of every element of files: x y z in metres and the quaternion '
                     'x y z w, in the world or in the implicit root of a model file. The exit code '
                     'is 1 if a file has an error.')
     add_file_arguments(parser)
     parser.add_argument(
-        '--json', action='store_true', help='print one JSON object for each file, a line each')
+        '--json', action='store_true', help='print one JSON object for each file, one per line')
     parser.add_argument(
         '--relative-to', metavar='FRAME', default='',
         help='print poses relative to this frame, such as robot::arm::hand')
@@ -50,61 +50,61 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(options: argparse.Namespace) -> int:
     """
-    Print the poses of files; a bad file does not stop the next one.
+    Print the poses of files; after an invalid file the next one follows.
 
-    :param options: what was parsed.
-    :return: 0 if all are valid, else 1.
+    :param options: the parsed arguments.
+    :return: exit code: 0 if all files are valid, else 1.
     """
-    is_valid = True
+    are_valid = True
     for path in options.files:
         loaded = load_file(path, options)
         errors = loaded.errors
-        rows: list[dict[str, Any]] = []
+        elements: list[dict[str, Any]] = []
         if loaded.scene is not None:
             try:
-                rows = _rows(loaded.scene, options)
+                elements = _elements(loaded.scene, options)
             except UnknownFrameError as error:
                 errors = error.errors
-        is_valid = is_valid and not errors
+        are_valid = are_valid and not errors
         if options.json:
             print(json.dumps({
                 'file': path,
                 'ok': not errors,
                 'errors': [_problem(error) for error in errors],
                 'warnings': [_problem(warning) for warning in loaded.warnings],
-                'elements': rows,
+                'elements': elements,
             }, ensure_ascii=False))
             continue
         sys.stdout.flush()
         print_problems(errors, loaded.warnings, sys.stderr)
         if not errors:
-            _print_table(rows, path if len(options.files) > 1 else '')
-    return 0 if is_valid else 1
+            _print_table(elements, path if len(options.files) > 1 else '')
+    return 0 if are_valid else 1
 
 
 def _kinds_from_text(text: str) -> tuple[Kind, ...]:
     kinds = []
     for name in text.split(','):
         if name not in _SHOWN_BY_NAME:
-            msg = f'"{name}" is no kind of element; known are {_KIND_NAMES}'
+            msg = f'"{name}" is not a kind of element; known are {_KIND_NAMES}'
             raise argparse.ArgumentTypeError(msg)
         kinds.append(_SHOWN_BY_NAME[name])
     return tuple(kinds)
 
 
-def _rows(scene: Scene, options: argparse.Namespace) -> list[dict[str, Any]]:
-    rows = []
+def _elements(scene: Scene, options: argparse.Namespace) -> list[dict[str, Any]]:
+    elements = []
     for index, name in enumerate(scene.names):
         kind = Kind(scene.kinds[index])
         if kind in options.kinds:
             root = int(scene.roots[index])
-            rows.append({
+            elements.append({
                 'kind': kind.label,
                 'name': name,
                 'world': scene.world_names.get(root, ''),
                 'pose': list(_pose(scene, index, options.relative_to)),
             })
-    return rows
+    return elements
 
 
 def _pose(scene: Scene, index: int, relative_to: str) -> Pose:
@@ -124,15 +124,17 @@ def _problem(problem: SdfError | SdfWarning) -> dict[str, Any]:
     }
 
 
-def _print_table(rows: Sequence[dict[str, Any]], title: str) -> None:
+def _print_table(elements: Sequence[dict[str, Any]], title: str) -> None:
     if title:
         print(title)
-    has_worlds = len({row['world'] for row in rows}) > 1
-    names = [f'{row["world"]}: {row["name"]}' if has_worlds else row['name'] for row in rows]
+    has_worlds = len({element['world'] for element in elements}) > 1
+    names = [
+        f'{element["world"]}: {element["name"]}' if has_worlds else element['name']
+        for element in elements]
     width = max(map(len, names), default=0)
-    kind_width = max((len(row['kind']) for row in rows), default=0)
+    kind_width = max((len(element['kind']) for element in elements), default=0)
     print(f'{"kind":{kind_width}}  {"name":{width}}  '
           + ' '.join(f'{label:>10}' for label in ('x', 'y', 'z', 'qx', 'qy', 'qz', 'qw')))
-    for row, name in zip(rows, names, strict=True):
-        print(f'{row["kind"]:{kind_width}}  {name:{width}}  '
-              + ' '.join(f'{value + 0.0:10.6f}' for value in row['pose']))
+    for element, name in zip(elements, names, strict=True):
+        print(f'{element["kind"]:{kind_width}}  {name:{width}}  '
+              + ' '.join(f'{value + 0.0:10.6f}' for value in element['pose']))

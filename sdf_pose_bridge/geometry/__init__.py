@@ -1,3 +1,11 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Rotations, poses and the formats that they are written in; knows nothing of SDFormat."""
+"""
+Rotations, poses and the formats that they are written in; independent of SDFormat and of ROS.
+
+- :mod:`~sdf_pose_bridge.geometry.rotations`: convert between roll-pitch-yaw, quaternion, matrix
+- :mod:`~sdf_pose_bridge.geometry.poses`: compose and invert poses
+- :mod:`~sdf_pose_bridge.geometry.formats`: the formats of poses, and conversions between them
+- :mod:`~sdf_pose_bridge.geometry.formulas`: the formulas of rotations, for floats and for arrays
+- :mod:`~sdf_pose_bridge.geometry.floats`: functions of numpy for floats, which the formulas call
+"""

@@ -3,10 +3,10 @@
 """
 Convert poses and rotations between the formats that robots and files write them in.
 
-A format is one entry of a registry. It knows the way to one common representation and back, so
-that any format converts to any other:
+A format is one entry of a registry. It converts to one common representation and back, so every
+format converts to every other:
 
-- poses: x, y, z in metres and the unit quaternion x, y, z, w with w >= 0; shape (n, 7),
+- poses: x, y, z in metres and the canonical quaternion x, y, z, w; shape (n, 7),
 - rotations: the same quaternion alone; shape (n, 4).
 
 All poses are those of a child in its parent.
@@ -15,49 +15,71 @@ All poses are those of a child in its parent.
 from __future__ import annotations
 
 from collections.abc import Callable
-from collections.abc import Iterable
 from collections.abc import Mapping
 from collections.abc import Sequence
+import enum
 import math
 from types import MappingProxyType
+from typing import Any
 from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.angles import degrees_from_radians
-from sdf_pose_bridge.geometry.angles import radians_from_degrees
-from sdf_pose_bridge.geometry.rotation import canonical_quaternion
-from sdf_pose_bridge.geometry.rotation import matrix_from_quaternion
-from sdf_pose_bridge.geometry.rotation import quaternion_from_matrix
-from sdf_pose_bridge.geometry.rotation import quaternion_from_rpy
-from sdf_pose_bridge.geometry.rotation import RotationError
-from sdf_pose_bridge.geometry.rotation import rpy_from_quaternion
-from sdf_pose_bridge.geometry.rotation_checks import Floats
-from sdf_pose_bridge.geometry.rotation_checks import listed
+from sdf_pose_bridge.geometry import floats
+from sdf_pose_bridge.geometry.formulas import degrees_from_radians
+from sdf_pose_bridge.geometry.formulas import radians_from_degrees
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion
+from sdf_pose_bridge.geometry.rotations import Floats
+from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
+from sdf_pose_bridge.geometry.rotations import near_gimbal_lock
+from sdf_pose_bridge.geometry.rotations import Quaternion
+from sdf_pose_bridge.geometry.rotations import quaternion_from_matrix
+from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
+from sdf_pose_bridge.geometry.rotations import RotationError
+from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
+from sdf_pose_bridge.geometry.rotations import Triple
 
 LAST_ROW = (0.0, 0.0, 0.0, 1.0)
-"""Of every 4 x 4 matrix of a pose, exactly; libfranka compares without a tolerance."""
+"""Last row of the 4 x 4 matrix of a pose, exactly; libfranka compares without a tolerance."""
 
 
 class PoseFormatError(ValueError):
-    """Values that are no poses in the format named; the message says which rule they break."""
+    """The values are not poses in the format; the message says which value breaks which rule."""
 
 
-class PoseFormat(NamedTuple):
-    """How one kind of row of numbers says a pose or a rotation."""
+class Format(NamedTuple):
+    """How a row of numbers describes a pose or a rotation."""
 
     name: str
     """What users call it."""
     row_length: int
-    """Numbers of one pose."""
+    """How many numbers a pose or rotation has."""
     meaning: str
-    """The numbers in their order, with units, for people."""
+    """The numbers in their order, with units, as the help of the command line shows it."""
     to_common: Callable[[Floats], Floats]
     """Converts finite rows (n, row_length) to the common representation; raises RotationError."""
     from_common: Callable[[Floats], Floats]
     """Converts the common representation to rows (n, row_length)."""
     half_turn: float | None = None
-    """What half a turn is in the last three numbers, if these are roll, pitch and yaw."""
+    """Half a turn in the unit of the last three numbers, if these are roll, pitch and yaw."""
+
+
+class Given(enum.IntEnum):
+    """Which representation of a rotation is given; the constants of ConvertRotation.srv."""
+
+    RPY = 0
+    QUATERNION = 1
+
+
+class RotationAnswer(NamedTuple):
+    """One rotation in both representations."""
+
+    rpy: Triple
+    """Roll, pitch, yaw; in degrees if these were asked for."""
+    quat_xyzw: Quaternion
+    """x, y, z, w; unit, w >= 0."""
+    gimbal_lock: bool
+    """Pitch is within 4.5e-8 of a right angle, where roll and yaw mean little by themselves."""
 
 
 def converted_poses(
@@ -68,15 +90,15 @@ def converted_poses(
     """
     Convert poses from one format to another.
 
-    :param values: poses after one another, shape (n * row,), or one in each row, shape (n, row);
-        any number of them, none too.
-    :param from_format: what they are in, a name in :data:`POSE_FORMATS`.
-    :param to_format: what they shall be in; the same is allowed, and makes them canonical.
-    :return: the same poses, shape (n * row,) or (n, row) as they were given; new memory. Roll and
-        yaw are within a half turn, pitch within a right angle, and yaw is 0 at gimbal lock; angles
-        given so keep their digits between formats that have angles.
+    :param values: any number of poses one after another, shape (n * row_length,), or one in each
+        row, shape (n, row_length).
+    :param from_format: format of the values, a name in :data:`POSE_FORMATS`.
+    :param to_format: format of the result; if it is the same, the poses become canonical.
+    :return: the poses, shape (n * row_length,) or (n, row_length) like the values; new memory.
+        Roll and yaw are within a half turn, pitch within a right angle, and yaw is 0 at gimbal
+        lock. Angles in these ranges keep their digits between formats that have angles.
     :raises PoseFormatError: an unknown format, a wrong length, values that are not finite, a
-        quaternion of zeros, or a matrix that is no rotation to within 1e-5.
+        quaternion of zeros, or a matrix that is not a rotation to within 1e-5.
     """
     return _converted(values, from_format, to_format, POSE_FORMATS, 'pose')
 
@@ -89,27 +111,73 @@ def converted_rotations(
     """
     Convert rotations from one format to another.
 
-    :param values: rotations after one another, shape (n * row,), or one in each row, shape
-        (n, row).
-    :param from_format: what they are in, a name in :data:`ROTATION_FORMATS`.
-    :param to_format: what they shall be in; the same is allowed, and makes them canonical.
-    :return: the same rotations, shape (n * row,) or (n, row) as they were given; new memory.
+    :param values: any number of rotations one after another, shape (n * row_length,), or one in
+        each row, shape (n, row_length).
+    :param from_format: format of the values, a name in :data:`ROTATION_FORMATS`.
+    :param to_format: format of the result; if it is the same, the rotations become canonical.
+    :return: the rotations, shape (n * row_length,) or (n, row_length) like the values; new memory.
     :raises PoseFormatError: as :func:`converted_poses`.
     """
     return _converted(values, from_format, to_format, ROTATION_FORMATS, 'rotation')
+
+
+def converted_rotation(
+    given: int, rpy: Triple, quat_xyzw: Quaternion, *, degrees: bool,
+) -> RotationAnswer:
+    """
+    Return both representations of one rotation, as the service ConvertRotation does.
+
+    :param given: which of the next two is converted, a value of :class:`Given`; the other one is
+        ignored.
+    :param rpy: roll, pitch, yaw, of any size.
+    :param quat_xyzw: x, y, z, w, of any norm but zero.
+    :param degrees: True if the angles, given and returned, are in degrees.
+    :return: roll and yaw within a half turn, pitch within a right angle, yaw 0 at gimbal lock; the
+        canonical quaternion. Angles in these ranges keep their digits.
+    :raises RotationError: an unknown value of ``given``, numbers that are not finite, or a
+        quaternion of zeros.
+    """
+    if given == Given.RPY:
+        rpy_rad: Sequence[float] = rpy
+        # Angles that are not finite are left alone: the error shows them as they are given.
+        if degrees and all(map(math.isfinite, rpy)):
+            rpy_rad = [radians_from_degrees(floats, angle) for angle in rpy]
+        quat = quaternion_from_rpy(rpy_rad)
+    elif given == Given.QUATERNION:
+        quat = canonical_quaternion(quat_xyzw)
+    else:
+        known = ', '.join(f'{value.value} ({value.name})' for value in Given)
+        msg = f'given is {given!r}, which is neither RPY nor quaternion; known are {known}'
+        raise RotationError(msg)
+    half_turn = 180.0 if degrees else math.pi
+    if given == Given.RPY and _are_canonical(rpy, half_turn):
+        roll, pitch, yaw = rpy
+    else:
+        roll, pitch, yaw = rpy_from_quaternion(quat)
+        if degrees:
+            roll, pitch, yaw = map(degrees_from_radians, (roll, pitch, yaw))
+    return RotationAnswer((roll + 0.0, pitch + 0.0, yaw + 0.0), quat, near_gimbal_lock(quat))
+
+
+def _are_canonical(rpy: Any, half_turn: float) -> Any:
+    """Return True where angles are in their ranges and not near lock, where yaw may become 0."""
+    roll, pitch, yaw = rpy
+    return (
+        (abs(roll) <= half_turn) & (abs(yaw) <= half_turn)
+        & (abs(pitch) * (2.0 + 1e-7) <= half_turn))
 
 
 def _converted(
     values: object,
     from_format: str,
     to_format: str,
-    formats: Mapping[str, PoseFormat],
+    formats: Mapping[str, Format],
     what: str,
 ) -> Floats:
-    source = _format_named(from_format, formats, what)
-    target = _format_named(to_format, formats, what)
+    source = _format_from_name(from_format, formats, what)
+    target = _format_from_name(to_format, formats, what)
     rows, is_flat = _rows(values, source, what)
-    _refuse_not_finite(rows, source)
+    _check_finite(rows, source)
     try:
         common = source.to_common(rows)
     except RotationError as error:
@@ -118,184 +186,165 @@ def _converted(
     with np.errstate(over='ignore'):
         result = target.from_common(common)
     if source.half_turn and target.half_turn:
-        _keep_angles_in_range(rows[:, -3:], source.half_turn, result[:, -3:], target.half_turn)
-    result += 0.0  # makes 0 of what is -0 in the values given
-    finite = np.isfinite(result)
-    if not finite.all():
-        row = int(np.argmin(finite.all(axis=1)))
+        # Rounding must not change angles that are already canonical.
+        angles = rows[:, -3:]
+        are_canonical = _are_canonical(angles.T, source.half_turn)
+        if target.half_turn != source.half_turn:
+            angles = angles * target.half_turn / source.half_turn
+        np.copyto(result[:, -3:], angles, where=are_canonical[:, np.newaxis])
+    result += 0.0  # no negative zeros
+    is_finite = np.isfinite(result)
+    if not is_finite.all():
+        row = int(np.argmin(is_finite.all(axis=1)))
+        place = _without_only_row(f'row {row}: ', len(rows))
         msg = (
-            f'{source.name}: {_without_only_row(f"row {row}: ", len(rows))}{listed(rows[row])} is'
-            f' too large a number for {target.name}'
-        )
+            f'{source.name}: {place}{tuple(rows[row].tolist())} has too large a number for'
+            f' {target.name}')
         raise PoseFormatError(msg)
     return result.reshape(-1) if is_flat else result
 
 
-def _keep_angles_in_range(
-    given: Floats, given_half_turn: float, result: Floats, half_turn: float
-) -> None:
-    """Put angles that are canonical as they are given in place of those that rounding moved."""
-    angles = np.abs(given)
-    # Not near lock, where yaw may have to be 0.
-    angles[:, 1] *= 2.0 + 1e-7
-    canonical = (angles <= given_half_turn).all(axis=1, keepdims=True)
-    scaled = given if half_turn == given_half_turn else given * half_turn / given_half_turn
-    np.copyto(result, scaled, where=canonical)
-
-
-def _format_named(name: str, formats: Mapping[str, PoseFormat], what: str) -> PoseFormat:
+def _format_from_name(name: str, formats: Mapping[str, Format], what: str) -> Format:
     try:
         return formats[name]
     except (KeyError, TypeError):
-        known = ', '.join(formats)
-        msg = f'there is no {what} format {name!r}; known are {known}'
+        msg = f'there is no {what} format {name!r}; known are {", ".join(formats)}'
         raise PoseFormatError(msg) from None
 
 
-def _rows(values: object, source: PoseFormat, what: str) -> tuple[Floats, bool]:
-    """Return the values as (n, row) and whether they were given flat."""
+def _rows(values: object, source: Format, what: str) -> tuple[Floats, bool]:
+    """Return the values with shape (n, row_length), and whether they were flat."""
     try:
         array = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         msg = f'{source.name}: values must be numbers: {error}'
         raise PoseFormatError(msg) from error
     if array.ndim == 1:
         if array.size % source.row_length:
             msg = (
-                f'{array.size} values are no whole number of {what}s: each {source.name} has'
-                f' {source.row_length} ({source.meaning})'
-            )
+                f'{array.size} values are not a whole number of {what}s: each {source.name} has'
+                f' {source.row_length} ({source.meaning})')
             raise PoseFormatError(msg)
         return array.reshape(-1, source.row_length), True
     if array.ndim != 2 or array.shape[1] != source.row_length:
         msg = (
             f'values have shape {array.shape}: each {source.name} has {source.row_length}'
-            f' ({source.meaning}), so they must be flat or have shape (n, {source.row_length})'
-        )
+            f' ({source.meaning}), so they must be flat or have shape (n, {source.row_length})')
         raise PoseFormatError(msg)
     return array, False
 
 
-def _refuse_not_finite(rows: Floats, source: PoseFormat) -> None:
-    finite = np.isfinite(rows)
-    if not finite.all():
-        row = int(np.argmin(finite.all(axis=1)))
-        column = int(np.argmin(finite[row]))
+def _check_finite(rows: Floats, source: Format) -> None:
+    is_finite = np.isfinite(rows)
+    if not is_finite.all():
+        row, column = np.argwhere(~is_finite)[0].tolist()
         place = f'row {row}, value {column}' if len(rows) > 1 else f'value {column}'
         msg = f'{source.name}: {place} is {float(rows[row, column])!r}; it must be a finite number'
         raise PoseFormatError(msg)
 
 
 def _without_only_row(message: str, count: int) -> str:
+    """Return a message without the number of the row if there is only one row."""
     return message.removeprefix('row 0: ') if count == 1 else message
+
+
+def _quaternion_from_degrees(rpy_deg: Floats) -> Floats:
+    rpy_rad: Floats = radians_from_degrees(np, rpy_deg)
+    return quaternion_from_rpy(rpy_rad)
+
+
+def _degrees_from_quaternion(quat_xyzw: Floats) -> Floats:
+    rpy_deg: Floats = degrees_from_radians(rpy_from_quaternion(quat_xyzw))
+    return rpy_deg
 
 
 def _pose(xyz_m: Floats, quat_xyzw: Floats) -> Floats:
     return np.concatenate((xyz_m, quat_xyzw), axis=1)
 
 
-def _rows_of_matrices(matrices: Floats) -> Floats:
+def _poses_from_matrices(matrices: Floats) -> Floats:
     """Return poses (n, 7) of matrices (n, 4, 4)."""
-    last = matrices[:, 3]
-    good = last == LAST_ROW
-    if not good.all():
-        row = int(np.argmin(good.all(axis=1)))
+    is_exact = matrices[:, 3] == LAST_ROW
+    if not is_exact.all():
+        row = int(np.argmin(is_exact.all(axis=1)))
         msg = (
-            f'row {row}: last row of the matrix is {listed(last[row])}, and must be exactly'
-            f' {listed(LAST_ROW)}'
-        )
+            f'row {row}: last row of the matrix is {tuple(matrices[row, 3].tolist())}, and must be'
+            f' exactly {LAST_ROW}')
         raise RotationError(msg)
     return _pose(matrices[:, :3, 3], quaternion_from_matrix(matrices[:, :3, :3]))
 
 
-def _matrices_of_rows(pose: Floats) -> Floats:
+def _matrices_from_poses(poses: Floats) -> Floats:
     """Return matrices (n, 4, 4) of poses (n, 7)."""
-    matrices = np.empty((len(pose), 4, 4))
-    matrices[:, :3, :3] = matrix_from_quaternion(pose[:, 3:])
-    matrices[:, :3, 3] = pose[:, :3]
+    matrices = np.empty((len(poses), 4, 4))
+    matrices[:, :3, :3] = matrix_from_quaternion(poses[:, 3:])
+    matrices[:, :3, 3] = poses[:, :3]
     matrices[:, 3] = LAST_ROW
     return matrices
 
 
-def _transposed(matrices: Floats) -> Floats:
-    return np.swapaxes(matrices, 1, 2)
+def _registry(*formats: Format) -> Mapping[str, Format]:
+    return MappingProxyType({entry.name: entry for entry in formats})
 
 
-_POSE_FORMATS: Iterable[PoseFormat] = (
-    PoseFormat(
+POSE_FORMATS = _registry(
+    Format(
         'sdf_rpy', 6, 'x y z in metres, roll pitch yaw in radians',
         lambda row: _pose(row[:, :3], quaternion_from_rpy(row[:, 3:])),
         lambda pose: _pose(pose[:, :3], rpy_from_quaternion(pose[:, 3:])),
         half_turn=math.pi,
     ),
-    PoseFormat(
+    Format(
         'sdf_rpy_degrees', 6, 'x y z in metres, roll pitch yaw in degrees',
-        lambda row: _pose(row[:, :3], quaternion_from_rpy(radians_from_degrees(row[:, 3:]))),
-        lambda pose: _pose(
-            pose[:, :3], degrees_from_radians(rpy_from_quaternion(pose[:, 3:]))
-        ),
+        lambda row: _pose(row[:, :3], _quaternion_from_degrees(row[:, 3:])),
+        lambda pose: _pose(pose[:, :3], _degrees_from_quaternion(pose[:, 3:])),
         half_turn=180.0,
     ),
-    PoseFormat(
+    Format(
         'sdf_quat_xyzw', 7, 'x y z in metres, quaternion x y z w of any norm but 0',
         lambda row: _pose(row[:, :3], canonical_quaternion(row[:, 3:])),
         np.copy,
     ),
-    PoseFormat(
+    Format(
         'matrix_row_major', 16, '4 x 4 matrix row after row, in metres',
-        lambda row: _rows_of_matrices(row.reshape(-1, 4, 4)),
-        lambda pose: _matrices_of_rows(pose).reshape(-1, 16),
+        lambda row: _poses_from_matrices(row.reshape(-1, 4, 4)),
+        lambda pose: _matrices_from_poses(pose).reshape(-1, 16),
     ),
-    PoseFormat(
+    Format(
         'franka_matrix', 16, '4 x 4 matrix column after column, in metres',
-        lambda row: _rows_of_matrices(_transposed(row.reshape(-1, 4, 4))),
-        lambda pose: _transposed(_matrices_of_rows(pose)).reshape(-1, 16),
+        lambda row: _poses_from_matrices(row.reshape(-1, 4, 4).swapaxes(1, 2)),
+        lambda pose: _matrices_from_poses(pose).swapaxes(1, 2).reshape(-1, 16),
     ),
-    PoseFormat(
+    Format(
         'franka_measured', 6,
         "x y z in millimetres, rotations x y z in degrees (z-y'-x'': x is roll, z is yaw)",
-        lambda row: _pose(
-            row[:, :3] / 1000.0, quaternion_from_rpy(radians_from_degrees(row[:, 3:]))
-        ),
-        lambda pose: _pose(
-            pose[:, :3] * 1000.0, degrees_from_radians(rpy_from_quaternion(pose[:, 3:]))
-        ),
+        lambda row: _pose(row[:, :3] / 1000.0, _quaternion_from_degrees(row[:, 3:])),
+        lambda pose: _pose(pose[:, :3] * 1000.0, _degrees_from_quaternion(pose[:, 3:])),
         half_turn=180.0,
     ),
-)
-
-POSE_FORMATS: Mapping[str, PoseFormat] = MappingProxyType(
-    {entry.name: entry for entry in _POSE_FORMATS}
 )
 """All formats of poses by name; their common representation has shape (n, 7)."""
 
-_ROTATION_FORMATS: Iterable[PoseFormat] = (
-    PoseFormat(
+ROTATION_FORMATS = _registry(
+    Format(
         'rpy', 3, 'roll pitch yaw in radians', quaternion_from_rpy, rpy_from_quaternion,
         half_turn=math.pi,
     ),
-    PoseFormat(
+    Format(
         'rpy_degrees', 3, 'roll pitch yaw in degrees',
-        lambda row: quaternion_from_rpy(radians_from_degrees(row)),
-        lambda quat: degrees_from_radians(rpy_from_quaternion(quat)),
+        _quaternion_from_degrees, _degrees_from_quaternion,
         half_turn=180.0,
     ),
-    PoseFormat(
-        'quaternion', 4, 'x y z w of any norm but 0', canonical_quaternion, np.copy
-    ),
-    PoseFormat(
+    Format('quaternion', 4, 'x y z w of any norm but 0', canonical_quaternion, np.copy),
+    Format(
         'quaternion_wxyz', 4, 'w x y z of any norm but 0',
         lambda row: canonical_quaternion(row[:, [1, 2, 3, 0]]),
         lambda quat: quat[:, [3, 0, 1, 2]],
     ),
-    PoseFormat(
+    Format(
         'matrix', 9, '3 x 3 matrix row after row',
         lambda row: quaternion_from_matrix(row.reshape(-1, 3, 3)),
         lambda quat: matrix_from_quaternion(quat).reshape(-1, 9),
     ),
-)
-
-ROTATION_FORMATS: Mapping[str, PoseFormat] = MappingProxyType(
-    {entry.name: entry for entry in _ROTATION_FORMATS}
 )
 """All formats of rotations by name; their common representation has shape (n, 4)."""

@@ -5,21 +5,23 @@ Compose and invert poses, one or many.
 
 A pose is that of a child frame in a parent frame: x y z of the child's origin in metres and the
 unit quaternion x y z w of its axes, both expressed in the parent. Poses chain as
-``pose of c in a = product(pose of b in a, pose of c in b)``.
+``pose of C in A = product(pose of B in A, pose of C in B)``.
+
+The formulas for one pose are elementwise, so they also take poses whose components are arrays;
+this is how the functions for many poses use them.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable
 from typing import Any
 from typing import NamedTuple
 from typing import TypeAlias
 
 import numpy as np
 
+from sdf_pose_bridge.geometry.formulas import row_blocks
+
 PoseArray: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
 """Poses as rows: shape (n, 7), x y z in metres, unit quaternion x y z w."""
-
-_BLOCK = 4096
-"""How many rows are worked on at a time."""
 
 
 class Pose(NamedTuple):
@@ -40,7 +42,7 @@ def pose_product(a: Pose, b: Pose) -> Pose:
 
     :param a: pose of frame B in frame A.
     :param b: pose of frame C in frame B.
-    :return: pose of frame C in frame A; its quaternion is as long as the product of theirs.
+    :return: pose of frame C in frame A; the norm of its quaternion is the product of their norms.
     """
     ax, ay, az, aqx, aqy, aqz, aqw = a
     bx, by, bz, bqx, bqy, bqz, bqw = b
@@ -59,7 +61,7 @@ def pose_product(a: Pose, b: Pose) -> Pose:
 
 def pose_inverse(a: Pose) -> Pose:
     """
-    Turn a pose around.
+    Invert a pose.
 
     :param a: pose of frame B in frame A.
     :return: pose of frame A in frame B.
@@ -68,49 +70,46 @@ def pose_inverse(a: Pose) -> Pose:
     return pose_product(Pose(0.0, 0.0, 0.0, -qx, -qy, -qz, qw), Pose(-x, -y, -z))
 
 
+def relative_pose(reference: Pose, pose: Pose) -> Pose:
+    """
+    Return a pose in another frame.
+
+    :param reference: pose of frame B in frame A.
+    :param pose: pose of frame C in frame A.
+    :return: pose of frame C in frame B.
+    """
+    return pose_product(pose_inverse(reference), pose)
+
+
 def pose_products(a: PoseArray, b: PoseArray) -> PoseArray:
     """
-    Chain many pairs of poses.
+    Chain many pairs of poses with :func:`pose_product`.
 
     :param a: poses of frames B in frames A, shape (n, 7) or (1, 7).
     :param b: poses of frames C in frames B, shape (n, 7).
-    :return: poses of frames C in frames A, shape (n, 7); quaternions are as long as the products
-        of theirs.
+    :return: poses of frames C in frames A, shape (n, 7).
     """
-    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
-    for rows in _blocks(len(product)):
-        # The same formula serves columns: every operation is between arrays of as many.
-        columns = pose_product(Pose(*(a if len(a) == 1 else a[rows]).T), Pose(*b[rows].T))
-        for target, column in zip(product[rows].T, columns, strict=True):
-            target[:] = column
-    return product
+    return _in_blocks(pose_product, np.broadcast_to(a, b.shape), b)
 
 
 def relative_poses(references: PoseArray, poses: PoseArray) -> PoseArray:
     """
-    Return poses in other frames.
+    Return many poses in other frames with :func:`relative_pose`.
 
     :param references: poses of frames B in frames A, shape (n, 7).
     :param poses: poses of frames C in frames A, shape (n, 7).
-    :return: poses of frames C in frames B, shape (n, 7): to the last bit the products of
-        :func:`pose_inverse` and the poses.
+    :return: poses of frames C in frames B, shape (n, 7).
     """
-    relative = np.empty(poses.shape)
-    for rows in _blocks(len(relative)):
-        x, y, z, qx, qy, qz, qw = np.ascontiguousarray(references[rows].T)
-        # As in pose_inverse and pose_product, on columns.
-        inverses = pose_product(_columns(0.0, 0.0, 0.0, -qx, -qy, -qz, qw), _columns(-x, -y, -z))
-        np.stack(
-            pose_product(inverses, Pose(*np.ascontiguousarray(poses[rows].T))), axis=1,
-            out=relative[rows])
-    return relative
+    return _in_blocks(relative_pose, references, poses)
 
 
-def _blocks(count: int) -> Iterator[slice]:
-    """Divide rows, so that what is worked out between stays near to the processor."""
-    for start in range(0, count, _BLOCK):
-        yield slice(start, start + _BLOCK)
+def _in_blocks(formula: Callable[[Pose, Pose], Pose], a: PoseArray, b: PoseArray) -> PoseArray:
+    results = np.empty(b.shape)
+    for block in row_blocks(len(b)):
+        results[block] = np.transpose(formula(_columns(a[block]), _columns(b[block])))
+    return results
 
 
-def _columns(*columns: Any) -> Pose:
-    return Pose(*columns)
+def _columns(poses: PoseArray) -> Pose:
+    """Return a pose whose components are arrays."""
+    return Pose(*np.ascontiguousarray(poses.T))

@@ -15,9 +15,9 @@ from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.node import Node
 
 from sdf_pose_bridge.geometry.formats import converted_poses
+from sdf_pose_bridge.geometry.formats import converted_rotation
 from sdf_pose_bridge.geometry.formats import PoseFormatError
-from sdf_pose_bridge.geometry.rotation import RotationError
-from sdf_pose_bridge.geometry.rotation_conversion import converted_rotation
+from sdf_pose_bridge.geometry.rotations import RotationError
 from sdf_pose_bridge_interfaces.srv import ConvertPoses
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
 
@@ -52,7 +52,7 @@ def answer_to_convert_rotation(
     try:
         answer = converted_rotation(
             request.given, (rpy.x, rpy.y, rpy.z),
-            (quaternion.x, quaternion.y, quaternion.z, quaternion.w), request.degrees)
+            (quaternion.x, quaternion.y, quaternion.z, quaternion.w), degrees=request.degrees)
     except RotationError as error:
         response.message = str(error)
         return response

@@ -13,7 +13,7 @@ from sdf_pose_bridge.geometry.poses import pose_inverse
 from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.geometry.rotation import canonical_quaternion
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.scene.frame_graph import FrameGraph
 from sdf_pose_bridge.sdformat.elements import Indices
 

@@ -13,9 +13,8 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_inverse
-from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.elements import SensorDetails
@@ -145,8 +144,7 @@ class Scene:
         :param reference: index of the other, of the same root.
         :return: pose of the first in the second; unit quaternion with w >= 0.
         """
-        x, y, z, qx, qy, qz, qw = pose_product(
-            pose_inverse(self.pose_of(reference)), self.pose_of(index))
+        x, y, z, qx, qy, qz, qw = relative_pose(self.pose_of(reference), self.pose_of(index))
         sign = -1.0 if qw < 0.0 else 1.0
         # To add zero leaves no negative zeros.
         return Pose(

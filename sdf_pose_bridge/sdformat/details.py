@@ -156,14 +156,14 @@ class DetailsReader:
 
     def missing_include(self, xml: XmlElement) -> tuple[str, str]:
         """
-        Read what is missing where an include was not found.
+        Read what is missing where an include was not found or is not valid.
 
         :param xml: an ``<include>``.
         :return: the name that the included model would have, as far as it can be known, and the
             URI. The name is empty for a merge, whose elements have names of their own.
         """
         uri = first_child(xml, 'uri')
-        uri_value = '' if uri is None else value_of(uri)
+        uri_value = ('' if uri is None else value_of(uri)) or 'no URI'
         if boolean_from_text(xml.get('merge', '')):
             return '', uri_value
         name = first_child(xml, 'name')

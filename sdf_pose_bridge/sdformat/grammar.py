@@ -176,8 +176,7 @@ class Definition:
                 self.value_type = ValueType(item['type'])
         # Python takes longer to look up a member of an Enum than to read an attribute.
         self.is_pose = self.value_type is ValueType.POSE
-        self.is_unchecked = self.value_type is ValueType.STRING
-        """Whether any text is a right value."""
+        self.is_text = self.value_type is ValueType.STRING
 
     @cached_property
     def takes_any_number(self) -> bool:

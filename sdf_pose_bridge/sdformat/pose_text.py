@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.rotation import quaternion_from_rpy
+from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 
 if TYPE_CHECKING:

@@ -102,6 +102,7 @@ class _Reader:
         self._file_indices = {path: index for index, path in enumerate(sources.paths)}
 
     def check(self, xml: XmlElement, definition: Definition) -> None:
+        self._check_attributes(xml, definition)
         self._read(xml, definition, NO_ELEMENT, NO_ELEMENT, '', 1)
 
     def elements(self, root: XmlElement) -> Elements:
@@ -121,6 +122,7 @@ class _Reader:
             definition = definitions.get(child.tag)
             if definition is None:
                 continue
+            self._check_attributes(child, definition)
             if definition.kind is Kind.WORLD:
                 self._read(child, definition, NO_ELEMENT, NO_ELEMENT, path, 1)
             elif first:
@@ -149,12 +151,7 @@ class _Reader:
         depth: int,
     ) -> None:
         """Read an element that holds others."""
-        if definition.checked_attributes:
-            self._check_attributes(xml, definition)
-        if depth > _DEEPEST:
-            msg = f'elements are nested more than {_DEEPEST} deep'
-            self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
-        elif definition.kind is not None:
+        if definition.kind is not None:
             self._read_frame(xml, definition, definition.kind, parent, scope, path, depth)
         elif definition.identifier == 'include':
             if parent != NO_ELEMENT:
@@ -187,21 +184,28 @@ class _Reader:
         self, xml: XmlElement, definition: Definition, parent: int, scope: int, path: str,
         depth: int,
     ) -> None:
+        if depth > _DEEPEST:
+            msg = f'elements are nested more than {_DEEPEST} deep'
+            self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
+            return
         definitions = definition.children
         for child in xml:
             child_definition = definitions.get(child.tag)
-            if child_definition is None or child_definition.is_unchecked:
+            if child_definition is None:
                 continue
+            if child_definition.checked_attributes:
+                self._check_attributes(child, child_definition)
             if child_definition.value_type is None:
                 self._read(child, child_definition, parent, scope, path, depth + 1)
-            elif not child_definition.is_pose:
+            elif child_definition.is_pose:
+                if parent == NO_ELEMENT or self._builder.pose_lines[parent]:
+                    self._check_pose(child)
+                else:
+                    self._read_pose(child, child_definition, parent)
+            elif not child_definition.is_text:
                 fault = value_fault(text_of(child), child_definition)
                 if fault:
                     self._problems.error(ElementInvalidError(fault, self._sources.place(child)))
-            elif parent != NO_ELEMENT and not self._builder.pose_lines[parent]:
-                self._read_pose(child, child_definition, parent)
-            else:
-                self._check_pose(child)
 
     def _read_details(self, xml: XmlElement, kind: Kind, index: int) -> None:
         if kind is Kind.MODEL:
@@ -225,12 +229,14 @@ class _Reader:
             elif value.strip() and not is_of_type(value.strip(), attribute.value_type):
                 msg = f'{name}="{value}" is not {attribute.value_type.description}'
                 self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
+            elif attribute.is_required and not value.strip():
+                msg = f'{name}="{value}" of <{written_tag(xml)}> is empty'
+                self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
 
     def _read_pose(self, xml: XmlElement, definition: Definition, index: int) -> None:
         pose_format = PoseFormat()
         text = text_of(xml)
         if xml.keys():
-            self._check_attributes(xml, definition)
             self._read_relative_to(xml, definition, index)
             rotation_format = attribute_of(xml, 'rotation_format')
             pose_format = PoseFormat(

@@ -24,7 +24,7 @@ from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.versions import renames_duplicates
-from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 MERGED_MODEL_PREFIX = '_merged__'
@@ -60,9 +60,12 @@ class SiblingNames:
         :return: its name. Below version 1.7 that is a new one if another kind of element has the
             name. None if the name is missing or in use, which is then reported.
         """
-        name = self._checked_name(kind, xml)
-        if name is None:
+        name = attribute_of(xml, 'name')
+        if not name:
+            self._report_no_name(kind, xml)
             return None
+        if is_reserved(name):
+            self._check_reserved_name(kind, xml, name)
         key = (parent, None if kind.is_frame else kind, name)
         if key not in self._used:
             self._used[key] = (kind, len(self._builder.names))
@@ -75,24 +78,20 @@ class SiblingNames:
         self._problems.error(DuplicateNameError(msg, self._sources.place_of_name(xml)))
         return None
 
-    def _checked_name(self, kind: Kind, xml: XmlElement) -> str | None:
-        written = xml.get('name')
-        if written is None:
-            msg = f'the {kind.label} has no name'
-            self._problems.error(AttributeMissingError(msg, self._sources.place_of_name(xml)))
-            return None
-        name = written.strip(WHITE_SPACE)
-        if not name:
+    def _report_no_name(self, kind: Kind, xml: XmlElement) -> None:
+        place = self._sources.place_of_name(xml)
+        if xml.get('name') is None:
+            self._problems.error(AttributeMissingError(f'the {kind.label} has no name', place))
+        else:
             msg = f'the name of the {kind.label} is empty'
-            self._problems.error(AttributeInvalidError(msg, self._sources.place_of_name(xml)))
-            return None
-        if is_reserved(name) and kind is not Kind.ACTOR and (
-                not name.startswith(MERGED_MODEL_PREFIX)):
+            self._problems.error(AttributeInvalidError(msg, place))
+
+    def _check_reserved_name(self, kind: Kind, xml: XmlElement, name: str) -> None:
+        if kind is not Kind.ACTOR and not name.startswith(MERGED_MODEL_PREFIX):
             rule = ('it means the frame of the world' if name == WORLD_FRAME else
                     'so are all that begin and end with two underscores')
             msg = f'the name "{name}" is reserved; {rule}'
             self._problems.error(ReservedNameError(msg, self._sources.place_of_name(xml)))
-        return name
 
     def _is_renamed(self, kind: Kind, parent: int) -> bool:
         if parent < 0 or not kind.is_frame or kind is Kind.MODEL:

@@ -58,7 +58,7 @@ def value_fault(text: str, definition: Definition) -> str:
         return ''
     value_type = definition.value_type
     stripped = text.strip()
-    if not stripped or value_type is None or definition.is_unchecked:
+    if not stripped or value_type is None or definition.is_text:
         return ''
     numbers = _leading_numbers(stripped, value_type.count)
     if not _is_of_type(stripped, numbers, value_type):
@@ -66,7 +66,8 @@ def value_fault(text: str, definition: Definition) -> str:
     if value_type is _AXIS and math.hypot(*numbers) <= _SHORTEST_AXIS:
         return f'"{stripped}" is not a valid axis: its length is zero'
     minimum, maximum = definition.minimum, definition.maximum
-    if minimum == -math.inf or not numbers or minimum <= numbers[0] <= maximum:
+    # Like libsdformat, this accepts what is not a number.
+    if not numbers or not (numbers[0] < minimum or numbers[0] > maximum):
         return ''
     rule = f'at least {minimum:g}' if maximum == math.inf else f'from {minimum:g} to {maximum:g}'
     return f'"{stripped}" must be {rule}'
@@ -93,7 +94,7 @@ def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> b
         return _LEADING_INTEGER_OR_BOOLEAN.match(text) is not None
     if value_type is _BOOLEAN:
         return boolean_from_text(text) is not None
-    return len(numbers) == value_type.count
+    return len(numbers) == value_type.count  # 0 for a text
 
 
 def _leading_numbers(text: str, count: int) -> Sequence[float]:

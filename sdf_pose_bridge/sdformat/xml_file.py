@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from collections.abc import Sequence
+from itertools import islice
 from pathlib import Path
 import re
 from typing import NamedTuple
@@ -215,7 +216,7 @@ def _lines_beyond_last(root: XmlElement, text: bytes) -> dict[XmlElement, int]:
         text = text.decode(encoding).encode()
     ends = [tag.end(1) for tag in _START_TAG.finditer(text) if tag[1]]
     line_ends = np.flatnonzero(np.frombuffer(text, np.uint8) == ord('\n'))
-    lines = (np.searchsorted(line_ends, ends) + 1).tolist()
-    return {
-        element: line for element, line in zip(root.iter(etree.Element), lines, strict=True)
-        if line >= _LAST_LINE}
+    lines = np.searchsorted(line_ends, ends) + 1
+    first = int(np.searchsorted(lines, _LAST_LINE))
+    elements = islice(root.iter(etree.Element), first, None)
+    return dict(zip(elements, lines[first:].tolist(), strict=True))

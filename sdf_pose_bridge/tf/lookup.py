@@ -11,7 +11,7 @@ from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_inverse
 from sdf_pose_bridge.geometry.poses import pose_product
-from sdf_pose_bridge.geometry.rotation import canonical_quaternion
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.tree import TfTree

@@ -19,7 +19,7 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.poses import relative_poses
-from sdf_pose_bridge.geometry.rotation import canonical_quaternion
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.scene.scene import Joint
 from sdf_pose_bridge.scene.scene import Scene

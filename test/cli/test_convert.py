@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""``sdf_pose convert``: what it refuses, what it prints, and lines from standard input."""
+"""``sdf_pose convert``: invalid input, output, and lines from standard input."""
 
 import argparse
 import io
@@ -17,7 +17,7 @@ from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
 
 @pytest.fixture
 def convert(capsys, monkeypatch):
-    """Run the command as a command line would; return exit code, output and complaints."""
+    """Run the command with arguments and lines; return exit code, output and errors."""
     def run(*arguments, lines='', stdin=None):
         parser = argparse.ArgumentParser(prog='sdf_pose')
         convert_command.add_parser(parser.add_subparsers(required=True))
@@ -36,10 +36,10 @@ def numbers(text):
     return [float(word) for word in text.split()]
 
 
-# What is refused.
+# Invalid input.
 
 @pytest.mark.parametrize('option', ['--from', '--to'])
-def test_an_unknown_format_is_refused_with_the_known_ones(convert, option):
+def test_an_unknown_format_is_an_error_that_lists_the_known_ones(convert, option):
     given = {'--from': 'rpy', '--to': 'rpy', option: 'euler'}
     code, out, err = convert(*[word for pair in given.items() for word in pair], '0', '0', '0')
     assert code == 2
@@ -48,7 +48,7 @@ def test_an_unknown_format_is_refused_with_the_known_ones(convert, option):
     assert all(name in err for name in (*ROTATION_FORMATS, *POSE_FORMATS))
 
 
-def test_from_has_to_be_said(convert):
+def test_from_is_required(convert):
     code, _, err = convert('0', '0', '0')
     assert code == 2
     assert '--from' in err
@@ -63,29 +63,29 @@ def test_poses_and_rotations_do_not_convert_to_each_other(convert, source, targe
     assert target in err
 
 
-@pytest.mark.parametrize(('arguments', 'complaint'), [
+@pytest.mark.parametrize(('arguments', 'message'), [
     (('rpy', '1', '2'), 'rpy has 3 numbers (roll pitch yaw in radians), but 2 are given'),
     (('rpy', '1'), 'but 1 is given'),
     (('rpy', '1', '2', '3', '4'), 'but 4 are given'),
-    (('rpy', '1', 'two', '3'), "'two' is no number"),
-    (('rpy', '1', '1_000', '3'), "'1_000' is no number"),
-    (('rpy', '1', '1,5', '3'), "'1,5' is no number"),
+    (('rpy', '1', 'two', '3'), "'two' is not a number"),
+    (('rpy', '1', '1_000', '3'), "'1_000' is not a number"),
+    (('rpy', '1', '1,5', '3'), "'1,5' is not a number"),
     (('rpy', '1', 'nan', '3'), 'value 1 is nan'),
     (('rpy', '1', '2', '-inf'), 'value 2 is -inf'),
     (('quaternion', '0', '0', '0', '0'), 'zero'),
     (('matrix', '1', '0', '0', '0', '1', '0', '0', '0', '-1'), 'determinant -1'),
 ])
-def test_bad_numbers_are_named_and_nothing_is_printed(convert, arguments, complaint):
+def test_invalid_numbers_are_named_and_nothing_is_printed(convert, arguments, message):
     code, out, err = convert('--from', *arguments)
     assert code == 1
     assert not out
-    assert complaint in err
+    assert message in err
     assert len(err.splitlines()) == 1
 
 
-# What is printed.
+# Output.
 
-def test_a_quarter_turn(convert):
+def test_a_rotation_by_90_degrees(convert):
     code, out, err = convert('--from', 'rpy_degrees', '--to', 'quaternion', '0', '0', '90')
     assert (code, err) == (0, '')
     assert numbers(out) == pytest.approx([0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5)])
@@ -101,7 +101,7 @@ def test_options_may_follow_the_numbers(convert):
     ['-1', '0', '0'], ['--', '-1', '0', '0'], ['-1e0', '-.0', '0'], ['-1.', '-0', '-0e-3'],
     ['-1 0 0'], ['-10.0E-1', '0', '0'],
 ])
-def test_negative_numbers_are_no_options(convert, given):
+def test_negative_numbers_are_not_options(convert, given):
     code, out, err = convert('--from', 'rpy', '--to', 'rpy', *given)
     assert (code, err) == (0, '')
     assert out == '-1.0 0.0 0.0\n'
@@ -119,7 +119,7 @@ def test_without_a_target_all_formats_are_printed(convert):
     assert [line.split()[0] for line in out.splitlines()] == list(POSE_FORMATS)
 
 
-def test_numbers_are_printed_so_that_they_read_back_exactly(convert):
+def test_printed_numbers_are_read_back_exactly(convert):
     row = [0.1, 1 / 3, -2e-7, 0.3, -0.2, 1e-9]
     _, out, _ = convert('--from', 'sdf_rpy', '--to', 'franka_matrix', *map(repr, row))
     assert numbers(out) == converted_poses(row, 'sdf_rpy', 'franka_matrix').tolist()
@@ -144,11 +144,11 @@ def test_blank_lines_and_comments_are_skipped(convert):
     assert (code, out, err) == (0, '0.0 0.0 1.0\n', '')
 
 
-def test_no_lines_are_no_error(convert):
+def test_empty_input_is_not_an_error(convert):
     assert convert('--from', 'rpy', '--to', 'rpy', lines='') == (0, '', '')
 
 
-def test_bad_lines_are_reported_and_the_others_converted(convert):
+def test_invalid_lines_are_reported_and_the_others_converted(convert):
     code, out, err = convert(
         '--from', 'quaternion', '--to', 'quaternion',
         lines='0 0 0 1\n# note\n0 0 0\n0 0 0 0\n0 0 inf 0\n0 0 x 0\n0 3 0 0\n',
@@ -160,17 +160,17 @@ def test_bad_lines_are_reported_and_the_others_converted(convert):
         '# line 5 is not converted', '# line 6 is not converted',
         '0.0 1.0 0.0 0.0',
     ]
-    complaints = err.splitlines()
-    assert [complaint.split(':')[1] for complaint in complaints] == [
+    messages = err.splitlines()
+    assert [message.split(':')[1] for message in messages] == [
         f' line {number}' for number in (3, 4, 5, 6)
     ]
-    assert 'but 3 are given' in complaints[0]
-    assert 'zero' in complaints[1]
-    assert 'inf' in complaints[2]
-    assert "'x'" in complaints[3]
+    assert 'but 3 are given' in messages[0]
+    assert 'zero' in messages[1]
+    assert 'inf' in messages[2]
+    assert "'x'" in messages[3]
 
 
-def test_bytes_that_are_no_text_make_a_bad_line(convert):
+def test_bytes_that_are_not_text_make_an_invalid_line(convert):
     stdin = io.TextIOWrapper(io.BytesIO(b'0 0 1\n0 \xff 1\n0 0 2\n'), encoding='utf-8')
     code, out, err = convert('--from', 'rpy', '--to', 'rpy', stdin=stdin)
     assert code == 1
@@ -178,7 +178,7 @@ def test_bytes_that_are_no_text_make_a_bad_line(convert):
     assert 'xff' in err
 
 
-def test_a_person_at_a_terminal_gets_each_answer_at_once(convert, monkeypatch):
+def test_on_a_terminal_each_line_is_answered_at_once(convert, monkeypatch):
     answers_before_line = []
 
     class Terminal(io.StringIO):
@@ -194,7 +194,7 @@ def test_a_person_at_a_terminal_gets_each_answer_at_once(convert, monkeypatch):
     assert answers_before_line[:4] == [0, 1, 2, 3]
 
 
-def test_the_output_is_input_again(convert):
+def test_output_is_valid_input(convert):
     _, there, _ = convert('--from', 'sdf_rpy', '--to', 'franka_matrix',
                           lines='1 2 3 0 0 0\nbad\n4 5 6 0 0 1\n')
     code, back, err = convert('--from', 'franka_matrix', '--to', 'sdf_rpy', lines=there)
@@ -208,7 +208,7 @@ def test_without_a_target_each_line_has_a_block(convert):
     assert [len(block.splitlines()) for block in blocks] == [len(ROTATION_FORMATS)] * 2
 
 
-def test_many_lines_keep_their_order_and_every_bad_one_is_found(convert, monkeypatch):
+def test_many_lines_keep_their_order_and_every_invalid_one_is_reported(convert, monkeypatch):
     monkeypatch.setattr(convert_command, 'LINES_AT_A_TIME', 700)
     rows = [f'0 0 {0.001 * number}' for number in range(3000)]
     bad = (0, 699, 700, 1234, 1235, 2999)

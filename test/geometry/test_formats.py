@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Pose formats: what is refused, what each one means, and that all convert to all."""
+"""Formats of poses: invalid input, what each format means, conversions between all of them."""
 
 import array
 import itertools
@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from rotation_sets import half_turns
-from rotation_sets import LARGEST_TURN
-from rotation_sets import largest_turn
+from rotation_sets import largest_angle
 from rotation_sets import lock_rpy
+from rotation_sets import MAX_ANGLE
 from rotation_sets import random_quaternions
 
 from sdf_pose_bridge.geometry.formats import converted_poses
@@ -22,7 +22,7 @@ from sdf_pose_bridge.geometry.formats import converted_rotations
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
-from sdf_pose_bridge.geometry.rotation import quaternion_from_rpy
+from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 
 LENGTHS = {
     'sdf_rpy': 6, 'sdf_rpy_degrees': 6, 'sdf_quat_xyzw': 7,
@@ -47,17 +47,17 @@ def poses(quats):
     return np.concatenate((xyz, quats), axis=1)
 
 
-def changed(values, **places):
+def changed(values, replacements):
     row = list(values)
-    for place, value in places.items():
-        row[int(place[1:])] = value
+    for place, value in replacements.items():
+        row[place] = value
     return row
 
 
-# What is refused.
+# Invalid input.
 
 @pytest.mark.parametrize('unknown', ['', 'SDF_RPY', 'sdf-rpy', 'rpy', None, 3, ['sdf_rpy']])
-def test_unknown_formats_are_refused_with_the_known_ones(unknown):
+def test_an_unknown_format_is_an_error_that_lists_the_known_ones(unknown):
     known = '.*'.join(LENGTHS)
     message = rf'there is no pose format {re.escape(repr(unknown))}; known are {known}'
     with pytest.raises(PoseFormatError, match=message):
@@ -67,7 +67,7 @@ def test_unknown_formats_are_refused_with_the_known_ones(unknown):
 
 
 @every_format
-def test_lengths_must_be_whole_poses(name):
+def test_lengths_must_be_multiples_of_a_pose(name):
     length = LENGTHS[name]
     for count in (1, length - 1, length + 1, 10 * length - 1):
         with pytest.raises(PoseFormatError, match=rf'{count} values.*each {name} has {length}'):
@@ -88,34 +88,34 @@ def test_values_must_be_numbers():
 @pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
 def test_values_must_be_finite(name, bad):
     for place in range(LENGTHS[name]):
-        row = changed(GOOD[name], **{f'_{place}': bad})
+        row = changed(GOOD[name], {place: bad})
         with pytest.raises(PoseFormatError, match=rf'{name}: value {place} is {bad}.*finite'):
             converted_poses(row, name, 'sdf_rpy')
         with pytest.raises(PoseFormatError, match=rf'{name}: row 2, value {place} is {bad}'):
             converted_poses([GOOD[name], GOOD[name], row], name, 'sdf_rpy')
 
 
-def test_a_zero_quaternion_is_refused_with_its_row():
+def test_quaternions_must_not_be_zero():
     good = GOOD['sdf_quat_xyzw']
-    zero = changed(good, _6=0.0)
+    zero = changed(good, {6: 0.0})
     with pytest.raises(PoseFormatError, match=r'sdf_quat_xyzw: quaternion \(0\.0.*zero'):
         converted_poses(zero, 'sdf_quat_xyzw', 'sdf_rpy')
     with pytest.raises(PoseFormatError, match=r'sdf_quat_xyzw: row 5000: .*zero'):
         converted_poses([good] * 5000 + [zero], 'sdf_quat_xyzw', 'sdf_rpy')
 
 
-@pytest.mark.parametrize(('places', 'rule'), [
-    ({'_0': 2.0}, r'not orthonormal: column 0 has norm 2\.0'),
-    ({'_0': 1.0 + 2e-5}, 'not orthonormal: column 0 has norm 1.00002'),
-    ({'_0': 0.0}, r'not orthonormal: column 0 has norm 0\.0'),
-    ({'_0': -1.0}, 'determinant -1'),
-    ({'_0': -1.0, '_5': -1.0, '_10': -1.0}, 'determinant -1'),
-    ({'_15': 0.0}, r'last row of the matrix is \(0\.0, 0\.0, 0\.0, 0\.0\)'),
-    ({'_15': 1.0 + 1e-15}, r'last row of the matrix is .*exactly \(0\.0, 0\.0, 0\.0, 1\.0\)'),
+@pytest.mark.parametrize(('replacements', 'rule'), [
+    ({0: 2.0}, r'not orthonormal: column 0 has norm 2\.0'),
+    ({0: 1.0 + 2e-5}, 'not orthonormal: column 0 has norm 1.00002'),
+    ({0: 0.0}, r'not orthonormal: column 0 has norm 0\.0'),
+    ({0: -1.0}, 'determinant -1'),
+    ({0: -1.0, 5: -1.0, 10: -1.0}, 'determinant -1'),
+    ({15: 0.0}, r'last row of the matrix is \(0\.0, 0\.0, 0\.0, 0\.0\)'),
+    ({15: 1.0 + 1e-15}, r'last row of the matrix is .*exactly \(0\.0, 0\.0, 0\.0, 1\.0\)'),
 ])
 @matrix_formats
-def test_matrices_must_be_poses(name, places, rule):
-    bad = changed(IDENTITY_MATRIX, **places)
+def test_matrices_must_be_poses(name, replacements, rule):
+    bad = changed(IDENTITY_MATRIX, replacements)
     with pytest.raises(PoseFormatError, match=f'{name}: [^:]*{rule}'):
         converted_poses(bad, name, 'sdf_rpy')
     with pytest.raises(PoseFormatError, match=f'{name}: row 3: .*{rule}'):
@@ -128,27 +128,27 @@ def test_matrices_must_be_poses(name, places, rule):
 def test_the_last_row_of_matrices_must_be_exact(name, places):
     for place in places:
         with pytest.raises(PoseFormatError, match=r'last row of the matrix is .*1e-300'):
-            converted_poses(changed(IDENTITY_MATRIX, **{f'_{place}': 1e-300}), name, 'sdf_rpy')
-        minus_zero = changed(IDENTITY_MATRIX, **{f'_{place}': -0.0})
+            converted_poses(changed(IDENTITY_MATRIX, {place: 1e-300}), name, 'sdf_rpy')
+        minus_zero = changed(IDENTITY_MATRIX, {place: -0.0})
         assert converted_poses(minus_zero, name, 'sdf_rpy').tolist() == [0.0] * 6
 
 
 @matrix_formats
-def test_matrices_are_judged_as_libfranka_judges_them(name):
-    coarse = changed(IDENTITY_MATRIX, _0=0.707, _1=-0.707, _4=0.707, _5=0.707)
+def test_matrices_are_checked_as_in_libfranka(name):
+    coarse = changed(IDENTITY_MATRIX, {0: 0.707, 1: -0.707, 4: 0.707, 5: 0.707})
     with pytest.raises(PoseFormatError, match='not orthonormal'):
         converted_poses(coarse, name, 'sdf_rpy')
-    fine = changed(IDENTITY_MATRIX, _0=0.7071, _1=-0.7071, _4=0.7071, _5=0.7071)
+    fine = changed(IDENTITY_MATRIX, {0: 0.7071, 1: -0.7071, 4: 0.7071, 5: 0.7071})
     yaw = converted_poses(fine, name, 'sdf_rpy')[5]
     assert abs(yaw) == pytest.approx(math.pi / 4, abs=1e-15)
 
 
-def test_what_does_not_fit_into_a_format_is_refused():
+def test_results_must_be_finite():
     with pytest.raises(PoseFormatError, match=r'1e\+306.*too large a number for franka_measured'):
-        converted_poses(changed(GOOD['sdf_rpy'], _1=1e306), 'sdf_rpy', 'franka_measured')
+        converted_poses(changed(GOOD['sdf_rpy'], {1: 1e306}), 'sdf_rpy', 'franka_measured')
 
 
-def test_a_bad_row_in_another_format_does_not_go_unnoticed_in_a_long_batch():
+def test_one_invalid_row_of_many_is_an_error():
     rows = np.tile(GOOD['sdf_rpy'], (100_000, 1))
     rows[77_777, 4] = math.nan
     with pytest.raises(PoseFormatError, match='row 77777, value 4 is nan'):
@@ -194,7 +194,7 @@ def test_one_pose_in_all_formats(name):
 
 
 def test_measured_rotations_come_back_as_x_y_z_and_not_as_z_y_x():
-    # A widespread formula from quaternion to these angles has x and z exchanged.
+    # The robot's documentation has x and z exchanged in its formula.
     measured = (100.0, 200.0, 300.0, 10.0, 20.0, 30.0)
     quat = converted_poses(measured, 'franka_measured', 'sdf_quat_xyzw')
     assert quat[3:] == pytest.approx(quaternion_from_rpy(np.radians((10, 20, 30)).tolist()))
@@ -204,7 +204,7 @@ def test_measured_rotations_come_back_as_x_y_z_and_not_as_z_y_x():
 
 @matrix_formats
 def test_half_turns_in_matrices_keep_their_axes(name):
-    # A widespread formula takes signs from differences that are zero for half turns.
+    # The formula of the robot's documentation loses the signs of half turns.
     about_x_minus_y = (0, -1, 0, 0, -1, 0, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1)
     quat = converted_poses(about_x_minus_y, name, 'sdf_quat_xyzw')
     half = math.sqrt(0.5)
@@ -212,11 +212,11 @@ def test_half_turns_in_matrices_keep_their_axes(name):
 
 
 @matrix_formats
-def test_all_half_turns_come_back_from_matrices(name):
+def test_all_half_turns_survive_matrices(name):
     given_poses = poses(half_turns())
     matrices = converted_poses(given_poses, 'sdf_quat_xyzw', name)
     again = converted_poses(matrices, name, 'sdf_quat_xyzw')
-    assert largest_turn(again[:, 3:], given_poses[:, 3:]) <= LARGEST_TURN
+    assert largest_angle(again[:, 3:], given_poses[:, 3:]) <= MAX_ANGLE
 
 
 def test_libfranka_accepts_the_matrices():
@@ -240,8 +240,8 @@ def test_the_rotation_nearest_to_a_matrix_is_used(name):
     assert np.abs(cleaned[:, :3, :3] - left @ right).max() <= 1e-14
 
 
-def test_translations_stay_as_they_are():
-    row = changed(GOOD['sdf_rpy'], _0=1e-300, _1=-123456.789, _2=1e300)
+def test_translations_are_exact():
+    row = changed(GOOD['sdf_rpy'], {0: 1e-300, 1: -123456.789, 2: 1e300})
     for target in ('sdf_quat_xyzw', 'sdf_rpy_degrees'):
         assert converted_poses(row, 'sdf_rpy', target)[:3].tolist() == row[:3]
     metres = converted_poses((1.1, 2.2, 3.3, 0, 0, 0), 'franka_measured', 'sdf_rpy')
@@ -258,22 +258,22 @@ def test_every_format_converts_to_every_other_and_back(source, target):
     common = converted_poses(rows, source, 'sdf_quat_xyzw')
     common_again = converted_poses(again, source, 'sdf_quat_xyzw')
     assert np.abs(common - common_again)[:, :3].max() <= 1e-15
-    assert largest_turn(common[:, 3:], common_again[:, 3:]) <= 8 * LARGEST_TURN
+    assert largest_angle(common[:, 3:], common_again[:, 3:]) <= 8 * MAX_ANGLE
 
 
 @every_format
-def test_no_negative_zeros_come_out(name):
+def test_results_have_no_negative_zeros(name):
     row = (-0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -1.0)
     answer = converted_poses(row, 'sdf_quat_xyzw', name)
     assert not np.signbit(answer[answer == 0.0]).any()
 
 
 @given(st.lists(st.floats(-1e9, 1e9), min_size=6, max_size=6))
-def test_whole_turns_of_degrees_do_not_matter(row):
-    turned = [*row[:3], *(math.fmod(angle, 360.0) for angle in row[3:])]
+def test_multiples_of_360_degrees_make_no_difference(row):
+    reduced = [*row[:3], *(math.fmod(angle, 360.0) for angle in row[3:])]
     assert np.array_equal(
         converted_poses(row, 'sdf_rpy_degrees', 'sdf_quat_xyzw'),
-        converted_poses(turned, 'sdf_rpy_degrees', 'sdf_quat_xyzw'),
+        converted_poses(reduced, 'sdf_rpy_degrees', 'sdf_quat_xyzw'),
     )
 
 
@@ -294,7 +294,7 @@ def test_angles_in_their_ranges_keep_their_digits(roll, pitch, yaw):
     ((10.0, 90.0, 20.0), (-10.0, 90.0, 0.0)),
     ((10.0, -90.0, 20.0), (30.0, -90.0, 0.0)),
 ])
-def test_other_angles_come_back_in_their_ranges(angles, expected):
+def test_other_angles_are_returned_in_their_ranges(angles, expected):
     answer = converted_rotations([*angles, 1.0, 2.0, 3.0], 'rpy_degrees', 'rpy_degrees')
     assert answer[:3] == pytest.approx(expected, abs=1e-13)
     assert answer[3:].tolist() == [1.0, 2.0, 3.0]
@@ -303,7 +303,7 @@ def test_other_angles_come_back_in_their_ranges(angles, expected):
 # Shapes.
 
 @every_format
-def test_flat_stays_flat_and_rows_stay_rows(name):
+def test_results_are_shaped_like_the_values(name):
     rows = np.tile(GOOD[name], (5, 1))
     for target, length in LENGTHS.items():
         answer = converted_poses(rows, name, target)
@@ -315,13 +315,13 @@ def test_flat_stays_flat_and_rows_stay_rows(name):
 
 
 @every_format
-def test_no_poses_are_no_poses(name):
+def test_no_poses_convert_to_no_poses(name):
     assert converted_poses([], name, 'franka_matrix').shape == (0,)
     assert converted_poses(np.empty((0, LENGTHS[name])), name, 'sdf_rpy').shape == (0, 6)
 
 
 @pytest.mark.parametrize('kind', [tuple, list, np.array, lambda row: array.array('d', row)])
-def test_any_sequence_is_taken(kind):
+def test_values_may_be_any_sequence(kind):
     row = GOOD['sdf_rpy']
     assert np.array_equal(
         converted_poses(kind(row), 'sdf_rpy', 'sdf_quat_xyzw'),
@@ -330,14 +330,14 @@ def test_any_sequence_is_taken(kind):
 
 
 @every_format
-def test_the_answer_shares_no_memory_with_what_is_given(name):
+def test_the_result_shares_no_memory_with_the_values(name):
     rows = np.tile(GOOD[name], (3, 1))
     before = rows.copy()
     converted_poses(rows, name, name)[:] = -1.0
     assert np.array_equal(rows, before)
 
 
-# Rotations alone.
+# Rotations without translation.
 
 @pytest.mark.parametrize(
     ('source', 'target'), [*itertools.product(ROTATION_FORMATS, repeat=2)]
@@ -354,6 +354,6 @@ def test_rotations_convert_between_all_formats(source, target):
     assert answer == pytest.approx(quarter[target], abs=3e-14)
 
 
-def test_rotations_and_poses_are_not_taken_for_each_other():
+def test_rotations_do_not_convert_to_poses():
     with pytest.raises(PoseFormatError, match="no rotation format 'sdf_rpy'; known are rpy"):
         converted_rotations((0.0, 0.0, 0.0), 'rpy', 'sdf_rpy')

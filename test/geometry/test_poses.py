@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Composing and inverting poses: the laws of a group, and one equals many."""
+"""Composing and inverting poses: laws of a group, and many give the same as one by one."""
 
 from hypothesis import given
 from hypothesis import settings
@@ -13,6 +13,7 @@ from sdf_pose_bridge import Pose
 from sdf_pose_bridge.geometry.poses import pose_inverse
 from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.poses import pose_products
+from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.geometry.poses import relative_poses
 
 NUMBERS = st.floats(-100.0, 100.0, allow_subnormal=False)
@@ -39,18 +40,18 @@ def rows(poses):
     return np.array(list(poses), dtype=float).reshape(-1, 7)
 
 
-def test_a_quarter_turn_carries_x_to_y():
+def test_a_pose_rotates_before_it_translates():
     quarter = Pose(1.0, 0.0, 0.0, 0.0, 0.0, 0.5 ** 0.5, 0.5 ** 0.5)
     assert_near(pose_product(quarter, Pose(1.0, 0.0, 0.0))[:3], (1, 1, 0))
 
 
-def test_the_inverse_of_a_turned_pose():
+def test_the_inverse_of_a_rotated_pose():
     quarter = Pose(1.0, 2.0, 3.0, 0.0, 0.0, 0.5 ** 0.5, 0.5 ** 0.5)
     assert_near(pose_inverse(quarter), (-2, 1, -3, 0, 0, -(0.5 ** 0.5), 0.5 ** 0.5))
 
 
 @given(POSES, POSES)
-def test_the_product_is_that_of_matrices(a, b):
+def test_the_product_is_that_of_the_matrices(a, b):
     assert_near(matrix_from_pose(pose_product(a, b)), matrix_from_pose(a) @ matrix_from_pose(b))
 
 
@@ -60,7 +61,7 @@ def test_the_inverse_is_that_of_the_matrix(a):
 
 
 @given(POSES, POSES, POSES)
-def test_products_associate(a, b, c):
+def test_products_are_associative(a, b, c):
     assert_near(pose_product(pose_product(a, b), c), pose_product(a, pose_product(b, c)))
 
 
@@ -87,56 +88,61 @@ def test_the_inverse_of_a_product(a, b):
         pose_inverse(pose_product(a, b)), pose_product(pose_inverse(b), pose_inverse(a)))
 
 
+@given(POSES, POSES)
+def test_a_relative_pose_leads_back_to_the_pose(a, b):
+    assert_near(pose_product(a, relative_pose(a, b)), b)
+
+
 @settings(max_examples=30)
 @given(st.lists(st.tuples(POSES, POSES), max_size=12))
-def test_many_products_are_as_one_by_one(pairs):
+def test_many_products_are_the_same_as_one_by_one(pairs):
     products = pose_products(rows([a for a, _ in pairs]), rows([b for _, b in pairs]))
     np.testing.assert_array_equal(products, rows([pose_product(a, b) for a, b in pairs]))
 
 
 @settings(max_examples=30)
 @given(POSES, st.lists(POSES, min_size=1, max_size=12))
-def test_one_pose_before_many(a, poses):
+def test_the_product_of_one_pose_and_many(a, poses):
     np.testing.assert_array_equal(
         pose_products(rows([a]), rows(poses)), rows([pose_product(a, b) for b in poses]))
 
 
 @settings(max_examples=30)
 @given(st.lists(st.tuples(POSES, POSES), max_size=12))
-def test_many_relative_poses_are_as_one_by_one(pairs):
+def test_many_relative_poses_are_the_same_as_one_by_one(pairs):
     relative = relative_poses(rows([a for a, _ in pairs]), rows([b for _, b in pairs]))
     np.testing.assert_array_equal(
-        relative, rows([pose_product(pose_inverse(a), b) for a, b in pairs]))
+        relative, rows([relative_pose(a, b) for a, b in pairs]))
 
 
-def more_than_are_worked_on_at_a_time():
+def more_poses_than_a_block():
     generator = np.random.default_rng(1)
     poses = generator.uniform(-1.0, 1.0, (2, 9001, 7))
     poses[..., 3:] /= np.linalg.norm(poses[..., 3:], axis=-1, keepdims=True)
     return poses
 
 
-def test_very_many_products_are_as_one_by_one():
-    first, second = more_than_are_worked_on_at_a_time()
+def test_products_in_several_blocks_are_the_same_as_one_by_one():
+    first, second = more_poses_than_a_block()
     expected = rows(map(pose_product, map(Pose._make, first), map(Pose._make, second)))
     np.testing.assert_array_equal(pose_products(first, second), expected)
 
 
-def test_one_pose_before_very_many():
-    (first, *_), second = more_than_are_worked_on_at_a_time()
+def test_the_product_of_one_pose_and_several_blocks():
+    (first, *_), second = more_poses_than_a_block()
     expected = rows(pose_product(Pose(*first), Pose(*each)) for each in second)
     np.testing.assert_array_equal(pose_products(first[np.newaxis], second), expected)
 
 
-def test_very_many_relative_poses_are_as_one_by_one():
-    first, second = more_than_are_worked_on_at_a_time()
+def test_relative_poses_in_several_blocks_are_the_same_as_one_by_one():
+    first, second = more_poses_than_a_block()
     expected = rows(
-        pose_product(pose_inverse(Pose(*a)), Pose(*b)) for a, b in zip(first, second, strict=True))
+        relative_pose(Pose(*a), Pose(*b)) for a, b in zip(first, second, strict=True))
     np.testing.assert_array_equal(relative_poses(first, second), expected)
 
 
 @pytest.mark.parametrize('count', [1, 5])
-def test_arguments_are_left_alone(count):
+def test_arguments_are_not_modified(count):
     a = rows([Pose(1.0, 2.0, 3.0, 0.0, 0.0, 0.6, 0.8)] * count)
     a.setflags(write=False)
     pose_products(a, a)

@@ -4,7 +4,7 @@
 Replace every ``<include>`` by what it includes, so that one tree is left.
 
 Source: ``readXml`` and ``insertIncludedElement`` in libsdformat's ``parser.cc``. An include that
-is not found stays in the tree.
+is not found or not valid is reported and stays in the tree, so that no error follows from it.
 """
 
 from __future__ import annotations
@@ -94,11 +94,11 @@ class IncludeExpansion:
                 self._expand_include(include, files)
 
     def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
+        is_merge = self._is_merge(include)
         for plugin in child_elements(include, 'plugin'):
             check_element(plugin, definition_of('plugin'), self._sources, self._problems)
         uri = self._uri(include)
         if uri is None:
-            _remove(include)
             return
         found = self._included_file(uri, self._sources.path(include), files)
         if isinstance(found, str):
@@ -118,7 +118,7 @@ class IncludeExpansion:
             for added in apply_params(params, top, self._sources, self._problems):
                 self.may_hold_scoped_names = True
                 self._expand_in(added, files)
-        self._insert(include, top)
+        self._insert(include, top, is_merge=is_merge)
 
     # What an include names
 
@@ -194,7 +194,6 @@ class IncludeExpansion:
         if first_child(document.root, 'include') is None:
             msg = f'{document.path} cannot be included: no model, light or actor is at its top'
             self._problems.error(ElementMissingError(msg, self._sources.place(include)))
-            _remove(include)
         return None
 
     # What an include overrides
@@ -253,26 +252,23 @@ class IncludeExpansion:
 
     # Where it goes
 
-    def _insert(self, include: XmlElement, top: XmlElement) -> None:
+    def _is_merge(self, include: XmlElement) -> bool:
+        written = include.get('merge', 'false')
+        value = boolean_from_text(written)
+        if value is None:
+            msg = f'merge="{written}" is not a boolean (true, false, 1 or 0)'
+            self._problems.error(AttributeInvalidError(msg, self._sources.place(include)))
+        return bool(value)
+
+    def _insert(self, include: XmlElement, top: XmlElement, *, is_merge: bool) -> None:
         parent = include.getparent()
         if parent is None:
             return
-        written = include.get('merge', 'false')
-        is_merge = boolean_from_text(written)
-        if is_merge is None:
-            msg = f'merge="{written}" is not a boolean (true, false, 1 or 0)'
-            self._problems.error(AttributeInvalidError(msg, self._sources.place(include)))
         if is_merge:
             merge(include, top, self._sources, self._problems, self._canonical_link_of)
         elif parent.tag == 'model' and top.tag != 'model':
             msg = f'the included {written_tag(top)} is left out; a model can include only models'
             self._problems.warning(msg, self._sources.place(include))
-            _remove(include)
+            parent.remove(include)
         else:
             parent.replace(include, top)
-
-
-def _remove(xml: XmlElement) -> None:
-    parent = xml.getparent()
-    if parent is not None:
-        parent.remove(xml)

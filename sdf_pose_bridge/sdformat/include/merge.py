@@ -39,7 +39,7 @@ def merge(
     canonical_link_of: Callable[[XmlElement], str | None],
 ) -> None:
     """
-    Replace an include by the content of the model that it merges.
+    Replace an include by the content of the model that it merges, if that is valid.
 
     :param include: the ``<include merge="true">``.
     :param model: the included element, with what the include overrides.
@@ -54,12 +54,12 @@ def merge(
         msg = (f'merge="true" on the include of {described(model)}: only a model can be merged, '
                'into a model or a world')
         problems.error(MergeIncludeError(msg, sources.place(include)))
-    else:
-        proxy = _proxy_frame(include, model, parent, sources, canonical_link_of)
-        if proxy is not None:
-            include.addprevious(proxy)
-            _move_children(include, model, attribute_of(proxy, 'name'), sources, problems)
-    parent.remove(include)
+        return
+    proxy = _proxy_frame(include, model, parent, sources, canonical_link_of)
+    if proxy is not None:
+        include.addprevious(proxy)
+        _move_children(include, model, attribute_of(proxy, 'name'), sources, problems)
+        parent.remove(include)
 
 
 def _proxy_frame(

@@ -1,0 +1,40 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Fixtures of tests that run the command line as a process."""
+
+from pathlib import Path
+import subprocess
+import sys
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+GOOD = """<sdf version="1.10">
+  <world name="w">
+    <frame name="f"><pose>1 2 3 0 0 0</pose></frame>
+    <model name="m"><pose relative_to="f">1 0 0 0 0 0</pose><link name="l"/></model>
+  </world>
+</sdf>
+"""
+BAD = GOOD.replace('relative_to="f"', 'relative_to="ff"').replace('1 2 3', '1 2')
+WARNED = GOOD.replace('<link name="l"/>', """<link name="l">
+      <light name="lamp" type="point"><pose relative_to="nowhere"/></light>
+    </link>""")
+
+
+@pytest.fixture(name='files')
+def folder_of_files(tmp_path):
+    """Folder with a valid file, an invalid one and one with a warning."""
+    for name, text in (('good', GOOD), ('bad', BAD), ('warned', WARNED)):
+        (tmp_path / f'{name}.sdf').write_text(text)
+    return tmp_path
+
+
+@pytest.fixture
+def sdf_pose(files):
+    """Runs the command line in that folder: ``sdf_pose(*arguments)``."""
+    def run(*arguments):
+        return subprocess.run(
+            [sys.executable, '-m', 'sdf_pose_bridge', *arguments], cwd=files,
+            env={'PYTHONPATH': str(ROOT)}, capture_output=True, text=True, timeout=60, check=False)
+    return run

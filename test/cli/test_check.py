@@ -1,0 +1,46 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``sdf_pose check``: errors, warnings and the exit code."""
+
+
+def test_check_prints_errors_in_the_order_of_the_file(sdf_pose):
+    done = sdf_pose('check', 'bad.sdf')
+    assert done.returncode == 1
+    first, second = done.stdout.splitlines()
+    assert first.startswith('bad.sdf:3: ELEMENT_INVALID: ')
+    assert second.startswith('bad.sdf:4: POSE_RELATIVE_TO_INVALID: relative_to="ff" names no ')
+
+
+def test_check_prints_nothing_for_a_valid_file(sdf_pose):
+    done = sdf_pose('check', 'good.sdf')
+    assert (done.returncode, done.stdout, done.stderr) == (0, '', '')
+
+
+def test_check_prints_warnings_and_exits_with_0(sdf_pose):
+    done = sdf_pose('check', 'warned.sdf')
+    assert done.returncode == 0
+    assert done.stdout.startswith('warned.sdf:5: WARNING: POSE_RELATIVE_TO_INVALID: ')
+
+
+def test_check_continues_after_an_invalid_file(sdf_pose):
+    done = sdf_pose('check', 'missing.sdf', 'bad.sdf')
+    assert done.returncode == 1
+    assert [line.split(':')[0] for line in done.stdout.splitlines()] == [
+        'missing.sdf', 'bad.sdf', 'bad.sdf']
+
+
+def test_check_prints_no_colours_to_a_pipe(sdf_pose):
+    assert '\x1b' not in sdf_pose('check', 'bad.sdf').stdout
+
+
+def test_includes_are_searched_in_given_directories(sdf_pose, files):
+    (files / 'models').mkdir()
+    (files / 'models' / 'm.sdf').write_text('<sdf version="1.9"><model name="m"><link name="l"/>'
+                                            '</model></sdf>')
+    (files / 'world.sdf').write_text('<sdf version="1.9"><world name="w"><include><uri>model://m.sdf'
+                                     '</uri></include></world></sdf>')
+    assert sdf_pose('check', 'world.sdf').returncode == 1
+    assert sdf_pose('check', '-I', 'models', 'world.sdf').returncode == 0
+    skipped = sdf_pose('check', '--skip-missing', 'world.sdf')
+    assert skipped.returncode == 0
+    assert 'WARNING: "model://m.sdf" cannot be included' in skipped.stdout

@@ -1,0 +1,44 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``sdf_pose poses``: tables, JSON and the choice of elements and frames."""
+
+import json
+
+
+def test_poses_prints_a_table(sdf_pose):
+    lines = sdf_pose('poses', 'good.sdf').stdout.splitlines()
+    assert lines[0].split() == ['kind', 'name', 'x', 'y', 'z', 'qx', 'qy', 'qz', 'qw']
+    assert lines[3].split() == [
+        'link', 'm::l', '2.000000', '2.000000', '3.000000', *['0.000000'] * 3, '1.000000']
+
+
+def test_poses_prints_a_json_object_for_each_file(sdf_pose):
+    done = sdf_pose('poses', '--json', 'bad.sdf', 'good.sdf')
+    assert done.returncode == 1
+    bad, good = map(json.loads, done.stdout.splitlines())
+    assert (bad['file'], bad['ok'], bad['elements']) == ('bad.sdf', False, [])
+    assert bad['errors'][1].items() >= {
+        'code': 'POSE_RELATIVE_TO_INVALID', 'file': 'bad.sdf', 'line': 4,
+        'element': '/sdf/world[@name="w"]/model[@name="m"]/pose'}.items()
+    assert (good['ok'], good['errors'], good['warnings']) == (True, [], [])
+    assert good['elements'][2] == {
+        'kind': 'link', 'name': 'm::l', 'world': 'w', 'pose': [2.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]}
+
+
+def test_poses_are_printed_relative_to_a_frame(sdf_pose):
+    done = sdf_pose('poses', '--json', '--relative-to', 'f', '--kinds', 'link,model', 'good.sdf')
+    elements = json.loads(done.stdout)['elements']
+    assert [element['kind'] for element in elements] == ['model', 'link']
+    assert elements[1]['pose'] == [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+
+
+def test_an_unknown_frame_is_an_error_of_the_file(sdf_pose):
+    done = sdf_pose('poses', '--relative-to', 'ff', 'good.sdf')
+    assert done.returncode == 1
+    assert '"ff" names nothing in world "w"; did you mean "f"?' in done.stderr
+
+
+def test_an_unknown_kind_is_an_error_that_lists_the_known_ones(sdf_pose):
+    done = sdf_pose('poses', '--kinds', 'link,lnik', 'good.sdf')
+    assert done.returncode == 2
+    assert '"lnik" is not a kind of element; known are model, link' in done.stderr

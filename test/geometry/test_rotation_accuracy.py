@@ -1,0 +1,154 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Accuracy of the conversions: against references with 50 digits, and for a million rotations."""
+
+import math
+
+import pytest
+from rotation_sets import exact_angle
+from rotation_sets import exact_matrix
+from rotation_sets import exact_norm
+from rotation_sets import exact_quaternion
+from rotation_sets import extended_quaternions
+from rotation_sets import half_turns
+from rotation_sets import HAS_LONG_DOUBLE
+from rotation_sets import largest_angle
+from rotation_sets import MAX_ANGLE
+from rotation_sets import random_quaternions
+from rotation_sets import random_rpy
+from rotation_sets import RPY_SETS
+
+from sdf_pose_bridge.geometry import rotations
+
+all_sets = pytest.mark.parametrize('rpy_set', RPY_SETS.values(), ids=RPY_SETS)
+needs_long_double = pytest.mark.skipif(
+    not HAS_LONG_DOUBLE, reason='long double has no more digits than double on this machine')
+
+
+def one_by_one(function, rows):
+    return [function(tuple(row)) for row in rows.tolist()]
+
+
+def sample(rows, count=60):
+    return rows[:: max(1, len(rows) // count)]
+
+
+@all_sets
+def test_quaternion_from_rpy_is_exact_to_the_last_digits(rpy_set):
+    rpy = sample(rpy_set(60))
+    for given, one, many in zip(
+        rpy, one_by_one(rotations.quaternion_from_rpy, rpy), rotations.quaternion_from_rpy(rpy),
+        strict=True,
+    ):
+        expected = exact_quaternion(given)
+        assert exact_angle(expected, one) <= MAX_ANGLE
+        assert exact_angle(expected, many) <= MAX_ANGLE
+
+
+@all_sets
+def test_rpy_from_quaternion_is_exact_to_the_last_digits(rpy_set):
+    quats = rotations.quaternion_from_rpy(sample(rpy_set(60)))
+    for given, one, many in zip(
+        quats, one_by_one(rotations.rpy_from_quaternion, quats),
+        rotations.rpy_from_quaternion(quats), strict=True,
+    ):
+        assert exact_angle(given, exact_quaternion(one)) <= MAX_ANGLE
+        assert exact_angle(given, exact_quaternion(many)) <= MAX_ANGLE
+
+
+@all_sets
+def test_quaternions_are_unit_to_the_last_digit(rpy_set):
+    rpy = sample(rpy_set(100), 100)
+    quats = [*one_by_one(rotations.quaternion_from_rpy, rpy), *rotations.quaternion_from_rpy(rpy)]
+    assert max(abs(exact_norm(quat) - 1) for quat in quats) <= 2e-16
+
+
+@pytest.mark.parametrize('scale', [1e-300, 1e-150, 0.7, 1.0, 3e77, 1e300])
+def test_canonical_quaternions_of_any_norm_are_unit_to_the_last_digit(scale):
+    given = random_quaternions(50) * scale
+    for quat, one, many in zip(
+        given, one_by_one(rotations.canonical_quaternion, given),
+        rotations.canonical_quaternion(given), strict=True,
+    ):
+        assert abs(exact_norm(one) - 1) <= 2e-16
+        assert abs(exact_norm(many) - 1) <= 2e-16
+        assert exact_angle(quat, one) <= MAX_ANGLE
+        assert exact_angle(quat, many) <= MAX_ANGLE
+
+
+@pytest.mark.parametrize('scale', [1e-300, 1.0, 1e300])
+def test_rpy_and_matrix_of_a_quaternion_do_not_depend_on_its_norm(scale):
+    given = random_quaternions(50) * scale
+    for quat, rpy, matrix in zip(
+        given, rotations.rpy_from_quaternion(given), rotations.matrix_from_quaternion(given),
+        strict=True,
+    ):
+        assert exact_angle(quat, exact_quaternion(rpy)) <= MAX_ANGLE
+        assert [float(value) for value in exact_matrix(quat)] == pytest.approx(
+            matrix.ravel().tolist(), abs=5e-16
+        )
+        assert rotations.rpy_from_quaternion(quat.tolist()) == pytest.approx(rpy, abs=1e-15)
+
+
+@all_sets
+def test_matrix_from_rpy_is_exact_to_the_last_digits(rpy_set):
+    rpy = sample(rpy_set(60))
+    for given, one, many in zip(
+        rpy, one_by_one(rotations.matrix_from_rpy, rpy), rotations.matrix_from_rpy(rpy),
+        strict=True,
+    ):
+        expected = [float(value) for value in exact_matrix(exact_quaternion(given))]
+        assert [value for row in one for value in row] == pytest.approx(expected, abs=6e-16)
+        assert many.ravel().tolist() == pytest.approx(expected, abs=6e-16)
+
+
+@all_sets
+def test_quaternion_from_matrix_inverts_matrix_from_quaternion(rpy_set):
+    quats = rotations.quaternion_from_rpy(sample(rpy_set(60)))
+    matrices = rotations.matrix_from_quaternion(quats)
+    ones = [rotations.quaternion_from_matrix(matrix.tolist()) for matrix in matrices]
+    for given, one, many in zip(
+        quats, ones, rotations.quaternion_from_matrix(matrices), strict=True
+    ):
+        assert exact_angle(given, one) <= MAX_ANGLE
+        assert exact_angle(given, many) <= MAX_ANGLE
+
+
+@pytest.mark.parametrize('missing', [0.0, 1e-16, 1e-12, 1e-8, 1e-3])
+def test_half_turns_about_all_axes_survive_every_representation(missing):
+    quats = half_turns(math.pi - missing)
+    through_matrix = rotations.quaternion_from_matrix(rotations.matrix_from_quaternion(quats))
+    through_rpy = rotations.quaternion_from_rpy(rotations.rpy_from_quaternion(quats))
+    assert largest_angle(quats, through_matrix) <= MAX_ANGLE
+    assert largest_angle(quats, through_rpy) <= MAX_ANGLE
+    for quat in quats[::7]:
+        one = rotations.rpy_from_matrix(rotations.matrix_from_quaternion(tuple(quat)))
+        assert exact_angle(quat, exact_quaternion(one)) <= MAX_ANGLE
+
+
+@needs_long_double
+def test_a_million_rotations_survive_a_round_trip():
+    rpy = random_rpy(1_000_000)
+    quats = rotations.quaternion_from_rpy(rpy)
+    expected = extended_quaternions(rpy)
+    assert largest_angle(expected, quats) <= MAX_ANGLE
+    again = extended_quaternions(rotations.rpy_from_quaternion(quats))
+    assert largest_angle(expected, again) <= MAX_ANGLE
+
+
+@needs_long_double
+@all_sets
+def test_many_difficult_rotations_survive_a_round_trip(rpy_set):
+    rpy = rpy_set(40_000)
+    quats = rotations.quaternion_from_rpy(rpy)
+    expected = extended_quaternions(rpy)
+    assert largest_angle(expected, quats) <= MAX_ANGLE
+    again = extended_quaternions(rotations.rpy_from_quaternion(quats))
+    assert largest_angle(expected, again) <= MAX_ANGLE
+
+
+@needs_long_double
+def test_a_hundred_thousand_matrices_survive_a_round_trip():
+    quats = random_quaternions(100_000)
+    again = rotations.quaternion_from_matrix(rotations.matrix_from_quaternion(quats))
+    assert largest_angle(quats, again) <= MAX_ANGLE

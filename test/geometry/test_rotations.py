@@ -1,0 +1,334 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Rotations: invalid input, conventions, canonical results, gimbal lock, one and many alike."""
+
+import math
+
+from hypothesis import given
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+from rotation_sets import exact_angle
+from rotation_sets import exact_quaternion
+from rotation_sets import half_turns
+from rotation_sets import largest_angle
+from rotation_sets import lock_rpy
+from rotation_sets import MAX_ANGLE
+from rotation_sets import random_quaternions
+from rotation_sets import random_rpy
+
+from sdf_pose_bridge.geometry import rotations
+from sdf_pose_bridge.geometry.rotations import RotationError
+
+IDENTITY = (0.0, 0.0, 0.0, 1.0)
+EYE = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+FROM_RPY = (rotations.quaternion_from_rpy, rotations.matrix_from_rpy)
+FROM_QUATERNION = (
+    rotations.rpy_from_quaternion, rotations.matrix_from_quaternion,
+    rotations.canonical_quaternion, rotations.near_gimbal_lock,
+)
+FROM_MATRIX = (rotations.quaternion_from_matrix, rotations.rpy_from_matrix)
+
+angles = st.floats(allow_nan=False, allow_infinity=False)
+rpys = st.tuples(angles, angles, angles)
+components = st.floats(-1.0, 1.0)
+directions = st.tuples(components, components, components, components).filter(
+    lambda quat: max(map(abs, quat)) > 1e-3
+)
+
+
+def matrix_about_axis(axis, angle):
+    """Return the matrix of a rotation about a coordinate axis, as textbooks have it."""
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return np.array({
+        'x': [[1, 0, 0], [0, cosine, -sine], [0, sine, cosine]],
+        'y': [[cosine, 0, sine], [0, 1, 0], [-sine, 0, cosine]],
+        'z': [[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]],
+    }[axis])
+
+
+# Invalid input.
+
+@pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize('place', [0, 1, 2])
+@pytest.mark.parametrize('function', FROM_RPY)
+def test_angles_must_be_finite(function, place, bad):
+    rpy = [0.1, 0.2, 0.3]
+    rpy[place] = bad
+    with pytest.raises(RotationError, match=f'{bad}.*not finite'):
+        function(rpy)
+    with pytest.raises(RotationError, match=f'row 5: .*{bad}.*not finite'):
+        function(np.array([[0.0, 0.0, 0.0]] * 5 + [rpy]))
+
+
+@pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize('place', [0, 1, 2, 3])
+@pytest.mark.parametrize('function', FROM_QUATERNION)
+def test_quaternions_must_be_finite(function, place, bad):
+    quat = [0.1, 0.2, 0.3, 0.4]
+    quat[place] = bad
+    with pytest.raises(RotationError, match=f'{bad}.*not finite'):
+        function(quat)
+    with pytest.raises(RotationError, match=f'row 5: .*{bad}.*not finite'):
+        function(np.array([IDENTITY] * 5 + [quat]))
+
+
+@pytest.mark.parametrize('function', FROM_QUATERNION)
+def test_quaternions_must_not_be_zero(function):
+    with pytest.raises(RotationError, match='zero'):
+        function((0.0, -0.0, 0.0, 0.0))
+    with pytest.raises(RotationError, match=r'row 9000: .*zero'):
+        function(np.array([IDENTITY] * 9000 + [(0.0, 0.0, 0.0, 0.0)]))
+
+
+@pytest.mark.parametrize('function', FROM_QUATERNION)
+def test_the_first_invalid_row_is_named(function):
+    zero, not_finite = (0.0, 0.0, 0.0, 0.0), (math.nan, 0.0, 0.0, 0.0)
+    with pytest.raises(RotationError, match=r'row 1: .*zero'):
+        function(np.array([IDENTITY, zero, not_finite]))
+    with pytest.raises(RotationError, match=r'row 1: .*not finite'):
+        function(np.array([IDENTITY, not_finite, zero]))
+
+
+@pytest.mark.parametrize('values', [(), (1.0,), (1.0, 2.0), (0.0,) * 5, 'abc', (1.0, 'x', 0.0)])
+@pytest.mark.parametrize('function', [*FROM_RPY, *FROM_QUATERNION])
+def test_wrong_shapes_are_errors(function, values):
+    with pytest.raises(RotationError):
+        function(values)
+
+
+@pytest.mark.parametrize('shape', [(), (2,), (3, 2), (3, 3, 5)])
+@pytest.mark.parametrize('function', [*FROM_RPY, *FROM_QUATERNION, *FROM_MATRIX])
+def test_wrong_shapes_of_arrays_are_errors(function, shape):
+    with pytest.raises(RotationError, match='must have shape'):
+        function(np.zeros(shape))
+
+
+@pytest.mark.parametrize(('matrix', 'rule'), [
+    ([[1, 0, 0], [0, 1, 0], [0, 0, math.nan]], 'not finite'),
+    ([[1, 0, 0], [0, 1, 0], [0, 0, math.inf]], 'not finite'),
+    ([[0, 0, 0], [0, 0, 0], [0, 0, 0]], r'not orthonormal: column 0 has norm 0\.0'),
+    ([[1, 0, 0], [0, 1.00002, 0], [0, 0, 1]], r'not orthonormal: column 1 has norm 1\.00002'),
+    ([[1, 0, 1e-2], [0, 1, 0], [0, 0, 1]], 'not orthonormal: column 2'),
+    ([[1, 2e-5, 0], [0, 1, 0], [0, 0, 1]], r'columns 0 and 1 have scalar product 2e-05'),
+    ([[1e200, 0, 0], [0, 1, 0], [0, 0, 1]], 'not orthonormal: column 0 has norm inf'),
+    ([[1, 0, 0], [0, 1, 0], [0, 0, -1]], 'determinant -1'),
+    ([[0, 1, 0], [1, 0, 0], [0, 0, 1]], 'determinant -1'),
+])
+@pytest.mark.parametrize('function', FROM_MATRIX)
+def test_matrices_must_be_rotations(function, matrix, rule):
+    with pytest.raises(RotationError, match=rule):
+        function(matrix)
+    with pytest.raises(RotationError, match=f'row 2: .*{rule}'):
+        function(np.array([EYE, EYE, matrix]))
+
+
+@pytest.mark.parametrize('matrix', [(), ((1, 0, 0), (0, 1, 0)), ((1, 0), (0, 1), (0, 0)), 'abc'])
+@pytest.mark.parametrize('function', FROM_MATRIX)
+def test_matrices_must_be_three_by_three(function, matrix):
+    with pytest.raises(RotationError):
+        function(matrix)
+
+
+# Conventions.
+
+@given(st.tuples(*[st.floats(-10.0, 10.0)] * 3))
+def test_roll_pitch_yaw_rotate_about_fixed_axes_in_this_order(rpy):
+    roll, pitch, yaw = rpy
+    by_definition = (
+        matrix_about_axis('z', yaw) @ matrix_about_axis('y', pitch) @ matrix_about_axis('x', roll))
+    assert np.allclose(rotations.matrix_from_rpy(rpy), by_definition, rtol=0.0, atol=1e-15)
+    through_quaternion = rotations.matrix_from_quaternion(rotations.quaternion_from_rpy(rpy))
+    assert np.allclose(through_quaternion, by_definition, rtol=0.0, atol=2e-15)
+
+
+def test_quaternions_are_x_y_z_w():
+    half = math.sqrt(0.5)
+    assert rotations.quaternion_from_rpy((math.pi / 2, 0, 0)) == pytest.approx((half, 0, 0, half))
+    assert rotations.quaternion_from_rpy((0, math.pi / 2, 0)) == pytest.approx((0, half, 0, half))
+    assert rotations.quaternion_from_rpy((0, 0, math.pi / 2)) == pytest.approx((0, 0, half, half))
+
+
+# Canonical results.
+
+@given(rpys)
+def test_quaternions_of_angles_of_any_size_are_canonical(rpy):
+    x, y, z, w = rotations.quaternion_from_rpy(rpy)
+    assert w >= 0.0
+    assert abs(math.hypot(x, y, z, w) - 1.0) < 4e-16
+    assert exact_angle((x, y, z, w), exact_quaternion(rpy)) <= MAX_ANGLE
+
+
+@given(directions)
+def test_angles_are_in_their_ranges(quat):
+    roll, pitch, yaw = rotations.rpy_from_quaternion(quat)
+    assert -math.pi <= roll <= math.pi
+    assert -math.pi / 2 <= pitch <= math.pi / 2
+    assert -math.pi <= yaw <= math.pi
+
+
+@given(directions)
+def test_rpy_and_back_is_the_same_rotation(quat):
+    again = rotations.quaternion_from_rpy(rotations.rpy_from_quaternion(quat))
+    assert exact_angle(quat, again) <= MAX_ANGLE
+
+
+@given(directions, st.floats(1e-300, 1e300))
+def test_canonical_quaternions_are_returned_bit_for_bit(quat, scale):
+    canonical = rotations.canonical_quaternion(tuple(scale * value for value in quat))
+    assert rotations.canonical_quaternion(canonical) == canonical
+    assert rotations.canonical_quaternion(np.array(canonical)).tolist() == list(canonical)
+
+
+@pytest.mark.parametrize(('quat', 'canonical'), [
+    ((0.0, 0.0, 0.0, -3.0), (0.0, 0.0, 0.0, 1.0)),
+    ((-1.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)),
+    ((0.0, -2.0, 0.0, -0.0), (0.0, 1.0, 0.0, 0.0)),
+    ((-0.0, 0.0, -1e-300, 0.0), (0.0, 0.0, 1.0, 0.0)),
+    ((0.0, -0.6, 0.8, 0.0), (0.0, 0.6, -0.8, 0.0)),
+    ((0.6, -0.8, 0.0, -0.0), (0.6, -0.8, 0.0, 0.0)),
+    ((5e-324, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)),
+])
+def test_the_first_component_of_a_half_turn_is_positive(quat, canonical):
+    assert rotations.canonical_quaternion(quat) == canonical
+    assert rotations.canonical_quaternion(np.array([quat])).tolist() == [list(canonical)]
+
+
+@pytest.mark.parametrize('rpy', [(-0.0, -0.0, -0.0), (0.0, -0.0, 1.0), (math.pi, -0.0, -0.0)])
+@pytest.mark.parametrize('through', [
+    rotations.quaternion_from_rpy,
+    rotations.matrix_from_rpy,
+    lambda rpy: rotations.rpy_from_quaternion(rotations.quaternion_from_rpy(rpy)),
+    lambda rpy: rotations.matrix_from_quaternion(rotations.quaternion_from_rpy(rpy)),
+])
+def test_results_have_no_negative_zeros(through, rpy):
+    for answer in (through(rpy), through(np.array([rpy]))):
+        flat = np.ravel(answer)
+        assert not np.signbit(flat[flat == 0.0]).any()
+
+
+# Gimbal lock; the numbers are those of gz-math.
+
+@pytest.mark.parametrize(('rpy', 'expected', 'lock'), [
+    ((0.3, math.pi / 2, 0.1), (0.2, math.pi / 2, 0.0), True),
+    ((0.3, -math.pi / 2, 0.1), (0.4, -math.pi / 2, 0.0), True),
+    ((0.3, 2.0, 0.1), (-2.841592653590, 1.141592653590, -3.041592653590), False),
+    ((0.3, 1.5708, 0.1), (-2.841592653576, 1.570792653606, -3.041592653580), False),
+])
+def test_angles_at_and_near_lock_are_those_of_gz_math(rpy, expected, lock):
+    quat = rotations.quaternion_from_rpy(rpy)
+    # The pitch of gz-math is off by 1.6e-11 at 1.5708 because it uses an arc sine.
+    assert rotations.rpy_from_quaternion(quat) == pytest.approx(expected, abs=2e-11)
+    assert rotations.rpy_from_quaternion(np.array([quat]))[0] == pytest.approx(expected, abs=2e-11)
+    assert rotations.near_gimbal_lock(quat) is lock
+    assert rotations.near_gimbal_lock(np.array([quat])).tolist() == [lock]
+
+
+@pytest.mark.parametrize('pitch', [math.pi / 2, -math.pi / 2])
+def test_yaw_is_zero_at_lock_and_pitch_exactly_a_right_angle(pitch):
+    rpy = random_rpy(20_000)
+    rpy[:, 1] = pitch
+    quats = rotations.quaternion_from_rpy(rpy)
+    matrices = rotations.matrix_from_rpy(rpy)
+    for answer in (rotations.rpy_from_quaternion(quats), rotations.rpy_from_matrix(matrices)):
+        assert (answer[:, 2] == 0.0).all()
+        assert (answer[:, 1] == pitch).all()
+    ones = [rotations.rpy_from_quaternion(quat) for quat in quats[:200].tolist()]
+    assert {one[1:] for one in ones} == {(pitch, 0.0)}
+
+
+def test_near_lock_the_rotation_is_kept_where_gz_math_would_set_yaw_to_zero():
+    rpy = (0.3, math.pi / 2 - 1e-9, 0.1)
+    quat = rotations.quaternion_from_rpy(rpy)
+    assert rotations.near_gimbal_lock(quat)
+    answer = rotations.rpy_from_quaternion(quat)
+    assert exact_angle(exact_quaternion(rpy), exact_quaternion(answer)) <= MAX_ANGLE
+
+
+# One and many.
+
+@pytest.mark.parametrize('function', [*FROM_RPY, *FROM_QUATERNION, *FROM_MATRIX])
+@pytest.mark.parametrize('leading', [(), (0,), (1,), (7,), (2, 3), (4097,)])
+def test_arrays_keep_their_leading_shape(function, leading):
+    row = (3,) if function in FROM_RPY else (3, 3) if function in FROM_MATRIX else (4,)
+    values = np.empty(leading + row)
+    values[...] = EYE if row == (3, 3) else np.arange(1.0, 1.0 + row[0])
+    answer = function(values)
+    single = function(values[(0,) * len(leading)].tolist() if values.size else (
+        EYE if row == (3, 3) else tuple(np.arange(1.0, 1.0 + row[0]))
+    ))
+    assert answer.shape == leading + np.shape(single)
+    assert np.allclose(answer, single, rtol=0.0, atol=1e-15)
+
+
+@pytest.mark.parametrize('function', [*FROM_RPY, *FROM_QUATERNION, *FROM_MATRIX])
+def test_one_and_many_agree(function):
+    rpy = np.concatenate((random_rpy(300), lock_rpy(300)))
+    values = rpy if function in FROM_RPY else rotations.quaternion_from_rpy(rpy)
+    if function in FROM_MATRIX:
+        values = rotations.matrix_from_quaternion(values)
+    many = function(values)
+    ones = np.array([function(row) for row in values.tolist()])
+    if function in (rotations.rpy_from_quaternion, rotations.rpy_from_matrix):
+        many, ones = rotations.quaternion_from_rpy(many), rotations.quaternion_from_rpy(ones)
+        assert largest_angle(many, ones) <= 2 * MAX_ANGLE
+    elif function is not rotations.near_gimbal_lock:
+        assert np.allclose(many, ones, rtol=0.0, atol=6e-16)
+    else:
+        assert (many == ones).mean() > 0.95
+
+
+@pytest.mark.parametrize('function', [
+    rotations.canonical_quaternion, rotations.matrix_from_quaternion,
+    rotations.quaternion_from_matrix,
+])
+def test_without_sine_and_arc_tangent_one_and_many_are_equal(function):
+    values = np.concatenate((random_quaternions(300), 3.0 * half_turns()))
+    if function in FROM_MATRIX:
+        values = rotations.matrix_from_quaternion(values)
+    assert np.array_equal(function(values), [function(row) for row in values.tolist()])
+
+
+@pytest.mark.parametrize('prepare', [
+    np.asfortranarray,
+    lambda rows: np.repeat(rows, 2, axis=0)[::2],
+    lambda rows: rows[::-1][::-1],
+    lambda rows: rows.astype(np.float64).astype('>f8'),
+    lambda rows: rows.tolist(),
+], ids=['fortran', 'strided', 'reversed', 'big endian', 'nested lists'])
+def test_memory_layout_does_not_matter(prepare):
+    rpy = random_rpy(5000)
+    assert np.array_equal(
+        rotations.quaternion_from_rpy(prepare(rpy)), rotations.quaternion_from_rpy(rpy)
+    )
+
+
+def test_input_is_not_modified():
+    quats = -3.0 * random_quaternions(100)
+    before = quats.copy()
+    for function in FROM_QUATERNION:
+        function(quats)
+    assert np.array_equal(quats, before)
+
+
+def test_small_and_large_norms_in_one_array_are_independent():
+    quats = random_quaternions(100)
+    scales = 10.0 ** np.linspace(-300, 300, 100)
+    scaled = quats * scales[:, None]
+    for function in (rotations.rpy_from_quaternion, rotations.canonical_quaternion):
+        assert np.allclose(function(scaled), function(quats), rtol=0.0, atol=2e-15)
+
+
+# The rotation nearest to a matrix.
+
+def test_the_rotation_nearest_to_a_disturbed_matrix_is_returned():
+    rng = np.random.default_rng(4)
+    quats = np.concatenate((random_quaternions(500), half_turns()))
+    disturbed = rotations.matrix_from_quaternion(quats)
+    disturbed += rng.uniform(-2.5e-6, 2.5e-6, disturbed.shape)
+    left, _, right = np.linalg.svd(disturbed)
+    nearest = left @ right
+    answer = rotations.quaternion_from_matrix(disturbed)
+    assert np.allclose(rotations.matrix_from_quaternion(answer), nearest, rtol=0.0, atol=1e-14)
+    for matrix, expected in zip(disturbed[::9].tolist(), answer[::9], strict=False):
+        assert rotations.quaternion_from_matrix(matrix) == pytest.approx(expected, abs=1e-15)
