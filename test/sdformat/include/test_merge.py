@@ -100,6 +100,17 @@ def test_merged_file_has_to_be_valid_by_itself(errors_in, content, code):
     assert error.file.endswith('arm.sdf')
 
 
+@pytest.mark.parametrize('content', [
+    '', '<link name="base"/><frame name="f" attached_to="l"/>',
+    '<link name="base"/>' + fixed_joint('j', 'base', 'l'),
+    f'<link name="base"><pose relative_to="{PROXY}"/></link>',
+], ids=['no link', 'frame', 'joint', 'pose'])
+def test_nothing_else_follows_from_a_wrong_merged_file(errors_in, content):
+    main = f'<sdf version="1.9"><model name="m">{content}{include()}</model></sdf>'
+    errors = errors_in(main, arm=arm('<link name="l"><pose>1 2</pose></link>'))
+    assert [(error.code, error.file[-7:]) for error in errors] == [('ELEMENT_INVALID', 'arm.sdf')]
+
+
 @pytest.mark.parametrize('name', ['arm', 'arm::upper', 'm'])
 def test_name_of_the_merged_model_is_not_visible(errors_in, name):
     (error,) = errors_in(in_model(include() + posed('frame', 'g', '', name)))
