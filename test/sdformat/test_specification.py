@@ -38,7 +38,7 @@ def has_definition(child):
 
 
 def parents_of_kind(tag):
-    """Return the elements in which a tag stands for a kind; those need no item for it."""
+    """Return the elements in which a tag is a kind; those need no item for it."""
     return next((kind.parents for kind in Kind if kind.label == tag), ())
 
 

@@ -21,7 +21,7 @@ from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 NESTED_ENTITIES = ''.join(
     f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' if i else '<!ENTITY e0 "1 2 3 0 0 0 ">'
     for i in range(12))
-"""Entities of which the last one stands for 10 to the power of 11 poses."""
+"""Entities of which the last one would expand to 10 to the power of 11 poses."""
 
 MANY_PREFIXES = LINK + '<undeclared:element/>\n' * 150
 """More errors than libxml2 reports: all of these prefixes are accepted."""
