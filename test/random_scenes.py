@@ -1,10 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Random scenes for property tests, with poses calculated apart from the package.
+Random scenes for property tests, with poses calculated independently of the package.
 
-What an item refers to is made before it, so that there are no rings; the order in the file is
-another one. Every model says its canonical link, so that the order changes nothing at all.
+An item refers only to items that were made before it, so there are no cycles. The order in the
+file is another one. Every model names its canonical link, so the order changes nothing.
 """
 
 from __future__ import annotations
@@ -32,14 +32,15 @@ class Item:
 
     kind: str
     name: str
-    holder: Item | None
+    parent: Item | None
+    """The item whose XML element contains that of this one."""
     scope: Item | None
     pose: tuple[float, ...] | None = None
     """x y z roll pitch yaw in metres and degrees, or x y z and a quaternion x y z w."""
     reference: Item | None = None
     attached_to: Item | None = None
-    parent: Item | None = None
-    child: Item | None = None
+    joint_parent: Item | None = None
+    joint_child: Item | None = None
     placement: Item | None = None
     is_static: bool = False
     children: list[Item] = field(default_factory=list)
@@ -49,31 +50,31 @@ class Item:
         return '::'.join(item.name for item in reversed(self.chain()[:-1]))
 
     def chain(self):
-        """Return the item, what holds it, and so on; the root is the last."""
-        return [self, *(self.holder.chain() if self.holder else [])]
+        """Return the item, its parent, and so on; the root is the last."""
+        return [self, *(self.parent.chain() if self.parent else [])]
 
     def text_in(self, scope):
-        """Spell a reference to this item in a scope."""
+        """Return a reference to this item in a scope."""
         if self is scope:
             return '__model__' if scope.kind else 'world'
         names = [item.name for item in self.chain()]
         return '::'.join(reversed(names[:self.chain().index(scope)]))
 
     def default_reference(self):
-        return self.child or self.attached_to or self.holder
+        return self.joint_child or self.attached_to or self.parent
 
     def body(self):
-        """Return what carries a frame."""
+        """Return the link, static model or root that a frame is attached to."""
         if self.kind == 'model' and not self.is_static:
             return self.children[0]
-        onward = self.child or self.attached_to
+        attached_to = self.joint_child or self.attached_to
         if self.kind == 'frame':
-            onward = onward or self.scope
-        return onward.body() if onward else self
+            attached_to = attached_to or self.scope
+        return attached_to.body() if attached_to else self
 
 
 class RandomScene:
-    """Items, and what they should come to."""
+    """Items, their text and their poses."""
 
     def __init__(self, root, items, *, is_world):
         self.root = root
@@ -86,10 +87,11 @@ class RandomScene:
 
     def text(self, order=None, *, wrapped_at=None):
         """
-        Spell the scene out.
+        Return the scene as SDFormat.
 
-        :param order: key by which siblings are sorted; the order in which they were made if none.
-        :param wrapped_at: for a model file, what stands in front of its model in a world.
+        :param order: key by which siblings are sorted; None for the order in which they were made.
+        :param wrapped_at: for a model file, the pose of a frame in a world, to which the pose of
+            the model becomes relative; None to leave it a model file.
         """
         content = ''.join(_xml(child, order) for child in _sorted(self.root.children, order))
         if wrapped_at is not None:
@@ -136,8 +138,8 @@ def _xml(item, order):
         kinds = {'joint': 'revolute', 'sensor': 'camera', 'light': 'point'}
         attributes += f' type="{kinds[item.kind]}"'
     if item.kind == 'joint':
-        content += f'<parent>{item.parent.text_in(item.scope)}</parent>'
-        content += f'<child>{item.child.text_in(item.scope)}</child>'
+        content += f'<parent>{item.joint_parent.text_in(item.scope)}</parent>'
+        content += f'<child>{item.joint_child.text_in(item.scope)}</child>'
     if item.kind == 'model':
         attributes += f' canonical_link={quoteattr(item.children[0].name)}'
         if item.placement:
@@ -155,10 +157,10 @@ def random_scenes(draw, *, is_world=None, most=14):
     root = Item('', '', None, None)
     items = []
 
-    def add(kind, holder, scope, **fields):
+    def add(kind, parent, scope, **fields):
         name = draw(st.sampled_from(STEMS)) + str(len(items))
-        item = Item(kind, name, holder, scope, draw(POSES), **fields)
-        holder.children.append(item)
+        item = Item(kind, name, parent, scope, draw(POSES), **fields)
+        parent.children.append(item)
         items.append(item)
         return item
 
@@ -189,7 +191,8 @@ def random_scenes(draw, *, is_world=None, most=14):
             parent = one_of([
                 item for item in visible if child and item.body() is not child.body()])
             if parent and child:
-                add('joint', scope, scope, reference=reference, parent=parent, child=child)
+                add('joint', scope, scope, reference=reference, joint_parent=parent,
+                    joint_child=child)
         elif kind in ('visual', 'sensor'):
             link = one_of([child for child in scope.children if child.kind == 'link'])
             add(kind, link, scope, reference=reference)

@@ -8,6 +8,8 @@ import pytest
 import sdf_pose_bridge
 
 TYPES = {'sensor': 'camera', 'light': 'point', 'particle_emitter': 'point'}
+LINK = '<link name="l"/>'
+LINK_CHILDREN = ('visual', 'collision', 'sensor', 'light', 'particle_emitter', 'projector')
 TWO_LINKS = '<link name="a"/><link name="b"/>'
 
 
@@ -21,8 +23,13 @@ def world_file(content, *, version='1.10'):
     return f'<sdf version="{version}"><world name="w">{content}</world></sdf>'
 
 
-def joint(content, name='j', kind='fixed'):
-    return f'<joint name="{name}" type="{kind}">{content}</joint>'
+def link_with(content):
+    """Put content into the one link, ``l``, of a model file."""
+    return model_file(f'<link name="l">{content}</link>')
+
+
+def joint(content, name='j', joint_type='fixed'):
+    return f'<joint name="{name}" type="{joint_type}">{content}</joint>'
 
 
 def fixed_joint(name, parent, child, pose=''):
@@ -31,8 +38,8 @@ def fixed_joint(name, parent, child, pose=''):
 
 def element(tag, name, content=''):
     """Return an element, with the type that some must have."""
-    kind = f' type="{TYPES[tag]}"' if tag in TYPES else ''
-    return f'<{tag} name="{name}"{kind}>{content}</{tag}>'
+    attribute = f' type="{TYPES[tag]}"' if tag in TYPES else ''
+    return f'<{tag} name="{name}"{attribute}>{content}</{tag}>'
 
 
 def posed(tag, name, pose, relative_to=''):
@@ -41,10 +48,23 @@ def posed(tag, name, pose, relative_to=''):
     return element(tag, name, f'<pose{reference}>{pose}</pose>')
 
 
+def write_files(folder, **texts):
+    """Write a file ``NAME.sdf`` for each text."""
+    for name, text in texts.items():
+        (folder / f'{name}.sdf').write_text(text)
+
+
 def errors_of(text):
     """Load a text that must be refused; return all its errors."""
     with pytest.raises(sdf_pose_bridge.SdfError) as caught:
         sdf_pose_bridge.load_text(text, 'file.sdf')
+    return caught.value.errors
+
+
+def errors_of_file(path, **options):
+    """Load a file that must be refused; return all its errors."""
+    with pytest.raises(sdf_pose_bridge.SdfError) as caught:
+        sdf_pose_bridge.load(path, **options)
     return caught.value.errors
 
 
@@ -61,8 +81,8 @@ def only_error(text):
 def names_of(scene):
     """Return the names of all elements but worlds and implicit roots."""
     return [
-        name for name, holder in zip(scene.names, scene.parents.tolist(), strict=True)
-        if holder >= 0]
+        name for name, parent in zip(scene.names, scene.parents.tolist(), strict=True)
+        if parent >= 0]
 
 
 def warning_codes(scene):

@@ -1,18 +1,20 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The family of errors."""
+"""Errors and warnings: their texts, their codes, and their order in a load."""
 
 import pickle
 
 import pytest
 
 from sdf_pose_bridge import errors
+from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import LoadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.errors import UnknownFrameError
 
 PLACE = Place('a.sdf', 7, '/sdf')
 CLASSES = [
@@ -21,64 +23,117 @@ CLASSES = [
     and value not in (SdfError, LoadError)]
 
 
+# One error
+
 @pytest.mark.parametrize(('place', 'text'), [
     (Place('a.sdf'), 'a.sdf'), (Place('a.sdf', 7), 'a.sdf:7'), (PLACE, 'a.sdf:7'),
 ])
-def test_a_place_as_text(place, text):
+def test_text_of_a_place(place, text):
     assert str(place) == text
 
 
-def test_an_error_as_text():
+def test_text_of_an_error():
     assert str(ParsingError('this is wrong', PLACE)) == 'a.sdf:7: PARSING_ERROR: this is wrong'
 
 
-def test_a_warning_as_text():
+def test_text_of_a_warning():
     assert str(SdfWarning('WARNING', 'take care', PLACE)) == 'a.sdf:7: WARNING: take care'
 
 
 @pytest.mark.parametrize('error_class', CLASSES)
-def test_every_error_has_a_code_and_a_reason(error_class):
+def test_every_class_of_errors_has_a_code_and_a_docstring(error_class):
     assert error_class.code not in ('', 'ERROR')
     assert error_class.__doc__
 
 
-def test_an_error_stands_for_itself():
+def test_codes_are_different_for_errors_of_files():
+    codes = [error_class.code for error_class in CLASSES if error_class is not UnknownFrameError]
+    assert len(set(codes)) == len(codes)
+
+
+def test_single_error_is_the_only_one_of_its_errors():
     error = ParsingError('x', PLACE)
     assert error.errors == (error,)
     assert error.warnings == ()
+
+
+def test_error_has_a_place():
+    error = ParsingError('x', PLACE)
     assert (error.file, error.line, error.element) == PLACE
 
 
-def test_several_errors():
-    first, second = ParsingError('x', PLACE), errors.FileReadError('y', Place('b.sdf'))
+# Several errors
+
+def test_error_of_a_load_has_code_and_place_of_the_first():
+    first, second = ParsingError('x', PLACE), FileReadError('y', Place('b.sdf'))
+    error = LoadError([first, second])
+    assert (error.code, error.message, error.place) == ('PARSING_ERROR', 'x', PLACE)
+
+
+def test_error_of_a_load_has_all_errors_and_warnings():
+    first, second = ParsingError('x', PLACE), FileReadError('y', Place('b.sdf'))
     error = LoadError([first, second], [SdfWarning('WARNING', 'z', PLACE)])
     assert error.errors == (first, second)
-    assert (error.code, error.message, error.place) == ('PARSING_ERROR', 'x', PLACE)
-    assert str(error) == 'a.sdf:7: PARSING_ERROR: x\nb.sdf: FILE_READ: y'
     assert len(error.warnings) == 1
+
+
+def test_text_of_the_error_of_a_load_has_a_line_for_each_error():
+    error = LoadError([ParsingError('x', PLACE), FileReadError('y', Place('b.sdf'))])
+    assert str(error) == 'a.sdf:7: PARSING_ERROR: x\nb.sdf: FILE_READ: y'
 
 
 @pytest.mark.parametrize('error', [
     ParsingError('x', PLACE), LoadError([ParsingError('x', PLACE)], [])])
-def test_errors_pass_between_processes(error):
+def test_errors_can_be_pickled(error):
     copy = pickle.loads(pickle.dumps(error))
     assert (str(copy), copy.code, copy.place) == (str(error), error.code, error.place)
 
 
-@pytest.mark.parametrize(('wanted', 'names', 'hint'), [
-    ('tabel', ['chair', 'table'], '; did you mean "table"?'),
-    ('table', [], ''),
-    ('table', ['x'], ''),
-    ('', ['x'], ''),
-])
-def test_hints(wanted, names, hint):
-    assert hint_from_names(wanted, names) == hint
+# The problems of a load
+
+def test_load_without_errors_raises_nothing():
+    problems = Problems(['a.sdf'])
+    problems.warning('z', PLACE)
+    problems.raise_errors()
+    assert [warning.message for warning in problems.warnings] == ['z']
 
 
-@pytest.mark.parametrize(('wanted', 'hint'), [
-    ('robot_17/link_44', 'robot_17/link_4'), ('rbot_30/link_7', 'robot_30/link_7'),
-    ('robot_5_link_6', 'robot_5/link_6'), ('nothing', ''), ('', ''), ('x' * 100_000, ''),
-])
-def test_hints_among_many_names_that_are_alike(wanted, hint):
-    names = [f'robot_{robot}/link_{link}' for robot in range(1000) for link in range(10)]
-    assert hint_from_names(wanted, names) == (hint and f'; did you mean "{hint}"?')
+def test_load_with_errors_raises_them_with_the_warnings():
+    problems = Problems(['a.sdf'])
+    problems.warning('z', PLACE, 'CODE')
+    problems.error(ParsingError('x', PLACE))
+    with pytest.raises(LoadError) as caught:
+        problems.raise_errors()
+    assert [error.message for error in caught.value.errors] == ['x']
+    assert [warning.code for warning in caught.value.warnings] == ['CODE']
+
+
+def test_problems_are_ordered_by_file_and_line():
+    problems = Problems(['b.sdf', 'a.sdf'])
+    for place in [
+            Place('other'), Place('a.sdf', 2), Place('b.sdf', 9), Place('a.sdf', 1),
+            Place('b.sdf')]:
+        problems.error(ParsingError('x', place))
+    assert [str(error.place) for error in problems.errors] == [
+        'b.sdf', 'b.sdf:9', 'a.sdf:1', 'a.sdf:2', 'other']
+
+
+def test_problems_of_one_line_keep_their_order():
+    problems = Problems(['a.sdf'])
+    problems.extend([ParsingError(message, PLACE) for message in 'zyx'])
+    assert [error.message for error in problems.errors] == ['z', 'y', 'x']
+
+
+def test_problem_of_an_included_file_is_listed_once():
+    problems = Problems(['main.sdf', 'a.sdf'])
+    for element in ('/sdf/model[@name="x"]', '/sdf/model[@name="y"]'):
+        problems.error(ParsingError('x', Place('a.sdf', 7, element)))
+        problems.warning('z', Place('a.sdf', 7, element))
+    assert (len(problems.errors), len(problems.warnings)) == (1, 1)
+
+
+def test_problems_of_different_elements_of_the_first_file_are_all_listed():
+    problems = Problems(['a.sdf', 'b.sdf'])
+    for element in ('/sdf/model[@name="x"]', '/sdf/model[@name="y"]'):
+        problems.error(ParsingError('x', Place('a.sdf', 7, element)))
+    assert len(problems.errors) == 2

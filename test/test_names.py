@@ -1,39 +1,48 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Names as SDFormat spells them."""
+"""Names in SDFormat: reserved ones, names in scopes, hints at the nearest name."""
 
 import pytest
 
+from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import is_reserved
 from sdf_pose_bridge.names import scoped_name
-from sdf_pose_bridge.sdformat.grammar import FRAME_KINDS
-from sdf_pose_bridge.sdformat.grammar import Kind
 
 
 @pytest.mark.parametrize('name', ['world', '__model__', '__root__', '____', '__a__', '_____'])
-def test_reserved(name):
+def test_name_is_reserved(name):
     assert is_reserved(name)
 
 
 @pytest.mark.parametrize('name', [
     '', '_', '__', '___', '__x_', '_x__', '__x', 'x__', 'World', 'worlds', 'a__b',
 ])
-def test_not_reserved(name):
+def test_name_is_not_reserved(name):
     assert not is_reserved(name)
 
 
-def test_a_name_in_a_scope():
+def test_name_in_a_scope():
     assert scoped_name('robot::arm', 'hand') == 'robot::arm::hand'
 
 
-def test_a_name_in_a_world():
+def test_name_in_a_world():
     assert scoped_name('', 'robot') == 'robot'
 
 
-def test_labels_are_tags():
-    assert Kind.PARTICLE_EMITTER.label == 'particle_emitter'
-    assert Kind.LINK.label == 'link'
+@pytest.mark.parametrize(('wanted', 'names', 'hint'), [
+    ('table', [], ''),
+    ('table', ['x'], ''),
+    ('', ['x'], ''),
+    ('tabel', ['chair', 'table'], '; did you mean "table"?'),
+])
+def test_hint_at_the_nearest_name(wanted, names, hint):
+    assert hint_from_names(wanted, names) == hint
 
 
-def test_only_four_kinds_can_be_referred_to():
-    assert {kind.label for kind in FRAME_KINDS} == {'model', 'link', 'joint', 'frame'}
+@pytest.mark.parametrize(('wanted', 'hint'), [
+    ('robot_17/link_44', 'robot_17/link_4'), ('rbot_30/link_7', 'robot_30/link_7'),
+    ('robot_5_link_6', 'robot_5/link_6'), ('nothing', ''), ('', ''), ('x' * 100_000, ''),
+])
+def test_hint_among_many_similar_names(wanted, hint):
+    names = [f'robot_{robot}/link_{link}' for robot in range(1000) for link in range(10)]
+    assert hint_from_names(wanted, names) == (hint and f'; did you mean "{hint}"?')

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Properties of scenes: composition, and what changes nothing."""
+"""Properties of all scenes: composition of poses, and changes that move nothing."""
 
 from hypothesis import given
 from hypothesis import HealthCheck
@@ -34,7 +34,7 @@ def assert_same_scene(first, second, tolerance=1e-9):
 
 @SOME
 @given(random_scenes())
-def test_poses_are_those_calculated_apart(drawn):
+def test_poses_are_those_calculated_independently(drawn):
     scene = loaded(drawn.text())
     matrices = drawn.matrices()
     assert names_of(scene) == list(dict.fromkeys(names_of(scene)))
@@ -45,7 +45,7 @@ def test_poses_are_those_calculated_apart(drawn):
 
 @SOME
 @given(random_scenes(), st.data())
-def test_a_pose_in_another_frame_is_composed(drawn, data):
+def test_poses_can_be_composed(drawn, data):
     scene = loaded(drawn.text())
     names = st.sampled_from(names_of(scene))
     first, second, third = data.draw(names), data.draw(names), data.draw(names)
@@ -59,13 +59,13 @@ def test_a_pose_in_another_frame_is_composed(drawn, data):
 
 @SOME
 @given(random_scenes(), ORDERS)
-def test_the_order_of_siblings_changes_nothing(drawn, order):
+def test_order_of_siblings_moves_nothing(drawn, order):
     assert_same_scene(loaded(drawn.text()), loaded(drawn.text(order)))
 
 
 @SOME
 @given(random_scenes(is_world=False))
-def test_a_model_in_a_world_is_only_placed(drawn):
+def test_model_in_a_world_is_only_placed(drawn):
     place = (1.5, -2.0, 0.25, 30, -45, 60)
     alone = loaded(drawn.text())
     placed = loaded(drawn.text(wrapped_at=place))
@@ -79,8 +79,8 @@ def test_a_model_in_a_world_is_only_placed(drawn):
 
 @SOME
 @given(random_scenes(), st.data())
-def test_a_pose_written_relative_to_another_frame_changes_nothing(drawn, data):
-    item = data.draw(st.sampled_from([item for item in drawn.items if item.holder.kind]))
+def test_pose_that_is_written_relative_to_another_frame_moves_nothing(drawn, data):
+    item = data.draw(st.sampled_from([item for item in drawn.items if item.parent.kind]))
     earlier = drawn.items[:drawn.items.index(item)]
     reference = data.draw(st.sampled_from([
         other for other in earlier

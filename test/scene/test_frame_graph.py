@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The frame graph: unknown names, rings, and what each frame is placed in and fixed to."""
+"""The frame graph: unknown names, cycles, default references, and attachment."""
 
 import pytest
 from sdf_texts import assert_at
@@ -13,20 +13,16 @@ from sdf_texts import posed
 from sdf_texts import warning_codes
 from sdf_texts import world_file
 
-import sdf_pose_bridge
 from sdf_pose_bridge import Kind
+from sdf_pose_bridge import load_text
 
 A = '<link name="a"/>'
 B = posed('link', 'b', '1 0 0 0 0 1.5707963267948966')
 NESTED = '<model name="n"><pose>0 0 1 0 0 0</pose><link name="k"/></model>'
 
 
-def scene_of(text):
-    return sdf_pose_bridge.load_text(text)
-
-
 def name_at(scene, indices, name):
-    """Return the name of what an array of indices tells of an element; None for -1."""
+    """Return the name of the element that an array has for another; None for -1."""
     index = int(indices[scene.index(name)])
     return None if index < 0 else scene.names[index]
 
@@ -42,7 +38,7 @@ def name_at(scene, indices, name):
     world_file(posed('frame', 'f', '', 'zzz')),
     model_file(A, attributes='placement_frame="zzz"'),
 ])
-def test_what_a_pose_is_relative_to_is_unknown(text):
+def test_unknown_reference_of_a_pose_is_refused(text):
     error = only_error(text)
     assert error.code == 'POSE_RELATIVE_TO_INVALID'
     assert '"zzz"' in error.message
@@ -54,11 +50,11 @@ def test_what_a_pose_is_relative_to_is_unknown(text):
     model_file(A + '<frame name="f" attached_to="m"/>'),
     world_file('<frame name="f" attached_to="zzz"/>'),
 ])
-def test_what_a_frame_is_attached_to_is_unknown(text):
+def test_unknown_attachment_is_refused(text):
     assert codes_of(text) == ['FRAME_ATTACHED_TO_INVALID']
 
 
-def test_one_unknown_name_gives_one_error():
+def test_unknown_name_gives_no_other_errors():
     text = model_file(
         A + '<frame name="f" attached_to="zzz"/><frame name="g" attached_to="f"/>'
         + posed('link', 'b', '', 'f') + fixed_joint('j', 'a', 'g'))
@@ -68,8 +64,8 @@ def test_one_unknown_name_gives_one_error():
 
 @pytest.mark.parametrize('tag', [
     'visual', 'collision', 'sensor', 'light', 'particle_emitter', 'projector'])
-def test_a_child_of_a_link_that_cannot_be_placed_is_left_out(tag):
-    scene = scene_of(model_file(
+def test_child_of_a_link_with_an_unknown_reference_is_left_out(tag):
+    scene = load_text(model_file(
         '<link name="a">' + posed(tag, 'ghost', '1 0 0 0 0 0', 'zzz')
         + posed(tag, 'good', '1 0 0 0 0 0') + '</link>'))
     assert names_of(scene) == ['m', 'm::a', 'm::a::good']
@@ -77,21 +73,21 @@ def test_a_child_of_a_link_that_cannot_be_placed_is_left_out(tag):
     assert '"zzz"' in scene.warnings[0].message
 
 
-def test_a_sensor_of_a_joint_that_cannot_be_placed_is_left_out():
-    scene = scene_of(model_file(
+def test_sensor_of_a_joint_with_an_unknown_reference_is_left_out():
+    scene = load_text(model_file(
         A + B + fixed_joint('j', 'a', 'b', posed('sensor', 's', '', 'zzz'))))
     assert 'm::j::s' not in names_of(scene)
     assert warning_codes(scene) == ['POSE_RELATIVE_TO_INVALID']
 
 
-def test_a_light_of_a_world_that_cannot_be_placed_is_left_out():
-    scene = scene_of(world_file(posed('light', 'sun', '', 'zzz')))
+def test_light_of_a_world_with_an_unknown_reference_is_left_out():
+    scene = load_text(world_file(posed('light', 'sun', '', 'zzz')))
     assert names_of(scene) == []
     assert warning_codes(scene) == ['POSE_RELATIVE_TO_INVALID']
 
 
-def test_indices_fit_where_something_is_left_out():
-    scene = scene_of(world_file(
+def test_indices_are_right_where_elements_are_left_out():
+    scene = load_text(world_file(
         posed('light', 'sun', '', 'zzz')
         + '<model name="m"><link name="a">' + posed('visual', 'ghost', '', 'zzz')
         + posed('visual', 'v', '') + '</link>' + B + fixed_joint('j', 'a', 'b') + '</model>'))
@@ -103,7 +99,19 @@ def test_indices_fit_where_something_is_left_out():
         'm::j', 'm::a', 'm::b']
 
 
-# Rings
+@pytest.mark.parametrize('name', ['zzz', 'm', 'm::a', 'world', 'n::zzz', 'k'])
+def test_unknown_placement_frame_is_refused(name):
+    error = only_error(model_file(A + NESTED, attributes=f'placement_frame="{name}"'))
+    assert error.code == 'POSE_RELATIVE_TO_INVALID'
+    assert f'placement_frame="{name}"' in error.message
+
+
+def test_placement_frame_in_an_enclosing_scope_is_refused():
+    text = model_file(A + '<model name="n" placement_frame="a"><link name="k"/></model>')
+    assert codes_of(text) == ['POSE_RELATIVE_TO_INVALID']
+
+
+# Cycles
 
 @pytest.mark.parametrize('text', [
     model_file(A + posed('frame', 'f', '', 'f')),
@@ -116,7 +124,7 @@ def test_indices_fit_where_something_is_left_out():
                + posed('frame', 'f', '', 'n::k')),
     world_file('<frame name="f"><pose relative_to="f"/></frame>'),
 ])
-def test_poses_in_a_ring(text):
+def test_cycle_of_poses_is_refused(text):
     assert codes_of(text) == ['POSE_RELATIVE_TO_CYCLE']
 
 
@@ -130,11 +138,11 @@ def test_poses_in_a_ring(text):
     model_file(A + '<frame name="f" attached_to="j"/>' + fixed_joint('j', 'a', 'f')),
     model_file(A + fixed_joint('j', 'a', 'j')),
 ])
-def test_attachment_in_a_ring(text):
+def test_cycle_of_attachment_is_refused(text):
     assert codes_of(text)[0] == 'FRAME_ATTACHED_TO_CYCLE'
 
 
-def test_a_ring_is_spelled_out():
+def test_message_has_the_names_of_a_cycle():
     frames = ''.join(
         posed('frame', name, '', reference) for name, reference in
         [('p', 'q'), ('q', 'r'), ('r', 's'), ('s', 'p')])
@@ -142,7 +150,7 @@ def test_a_ring_is_spelled_out():
     assert '"m::p" -> "m::q" -> "m::r" -> "m::s" -> "m::p"' in error.message
 
 
-def test_a_ring_is_told_once_at_its_first_element():
+def test_cycle_is_reported_once_at_its_first_element():
     frames = '\n'.join(
         posed('frame', name, '', reference) for name, reference in
         [('tail', 'q'), ('p', 'q'), ('q', 'p'), ('tail2', 'tail')])
@@ -151,35 +159,35 @@ def test_a_ring_is_told_once_at_its_first_element():
     assert error.element == '/sdf/model[@name="m"]/frame[@name="p"]'
 
 
-def test_each_ring_is_told():
+def test_every_cycle_is_reported():
     frames = ''.join(
         posed('frame', name, '', reference) for name, reference in
         [('p', 'q'), ('q', 'p'), ('r', 'r'), ('s', 't'), ('t', 'u'), ('u', 's')])
     assert codes_of(model_file(A + frames)) == ['POSE_RELATIVE_TO_CYCLE'] * 3
 
 
-def test_a_ring_of_attachment_is_not_told_again_as_a_ring_of_poses():
+def test_cycle_of_attachment_is_not_reported_again_as_one_of_poses():
     assert codes_of(model_file(
         A + '<frame name="f" attached_to="g"/><frame name="g" attached_to="f"/>')) == [
             'FRAME_ATTACHED_TO_CYCLE']
 
 
-def test_a_long_ring_is_cut_in_the_message():
+def test_long_cycle_is_cut_in_the_message():
     frames = ''.join(posed('frame', f'f{i}', '', f'f{(i + 1) % 500}') for i in range(500))
     assert len(only_error(model_file(A + frames)).message) < 400
 
 
-def test_a_long_chain_is_no_ring():
+def test_long_chain_is_no_cycle():
     length = 3000
     frames = ''.join(
         posed('frame', f'f{i}', '1 0 0 0 0 0', f'f{i + 1}') for i in range(length))
-    scene = scene_of(model_file(A + frames + posed('frame', f'f{length}', '1 0 0 0 0 0')))
+    scene = load_text(model_file(A + frames + posed('frame', f'f{length}', '1 0 0 0 0 0')))
     assert_at(scene, 'm::f0', (length + 1, 0, 0))
 
 
-def test_the_default_of_a_joint_is_explained_in_a_ring():
+def test_message_explains_the_default_reference_of_a_joint():
     error = only_error(model_file(A + posed('link', 'b', '', 'j') + fixed_joint('j', 'a', 'b')))
-    assert 'placed in its child' in error.message
+    assert 'the default reference of a joint is its child' in error.message
 
 
 # Models
@@ -188,12 +196,12 @@ def test_the_default_of_a_joint_is_explained_in_a_ring():
     model_file(''), model_file('<frame name="f"/>'), model_file('<static>false</static>'),
     model_file(A + '<model name="n"/>'), world_file('<model name="m"/>'),
 ])
-def test_a_model_has_no_link(text):
+def test_model_without_a_link_is_refused(text):
     assert codes_of(text) == ['MODEL_WITHOUT_LINK']
 
 
-def test_a_static_model_needs_no_link():
-    scene = scene_of(world_file(
+def test_static_model_without_a_link():
+    scene = load_text(world_file(
         '<model name="m"><static>true</static><pose>1 0 0 0 0 0</pose>'
         + posed('frame', 'f', '0 1 0 0 0 0') + '</model>'))
     assert_at(scene, 'm::f', (1, 1, 0))
@@ -202,14 +210,14 @@ def test_a_static_model_needs_no_link():
 
 
 @pytest.mark.parametrize('name', ['zzz', 'm', 'n::zzz', 'world'])
-def test_a_canonical_link_is_unknown(name):
+def test_unknown_canonical_link_is_refused(name):
     error = only_error(model_file(A + NESTED, attributes=f'canonical_link="{name}"'))
     assert error.code == 'MODEL_CANONICAL_LINK_INVALID'
     assert f'"{name}"' in error.message
 
 
-def test_the_canonical_link_of_a_static_model_is_not_checked():
-    scene_of(model_file('<static>1</static>' + A, attributes='canonical_link="zzz"'))
+def test_unknown_canonical_link_of_a_static_model_is_accepted():
+    load_text(model_file('<static>1</static>' + A, attributes='canonical_link="zzz"'))
 
 
 @pytest.mark.parametrize(('content', 'canonical', 'link'), [
@@ -227,13 +235,13 @@ def test_the_canonical_link_of_a_static_model_is_not_checked():
     ('<static>true</static>' + A + B, '', 'm::a'),
     ('<static>true</static>' + A + B, 'b', 'm::b'),
 ])
-def test_the_canonical_link(content, canonical, link):
-    scene = scene_of(model_file(content, attributes=f'canonical_link="{canonical}"'))
+def test_canonical_link(content, canonical, link):
+    scene = load_text(model_file(content, attributes=f'canonical_link="{canonical}"'))
     assert name_at(scene, scene.canonical_links, 'm') == link
 
 
-def test_the_canonical_link_may_be_in_a_static_model():
-    scene = scene_of(model_file(
+def test_canonical_link_can_be_in_a_static_model():
+    scene = load_text(model_file(
         '<model name="n"><static>1</static><link name="l"/><frame name="f"/></model>'
         '<frame name="a" attached_to="n::f"/><frame name="b"/>' + fixed_joint('j', 'a', 'b')))
     assert name_at(scene, scene.canonical_links, 'm') == 'm::n::l'
@@ -242,15 +250,15 @@ def test_the_canonical_link_may_be_in_a_static_model():
 
 
 @pytest.mark.parametrize('canonical', ['', 'b', 'f'])
-def test_the_canonical_link_moves_nothing(canonical):
-    scene = scene_of(model_file(
+def test_canonical_link_moves_nothing(canonical):
+    scene = load_text(model_file(
         '<pose>0 0 1 0 0 0</pose>' + A + B + '<frame name="f" attached_to="b"/>'
         + posed('frame', 'g', '0 5 0 0 0 0'), attributes=f'canonical_link="{canonical}"'))
     assert_at(scene, 'm', (0, 0, 1))
     assert_at(scene, 'm::g', (0, 5, 1))
 
 
-# Where things are placed by default
+# Default references
 
 @pytest.mark.parametrize(('frame', 'position'), [
     (posed('frame', 'f', '1 0 0 0 0 0'), (1, 0, 0)),
@@ -263,8 +271,8 @@ def test_the_canonical_link_moves_nothing(canonical):
     ('<frame name="f" attached_to="n::k"/>', (0, 0, 1)),
     ('<frame name="f" attached_to="b"/>', (1, 0, 0)),
 ])
-def test_where_a_frame_is(frame, position):
-    scene = scene_of(model_file(
+def test_reference_of_a_frame(frame, position):
+    scene = load_text(model_file(
         A + B + NESTED + fixed_joint('j', 'a', 'b', '<pose>1 0 0 0 0 0</pose>') + frame))
     assert_at(scene, 'm::f', position)
 
@@ -278,21 +286,21 @@ def test_where_a_frame_is(frame, position):
     (fixed_joint('j', 'world', 'b'), (1, 0, 0)),
     (fixed_joint('j', 'a', 'n'), (0, 0, 1)),
 ])
-def test_where_a_joint_is(joint, position):
+def test_reference_of_a_joint(joint, position):
     frame = '<frame name="f" attached_to="b"><pose>0 0 5 0 0 0</pose></frame>'
-    assert_at(scene_of(model_file(A + B + NESTED + frame + joint)), 'm::j', position)
+    assert_at(load_text(model_file(A + B + NESTED + frame + joint)), 'm::j', position)
 
 
-def test_a_sensor_of_a_joint_is_in_the_joint():
-    scene = scene_of(model_file(A + B + fixed_joint(
+def test_reference_of_a_sensor_of_a_joint():
+    scene = load_text(model_file(A + B + fixed_joint(
         'j', 'a', 'b', '<pose>1 0 0 0 0 0</pose>' + posed('sensor', 's', '1 0 0 0 0 0')
         + posed('sensor', 't', '1 0 0 0 0 0', 'a'))))
     assert_at(scene, 'm::j::s', (1, 2, 0))
     assert_at(scene, 'm::j::t', (1, 0, 0))
 
 
-def test_children_of_a_link_use_the_names_of_its_model():
-    scene = scene_of(model_file(
+def test_reference_of_a_child_of_a_link_is_in_the_scope_of_the_model():
+    scene = load_text(model_file(
         A + '<link name="b"><pose>1 0 0 0 0 0</pose>' + posed('visual', 'v', '1 0 0 0 0 0')
         + posed('visual', 'u', '1 0 0 0 0 0', '__model__') + posed('light', 'i', '', 'a')
         + posed('sensor', 's', '1 0 0 0 0 0', 'n::k') + '</link>' + NESTED))
@@ -302,15 +310,15 @@ def test_children_of_a_link_use_the_names_of_its_model():
     assert_at(scene, 'm::b::s', (1, 0, 1))
 
 
-def test_an_inertial_is_in_its_link():
-    scene = scene_of(model_file(
+def test_reference_of_an_inertial_is_the_link():
+    scene = load_text(model_file(
         '<link name="a"><pose>1 0 0 0 0 0</pose><inertial><pose>0 1 0 0 0 0</pose></inertial>'
         '</link>'))
     assert scene.kinds[-1] == Kind.INERTIAL
     assert scene.poses[-1, :3].tolist() == [1, 1, 0]
 
 
-# What carries what
+# Attachment
 
 @pytest.mark.parametrize(('name', 'body'), [
     ('m::a', 'm::a'), ('m::b', 'm::b'), ('m', 'm::a'), ('m::n', 'm::n::k'), ('m::j', 'm::b'),
@@ -318,8 +326,8 @@ def test_an_inertial_is_in_its_link():
     ('m::on_s', 'm::s'), ('m::s', 'm::s'), ('on_m', 'm::a'), ('fixed', 'world'),
     ('on_fixed', 'world'),
 ])
-def test_what_carries_a_frame(name, body):
-    scene = scene_of(world_file(
+def test_body_of_a_frame(name, body):
+    scene = load_text(world_file(
         '<model name="m">' + A + B + NESTED + fixed_joint('j', 'a', 'b')
         + '<frame name="f"><pose relative_to="b"/></frame>'
         '<frame name="on_j" attached_to="on_b"/><frame name="on_b" attached_to="j"/>'

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Joints join two bodies: every rule, at every level of nesting."""
+"""Joints join two bodies: every rule, at every depth of nesting."""
 
 import pytest
 from sdf_texts import codes_of
@@ -40,59 +40,59 @@ def in_world(joint):
         '<model name="n"><link name="k"/></model>' + joint)
 
 
-everywhere = pytest.mark.parametrize(
-    'place', [in_top_model, in_model_of_world, in_nested_model, in_world])
+at_every_depth = pytest.mark.parametrize(
+    'file_with', [in_top_model, in_model_of_world, in_nested_model, in_world])
 
 
-@everywhere
-def test_the_child_is_unknown(place):
-    error = only_error(place(fixed_joint('j', 'a', 'zzz')))
+@at_every_depth
+def test_unknown_child_is_refused(file_with):
+    error = only_error(file_with(fixed_joint('j', 'a', 'zzz')))
     assert error.code == 'JOINT_CHILD_LINK_INVALID'
     assert '"zzz"' in error.message
 
 
-@everywhere
-def test_the_child_is_the_world(place):
-    error = only_error(place(fixed_joint('j', 'a', 'world')))
+@at_every_depth
+def test_world_as_the_child_is_refused(file_with):
+    error = only_error(file_with(fixed_joint('j', 'a', 'world')))
     assert error.code == 'JOINT_CHILD_LINK_INVALID'
     assert 'only its parent' in error.message
 
 
-@everywhere
-def test_the_child_is_the_joint(place):
-    assert codes_of(place(fixed_joint('j', 'a', 'j')))[0] == 'FRAME_ATTACHED_TO_CYCLE'
+@at_every_depth
+def test_joint_as_its_own_child_is_refused(file_with):
+    assert codes_of(file_with(fixed_joint('j', 'a', 'j')))[0] == 'FRAME_ATTACHED_TO_CYCLE'
 
 
-@everywhere
-def test_the_parent_is_unknown(place):
-    error = only_error(place(fixed_joint('j', 'zzz', 'a')))
+@at_every_depth
+def test_unknown_parent_is_refused(file_with):
+    error = only_error(file_with(fixed_joint('j', 'zzz', 'a')))
     assert error.code == 'JOINT_PARENT_LINK_INVALID'
     assert '"zzz"' in error.message
 
 
-@everywhere
-def test_the_parent_is_the_joint(place):
-    assert codes_of(place(fixed_joint('j', 'j', 'a'))) == ['JOINT_PARENT_LINK_INVALID']
+@at_every_depth
+def test_joint_as_its_own_parent_is_refused(file_with):
+    assert codes_of(file_with(fixed_joint('j', 'j', 'a'))) == ['JOINT_PARENT_LINK_INVALID']
 
 
-@everywhere
+@at_every_depth
 @pytest.mark.parametrize('ends', [
     ('a', 'a'), ('a', 'on_a'), ('on_a', 'a'), ('on_a', 'also_on_a'), ('on_a', 'on_a'),
     ('n', 'n::k'),
 ])
-def test_both_ends_are_one_body(place, ends):
-    assert codes_of(place(fixed_joint('j', *ends))) == ['JOINT_PARENT_SAME_AS_CHILD']
+def test_parent_and_child_on_one_body_are_refused(file_with, ends):
+    assert codes_of(file_with(fixed_joint('j', *ends))) == ['JOINT_PARENT_SAME_AS_CHILD']
 
 
-@everywhere
-def test_an_axis_is_expressed_in_an_unknown_frame(place):
+@at_every_depth
+def test_axis_in_an_unknown_frame_is_refused(file_with):
     axis = '<axis><xyz expressed_in="zzz">1 0 0</xyz></axis>'
-    error = only_error(place(fixed_joint('j', 'a', 'b', axis)))
+    error = only_error(file_with(fixed_joint('j', 'a', 'b', axis)))
     assert error.code == 'JOINT_AXIS_EXPRESSED_IN_INVALID'
     assert '"zzz"' in error.message
 
 
-def test_the_second_axis_is_checked_too():
+def test_second_axis_in_an_unknown_frame_is_refused():
     axis = ('<axis><xyz expressed_in="a">1 0 0</xyz></axis>'
             '<axis2><xyz expressed_in="zzz">1 0 0</xyz></axis2>')
     assert codes_of(in_top_model(fixed_joint('j', 'a', 'b', axis))) == [
@@ -100,61 +100,61 @@ def test_the_second_axis_is_checked_too():
 
 
 @pytest.mark.parametrize('name', ['__model__', 'a', 'j', 'n::k', 'on_a', '', ' '])
-def test_an_axis_may_be_expressed_in_any_frame_of_the_scope(name):
+def test_axis_can_be_in_any_frame_of_the_scope(name):
     axis = f'<axis><xyz expressed_in="{name}">1 0 0</xyz></axis>'
     sdf_pose_bridge.load_text(in_top_model(fixed_joint('j', 'a', 'b', axis)))
 
 
-def test_an_axis_moves_no_frame():
+def test_axis_moves_no_frame():
     axis = '<axis><xyz expressed_in="a">0 1 0</xyz></axis>'
     scene = sdf_pose_bridge.load_text(in_top_model(fixed_joint('j', 'a', 'b', axis)))
     assert scene.pose('m::j') == (0, 0, 0, 0, 0, 0, 1)
 
 
-@everywhere
+@at_every_depth
 @pytest.mark.parametrize('ends', [
     ('a', 'b'), ('world', 'a'), ('on_a', 'b'), ('b', 'also_on_a'), ('a', 'n'), ('n::k', 'b'),
     ('n::__model__', 'b'), ('world', 'n::__model__'),
 ])
-def test_two_bodies_are_joined(place, ends):
-    scene = sdf_pose_bridge.load_text(place(fixed_joint('j', *ends)))
+def test_parent_and_child_on_two_bodies(file_with, ends):
+    scene = sdf_pose_bridge.load_text(file_with(fixed_joint('j', *ends)))
     assert any(name.endswith('j') for name in names_of(scene))
 
 
 @pytest.mark.parametrize('ends', [('__model__', 'b'), ('b', '__model__')])
-def test_a_joint_may_hold_the_model_frame(ends):
+def test_model_frame_can_be_an_end(ends):
     sdf_pose_bridge.load_text(in_top_model(fixed_joint('j', *ends)))
 
 
-def test_a_joint_may_hold_another_joint():
+def test_joint_can_be_the_parent_of_another():
     sdf_pose_bridge.load_text(in_top_model(
         fixed_joint('j', 'a', 'b') + fixed_joint('k', 'j', 'n')))
 
 
-def test_a_frame_of_the_world_is_no_child():
+def test_frame_of_the_world_as_the_child_is_refused():
     text = world_file(
         '<model name="a"><link name="l"/></model><frame name="f"/>' + fixed_joint('j', 'a', 'f'))
     assert codes_of(text) == ['JOINT_CHILD_LINK_INVALID']
 
 
-def test_a_frame_of_the_world_may_be_the_parent():
+def test_frame_of_the_world_can_be_the_parent():
     sdf_pose_bridge.load_text(world_file(
         '<model name="a"><link name="l"/></model><frame name="f"/>' + fixed_joint('j', 'f', 'a')))
 
 
-def test_a_static_model_may_be_the_child():
+def test_static_model_can_be_the_child():
     sdf_pose_bridge.load_text(world_file(
         '<model name="a"><link name="l"/></model>'
         '<model name="s"><static>1</static><link name="l"/></model>' + fixed_joint('j', 'a', 's')))
 
 
-def test_names_of_other_scopes_are_unknown():
+def test_end_in_an_enclosing_scope_is_refused():
     text = model_file(TWO_LINKS + '<model name="n"><link name="k"/>' + fixed_joint('j', 'a', 'k')
                       + '</model>')
     assert codes_of(text) == ['JOINT_PARENT_LINK_INVALID']
 
 
-def test_the_lines_of_both_ends_are_told():
+def test_errors_have_the_lines_of_both_ends():
     text = model_file(
         '<link name="a"/>\n<joint name="j" type="fixed">\n<parent>y</parent>\n<child>z</child>'
         '</joint>')
@@ -162,12 +162,12 @@ def test_the_lines_of_both_ends_are_told():
         ('JOINT_PARENT_LINK_INVALID', 3), ('JOINT_CHILD_LINK_INVALID', 4)}
 
 
-def test_the_element_is_told():
+def test_error_has_the_element():
     error = only_error(in_nested_model(fixed_joint('j', 'zzz', 'a')))
     assert error.element == (
         '/sdf/model[@name="m"]/model[@name="n1"]/model[@name="n2"]/joint[@name="j"]/parent')
 
 
-def test_a_joint_without_ends_is_not_told_of_again():
+def test_joint_without_a_child_gives_one_error():
     joint = '<joint name="j" type="fixed"><parent>a</parent></joint>'
     assert codes_of(in_top_model(joint)) == ['ELEMENT_MISSING']

@@ -1,7 +1,8 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Loading: all errors of a file at once, each with file, line, element, value and rule."""
+"""Loading: all errors of a file, each with file, line, element, value and rule."""
 
+import gc
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from sdf_texts import model_file
 import sdf_pose_bridge
 from sdf_pose_bridge.errors import LoadError
 
-MANY_WRONG = """<?xml version="1.0"?>
+WRONG_FILE = """<?xml version="1.0"?>
 <sdf version="1.9">
   <model name="m" canonical_link="no_link">
     <link name="a">
@@ -38,7 +39,7 @@ MANY_WRONG = """<?xml version="1.0"?>
   </model>
 </sdf>
 """
-MANY_ERRORS = [
+ERRORS = [
     (3, 'MODEL_CANONICAL_LINK_INVALID', '"no_link"', 'model[@name="m"]'),
     (5, 'ELEMENT_INVALID', '"1 2 3" has 3', 'link[@name="a"]/pose'),
     (7, 'DUPLICATE_NAME', '"v"', 'visual[@name="v"]'),
@@ -59,63 +60,63 @@ MANY_ERRORS = [
 
 
 @pytest.fixture(scope='module')
-def many_errors():
-    return errors_of(MANY_WRONG)
+def file_errors():
+    return errors_of(WRONG_FILE)
 
 
-def test_all_errors_are_told_at_once(many_errors):
-    expected = sorted((line, code) for line, code, _, _ in MANY_ERRORS)
-    assert sorted((error.line, error.code) for error in many_errors) == expected
+def test_all_errors_are_reported(file_errors):
+    expected = sorted((line, code) for line, code, _, _ in ERRORS)
+    assert sorted((error.line, error.code) for error in file_errors) == expected
 
 
-def test_errors_stand_in_the_order_of_the_file(many_errors):
-    lines = [error.line for error in many_errors]
+def test_errors_are_in_file_order(file_errors):
+    lines = [error.line for error in file_errors]
     assert lines == sorted(lines)
 
 
-@pytest.mark.parametrize('expected', MANY_ERRORS, ids=lambda expected: f'{expected[0]}')
-def test_an_error_names_value_and_element(many_errors, expected):
+@pytest.mark.parametrize('expected', ERRORS, ids=lambda expected: f'{expected[0]}')
+def test_error_has_the_value_and_the_element(file_errors, expected):
     line, code, value, element = expected
-    error = next(e for e in many_errors if (e.line, e.code) == (line, code))
+    error = next(e for e in file_errors if (e.line, e.code) == (line, code))
     assert value in error.message
     assert error.element.startswith('/sdf/model[@name="m"]')
     assert error.element.endswith(element)
 
 
-def test_every_error_names_the_file(many_errors):
-    assert {error.file for error in many_errors} == {'file.sdf'}
+def test_every_error_has_the_file(file_errors):
+    assert {error.file for error in file_errors} == {'file.sdf'}
 
 
-def test_the_error_speaks_for_the_first():
+def test_exception_has_code_and_message_of_the_first_error():
     with pytest.raises(LoadError) as caught:
-        sdf_pose_bridge.load_text(MANY_WRONG, 'file.sdf')
+        sdf_pose_bridge.load_text(WRONG_FILE, 'file.sdf')
     error = caught.value
     assert (error.code, error.line) == (error.errors[0].code, 3)
     assert error.message == error.errors[0].message
 
 
-def test_the_text_of_the_error_has_a_line_for_each(many_errors):
+def test_text_of_the_exception_has_a_line_for_each_error(file_errors):
     with pytest.raises(LoadError) as caught:
-        sdf_pose_bridge.load_text(MANY_WRONG, 'file.sdf')
-    assert str(caught.value).splitlines() == [str(error) for error in many_errors]
+        sdf_pose_bridge.load_text(WRONG_FILE, 'file.sdf')
+    assert str(caught.value).splitlines() == [str(error) for error in file_errors]
 
 
-def test_one_line_of_it():
+def test_line_of_an_error_begins_with_its_place():
     error = errors_of('<sdf version="1.9">\n<model name="m"/>\n</sdf>')[0]
     assert str(error).startswith('file.sdf:2: MODEL_WITHOUT_LINK: ')
 
 
-def test_messages_are_one_line_each(many_errors):
-    assert all(error.message.strip() and '\n' not in error.message for error in many_errors)
+def test_messages_have_one_line(file_errors):
+    assert all(error.message.strip() and '\n' not in error.message for error in file_errors)
 
 
-def test_the_codes_of_one_defect_are_not_repeated():
+def test_wrong_reference_gives_no_other_errors():
     assert codes_of(model_file(
         '<link name="a"/><link name="b"><pose relative_to="x"/></link>'
         '<frame name="f" attached_to="b"/><visual/>')) == ['POSE_RELATIVE_TO_INVALID']
 
 
-def test_warnings_are_kept_with_errors():
+def test_exception_has_the_warnings():
     text = model_file(
         '<link name="a"><visual name="v"><pose relative_to="x"/></visual></link>'
         '<frame name="f" attached_to="y"/>')
@@ -125,7 +126,7 @@ def test_warnings_are_kept_with_errors():
     assert [error.code for error in caught.value.errors] == ['FRAME_ATTACHED_TO_INVALID']
 
 
-def test_warnings_have_places():
+def test_warning_has_a_place():
     scene = sdf_pose_bridge.load_text(
         '<sdf version="1.9">\n<model name="m"><link name="a">\n<visual name="v">\n'
         '<pose relative_to="x"/></visual></link></model></sdf>', 'file.sdf')
@@ -136,7 +137,7 @@ def test_warnings_have_places():
     assert str(warning).startswith('file.sdf:4: POSE_RELATIVE_TO_INVALID: ')
 
 
-def test_a_file_is_named_as_it_was_opened(tmp_path, monkeypatch):
+def test_error_has_the_path_as_it_was_opened(tmp_path, monkeypatch):
     (tmp_path / 'bad.sdf').write_text('<sdf version="1.9"><model name="m"/></sdf>')
     monkeypatch.chdir(tmp_path)
     with pytest.raises(LoadError) as caught:
@@ -145,21 +146,33 @@ def test_a_file_is_named_as_it_was_opened(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize('as_path', [str, Path])
-def test_a_path_may_be_text_or_a_path(tmp_path, as_path):
+def test_path_can_be_a_string_or_a_path(tmp_path, as_path):
     (tmp_path / 'größe 1.sdf').write_text(model_file('<link name="l"/>'))
     scene = sdf_pose_bridge.load(as_path(tmp_path / 'größe 1.sdf'))
     assert scene.path == str(tmp_path / 'größe 1.sdf')
 
 
-def test_text_may_be_bytes():
-    text = model_file('<link name="größe"/>')
-    assert sdf_pose_bridge.load_text(text.encode()).names == sdf_pose_bridge.load_text(text).names
-
-
-def test_loading_leaves_nothing_behind():
+def test_load_does_not_depend_on_earlier_ones():
     text = model_file('<link name="l"/>')
     first = sdf_pose_bridge.load_text(text)
-    errors_of(MANY_WRONG)
+    errors_of(WRONG_FILE)
     second = sdf_pose_bridge.load_text(text)
     assert first.names == second.names
     assert first.poses is not second.poses
+
+
+@pytest.mark.parametrize('is_enabled', [True, False])
+def test_garbage_collection_is_as_before(is_enabled):
+    was_enabled = gc.isenabled()
+    try:
+        (gc.enable if is_enabled else gc.disable)()
+        errors_of(WRONG_FILE)
+        sdf_pose_bridge.load_text(model_file('<link name="l"/>'))
+        assert gc.isenabled() == is_enabled
+    finally:
+        (gc.enable if was_enabled else gc.disable)()
+
+
+def test_unknown_choice_for_missing_includes_is_refused():
+    with pytest.raises(ValueError, match='ignore'):
+        sdf_pose_bridge.load_text(model_file('<link name="l"/>'), on_missing_include='ignore')

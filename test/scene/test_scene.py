@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The scene: questions with a wrong name, poses of anything in anything, nothing to change."""
+"""The scene: unknown names, poses relative to any frame, read-only arrays."""
 
 import copy
 
@@ -43,56 +43,56 @@ def worlds():
     return sdf_pose_bridge.load_text(TWO_WORLDS)
 
 
-# Wrong names
+# Unknown names
 
 @pytest.mark.parametrize('name', ['', 'tabel', 'table::', 'table::to', 'w', 'w::table', '::table'])
-def test_a_name_is_unknown(scene, name):
+def test_unknown_name_is_refused(scene, name):
     with pytest.raises(UnknownFrameError) as caught:
         scene.pose(name)
     assert f'"{name}"' in caught.value.message
     assert caught.value.code == 'POSE_RELATIVE_TO_INVALID'
 
 
-def test_the_reference_is_unknown(scene):
+def test_unknown_reference_is_refused_with_a_hint(scene):
     with pytest.raises(UnknownFrameError, match=r'"tabel".*did you mean "table"'):
         scene.pose('chair', 'tabel')
 
 
-def test_an_unknown_name_can_be_caught_in_two_ways(scene):
+def test_unknown_name_is_a_lookup_error_and_an_error_of_the_package(scene):
     with pytest.raises(LookupError):
         scene.pose('tabel')
     with pytest.raises(SdfError):
         scene.pose('tabel')
 
 
-def test_the_file_is_named(scene):
+def test_error_has_the_file(scene):
     with pytest.raises(UnknownFrameError, match=r'^<text>: '):
         scene.pose('tabel')
 
 
-def test_a_name_in_two_worlds(worlds):
+def test_name_of_two_worlds_is_refused(worlds):
     with pytest.raises(UnknownFrameError, match=r'"table".*more than one.*day.*night'):
         worlds.pose('table')
 
 
-def test_a_name_in_another_world(worlds):
+def test_name_of_another_world_is_refused(worlds):
     with pytest.raises(UnknownFrameError, match='"noon" names nothing in world "night"'):
         worlds.pose('noon', world='night')
 
 
-def test_an_unknown_world(worlds):
+def test_unknown_world_is_refused(worlds):
     with pytest.raises(UnknownFrameError, match='"noon" names nothing in world "dusk"'):
         worlds.pose('noon', world='dusk')
 
 
-def test_two_worlds_have_nothing_in_common():
+def test_pose_relative_to_another_world_is_refused():
     text = TWO_WORLDS.replace('night"><model name="table"', 'night"><model name="bed"')
     scene = sdf_pose_bridge.load_text(text)
     with pytest.raises(UnknownFrameError):
         scene.pose('noon', 'bed')
 
 
-def test_a_world_and_the_model_beside_it_have_nothing_in_common():
+def test_pose_relative_to_the_model_beside_a_world_is_refused():
     scene = sdf_pose_bridge.load_text(WORLD_AND_MODEL)
     with pytest.raises(UnknownFrameError):
         scene.pose('table', 'chair')
@@ -100,7 +100,7 @@ def test_a_world_and_the_model_beside_it_have_nothing_in_common():
         scene.pose('chair', 'table')
 
 
-def test_two_children_of_a_link_share_a_name():
+def test_name_of_two_children_of_a_link_is_refused():
     scene = sdf_pose_bridge.load_text(model_file(
         '<link name="l"><visual name="x"/><collision name="x"/></link>'))
     with pytest.raises(UnknownFrameError, match=r'more than one.*visual.*collision'):
@@ -109,37 +109,37 @@ def test_two_children_of_a_link_share_a_name():
 
 # Poses
 
-def test_a_pose_in_the_root(scene):
+def test_pose_in_the_root(scene):
     assert_same_pose(scene.pose('table::top'), matrix_from_rpy(1, 2, 1, 0, 0, 0.7))
 
 
-def test_a_pose_in_another_frame(scene):
+def test_pose_relative_to_another_frame(scene):
     table = matrix_from_rpy(1, 2, 0, 0, 0, 0.7)
     top = matrix_from_rpy(1, 2, 1, 0, 0, -0.2)
     assert_same_pose(scene.pose('chair::top', 'table'), np.linalg.inv(table) @ top)
 
 
-def test_a_pose_in_itself(scene):
+def test_pose_relative_to_itself(scene):
     np.testing.assert_allclose(
         scene.pose('table', 'table'), (0, 0, 0, 0, 0, 0, 1), rtol=0.0, atol=1e-15)
 
 
 @pytest.mark.parametrize('root', ['', 'world'])
-def test_the_root_may_be_named(scene, root):
+def test_root_can_be_named(scene, root):
     assert scene.pose('table', root) == scene.pose('table')
 
 
-def test_the_root_in_a_frame(scene):
+def test_pose_of_the_root_relative_to_a_frame(scene):
     assert_same_pose(
         scene.pose('world', 'table'), np.linalg.inv(matrix_from_rpy(1, 2, 0, 0, 0, 0.7)))
 
 
-def test_a_frame_goes_before_a_light_of_its_name(scene):
+def test_frame_is_found_before_a_light_of_the_same_name(scene):
     assert scene.pose('chair')[:3] == (1, 2, 0)
 
 
 @pytest.mark.parametrize('yaw', [0, 90, 170, 180, -170, 359])
-def test_w_is_never_negative(yaw):
+def test_w_is_not_negative(yaw):
     text = model_file(
         f'<link name="a"><pose degrees="true">0 0 0 0 0 {yaw}</pose></link>'
         f'<link name="b"><pose degrees="true">0 0 0 10 20 {-yaw}</pose></link>')
@@ -149,53 +149,53 @@ def test_w_is_never_negative(yaw):
     assert_same_pose(scene.pose('m::a', 'm::b'), np.linalg.inv(b) @ a)
 
 
-def test_there_are_no_negative_zeros(scene):
+def test_poses_have_no_negative_zeros(scene):
     poses = np.array([scene.pose('table', name) for name in names_of(scene)])
     assert not (np.signbit(poses) & (poses == 0.0)).any()
 
 
-def test_worlds_are_told_apart(worlds):
+def test_pose_in_one_of_two_worlds(worlds):
     assert worlds.pose('table', world='day')[:3] == (1, 2, 0)
     assert worlds.pose('table', world='night')[:3] == (5, 5, 0)
 
 
-def test_a_name_that_one_world_has_needs_no_world(worlds):
+def test_name_of_one_of_two_worlds_needs_no_world(worlds):
     assert worlds.pose('noon')[:3] == (0, 0, 9)
 
 
-def test_the_reference_is_looked_for_in_the_same_world(worlds):
+def test_reference_is_found_in_the_same_world(worlds):
     assert worlds.pose('noon', 'table')[:3] == (-1, -2, 9)
 
 
-def test_the_pose_of_the_top_model_counts():
+def test_pose_of_the_top_model_counts():
     scene = sdf_pose_bridge.load_text(model_file('<pose>1 0 0 0 0 0</pose><link name="l"/>'))
     assert scene.pose('m::l')[:3] == (1, 0, 0)
 
 
 # Structure
 
-def test_every_element_stands_after_the_one_that_holds_it(scene):
-    assert all(holder < index for index, holder in enumerate(scene.parents.tolist()))
+def test_elements_stand_after_their_parents(scene):
+    assert all(parent < index for index, parent in enumerate(scene.parents.tolist()))
 
 
-def test_roots(worlds):
+def test_scene_has_roots_and_names_of_worlds(worlds):
     assert worlds.world_names == {0: 'day', 4: 'night'}
     assert worlds.roots.tolist() == [0, 0, 0, 0, 4, 4, 4]
 
 
-def test_joints_know_their_ends():
+def test_joint_has_its_ends():
     scene = sdf_pose_bridge.load_text(world_file(
         TABLE.format('table', 0) + fixed_joint('j', 'world', 'table::top')))
     assert [(scene.names[joint.parent], scene.names[joint.child]) for joint in scene.joints] == [
         ('world', 'table::top')]
 
 
-def test_files(scene):
+def test_scene_has_its_files(scene):
     assert scene.files == ('<text>',)
     assert not scene.file_indices.any()
 
 
-# Nothing to change
+# Immutability
 
 @pytest.mark.parametrize('name', [
     'poses', 'kinds', 'parents', 'roots', 'attachments', 'bodies', 'canonical_links', 'lines',
@@ -217,11 +217,11 @@ def test_fields_cannot_be_deleted(scene):
         del scene.poses
 
 
-def test_a_scene_is_shown_in_one_short_line(scene):
+def test_representation_of_a_scene(scene):
     assert repr(scene) == f'<Scene of {scene.path}: {len(scene.names)} elements>'
 
 
-def test_copy_of_a_scene_is_another_scene(scene):
+def test_copy_of_a_scene_is_not_equal(scene):
     assert scene != copy.copy(scene)
 
 

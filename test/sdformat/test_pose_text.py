@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Values of poses: what is a number, how many there are, and what they mean."""
+"""Texts of poses: what is a number, how many there are, and what they mean."""
 
 import math
 import re
@@ -16,118 +16,123 @@ import pytest
 
 from sdf_pose_bridge.sdformat.pose_text import IDENTITY
 from sdf_pose_bridge.sdformat.pose_text import pose_from_text
+from sdf_pose_bridge.sdformat.pose_text import PoseFormat
 from sdf_pose_bridge.sdformat.pose_text import poses_from_texts
-from sdf_pose_bridge.sdformat.pose_text import PoseText
 from sdf_pose_bridge.sdformat.pose_text import PoseTextError
 
+RPY = PoseFormat()
+RPY_DEGREES = PoseFormat(is_degrees=True)
+QUATERNION = PoseFormat(is_quaternion=True)
+FORMATS = st.sampled_from([RPY, RPY_DEGREES, QUATERNION])
+
 NUMBERS = st.floats(-1e3, 1e3, allow_subnormal=False)
-ODD_TOKENS = st.sampled_from([
+UNUSUAL_WORDS = st.sampled_from([
     'nan', 'inf', '-inf', '1e999', '1e-320', '1e-400', '-0', '+0.0', '.5', '5.', '1e3', '1E-3',
     '0x10', '1_0', '1e', '.', '-', 'e5', '--1', '1,', 'abc', '\u0661', '1\u00a02', '1e200',
 ])
-TOKENS = st.one_of(NUMBERS.map(repr), NUMBERS.map(repr), NUMBERS.map(repr), ODD_TOKENS)
-TEXTS = st.builds(
-    PoseText,
-    st.one_of(
-        st.lists(TOKENS, max_size=8).map(' '.join),
-        st.lists(NUMBERS.map(repr), min_size=6, max_size=7).map('\n '.join),
-        st.sampled_from([
-            '', ' ', '\n', '0 0 0 0 0 0 0', '0 0 0 1e-10 0 0 0', '0 0 0 0 0 0 1e160']),
-    ),
-    st.booleans(),
-    st.just(False),
-).flatmap(lambda text: st.booleans().map(
-    lambda is_degrees: text._replace(is_degrees=is_degrees and not text.is_quaternion)))
-
+WORDS = st.one_of(NUMBERS.map(repr), NUMBERS.map(repr), NUMBERS.map(repr), UNUSUAL_WORDS)
+TEXTS = st.one_of(
+    st.lists(WORDS, max_size=8).map(' '.join),
+    st.lists(NUMBERS.map(repr), min_size=6, max_size=7).map('\n '.join),
+    st.sampled_from(['', ' ', '\n', '0 0 0 0 0 0 0', '0 0 0 1e-10 0 0 0', '0 0 0 0 0 0 1e160']),
+)
 PLAIN_TEXTS = st.lists(
     st.one_of(NUMBERS.map(repr), st.sampled_from(['1e999', '1e-320', '1e-400', '-0'])),
     min_size=5, max_size=8).map(' '.join)
 
 
-def rpy(text, *, is_degrees=False):
-    return pose_from_text(PoseText(text, False, is_degrees))
+def rpy(text):
+    return pose_from_text(text, RPY)
 
 
 def quaternion(text):
-    return pose_from_text(PoseText(text, True, False))
+    return pose_from_text(text, QUATERNION)
 
 
-@pytest.mark.parametrize('token', [
+# One text
+
+@pytest.mark.parametrize('word', [
     'nan', 'NaN', 'inf', '-inf', 'infinity', '1e999', '-1e999', '1e-320', '-1e-320', '1e-400',
     '0x10', '0x1p3', '1.5abc', '1,', '1_000', '1e', '1e+', '1d3', 'true', ',', 'x', '.', '+', '-',
     '+-1', '--1', '.e1', '1.2.3', '1e1.5', '1/2', '\u0661', '1\u00a0', '\u22121', '1f', '(1)',
 ])
-def test_what_is_no_number(token):
+def test_word_that_is_not_a_number_is_refused(word):
     with pytest.raises(PoseTextError) as caught:
-        rpy(f'0 {token} 0 0 0 0')
-    assert f'"{token}"' in str(caught.value)
-
-
-@pytest.mark.parametrize(('token', 'value'), [
-    ('1e3', 1000.0), ('-2.5E-1', -0.25), ('+3', 3.0), ('.5', 0.5), ('5.', 5.0), ('-0', 0.0),
-    ('007', 7.0), ('0e-400', 0.0), ('0e999', 0.0), ('1e308', 1e308),
-    ('2.2250738585072014e-308', 2.2250738585072014e-308), ('-.5e+01', -5.0),
-    ('0.1000000000000000055511151231257827021181583404541015625', 0.1),
-])
-def test_numbers(token, value):
-    assert rpy(f'0 0 {token} 0 0 0')[2] == value
+        rpy(f'0 {word} 0 0 0 0')
+    assert f'"{word}"' in str(caught.value)
 
 
 @pytest.mark.parametrize('count', [1, 2, 3, 4, 5, 7, 8, 12])
-def test_roll_pitch_yaw_are_three(count):
+def test_other_count_than_six_is_refused(count):
     with pytest.raises(PoseTextError, match=f'6 values .x y z roll pitch yaw.*has {count}'):
         rpy(' '.join(['1'] * count))
 
 
 @pytest.mark.parametrize('count', [1, 3, 4, 6, 8, 14])
-def test_quaternions_are_four(count):
+def test_other_count_than_seven_is_refused_with_a_quaternion(count):
     with pytest.raises(PoseTextError, match=f'7 values .x y z qx qy qz qw.*has {count}'):
         quaternion(' '.join(['1'] * count))
 
 
-def test_commas_do_not_part_numbers():
+def test_commas_do_not_separate_numbers():
     with pytest.raises(PoseTextError):
         rpy('1,2,3,0,0,0')
 
 
-def test_a_long_text_is_cut_in_the_message():
+@pytest.mark.parametrize('text', ['1 ' * 10_000, '1' * 2_000_000 + ' 0 0 0 0 0', '1' * 300])
+def test_long_text_is_cut_in_the_message(text):
     with pytest.raises(PoseTextError) as caught:
-        rpy('1 ' * 10_000)
+        rpy(text)
     assert len(str(caught.value)) < 250
 
 
 @pytest.mark.parametrize('text', ['0 0 0 0 0 0 0', '1 2 3 1e-10 0 0 0', '0 0 0 0 -0 0 +0'])
-def test_a_zero_quaternion_is_no_rotation(text):
+def test_zero_quaternion_is_refused(text):
     with pytest.raises(PoseTextError, match='zero'):
         quaternion(text)
 
 
+def test_quaternion_beyond_the_range_of_a_double_is_refused():
+    with pytest.raises(PoseTextError, match='range of a double'):
+        quaternion('0 0 0 1.7e308 1.7e308 1.7e308 1.7e308')
+
+
+@pytest.mark.parametrize('separator', ['\u00a0', '\u2003', '\u3000', '\u0085', ','])
+def test_only_ascii_white_space_separates_numbers(separator):
+    with pytest.raises(PoseTextError):
+        rpy(separator.join('123000'))
+
+
+@pytest.mark.parametrize(('word', 'value'), [
+    ('1e3', 1000.0), ('-2.5E-1', -0.25), ('+3', 3.0), ('.5', 0.5), ('5.', 5.0), ('-0', 0.0),
+    ('007', 7.0), ('0e-400', 0.0), ('0e999', 0.0), ('1e308', 1e308),
+    ('2.2250738585072014e-308', 2.2250738585072014e-308), ('-.5e+01', -5.0),
+    ('0.1000000000000000055511151231257827021181583404541015625', 0.1),
+])
+def test_decimal_numbers(word, value):
+    assert rpy(f'0 0 {word} 0 0 0')[2] == value
+
+
 @pytest.mark.parametrize('text', ['', ' ', '\n\t\r '])
-def test_nothing_is_the_identity(text):
+def test_blank_text_is_the_identity(text):
     assert rpy(text) == quaternion(text) == IDENTITY
 
 
-@pytest.mark.parametrize('gap', ['  ', '\t', '\n', '\r\n', ' \n\t '])
-def test_white_space_parts_numbers(gap):
-    assert rpy(gap + gap.join('123000') + gap)[:3] == (1.0, 2.0, 3.0)
+@pytest.mark.parametrize('separator', ['  ', '\t', '\n', '\r\n', ' \n\t '])
+def test_white_space_separates_numbers(separator):
+    assert rpy(separator + separator.join('123000') + separator)[:3] == [1.0, 2.0, 3.0]
 
 
-@pytest.mark.parametrize('gap', ['\u00a0', '\u2003', '\u3000', '\u0085', ','])
-def test_nothing_else_parts_numbers(gap):
-    with pytest.raises(PoseTextError):
-        rpy(gap.join('123000'))
+def test_w_is_the_last_number_of_a_quaternion():
+    assert quaternion('1 2 3 0 0 0 1') == [1, 2, 3, 0, 0, 0, 1]
 
 
-def test_w_is_the_last_of_a_quaternion():
-    assert quaternion('1 2 3 0 0 0 1') == (1, 2, 3, 0, 0, 0, 1)
-
-
-def test_quaternions_are_normalised():
+def test_quaternion_is_normalised():
     assert quaternion('0 0 0 0 0 2 2')[3:] == pytest.approx((0, 0, math.sqrt(0.5), math.sqrt(0.5)))
 
 
 @pytest.mark.parametrize('size', ['1e-8', '1e150', '3e153', '1e200', '1e307'])
-def test_the_length_of_a_quaternion_does_not_matter(size):
+def test_length_of_a_quaternion_does_not_matter(size):
     assert quaternion(f'0 0 0 0 {size} 0 0')[3:] == pytest.approx((0, 1, 0, 0))
 
 
@@ -135,7 +140,7 @@ def test_roll_comes_first_and_about_fixed_axes():
     assert_same_pose(rpy('1 2 3 0.3 -0.4 1.2'), matrix_from_rpy(1, 2, 3, 0.3, -0.4, 1.2), 1e-15)
 
 
-def test_the_formula_of_the_specification():
+def test_formula_of_the_specification():
     half = [angle / 2 for angle in (0.3, -0.4, 1.2)]
     cr, cp, cy = map(math.cos, half)
     sr, sp, sy = map(math.sin, half)
@@ -144,8 +149,8 @@ def test_the_formula_of_the_specification():
         cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy), abs=1e-15)
 
 
-def test_degrees_are_for_angles_only():
-    pose = rpy('10 20 30 10 90 30', is_degrees=True)
+def test_only_angles_are_in_degrees():
+    pose = pose_from_text('10 20 30 10 90 30', RPY_DEGREES)
     assert_same_pose(pose, matrix_from_degrees(10, 20, 30, 10, 90, 30), 1e-15)
 
 
@@ -155,51 +160,31 @@ def test_any_roll_pitch_yaw(values):
     np.testing.assert_allclose(matrix, matrix_from_rpy(*values), atol=1e-12)
 
 
-def one_by_one(texts):
-    """Return what :func:`poses_from_texts` should: poses, and reasons by index."""
-    poses = []
-    reasons = {}
+# Many texts
+
+def read_one_by_one(texts, pose_format):
+    """Return what :func:`poses_from_texts` should return."""
+    poses, failures = [], []
     for index, text in enumerate(texts):
         try:
-            poses.append(pose_from_text(text))
+            poses.append(pose_from_text(text, pose_format))
         except PoseTextError as error:
-            reasons[index] = str(error)
+            failures.append((index, str(error)))
             poses.append(IDENTITY)
-    return np.array(poses).reshape(-1, 7), reasons
-
-
-def assert_read_as_one_by_one(texts):
-    poses, failures = poses_from_texts(
-        [pose.text for pose in texts],
-        quaternions=[index for index, pose in enumerate(texts) if pose.is_quaternion],
-        degrees=[index for index, pose in enumerate(texts) if pose.is_degrees])
-    expected, reasons = one_by_one(texts)
-    assert failures == sorted(reasons.items())
-    np.testing.assert_allclose(poses, expected, rtol=1e-15, atol=1e-15)
-
-
-@given(st.lists(TEXTS, max_size=40))
-def test_many_are_read_as_one_by_one(texts):
-    assert_read_as_one_by_one(texts)
-
-
-@given(st.lists(PLAIN_TEXTS, min_size=1, max_size=40), st.booleans(), st.booleans())
-def test_many_plain_ones_are_read_as_one_by_one(texts, is_quaternion, is_degrees):
-    assert_read_as_one_by_one([
-        PoseText(text, is_quaternion, is_degrees and not is_quaternion) for text in texts])
+    return np.array(poses).reshape(-1, 7), failures
 
 
 @pytest.mark.parametrize('tiny', ['1e-400', '1E-0400', '0.' + 400 * '0' + '1'])
-def test_what_became_zero_is_told_among_good_ones(tiny):
+def test_number_that_is_too_small_is_refused_among_others(tiny):
     good = '1 2 3 0 0 0'
-    poses, failures = poses_from_texts([good, f'{tiny} 0 0 0 0 0', good])
+    poses, failures = poses_from_texts([good, f'{tiny} 0 0 0 0 0', good], RPY)
     assert [index for index, _ in failures] == [1]
     assert poses[2, :3].tolist() == [1, 2, 3]
 
 
-def test_failures_stand_in_order_and_tell_the_text():
+def test_failures_have_index_and_reason():
     good = '1 2 3 0 0 0'
-    poses, failures = poses_from_texts([good, '1 2', good, '1 2 x 0 0 0'])
+    poses, failures = poses_from_texts([good, '1 2', good, '1 2 x 0 0 0'], RPY)
     assert [index for index, _ in failures] == [1, 3]
     assert re.search('"1 2".*has 2', failures[0][1])
     assert '"x"' in failures[1][1]
@@ -207,7 +192,24 @@ def test_failures_stand_in_order_and_tell_the_text():
     assert poses[2, :3].tolist() == [1, 2, 3]
 
 
-def test_no_poses():
-    poses, failures = poses_from_texts([])
+@pytest.mark.parametrize('pose_format', [RPY, RPY_DEGREES, QUATERNION])
+def test_no_texts(pose_format):
+    poses, failures = poses_from_texts([], pose_format)
     assert poses.shape == (0, 7)
     assert failures == []
+
+
+@given(st.lists(TEXTS, max_size=40), FORMATS)
+def test_many_texts_are_read_as_one_by_one(texts, pose_format):
+    poses, failures = poses_from_texts(texts, pose_format)
+    expected, expected_failures = read_one_by_one(texts, pose_format)
+    assert failures == expected_failures
+    np.testing.assert_allclose(poses, expected, rtol=1e-15, atol=1e-15)
+
+
+@given(st.lists(PLAIN_TEXTS, min_size=1, max_size=40), FORMATS)
+def test_many_plain_texts_are_read_as_one_by_one(texts, pose_format):
+    poses, failures = poses_from_texts(texts, pose_format)
+    expected, expected_failures = read_one_by_one(texts, pose_format)
+    assert failures == expected_failures
+    np.testing.assert_allclose(poses, expected, rtol=1e-15, atol=1e-15)

@@ -1,13 +1,15 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Elements of a file: what is wrong with names, attributes and values, and what is read."""
+"""Reading elements: the top of a file, poses and their attributes, scoped names, depth."""
 
 import pytest
 from sdf_texts import assert_at
 from sdf_texts import codes_of
-from sdf_texts import element
-from sdf_texts import errors_of
-from sdf_texts import joint
+from sdf_texts import errors_of_file
+from sdf_texts import fixed_joint
+from sdf_texts import LINK
+from sdf_texts import LINK_CHILDREN
+from sdf_texts import link_with
 from sdf_texts import model_file
 from sdf_texts import names_of
 from sdf_texts import only_error
@@ -15,31 +17,18 @@ from sdf_texts import posed
 from sdf_texts import TWO_LINKS
 from sdf_texts import warning_codes
 from sdf_texts import world_file
+from sdf_texts import write_files
 
-import sdf_pose_bridge
-from sdf_pose_bridge import Kind
+from sdf_pose_bridge import load
+from sdf_pose_bridge import load_text
 
-LINK = '<link name="l"/>'
-LINK_CHILDREN = [
-    'visual', 'collision', 'sensor', 'light', 'particle_emitter', 'projector']
-
-
-def link_with(content):
-    return model_file(f'<link name="l">{content}</link>')
-
-
-def scene_of(text):
-    return sdf_pose_bridge.load_text(text)
-
-
-def sensor_facts(content):
-    scene = scene_of(link_with(f'<sensor name="s" type="custom">{content}</sensor>'))
-    return scene.sensors[scene.index('m::l::s')]
+WAYPOINT = ('<actor name="a"><script><trajectory id="0" type="walk"><waypoint><time>0</time>'
+            '<pose>{}</pose></waypoint></trajectory></script></actor>')
 
 
 # The top of a file
 
-def test_two_models_at_the_top():
+def test_two_models_at_the_top_are_refused():
     error = only_error(
         '<sdf version="1.9"><model name="a"><link name="l"/></model>'
         '<model name="b"><link name="l"/></model></sdf>')
@@ -47,161 +36,281 @@ def test_two_models_at_the_top():
     assert '"b"' in error.message
 
 
-def test_two_models_of_one_name_at_the_top():
+def test_two_models_of_one_name_at_the_top_are_refused():
     model = '<model name="a"><link name="l"/></model>'
     assert codes_of(f'<sdf version="1.9">{model}{model}</sdf>') == ['DUPLICATE_NAME']
 
 
 @pytest.mark.parametrize('second', ['<light name="k" type="point"/>', '<actor name="k"/>'])
-def test_a_model_and_something_else_at_the_top(second):
+def test_model_and_something_else_at_the_top_are_refused(second):
     assert codes_of(model_file(LINK).replace('</sdf>', second + '</sdf>')) == [
         'ELEMENT_INCORRECT_TYPE']
 
 
 @pytest.mark.parametrize('tag', ['light', 'actor'])
-def test_a_light_or_an_actor_alone(tag):
-    scene = scene_of(f'<sdf version="1.9">{posed(tag, "x", "1 2 3 0 0 0")}</sdf>')
+def test_light_or_actor_at_the_top(tag):
+    scene = load_text(f'<sdf version="1.9">{posed(tag, "x", "1 2 3 0 0 0")}</sdf>')
     assert_at(scene, 'x', (1, 2, 3))
 
 
-def test_relative_to_of_a_light_at_the_top_is_not_resolved():
-    scene = scene_of(f'<sdf version="1.9">{posed("light", "x", "1 2 3 0 0 0", "y")}</sdf>')
-    assert_at(scene, 'x', (1, 2, 3))
+def test_world_beside_a_model():
+    text = '<sdf version="1.9"><world name="w"/><model name="m"><link name="l"/></model></sdf>'
+    assert load_text(text).names == ('world', '__root__', 'm', 'm::l')
 
 
-def test_relative_to_of_a_model_at_the_top():
-    error = only_error(model_file('<pose relative_to="l">1 0 0 0 0 0</pose>' + LINK))
+@pytest.mark.parametrize('content', ['', '<frame name="f"/>', '<link name="l"/>', '<x:model/>'])
+def test_file_without_elements_at_its_top(content):
+    assert names_of(load_text(f'<sdf version="1.9">{content}</sdf>')) == []
+
+
+# Names with the separator
+
+@pytest.mark.parametrize('text', [
+    '<sdf version="1.9"><model name="a::b"><link name="l"/></model></sdf>',
+    model_file('<link name="a::b"/>'),
+    model_file(LINK + '<frame name="::"/>'),
+    link_with('<visual name="a::b"/>'),
+    model_file(LINK + '<gripper name="a::b"/>'),
+    model_file(LINK + '<audio name="a::b" filename="f"/>'),
+    model_file(LINK + '<unknown name="a::b"/>'),
+    world_file('<physics name="a::b" type="ode"/>'),
+])
+def test_name_with_the_separator_is_refused(text):
+    assert codes_of(text)[0] == 'RESERVED_NAME'
+
+
+def test_name_of_an_include_with_the_separator_is_refused(tmp_path):
+    write_files(tmp_path, leaf=model_file(LINK), main=world_file(
+        '<include><uri>leaf.sdf</uri><name>a::b</name></include>'))
+    assert 'RESERVED_NAME' in [error.code for error in errors_of_file(tmp_path / 'main.sdf')]
+
+
+def test_name_with_the_separator_in_an_old_file_that_a_newer_file_includes_is_refused(tmp_path):
+    write_files(
+        tmp_path, leaf=model_file('<link name="a::b"/>', version='1.6'),
+        main=world_file('<include><uri>leaf.sdf</uri></include>'))
+    (error,) = errors_of_file(tmp_path / 'main.sdf')
+    assert (error.code, error.file) == ('RESERVED_NAME', str(tmp_path / 'leaf.sdf'))
+
+
+def test_name_with_the_separator_in_an_old_file_is_accepted():
+    scene = load_text(model_file('<link name="a::b"/>', version='1.7'))
+    assert names_of(scene) == ['m', 'm::a::b']
+
+
+@pytest.mark.parametrize('attributes', ['', 'merge="true"'])
+def test_name_of_an_include_with_the_separator_in_an_old_file_is_accepted(tmp_path, attributes):
+    include = f'<include {attributes}><uri>leaf.sdf</uri><name>a::b</name></include>'
+    main = model_file('<link name="k"/>' + include, version='1.6')
+    write_files(tmp_path, leaf=model_file(LINK), main=main)
+    assert 'm::k' in load(tmp_path / 'main.sdf').names
+
+
+@pytest.mark.parametrize('content', [
+    '<plugin name="p" filename="f"><link name="a::b"><pose>no</pose></link></plugin>',
+    '<plugin name="p" filename="f"><model name="world"/></plugin>',
+    '<x:y><link name="a::b"/></x:y>',
+])
+def test_foreign_elements_are_not_read(content):
+    assert names_of(load_text(model_file(LINK + content))) == ['m', 'm::l']
+
+
+# Elements of a state
+
+def test_light_of_a_state_needs_no_type():
+    light = '<light name="sun"><pose>0 0 1 0 0 0</pose></light>'
+    assert names_of(load_text(world_file(f'<state world_name="w">{light}</state>'))) == []
+
+
+@pytest.mark.parametrize(('content', 'code'), [
+    ('<light/>', 'ATTRIBUTE_MISSING'),
+    ('<insertions><light name="sun"/></insertions>', 'ATTRIBUTE_MISSING'),
+    ('<model name="m"><pose>1 2</pose></model>', 'ELEMENT_INVALID'),
+])
+def test_wrong_element_of_a_state_is_refused(content, code):
+    assert codes_of(world_file(f'<state world_name="w">{content}</state>')) == [code]
+
+
+# Poses
+
+@pytest.mark.parametrize('pose', [
+    '<pose>1 2 3</pose>', '<pose>a b c d e f</pose>', '<pose>0 0 0 0 0 nan</pose>',
+    '<pose>1 2 3 <!-- and --> 0 0 0</pose>', '<pose>0 0 0 0 0 0 1</pose>',
+    '<pose rotation_format="quat_xyzw">0 0 0 0 0 0</pose>',
+    '<pose rotation_format="quat_xyzw">0 0 0 0 0 0 0</pose>',
+    '<pose rotation_format="quat_wxyz">0 0 0 0 0 0 1</pose>',
+    '<pose rotation_format="QUAT_XYZW">0 0 0 0 0 0 1</pose>',
+    '<pose rotation_format="quat_xyzw" degrees="true">0 0 0 0 0 0 1</pose>',
+    '<pose rotation_format="quat_xyzw" degrees="true"/>',
+    '<pose rotation_format="quat_xyzw" degrees="1"/>',
+])
+def test_wrong_pose_is_refused(pose):
+    assert codes_of(link_with(pose)) == ['ELEMENT_INVALID']
+
+
+@pytest.mark.parametrize('value', ['yes', 'maybe', '2', 'true false', 'tru'])
+def test_degrees_that_are_no_boolean_are_refused(value):
+    error = only_error(link_with(f'<pose degrees="{value}"/>'))
     assert error.code == 'ATTRIBUTE_INVALID'
-    assert 'relative_to="l"' in error.message
-
-
-def test_blank_relative_to_of_a_model_at_the_top():
-    scene = scene_of(model_file('<pose relative_to=" ">1 0 0 0 0 0</pose>' + LINK))
-    assert_at(scene, 'm', (1, 0, 0))
-
-
-def test_an_empty_file():
-    assert names_of(scene_of('<sdf version="1.9"/>')) == []
-
-
-# Models
-
-@pytest.mark.parametrize('value', ['maybe', '2', 'yes', '-1'])
-def test_static_is_no_boolean(value):
-    error = errors_of(model_file(f'<static>{value}</static>' + LINK))[0]
-    assert error.code == 'ELEMENT_INVALID'
     assert f'"{value}"' in error.message
 
 
-@pytest.mark.parametrize(('value', 'is_static'), [
-    ('true', True), (' 1 ', True), ('TRUE', True), ('false', False), ('0', False), ('', False),
+@pytest.mark.parametrize('text', [
+    model_file('<pose>zz</pose>' + LINK),
+    model_file(LINK + posed('frame', 'f', 'zz')),
+    model_file(LINK + '<model name="n"><pose>zz</pose><link name="l"/></model>'),
+    model_file(TWO_LINKS + fixed_joint('j', 'a', 'b', '<pose>zz</pose>')),
+    world_file(posed('frame', 'f', 'zz')),
+    world_file(posed('light', 'f', 'zz')),
+    world_file(posed('actor', 'f', 'zz')),
+    *(link_with(posed(tag, 'x', 'zz')) for tag in LINK_CHILDREN),
+    link_with('<inertial><pose>zz</pose></inertial>'),
+    link_with('<sensor name="s" type="camera"><camera><pose>zz</pose></camera></sensor>'),
+    link_with('<audio_source><uri>a.wav</uri><pose>zz</pose></audio_source>'),
+    link_with('<audio_source><pose>1 2</pose></audio_source>'),
+    world_file('<gui><camera name="c"><pose>zz</pose></camera></gui>'),
+    world_file('<state world_name="w"><model name="m"><pose>zz</pose></model></state>'),
+    world_file(WAYPOINT.format('zz')),
+    link_with('<pose>1 0 0 0 0 0</pose><pose>zz</pose>'),
 ])
-def test_static(value, is_static):
-    scene = scene_of(model_file(f'<static>{value}</static>' + LINK))
-    assert (scene.index('m') in scene.static_models) == is_static
+def test_every_pose_is_checked(text):
+    assert codes_of(text) == ['ELEMENT_INVALID']
 
 
-def test_static_is_not_handed_down():
-    scene = scene_of(model_file(
-        '<static>true</static><model name="n"><link name="l"/></model>'))
-    assert scene.static_models == {scene.index('m')}
-
-
-# Joints
-
-def test_a_joint_has_no_type():
-    text = model_file(TWO_LINKS + '<joint name="j"><parent>a</parent><child>b</child></joint>')
-    assert codes_of(text) == ['ATTRIBUTE_MISSING']
-
-
-@pytest.mark.parametrize('kind', ['', 'glue', 'hinge', 'fix ed'])
-def test_a_joint_has_an_unknown_type(kind):
-    text = model_file(TWO_LINKS + joint('<parent>a</parent><child>b</child>', kind=kind))
-    assert codes_of(text) == ['ATTRIBUTE_INVALID']
-
-
-@pytest.mark.parametrize('kind', [
-    'ball', 'continuous', 'fixed', 'gearbox', 'prismatic', 'revolute', 'revolute2', 'screw',
-    'universal', 'FIXED', ' fixed ',
+@pytest.mark.parametrize('text', [
+    link_with('<sensor name="s" type="camera"><camera><pose>1 0 0 0 0 0</pose></camera></sensor>'),
+    world_file('<gui><camera name="c"><pose relative_to="x">1 0 0 0 0 0</pose></camera></gui>'),
+    world_file('<state world_name="w"><model name="m"><pose>1 0 0 0 0 0</pose></model></state>'),
+    world_file(WAYPOINT.format('1 0 0 0 0 0')),
 ])
-def test_a_joint_has_a_type(kind):
-    text = model_file(TWO_LINKS + joint('<parent>a</parent><child>b</child>', kind=kind))
-    assert scene_of(text).joints[0].type == kind.strip().lower()
+def test_poses_that_are_no_frames_move_nothing(text):
+    assert not load_text(text).poses[:, :3].any()
 
 
-@pytest.mark.parametrize(('content', 'kind', 'code'), [
-    ('<parent>a</parent>', 'fixed', 'ELEMENT_MISSING'),
-    ('<child>a</child>', 'revolute', 'ELEMENT_MISSING'),
-    ('<parent>a</parent>', 'ball', 'JOINT_CHILD_LINK_INVALID'),
-    ('<child>a</child>', 'ball', 'JOINT_PARENT_LINK_INVALID'),
+@pytest.mark.parametrize('attribute', [
+    'degrees=""', 'degrees=" "', 'degrees="false"', 'degrees="0"', 'degrees=" FALSE "',
+    'rotation_format=""', 'rotation_format=" "', 'rotation_format=" euler_rpy "',
+    'relative_to=""', 'relative_to=" "', 'frame="x"', 'unknown="x"',
 ])
-def test_a_joint_misses_an_end(content, kind, code):
-    assert codes_of(model_file(TWO_LINKS + joint(content, kind=kind))) == [code]
+def test_attribute_that_changes_nothing(attribute):
+    scene = load_text(link_with(f'<pose {attribute}>1 0 0 0 0 1</pose>'))
+    assert_at(scene, 'm::l', (1, 0, 0, 0, 0, 0.479425538604203, 0.8775825618903728))
 
 
-def test_a_joint_misses_both_ends():
-    assert codes_of(model_file(TWO_LINKS + joint(''))) == ['ELEMENT_MISSING'] * 2
+@pytest.mark.parametrize('value', ['true', '1', ' True ', 'TRUE'])
+def test_angles_in_degrees(value):
+    scene = load_text(link_with(f'<pose degrees="{value}">1 0 0 180 0 0</pose>'))
+    assert_at(scene, 'm::l', (1, 0, 0, 1, 0, 0, 0))
 
 
-# Sensors
-
-@pytest.mark.parametrize(('content', 'frame_id'), [
-    ('', ''),
-    ('<gz_frame_id>a/b</gz_frame_id>', 'a/b'),
-    ('<ignition_frame_id> a </ignition_frame_id>', 'a'),
-    ('<ignition_frame_id>old</ignition_frame_id><gz_frame_id>new</gz_frame_id>', 'new'),
-    ('<gz_frame_id/>', ''),
-])
-def test_the_frame_id_of_a_sensor(content, frame_id):
-    assert sensor_facts(content).frame_id == frame_id
+def test_quaternion_that_is_not_in_degrees():
+    scene = load_text(link_with(
+        '<pose rotation_format="quat_xyzw" degrees="false">0 0 0 1 0 0 0</pose>'))
+    assert_at(scene, 'm::l', (0, 0, 0, 1, 0, 0, 0))
 
 
-@pytest.mark.parametrize(('content', 'is_camera', 'name'), [
-    ('', False, ''),
-    ('<camera/>', True, ''),
-    ('<camera><optical_frame_id>eye</optical_frame_id></camera>', True, 'eye'),
-    ('<optical_frame_id>eye</optical_frame_id>', False, ''),
-])
-def test_a_camera(content, is_camera, name):
-    facts = sensor_facts(content)
-    assert (facts.is_camera, facts.optical_frame_id) == (is_camera, name)
+def test_empty_pose_has_a_reference():
+    scene = load_text(model_file(
+        posed('link', 'a', '1 2 3 0 0 0') + posed('link', 'b', '', 'a')))
+    assert_at(scene, 'm::b', (1, 2, 3))
 
 
-# The rest
-
-def test_kinds():
-    scene = scene_of(world_file(
-        '<model name="m"><link name="l"><inertial/>'
-        + ''.join(element(tag, tag) for tag in LINK_CHILDREN)
-        + '</link><frame name="f"/></model><light name="sun" type="point"/><actor name="a"/>'))
-    assert [Kind(kind).label for kind in scene.kinds] == [
-        'world', 'model', 'link', 'inertial', *LINK_CHILDREN, 'frame', 'light', 'actor']
+def test_only_the_first_pose_counts():
+    scene = load_text(link_with(
+        '<pose>1 0 0 0 0 0</pose><pose relative_to="x">2 0 0 0 0 0</pose>'))
+    assert_at(scene, 'm::l', (1, 0, 0))
 
 
-@pytest.mark.parametrize('where', [
-    '<link name="l"><frame name="f"><pose>no</pose></frame></link>',
-    '<link name="l"><visual name="v"><link name="k"/></visual></link>',
-    LINK + '<gripper name="g"><link name="k"/></gripper>',
-    LINK + '<tool><link name="k"/></tool>',
-])
-def test_elements_in_the_wrong_place_are_no_elements(where):
-    assert {'m::f', 'm::l::f', 'm::k'}.isdisjoint(names_of(scene_of(model_file(where))))
+@pytest.mark.parametrize('content', [
+    '<!-- c -->1 2 3 0 0 0', '<![CDATA[1 2 3 0 0 0]]>', '1 2 3 0 0 0<x/>', '1\r\n2\t3 0 0 0'])
+def test_forms_of_the_text_of_a_pose(content):
+    assert_at(load_text(model_file(posed('link', 'l', content))), 'm::l', (1, 2, 3))
 
 
-def test_relative_to_of_an_inertial_is_ignored_with_a_warning():
-    scene = scene_of(link_with(
+def test_reference_is_stripped():
+    scene = load_text(model_file(
+        posed('link', 'a', '1 0 0 0 0 0') + posed('link', 'b', '1 0 0 0 0 0', '\ta ')))
+    assert_at(scene, 'm::b', (2, 0, 0))
+
+
+# References that have no effect
+
+def test_reference_of_an_inertial_is_ignored_with_a_warning():
+    scene = load_text(link_with(
         '<inertial><pose relative_to="nowhere">1 0 0 0 0 0</pose></inertial>'))
     assert warning_codes(scene) == ['WARNING']
     assert scene.poses[-1, 0] == 1.0
 
 
-def test_relative_to_of_an_actor_is_ignored_with_a_warning():
-    scene = scene_of(world_file(posed('actor', 'a', '1 0 0 0 0 0', 'nowhere')))
+def test_reference_of_an_actor_is_ignored_with_a_warning():
+    scene = load_text(world_file(posed('actor', 'a', '1 0 0 0 0 0', 'nowhere')))
     assert warning_codes(scene) == ['WARNING']
     assert_at(scene, 'a', (1, 0, 0))
 
 
-def test_lines_are_told():
-    scene = scene_of('<sdf version="1.9">\n<model name="m">\n\n<link\n name="l"/></model></sdf>')
-    assert scene.lines[scene.index('m')] == 2
-    assert scene.lines[scene.index('m::l')] in (4, 5)
+def test_reference_of_a_light_at_the_top_is_ignored_with_a_warning():
+    scene = load_text(f'<sdf version="1.9">{posed("light", "x", "1 2 3 0 0 0", "y")}</sdf>')
+    assert warning_codes(scene) == ['WARNING']
+    assert_at(scene, 'x', (1, 2, 3))
+
+
+# Depth: libxml2 allows 256 levels in one file, so more need several files
+
+TOO_DEEP = 'elements are nested more than 300 deep'
+
+
+def nested_models(depth, content):
+    return '<model name="mm"><pose>0 0 1 0 0 0</pose>' * depth + content + '</model>' * depth
+
+
+def file_of_nested_models(depth, content):
+    return f'<sdf version="1.9">{nested_models(depth, content)}</sdf>'
+
+
+def write_nested_files(folder, count, depth, attributes=''):
+    """Write files of nested models, each of which includes the next in its innermost model."""
+    for number in range(count):
+        include = f'<include {attributes}><uri>{number + 1}.sdf</uri></include>'
+        content = include if number < count - 1 else LINK
+        write_files(folder, **{str(number): file_of_nested_models(depth, content)})
+    return folder / '0.sdf'
+
+
+@pytest.mark.parametrize('attributes', ['', 'merge="true"'])
+@pytest.mark.parametrize(('count', 'depth'), [(2, 160), (4, 100), (60, 7)])
+def test_elements_nested_too_deep_over_several_files_are_refused(
+        tmp_path, count, depth, attributes):
+    (error,) = errors_of_file(write_nested_files(tmp_path, count, depth, attributes))
+    assert (error.code, error.message) == ('ELEMENT_INVALID', TOO_DEEP)
+
+
+@pytest.mark.parametrize('attributes', ['', 'merge="true"'])
+def test_elements_nested_far_too_deep_are_refused(tmp_path, attributes):
+    errors = errors_of_file(write_nested_files(tmp_path, 60, 200, attributes))
+    assert {error.message for error in errors} == {TOO_DEEP}
+
+
+def test_elements_added_too_deep_are_refused(tmp_path):
+    params = ('<experimental:params><model element_id="' + '::'.join(['mm'] * 199)
+              + '" name="added" action="add">' + nested_models(150, LINK)
+              + '</model></experimental:params>')
+    write_files(tmp_path, leaf=file_of_nested_models(200, LINK), main=world_file(
+        f'<include><uri>leaf.sdf</uri>{params}</include>'))
+    (error,) = errors_of_file(tmp_path / 'main.sdf')
+    assert (error.message, error.file) == (TOO_DEEP, str(tmp_path / 'main.sdf'))
+
+
+@pytest.mark.parametrize('depth', [200, 250])
+def test_deep_elements_in_one_file_are_read(depth):
+    scene = load_text(file_of_nested_models(depth, LINK))
+    assert_at(scene, '::'.join(['mm'] * depth + ['l']), (0, 0, depth))
+
+
+def test_deep_elements_over_several_files_are_read(tmp_path):
+    scene = load(write_nested_files(tmp_path, 14, 20))
+    assert_at(scene, '::'.join(['mm'] * 280 + ['l']), (0, 0, 280))
+
+
+def test_error_in_a_deep_element_has_its_path():
+    error = only_error(file_of_nested_models(200, '<link name="l"><pose>1 2</pose></link>'))
+    assert error.element == '/sdf' + '/model[@name="mm"]' * 200 + '/link[@name="l"]/pose'

@@ -1,119 +1,352 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a file includes, put in the place of its includes: what stays, what is kept."""
+"""Includes are replaced by what they include: wrong ones, missing ones, and what they override."""
 
 import pytest
+from sdf_texts import assert_at
+from sdf_texts import errors_of_file
+from sdf_texts import LINK
+from sdf_texts import model_file
+from sdf_texts import names_of
+from sdf_texts import posed
+from sdf_texts import world_file
+from sdf_texts import write_files
 
-from sdf_pose_bridge.sdformat.document_reading import document_from_file
-from sdf_pose_bridge.sdformat.include.expansion import expanded
-from sdf_pose_bridge.sdformat.include.inclusions import document_set
-from sdf_pose_bridge.sdformat.include.resources import resource_finder
+from sdf_pose_bridge import load
 
-LEAF = """<sdf version="1.9">
-<model name="leaf">
-<pose>0 0 1 0 0 0</pose>
-<link name="body"/>
-</model></sdf>"""
-
-
-@pytest.fixture
-def expand(tmp_path):
-    """Write files, and expand the one called ``mid``."""
-    def expand_files(content, **others):
-        files = {'leaf': LEAF, 'mid': _mid(content), **others}
-        for name, text in files.items():
-            (tmp_path / f'{name}.sdf').write_text(text)
-        document = document_from_file(tmp_path / 'mid.sdf')
-        documents = document_set(document, resource_finder([tmp_path], {}))
-        return expanded(document, documents.inclusions)
-    return expand_files
+LEAF = """<sdf version="1.9"><model name="leaf"><pose>0 0 1 0 0 0</pose>
+<link name="body"><pose>0 1 0 0 0 0</pose></link></model></sdf>"""
+TWO_MODELS = ('<sdf version="1.9"><model name="a"><link name="l"/></model>'
+              '<model name="b"><link name="l"/></model></sdf>')
 
 
-def _mid(content):
-    return f'<sdf version="1.9"><model name="mid"><link name="base"/>\n{content}</model></sdf>'
-
-
-def _include(content='', uri='leaf.sdf', attributes=''):
+def include(uri='leaf.sdf', content='', attributes=''):
     return f'<include {attributes}><uri>{uri}</uri>{content}</include>'
 
 
-def _tags(expansion):
-    return [xml.tag for xml in expansion.document.root.find('model')]
+@pytest.fixture
+def write(tmp_path):
+    """Write a world with some content, the file ``leaf.sdf`` and others; return its path."""
+    def write_world(content, **texts):
+        write_files(tmp_path, **{'leaf': LEAF, **texts}, world=world_file(content))
+        return tmp_path / 'world.sdf'
+    return write_world
 
 
-@pytest.mark.parametrize('include', [
-    '<include/>',
-    '<include><uri>none.sdf</uri></include>',
-    _include('<name> </name>'),
-    _include('<static>maybe</static>'),
-    _include('<placement_frame>body</placement_frame>'),
-    _include('<pose/><placement_frame>__root__</placement_frame>'),
-    _include(attributes='merge="maybe"'),
+@pytest.fixture
+def scene_of(write):
+    return lambda content, **texts: load(write(content, **texts))
+
+
+@pytest.fixture
+def errors_in(write):
+    return lambda content, **texts: errors_of_file(write(content, **texts))
+
+
+# Wrong includes
+
+@pytest.mark.parametrize(('wrong', 'code'), [
+    ('<include/>', 'ATTRIBUTE_MISSING'),
+    ('<include><uri> </uri></include>', 'ELEMENT_INVALID'),
+    (include('none.sdf'), 'URI_LOOKUP'),
+    (include('model://none'), 'URI_LOOKUP'),
+    (include('.'), 'URI_LOOKUP'),
+    (include(content='<name> </name>'), 'ELEMENT_INVALID'),
+    (include(content='<name>world</name>'), 'RESERVED_NAME'),
+    (include(content='<static>maybe</static>'), 'ELEMENT_INVALID'),
+    (include(content='<static/>'), 'ELEMENT_INVALID'),
+    (include(content='<pose>1 2</pose>'), 'ELEMENT_INVALID'),
+    (include(content='<pose degrees="maybe"/>'), 'ATTRIBUTE_INVALID'),
+    (include(content='<pose relative_to="zzz"/>'), 'POSE_RELATIVE_TO_INVALID'),
+    (include(content='<placement_frame>body</placement_frame>'), 'MODEL_PLACEMENT_FRAME_INVALID'),
+    (include(content='<pose/><placement_frame>__root__</placement_frame>'), 'RESERVED_NAME'),
+    (include(content='<pose/><placement_frame>zzz</placement_frame>'), 'POSE_RELATIVE_TO_INVALID'),
+    (include(content='<plugin name="p"/>'), 'ATTRIBUTE_MISSING'),
+    (include(attributes='merge="maybe"'), 'ATTRIBUTE_INVALID'),
 ])
-def test_an_include_that_has_an_error_stays(expand, include):
-    expansion = expand(include)
-    assert _tags(expansion) == ['link', 'include']
-    assert len(expansion.inclusions) == 1
+def test_wrong_include_gives_one_error_with_its_line(errors_in, tmp_path, wrong, code):
+    (error,) = errors_in('\n' + wrong)
+    assert (error.code, error.file, error.line) == (code, str(tmp_path / 'world.sdf'), 2)
+
+
+@pytest.mark.parametrize('content', ['<static>maybe</static>', '<pose>1 2</pose>'])
+def test_wrong_include_of_a_light_gives_one_error_with_its_line(errors_in, tmp_path, content):
+    light = '<sdf version="1.9"><light name="x" type="point"/></sdf>'
+    (error,) = errors_in('\n' + include('light.sdf', content), light=light)
+    assert (error.code, error.file, error.line) == (
+        'ELEMENT_INVALID', str(tmp_path / 'world.sdf'), 2)
+
+
+@pytest.mark.parametrize(('text', 'code'), [
+    ('<sdf version="1.9"/>', 'ELEMENT_MISSING'),
+    ('<sdf version="1.9"><world name="w"/></sdf>', 'ELEMENT_MISSING'),
+    (TWO_MODELS, 'ELEMENT_INCORRECT_TYPE'),
+])
+def test_file_without_one_element_at_its_top_gives_an_error_at_the_include(
+        errors_in, tmp_path, text, code):
+    (error,) = errors_in('\n' + include('bad.sdf'), bad=text)
+    assert (error.code, error.file, error.line) == (code, str(tmp_path / 'world.sdf'), 2)
+
+
+@pytest.mark.parametrize(('text', 'code'), [
+    ('', 'FILE_READ'),
+    ('<robot name="r"/>', 'PARSING_ERROR'),
+    ('<sdf version="2.0"/>', 'CONVERSION_ERROR'),
+    (model_file('<pose relative_to="x"/>' + LINK), 'ATTRIBUTE_INVALID'),
+    (model_file('<link name="x::l"/>'), 'RESERVED_NAME'),
+    (model_file('<link name="l"><pose relative_to="x"/></link>'), 'POSE_RELATIVE_TO_INVALID'),
+    (model_file('<link name="l"><pose>1 2</pose></link>'), 'ELEMENT_INVALID'),
+    (model_file(''), 'MODEL_WITHOUT_LINK'),
+])
+def test_error_in_an_included_file_has_that_file(errors_in, tmp_path, text, code):
+    (error,) = errors_in(include('bad.sdf'), bad=text)
+    assert (error.code, error.file) == (code, str(tmp_path / 'bad.sdf'))
+
+
+def test_included_urdf_is_named_in_the_message(write, tmp_path):
+    (tmp_path / 'robot.urdf').write_text('<robot name="r"/>')
+    (error,) = errors_of_file(write(include('robot.urdf')))
+    assert 'this is URDF' in error.message
+
+
+def test_directory_without_a_manifest_is_named_in_the_message(errors_in, tmp_path):
+    (tmp_path / 'box').mkdir()
+    (error,) = errors_in(include('box'))
+    assert error.code == 'URI_LOOKUP'
+    assert 'the directory has no model.config' in error.message
+
+
+def test_missing_file_is_named_in_the_message(errors_in):
+    (error,) = errors_in(include('model://nothing'))
+    assert '"model://nothing" cannot be included' in error.message
 
 
 @pytest.mark.parametrize('content', [
-    '',
-    '<model name="a"><link name="l"/></model><model name="b"><link name="l"/></model>',
-    '<light name="sun" type="point"/>',
-    '<model name="a"><pose relative_to="x"/><link name="l"/></model>',
-    '<model name="a"><link name="x::l"/></model>',
+    include('none.sdf', '<name>n</name>') + '<frame name="f" attached_to="n::l"/>',
+    include('model://none') + '<frame name="f"><pose relative_to="none"/></frame>',
+    include('none.sdf', '<name>n</name>') + posed('light', 'i', '', 'n'),
+    include('none.sdf', attributes='merge="1"') + '<frame name="f" attached_to="any"/>',
 ])
-def test_an_include_of_a_file_that_has_an_error_stays(expand, content):
-    expansion = expand(_include(uri='bad.sdf'), bad=f'<sdf version="1.9">{content}</sdf>')
-    assert _tags(expansion) == ['link', 'include']
+def test_reference_into_a_missing_include_gives_no_error(errors_in, content):
+    assert [error.code for error in errors_in(content)] == ['URI_LOOKUP']
 
 
-def test_an_include_that_merges_stays_with_a_copy_of_its_own(expand):
-    expansion = expand(_include(attributes='merge="true"'))
-    (include, inclusion), = expansion.inclusions.items()
-    assert include.tag == 'include'
-    # The merged link has a pose now, as parameters may change it.
-    assert inclusion.document.root.find('model/link/pose') is not None
+def test_error_in_a_file_that_is_included_twice_is_reported_once(errors_in):
+    (error,) = errors_in(
+        ''.join(include('bad.sdf', f'<name>{name}</name>') for name in 'ab'),
+        bad=model_file('<link name="l"><pose>1 2</pose></link>'))
+    assert error.element == '/sdf/world[@name="w"]/model[@name="a"]/link[@name="l"]/pose'
 
 
-def test_the_original_keeps_its_include(expand, tmp_path):
-    expansion = expand(_include())
-    assert _tags(expansion) == ['link', 'model']
-    again = document_from_file(tmp_path / 'mid.sdf')
-    assert [xml.tag for xml in again.root.find('model')] == ['link', 'include']
+def test_different_errors_in_one_line_of_an_included_file_are_reported(errors_in):
+    links = ''.join(f'<link name="{pose}"><pose>{pose}</pose></link>' for pose in ('1 2', '3 4'))
+    assert len(errors_in(include('bad.sdf'), bad=model_file(links))) == 2
 
 
-def test_the_include_overrides(expand):
-    expansion = expand(_include(
-        '<name>kid</name><static>true</static><placement_frame>body</placement_frame>'
-        '<pose relative_to="base">1 2 3 0 0 0</pose>'))
-    model = expansion.document.root.find('model/model')
-    assert dict(model.attrib) == {'name': 'kid', 'placement_frame': 'body'}
-    assert model.findtext('static') == 'true'
-    assert [pose.text for pose in model.iterchildren('pose')] == ['1 2 3 0 0 0']
-    assert model.find('pose').get('relative_to') == 'base'
+# Cycles and depth
+
+def test_cycle_of_files_is_refused(tmp_path):
+    for name, other in (('a', 'b'), ('b', 'c'), ('c', 'a')):
+        write_files(tmp_path, **{name: model_file(LINK + include(f'{other}.sdf'))})
+    (error,) = errors_of_file(tmp_path / 'a.sdf')
+    assert error.code == 'URI_LOOKUP'
+    assert 'includes itself: a.sdf -> b.sdf -> c.sdf -> a.sdf' in error.message
 
 
-def test_what_was_included_keeps_its_file_and_line(expand, tmp_path):
-    expansion = expand(_include())
-    link = expansion.document.root.find('model/model/link')
-    assert expansion.document.origin(link).path == str(tmp_path / 'leaf.sdf')
-    assert link.sourceline == 4
+def test_file_that_includes_itself_is_refused(tmp_path):
+    write_files(tmp_path, a=model_file(LINK + include('a.sdf')))
+    (error,) = errors_of_file(tmp_path / 'a.sdf')
+    assert 'includes itself: a.sdf -> a.sdf' in error.message
 
 
-def test_what_is_placed_by_its_include_stands_there(expand, tmp_path):
-    expansion = expand(_include('<pose>1 2 3 0 0 0</pose>'))
-    model = expansion.document.root.find('model/model')
-    document = expansion.document
-    assert [document.origin(xml).path for xml in (model, model.find('pose'))] == [
-        str(tmp_path / 'mid.sdf')] * 2
-    assert model.sourceline == 2
-    assert document.origin(model.find('link')).path == str(tmp_path / 'leaf.sdf')
+def test_cycle_through_a_link_of_the_file_system_is_refused(tmp_path):
+    write_files(tmp_path, a=model_file(LINK + include('b.sdf')))
+    (tmp_path / 'b.sdf').symlink_to(tmp_path / 'a.sdf')
+    (error,) = errors_of_file(tmp_path / 'a.sdf')
+    assert 'includes itself' in error.message
 
 
-def test_includes_in_includes_are_expanded(expand, tmp_path):
-    inner = f'<sdf version="1.9"><model name="inner">{_include()}</model></sdf>'
-    expansion = expand(_include(uri='inner.sdf'), inner=inner)
-    link = expansion.document.root.find('model/model/model/link')
-    assert expansion.document.origin(link).path == str(tmp_path / 'leaf.sdf')
-    assert expansion.inclusions == {}
+def write_chain(folder, count):
+    """Write files of which each includes the next; return the first."""
+    for number in range(count):
+        content = include(f'{number + 1}.sdf', '<name>n</name>') if number < count - 1 else ''
+        write_files(folder, **{str(number): model_file(LINK + content)})
+    return folder / '0.sdf'
+
+
+def test_more_than_64_files_inside_one_another_are_refused(tmp_path):
+    (error,) = errors_of_file(write_chain(tmp_path, 80))
+    assert 'more than 64' in error.message
+
+
+def test_64_files_inside_one_another_are_read(tmp_path):
+    assert len(load(write_chain(tmp_path, 64)).files) == 64
+
+
+# Missing includes that are skipped
+
+def test_missing_include_is_skipped_with_what_refers_to_it(write):
+    scene = load(
+        write(include('model://nothing', '<name>robot</name>')
+              + '<frame name="f" attached_to="robot::l"/><frame name="g" attached_to="f"/>'
+              + '<model name="k"><link name="l"/></model>'),
+        on_missing_include='skip')
+    assert scene.names == ('world', 'k', 'k::l')
+    assert [warning.code for warning in scene.warnings] == ['WARNING', 'WARNING']
+    assert '2 more elements are left out, which refer to it: "f", "g"' in (
+        scene.warnings[1].message)
+
+
+def test_uri_that_is_missing_twice_gives_one_warning(write):
+    scene = load(
+        write(''.join(include('model://a', f'<name>{name}</name>') for name in 'xy')),
+        on_missing_include='skip')
+    assert len(scene.warnings) == 1
+
+
+@pytest.mark.parametrize('text', [model_file('<link name="l"><pose>1 2</pose></link>'), '<sdf/>'])
+def test_error_in_an_included_file_is_not_skipped(write, text):
+    errors_of_file(write(include('bad.sdf'), bad=text), on_missing_include='skip')
+
+
+def test_model_of_missing_includes_alone_is_read(write):
+    path = write('<model name="m">' + include('model://a') + '</model>')
+    assert load(path, on_missing_include='skip').names == ('world', 'm')
+
+
+# What is included
+
+def test_included_elements_stand_in_the_place_of_the_include(scene_of):
+    scene = scene_of('<frame name="f"/>' + include() + '<frame name="g"/>')
+    assert names_of(scene) == ['f', 'leaf', 'leaf::body', 'g']
+
+
+def test_included_model_of_a_model_is_nested(scene_of):
+    scene = scene_of('<model name="m">' + include() + '</model>')
+    assert names_of(scene) == ['m', 'm::leaf', 'm::leaf::body']
+
+
+@pytest.mark.parametrize('tag', ['light', 'actor'])
+def test_light_or_actor_is_included_into_a_world(scene_of, tag):
+    text = f'<sdf version="1.9">{posed(tag, "x", "1 0 0 0 0 0")}</sdf>'
+    scene = scene_of(include('x.sdf', '<name>y</name><pose>0 2 0 0 0 0</pose>'), x=text)
+    assert_at(scene, 'y', (0, 2, 0))
+
+
+@pytest.mark.parametrize('tag', ['light', 'actor'])
+def test_light_or_actor_is_not_included_into_a_model(scene_of, tag):
+    text = f'<sdf version="1.9">{posed(tag, "x", "")}</sdf>'
+    scene = scene_of(f'<model name="m">{LINK}{include("x.sdf")}</model>', x=text)
+    assert names_of(scene) == ['m', 'm::l']
+    assert f'the included {tag} is left out' in scene.warnings[0].message
+
+
+def test_included_file_of_an_old_version_is_converted(scene_of):
+    old = model_file(LINK + '<link name="k"><pose frame="l">1 0 0 0 0 0</pose></link>')
+    scene = scene_of(include('old.sdf'), old=old.replace('1.9', '1.6'))
+    assert_at(scene, 'm::k', (1, 0, 0))
+
+
+@pytest.mark.parametrize('element', [
+    '<plugin name="p" filename="f">{}</plugin>', '<x:y>{}</x:y>', '<unknown>{}</unknown>',
+    '<sdf version="1.9">{}</sdf>', '<sdf version="1.9"><model name="m">{}</model></sdf>',
+])
+def test_include_in_an_element_that_is_not_read_is_not_read(scene_of, element):
+    scene = scene_of(include() + element.format(include('none.sdf')))
+    assert names_of(scene) == ['leaf', 'leaf::body']
+
+
+def test_include_in_an_included_file_is_replaced(scene_of):
+    middle = model_file(include(content='<pose>1 0 0 0 0 0</pose>'))
+    scene = scene_of(include('middle.sdf', '<pose>0 0 5 0 0 0</pose>'), middle=middle)
+    assert_at(scene, 'm::leaf::body', (1, 1, 5))
+
+
+# What an include overrides
+
+def test_include_without_overrides(scene_of):
+    scene = scene_of(include())
+    assert_at(scene, 'leaf::body', (0, 1, 1))
+
+
+def test_include_has_a_name(scene_of):
+    scene = scene_of(include(content='<name>n</name>') + posed('frame', 'f', '', 'n::body'))
+    assert_at(scene, 'f', (0, 1, 1))
+
+
+def test_include_has_a_pose(scene_of):
+    scene = scene_of(
+        '<frame name="f"><pose>0 0 5 0 0 0</pose></frame>'
+        + include(content='<pose relative_to="f">1 0 0 0 0 0</pose>'))
+    assert_at(scene, 'leaf', (1, 0, 5))
+
+
+def test_empty_pose_of_an_include_is_the_identity(scene_of):
+    assert_at(scene_of(include(content='<pose/>')), 'leaf', (0, 0, 0))
+
+
+def test_pose_of_an_include_replaces_the_attributes_too(scene_of):
+    leaf = LEAF.replace('<pose>0 0 1 0 0 0', '<pose degrees="true">0 0 1 0 0 180')
+    scene = scene_of(include(content='<pose>0 0 0 0 0 3.141592653589793</pose>'), leaf=leaf)
+    assert_at(scene, 'leaf', (0, 0, 0, 0, 0, 1, 0))
+
+
+@pytest.mark.parametrize(('written', 'override', 'is_static'), [
+    ('false', 'true', True), ('true', 'false', False)])
+def test_include_is_static(scene_of, written, override, is_static):
+    scene = scene_of(
+        include(content=f'<static>{override}</static>'),
+        leaf=model_file(f'<static>{written}</static>{LINK}'))
+    assert bool(scene.static_models) == is_static
+
+
+def test_include_has_a_placement_frame(scene_of):
+    scene = scene_of(include(
+        content='<pose>0 0 5 0 0 0</pose><placement_frame>body</placement_frame>'))
+    assert_at(scene, 'leaf::body', (0, 0, 5))
+    assert_at(scene, 'leaf', (0, -1, 5))
+
+
+def test_placement_frame_of_the_file_stays_with_the_pose_of_the_include(scene_of):
+    leaf = LEAF.replace('name="leaf"', 'name="leaf" placement_frame="body"')
+    scene = scene_of(include(content='<pose>0 0 5 0 0 0</pose>'), leaf=leaf)
+    assert_at(scene, 'leaf::body', (0, 0, 5))
+
+
+def test_file_that_is_included_twice_has_independent_copies(scene_of):
+    scene = scene_of(
+        include(content='<name>a</name><static>1</static><pose>1 0 0 0 0 0</pose>')
+        + include(content='<name>b</name>'))
+    assert_at(scene, 'a::body', (1, 1, 0))
+    assert_at(scene, 'b::body', (0, 1, 1))
+    assert scene.static_models == {scene.index('a')}
+
+
+# A file with an include at its top
+
+def with_include_at_the_top(content):
+    return {'outer': f'<sdf version="1.9">{content}</sdf>'}
+
+
+@pytest.mark.parametrize(('content', 'code'), [
+    (include('none.sdf'), 'URI_LOOKUP'),
+    (include(attributes='merge="true"'), 'MERGE_INCLUDE_UNSUPPORTED'),
+    (include() + include(content='<name>b</name>'), 'ELEMENT_INCORRECT_TYPE'),
+])
+def test_wrong_include_at_the_top_is_refused(errors_in, content, code):
+    errors = errors_in(include('outer.sdf'), **with_include_at_the_top(content))
+    assert [error.code for error in errors] == [code]
+
+
+def test_include_at_the_top_is_replaced(scene_of):
+    content = include(content='<name>n</name><pose>1 0 0 0 0 0</pose>')
+    scene = scene_of(include('outer.sdf'), **with_include_at_the_top(content))
+    assert_at(scene, 'n::body', (1, 1, 0))
+
+
+def test_include_at_the_top_is_placed_in_the_including_file(scene_of):
+    content = include(content='<pose relative_to="desk">1 0 0 0 0 0</pose>')
+    scene = scene_of(
+        posed('frame', 'desk', '0 0 50 0 0 0') + include('outer.sdf'),
+        **with_include_at_the_top(content))
+    assert_at(scene, 'leaf', (1, 0, 50))

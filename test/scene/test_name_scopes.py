@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which names mean what: siblings and downwards, never upwards."""
+"""Which frames references name: siblings and downwards, never upwards."""
 
 import pytest
 from sdf_texts import element
@@ -13,7 +13,7 @@ from sdf_texts import world_file
 
 import sdf_pose_bridge
 
-NEST = (
+MODELS = (
     posed('link', 'l', '1 0 0 0 0 0')
     + '<model name="n"><pose>0 1 0 0 0 0</pose>'
     + posed('link', 'k', '0 1 0 0 0 0') + posed('frame', 'f', '0 2 0 0 0 0')
@@ -22,18 +22,19 @@ NEST = (
 
 
 def in_model(reference):
-    """Refer to a name from the outer model of a nest."""
+    """Return a file with a reference in the outer model."""
     probe = posed('frame', 'probe', '', reference)
-    return model_file(NEST.format(inner='', outer=probe))
+    return model_file(MODELS.format(inner='', outer=probe))
 
 
 def in_nested(reference):
-    """Refer to a name from the innermost model of a nest."""
-    return model_file(NEST.format(inner=posed('frame', 'probe', '', reference), outer=''))
+    """Return a file with a reference in the innermost model."""
+    return model_file(MODELS.format(inner=posed('frame', 'probe', '', reference), outer=''))
 
 
 def in_world(reference):
-    model = '<model name="m"><pose>0 0 5 0 0 0</pose>' + NEST.format(inner='', outer='')
+    """Return a file with a reference in the world around the models."""
+    model = '<model name="m"><pose>0 0 5 0 0 0</pose>' + MODELS.format(inner='', outer='')
     return world_file(
         model + '</model>' + posed('frame', 'r', '7 0 0 0 0 0')
         + '<light name="sun" type="point"/><actor name="man"/>'
@@ -45,7 +46,7 @@ def in_world(reference):
     ('n::f', (0, 3, 0)), ('n::__model__', (0, 1, 0)), ('n::n2', (0, 1, 1)),
     ('n::n2::deep', (0, 1, 2)), ('n::n2::__model__', (0, 1, 1)), (' n::k ', (0, 2, 0)),
 ])
-def test_names_in_a_model(reference, position):
+def test_reference_in_a_model(reference, position):
     scene = sdf_pose_bridge.load_text(in_model(reference))
     assert scene.pose('m::probe')[:3] == position
 
@@ -55,14 +56,14 @@ def test_names_in_a_model(reference, position):
     'n::k::__model__', 'l::__model__', '__model__::l', 'n::__model__::k', 'n::world', 'n::n', 'w',
     '__model__::__model__', 'n::n2::deep::', 'n ::k',
 ])
-def test_names_that_mean_nothing_in_a_model(reference):
+def test_unknown_reference_in_a_model_is_refused(reference):
     error = only_error(in_model(reference))
     assert error.code == 'POSE_RELATIVE_TO_INVALID'
     assert f'relative_to="{reference}"' in error.message
 
 
 @pytest.mark.parametrize('reference', ['l', 'k', 'f', 'n', 'n2', 'n2::deep', 'n::k', 'm', 'world'])
-def test_names_of_scopes_around_mean_nothing(reference):
+def test_reference_to_an_enclosing_scope_is_refused(reference):
     assert only_error(in_nested(reference)).code == 'POSE_RELATIVE_TO_INVALID'
 
 
@@ -70,79 +71,79 @@ def test_names_of_scopes_around_mean_nothing(reference):
     ('world', (0, 0, 0)), ('m', (0, 0, 5)), ('m::__model__', (0, 0, 5)), ('r', (7, 0, 0)),
     ('m::l', (1, 0, 5)), ('m::n::n2::deep', (0, 1, 7)), ('m::n::__model__', (0, 1, 5)),
 ])
-def test_names_in_a_world(reference, position):
+def test_reference_in_a_world(reference, position):
     assert sdf_pose_bridge.load_text(in_world(reference)).pose('probe')[:3] == position
 
 
 @pytest.mark.parametrize('reference', [
     '__model__', 'w', 'w::m', 'world::m', 'world::r', 'l', 'sun', 'man', 'r::__model__',
 ])
-def test_names_that_mean_nothing_in_a_world(reference):
+def test_unknown_reference_in_a_world_is_refused(reference):
     assert only_error(in_world(reference)).code == 'POSE_RELATIVE_TO_INVALID'
 
 
 @pytest.mark.parametrize('tag', ['visual', 'collision', 'sensor', 'light'])
-def test_children_of_a_link_cannot_be_referred_to(tag):
+def test_reference_to_a_child_of_a_link_is_refused(tag):
     link = f'<link name="l">{element(tag, "v")}</link>'
     text = model_file(link + posed('frame', 'f', '', 'l::v'))
     assert only_error(text).code == 'POSE_RELATIVE_TO_INVALID'
 
 
-def test_a_joint_can_be_referred_to():
+def test_reference_to_a_joint():
     scene = sdf_pose_bridge.load_text(model_file(
         '<link name="a"/>' + posed('link', 'b', '1 0 0 0 0 0') + fixed_joint('j', 'a', 'b')
         + posed('frame', 'f', '1 0 0 0 0 0', 'j')))
     assert scene.pose('m::f')[:3] == (2, 0, 0)
 
 
-def test_worlds_do_not_see_one_another():
+def test_reference_to_another_world_is_refused():
     text = ('<sdf version="1.10"><world name="a"><frame name="f"/></world>'
             '<world name="b">' + posed('frame', 'g', '', 'f') + '</world></sdf>')
     assert only_error(text).code == 'POSE_RELATIVE_TO_INVALID'
 
 
-def test_names_of_other_worlds_are_their_own():
+def test_reference_names_a_frame_of_its_own_world():
     text = ('<sdf version="1.10"><world name="a">' + posed('frame', 'f', '1 0 0 0 0 0')
             + '</world><world name="b">' + posed('frame', 'f', '2 0 0 0 0 0')
             + posed('frame', 'g', '', 'f') + '</world></sdf>')
     assert sdf_pose_bridge.load_text(text).pose('g')[:3] == (2, 0, 0)
 
 
-# What the message suggests
+# Hints in messages
 
-def test_the_nearest_name_is_suggested():
+def test_message_has_the_nearest_name():
     text = model_file('<link name="shoulder"/>' + posed('frame', 'f', '', 'sholder'))
     assert 'did you mean "shoulder"?' in only_error(text).message
 
 
-def test_the_nearest_name_below_is_suggested():
+def test_message_has_the_nearest_name_of_a_nested_model():
     assert 'did you mean "n::n2::deep"?' in only_error(in_model('n::n2::dep')).message
 
 
-def test_a_name_like_none_gets_no_suggestion():
+def test_message_has_no_name_if_none_is_similar():
     assert 'did you mean' not in only_error(in_model('zzzzzz')).message
 
 
-def test_the_own_name_of_a_model_is_explained():
+def test_message_explains_that_the_own_name_is_not_visible():
     message = only_error(in_model('m::l')).message
     assert 'its own name is not visible' in message
     assert '"l"' in message
 
 
-def test_the_own_name_alone_is_explained():
+def test_message_has_the_name_of_the_model_frame():
     assert '"__model__"' in only_error(in_model('m')).message
 
 
-def test_a_name_of_an_enclosing_scope_is_explained():
+def test_message_explains_that_enclosing_scopes_are_not_visible():
     assert 'enclosing scopes' in only_error(in_nested('l')).message
 
 
-def test_the_scope_is_named():
+def test_message_has_the_scope():
     assert 'model "m::n::n2"' in only_error(in_nested('zzz')).message
     assert 'world "w"' in only_error(in_world('zzz')).message
 
 
-def test_many_names_do_not_make_a_mistake_slow_to_tell():
+def test_many_unknown_references_among_many_names_are_reported_fast():
     links = ''.join(f'<link name="l{i}"/>' for i in range(3000))
     wrong = ''.join(posed('frame', f'f{i}', '', f'wrong{i}') for i in range(30))
     assert len(errors_of(model_file(links + wrong))) == 30

@@ -1,0 +1,178 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where the files are that URIs name, and in which order directories are searched."""
+
+from pathlib import Path
+
+import pytest
+
+from sdf_pose_bridge.sdformat.include.uris import AddressError
+from sdf_pose_bridge.sdformat.include.uris import resource_finder
+
+
+def write(folder, name):
+    """Write an empty file; return its path."""
+    path = folder / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text('')
+    return str(path)
+
+
+def write_package(folder, name):
+    """Write the marker of an installed package; return its share directory."""
+    write(folder, f'share/ament_index/resource_index/packages/{name}')
+    return folder / 'share' / name
+
+
+def found(uri, tmp_path, paths=(), **environment):
+    """Find what a URI names in a file that stands in the folder ``from``."""
+    finder = resource_finder(paths, {'HOME': str(tmp_path / 'home'), **environment})
+    return finder.path_from_uri(uri, str(tmp_path / 'from' / 'world.sdf'))
+
+
+# URIs in files
+
+@pytest.mark.parametrize('uri', [
+    'model://box', 'box', 'file://box', 'package://box', 'model://', '://box', 'http://x/box',
+    'https://fuel.gazebosim.org/1.0/me/models', 'https://fuel.gazebosim.org/1.0/me/models/..',
+    'x' * 1000, 'package://' + 'x' * 1000, 'https://x/me/models/' + 'x' * 1000,
+    'https://[/1.0/me/models/box', 'a\x00b', 'https://x/me/models/a\x00b', 'package://a\x00b',
+])
+def test_file_that_does_not_exist_is_not_found(uri, tmp_path):
+    assert found(uri, tmp_path) is None
+
+
+def test_directory_without_the_marker_of_a_package_is_not_found(tmp_path):
+    write(tmp_path / 'ws', 'share/cell/models/box.sdf')
+    assert found('package://cell/models/box.sdf', tmp_path,
+                 AMENT_PREFIX_PATH=str(tmp_path / 'ws')) is None
+
+
+@pytest.mark.parametrize('uri', ['model://box', 'box', 'file://box', 'package://box', 'zzz://box'])
+def test_search_paths_are_used_for_every_scheme(uri, tmp_path):
+    box = write(tmp_path / 'models', 'box')
+    assert found(uri, tmp_path, [tmp_path / 'models']) == box
+
+
+def test_first_search_path_is_used(tmp_path):
+    write(tmp_path / 'b', 'box')
+    box = write(tmp_path / 'a', 'box')
+    assert found('model://box', tmp_path, [tmp_path / 'a', tmp_path / 'b']) == box
+
+
+@pytest.mark.parametrize('scheme', ['', 'file://'])
+def test_absolute_path_is_used_as_it_is(scheme, tmp_path):
+    box = write(tmp_path, 'box.sdf')
+    assert found(f'{scheme}{box}', tmp_path) == box
+
+
+@pytest.mark.parametrize(('uri', 'is_found'), [
+    ('box.sdf', True), ('file://box.sdf', True), ('model://box.sdf', False),
+])
+def test_relative_path_is_searched_beside_the_including_file(uri, is_found, tmp_path):
+    box = write(tmp_path / 'from', 'box.sdf')
+    assert found(uri, tmp_path) == (box if is_found else None)
+
+
+def test_relative_path_is_searched_in_the_working_directory_last(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path, 'box.sdf')
+    assert found('model://box.sdf', tmp_path) == 'box.sdf'
+    box = write(tmp_path / 'models', 'box.sdf')
+    assert found('model://box.sdf', tmp_path, SDF_PATH=str(tmp_path / 'models')) == box
+
+
+@pytest.mark.parametrize('variable', ['GZ_SIM_RESOURCE_PATH', 'SDF_PATH'])
+def test_paths_of_the_environment_are_searched(variable, tmp_path):
+    box = write(tmp_path / 'models', 'box')
+    assert found('model://box', tmp_path, **{variable: f'/nowhere:{tmp_path / "models"}'}) == box
+
+
+def test_search_paths_come_before_those_of_the_environment(tmp_path):
+    write(tmp_path / 'b', 'box')
+    box = write(tmp_path / 'a', 'box')
+    assert found('model://box', tmp_path, [tmp_path / 'a'], SDF_PATH=str(tmp_path / 'b')) == box
+
+
+def test_package_is_found_by_its_marker(tmp_path):
+    box = write(write_package(tmp_path / 'ws', 'cell'), 'models/box.sdf')
+    assert found('package://cell/models/box.sdf', tmp_path,
+                 AMENT_PREFIX_PATH=f'/nowhere:{tmp_path / "ws"}') == box
+
+
+@pytest.mark.parametrize(('uri', 'version'), [
+    ('https://fuel.gazebosim.org/1.0/Open/models/Big%20Box', '10'),
+    ('https://fuel.gazebosim.org/1.0/Open/models/Big%20Box/tip', '10'),
+    ('https://fuel.gazebosim.org/1.0/open/models/big box/2', '2'),
+])
+def test_fuel_model_is_found_in_the_cache(uri, version, tmp_path):
+    for number in ('2', '9', '10'):
+        write(
+            tmp_path / 'home/.gz/fuel/fuel.gazebosim.org/open/models/big box', f'{number}/m.sdf')
+    path = found(uri, tmp_path)
+    assert path is not None
+    assert path.endswith(f'/big box/{version}')
+
+
+def test_file_of_a_fuel_model_is_found_in_the_cache(tmp_path):
+    box = write(tmp_path / 'cache/fuel.gazebosim.org/open/models/box', '3/meshes/box.sdf')
+    uri = 'https://fuel.gazebosim.org/1.0/Open/models/Box/3/files/meshes/box.sdf'
+    assert found(uri, tmp_path, GZ_FUEL_CACHE_PATH=str(tmp_path / 'cache')) == box
+
+
+# Addresses that users give
+
+@pytest.fixture
+def finder(tmp_path):
+    """Return a finder that knows a package ``cell_description`` and a model ``table``."""
+    write_package(tmp_path / 'ws', 'cell_description')
+    write(tmp_path / 'models', 'table')
+    return resource_finder(
+        [tmp_path / 'models'], {'AMENT_PREFIX_PATH': str(tmp_path / 'ws'), 'HOME': '/'})
+
+
+@pytest.mark.parametrize(('address', 'reason'), [
+    ('package://nowhere/cell.sdf', 'names the package "nowhere", which is not installed'),
+    ('package:///cell.sdf', 'names the package ""'),
+    ('model://chair', 'is found neither in resource_paths nor in'),
+    ('http://example.org/cell.sdf', 'is a http:// URI'),
+    ('file://cells/cell.sdf', 'names the host "cells"'),
+    ('file:///cell.sdf?x=1', r'write %3F or %23'),
+    ('file:///cell#2.sdf', r'write %3F or %23'),
+    ('file://[cell.sdf', 'is not a URI'),
+])
+def test_address_that_names_no_file_is_refused(finder, address, reason):
+    with pytest.raises(AddressError, match=reason) as refusal:
+        finder.path_from_address(address)
+    assert f'"{address}"' in str(refusal.value)
+
+
+@pytest.mark.parametrize(('address', 'path'), [
+    ('/cells/cell.sdf', '/cells/cell.sdf'),
+    ('/cells/50%25 #2?.sdf', '/cells/50%25 #2?.sdf'),
+    ('file:///cells/cell.sdf', '/cells/cell.sdf'),
+    ('file://localhost/cells/cell.sdf', '/cells/cell.sdf'),
+    ('file:///cells/left%20cell%23.sdf', '/cells/left cell#.sdf'),
+])
+def test_address_of_an_absolute_path(finder, address, path):
+    assert finder.path_from_address(address) == Path(path)
+
+
+@pytest.mark.parametrize(('address', 'path'), [
+    ('model://table', 'models/table'),
+    ('package://cell_description/worlds/cell.sdf', 'ws/share/cell_description/worlds/cell.sdf'),
+    ('package://cell_description/left%20cell.sdf', 'ws/share/cell_description/left cell.sdf'),
+    ('package://cell_description', 'ws/share/cell_description'),
+])
+def test_address_in_a_package_or_of_a_model(finder, tmp_path, address, path):
+    assert finder.path_from_address(address) == tmp_path / path
+
+
+def test_relative_address_starts_at_the_working_directory(finder, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    assert finder.path_from_address('cell.sdf') == tmp_path / 'cell.sdf'
+
+
+def test_tilde_in_an_address_is_the_home_directory(finder, monkeypatch):
+    monkeypatch.setenv('HOME', '/home/someone')
+    assert finder.path_from_address('~/cell.sdf') == Path('/home/someone/cell.sdf')

@@ -1,0 +1,170 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What only models, frames, joints, sensors and materials have."""
+
+import pytest
+from sdf_texts import codes_of
+from sdf_texts import errors_of
+from sdf_texts import fixed_joint
+from sdf_texts import joint
+from sdf_texts import LINK
+from sdf_texts import link_with
+from sdf_texts import model_file
+from sdf_texts import only_error
+from sdf_texts import posed
+from sdf_texts import TWO_LINKS
+
+from sdf_pose_bridge import load_text
+
+# The implicit root cannot be named
+
+@pytest.mark.parametrize(('text', 'code'), [
+    (model_file(posed('link', 'l', '', '__root__')), 'ATTRIBUTE_INVALID'),
+    (model_file(LINK + '<frame name="f" attached_to="__root__"/>'), 'ATTRIBUTE_INVALID'),
+    (model_file(LINK, attributes='canonical_link="__root__"'), 'ATTRIBUTE_INVALID'),
+    (model_file(LINK, attributes='placement_frame="__root__"'), 'ATTRIBUTE_INVALID'),
+    (model_file(LINK + fixed_joint('j', '__root__', 'l')), 'RESERVED_NAME'),
+    (model_file(LINK + fixed_joint('j', 'l', '__root__')), 'RESERVED_NAME'),
+])
+def test_reference_to_the_implicit_root_is_refused(text, code):
+    error = errors_of(text)[0]
+    assert error.code == code
+    assert '"__root__"' in error.message
+
+
+# Models
+
+@pytest.mark.parametrize('value', ['maybe', '2', 'yes', '-1'])
+def test_wrong_static_is_refused(value):
+    error = only_error(model_file(f'<static>{value}</static>' + LINK))
+    assert error.code == 'ELEMENT_INVALID'
+    assert f'"{value}"' in error.message
+
+
+@pytest.mark.parametrize(('value', 'is_static'), [
+    ('true', True), (' 1 ', True), ('TRUE', True), ('false', False), ('0', False), ('', False),
+])
+def test_model_is_static(value, is_static):
+    scene = load_text(model_file(f'<static>{value}</static>' + LINK))
+    assert (scene.index('m') in scene.static_models) == is_static
+
+
+def test_model_is_not_static_by_default():
+    assert not load_text(model_file(LINK)).static_models
+
+
+def test_nested_model_of_a_static_model_is_not_static():
+    scene = load_text(model_file('<static>true</static><model name="n"><link name="l"/></model>'))
+    assert scene.static_models == {scene.index('m')}
+
+
+# Joints
+
+def joint_of_type(joint_type):
+    content = '<parent>a</parent><child>b</child>'
+    return model_file(TWO_LINKS + joint(content, joint_type=joint_type))
+
+
+def test_joint_without_a_type_is_refused():
+    text = model_file(TWO_LINKS + '<joint name="j"><parent>a</parent><child>b</child></joint>')
+    assert codes_of(text) == ['ATTRIBUTE_MISSING']
+
+
+@pytest.mark.parametrize('joint_type', ['', ' ', 'glue', 'hinge', 'fix ed'])
+def test_joint_of_an_unknown_type_is_refused(joint_type):
+    assert codes_of(joint_of_type(joint_type)) == ['ATTRIBUTE_INVALID']
+
+
+@pytest.mark.parametrize('joint_type', [
+    'ball', 'continuous', 'fixed', 'gearbox', 'prismatic', 'revolute', 'revolute2', 'screw',
+    'universal', 'FIXED', ' fixed ',
+])
+def test_joint_has_a_type(joint_type):
+    joint_of_scene, = load_text(joint_of_type(joint_type)).joints
+    assert joint_of_scene.type == joint_type.strip().lower()
+
+
+@pytest.mark.parametrize(('content', 'joint_type', 'code'), [
+    ('<parent>a</parent>', 'fixed', 'ELEMENT_MISSING'),
+    ('<child>a</child>', 'revolute', 'ELEMENT_MISSING'),
+    ('<parent>a</parent>', 'ball', 'JOINT_CHILD_LINK_INVALID'),
+    ('<child>a</child>', 'ball', 'JOINT_PARENT_LINK_INVALID'),
+    ('<parent/><child>a</child>', 'fixed', 'ELEMENT_INVALID'),
+    ('<parent>a</parent><child> </child>', 'fixed', 'ELEMENT_INVALID'),
+])
+def test_joint_without_an_end_is_refused(content, joint_type, code):
+    assert codes_of(model_file(TWO_LINKS + joint(content, joint_type=joint_type))) == [code]
+
+
+def test_joint_without_both_ends_has_two_errors():
+    assert codes_of(model_file(TWO_LINKS + joint(''))) == ['ELEMENT_MISSING'] * 2
+
+
+def test_ends_of_a_joint_are_stripped():
+    content = '<parent>\n a </parent><child><!-- c --> b</child>'
+    scene = load_text(model_file(TWO_LINKS + joint(content)))
+    assert [scene.names[index] for index in scene.joints[0][2:]] == ['m::a', 'm::b']
+
+
+# Sensors
+
+def sensor_with(content, sensor_type='custom'):
+    scene = load_text(link_with(f'<sensor name="s" type="{sensor_type}">{content}</sensor>'))
+    return scene.sensors[scene.index('m::l::s')]
+
+
+def test_sensor_has_a_type():
+    assert sensor_with('', ' imu ').type == 'imu'
+
+
+@pytest.mark.parametrize(('content', 'frame_id'), [
+    ('', ''),
+    ('<gz_frame_id/>', ''),
+    ('<gz_frame_id>a/b</gz_frame_id>', 'a/b'),
+    ('<ignition_frame_id> a </ignition_frame_id>', 'a'),
+    ('<ignition_frame_id>old</ignition_frame_id><gz_frame_id>new</gz_frame_id>', 'new'),
+    ('<ignition_frame_id>old</ignition_frame_id><gz_frame_id/>', 'old'),
+])
+def test_sensor_has_a_frame_id(content, frame_id):
+    assert sensor_with(content).frame_id == frame_id
+
+
+@pytest.mark.parametrize(('content', 'is_camera', 'optical_frame_id'), [
+    ('', False, ''),
+    ('<optical_frame_id>eye</optical_frame_id>', False, ''),
+    ('<camera/>', True, ''),
+    ('<camera><optical_frame_id>eye</optical_frame_id></camera>', True, 'eye'),
+])
+def test_sensor_with_a_camera(content, is_camera, optical_frame_id):
+    details = sensor_with(content)
+    assert (details.is_camera, details.optical_frame_id) == (is_camera, optical_frame_id)
+
+
+@pytest.mark.parametrize(('sensor_type', 'is_camera'), [
+    ('camera', True), ('rgbd_camera', True), ('gpu_lidar', False)])
+def test_sensor_of_the_type_of_a_camera(sensor_type, is_camera):
+    assert sensor_with('', sensor_type).is_camera == is_camera
+
+
+# Materials
+
+@pytest.mark.parametrize(('content', 'code'), [
+    ('<script><name>n</name></script>', 'ELEMENT_INVALID'),
+    ('<script><uri/><name>n</name></script>', 'ELEMENT_INVALID'),
+    ('<script><uri>__default__</uri><name>n</name></script>', 'ELEMENT_INVALID'),
+    ('<script><uri>u</uri></script>', 'ELEMENT_MISSING'),
+    ('<shader type="round"/>', 'ELEMENT_INVALID'),
+    ('<shader type="normal_map_object_space"/>', 'ELEMENT_MISSING'),
+])
+def test_wrong_material_is_refused(content, code):
+    visual = f'<visual name="v"><material>{content}</material></visual>'
+    assert codes_of(link_with(visual)) == [code]
+
+
+@pytest.mark.parametrize('content', [
+    '<script><uri>u</uri><name>n</name></script>',
+    '<shader type="pixel"/>',
+    '<shader type="normal_map_object_space"><normal_map>m</normal_map></shader>',
+])
+def test_material_is_accepted(content):
+    load_text(link_with(f'<visual name="v"><material>{content}</material></visual>'))

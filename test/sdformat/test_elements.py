@@ -1,0 +1,90 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The table of elements: places, poses in several formats, and poses that are not valid."""
+
+import numpy as np
+import pytest
+from sdf_texts import model_file
+from sdf_texts import only_error
+from sdf_texts import world_file
+
+from sdf_pose_bridge import Kind
+from sdf_pose_bridge.sdformat.elements import ElementsBuilder
+from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
+from sdf_pose_bridge.sdformat.pose_text import PoseFormat
+
+
+@pytest.fixture
+def builder():
+    """Return a table with a root, a model in line 2, and a link in line 3 of another file."""
+    builder = ElementsBuilder(['a.sdf', 'b.sdf'])
+    root = builder.add(Kind.ROOT, '__root__', NO_ELEMENT, NO_ELEMENT, 0, 1)
+    model = builder.add(Kind.MODEL, 'm', root, root, 0, 2)
+    builder.add(Kind.LINK, 'l', model, model, 1, 3)
+    return builder
+
+
+# Poses
+
+def test_pose_that_is_not_valid_is_the_identity(builder):
+    builder.set_pose(1, '1 2', PoseFormat(), 2)
+    elements, _ = builder.elements()
+    assert elements.poses[1].tolist() == [0, 0, 0, 0, 0, 0, 1]
+
+
+def test_pose_that_is_not_valid_has_index_and_reason(builder):
+    builder.set_pose(1, '1 2 3 0 0 0', PoseFormat(), 2)
+    builder.set_pose(2, '1 2', PoseFormat(), 4)
+    _, ((index, reason),) = builder.elements()
+    assert index == 2
+    assert '"1 2" has 2' in reason
+
+
+def test_poses_of_different_formats(builder):
+    builder.set_pose(0, '1 0 0 0 0 0', PoseFormat(), 1)
+    builder.set_pose(1, '2 0 0 0 0 180', PoseFormat(is_degrees=True), 2)
+    builder.set_pose(2, '3 0 0 0 2 0 0', PoseFormat(is_quaternion=True), 4)
+    elements, failures = builder.elements()
+    assert failures == []
+    np.testing.assert_allclose(elements.poses, [
+        [1, 0, 0, 0, 0, 0, 1], [2, 0, 0, 0, 0, 1, 0], [3, 0, 0, 0, 1, 0, 0]], atol=1e-15)
+
+
+def test_element_without_a_pose_is_at_the_identity(builder):
+    elements, _ = builder.elements()
+    assert elements.poses.tolist() == [[0, 0, 0, 0, 0, 0, 1]] * 3
+    assert elements.pose_lines.tolist() == [0, 0, 0]
+
+
+def test_table_has_the_columns_of_all_elements(builder):
+    elements, _ = builder.elements()
+    assert elements.parents.tolist() == elements.scopes.tolist() == [-1, 0, 1]
+    assert elements.lines.tolist() == [1, 2, 3]
+    assert [elements.kind(index) for index in range(3)] == [Kind.ROOT, Kind.MODEL, Kind.LINK]
+
+
+# Places
+
+@pytest.mark.parametrize(('index', 'place'), [
+    (1, ('a.sdf', 2, '/sdf/model[@name="m"]')),
+    (2, ('b.sdf', 3, '/sdf/model[@name="m"]/link[@name="l"]')),
+])
+def test_place_of_an_element(builder, index, place):
+    assert builder.elements()[0].place(index) == place
+
+
+def test_place_of_a_part_of_an_element(builder):
+    elements, _ = builder.elements()
+    assert elements.place(2, 7, 'pose') == (
+        'b.sdf', 7, '/sdf/model[@name="m"]/link[@name="l"]/pose')
+
+
+@pytest.mark.parametrize(('text', 'element'), [
+    (world_file('<model name="m"><link name="l"><visual name="v"><pose>1</pose></visual></link>'
+                '</model>'),
+     '/sdf/world[@name="w"]/model[@name="m"]/link[@name="l"]/visual[@name="v"]/pose'),
+    (model_file('<link name="l"><inertial><pose>1</pose></inertial></link>'),
+     '/sdf/model[@name="m"]/link[@name="l"]/inertial/pose'),
+])
+def test_error_has_the_path_of_its_element(text, element):
+    assert only_error(text).element == element

@@ -1,0 +1,217 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Names of siblings: missing, empty, reserved and duplicate names, and new ones in old files."""
+
+import pytest
+from sdf_texts import assert_at
+from sdf_texts import codes_of
+from sdf_texts import element
+from sdf_texts import fixed_joint
+from sdf_texts import LINK
+from sdf_texts import LINK_CHILDREN
+from sdf_texts import link_with
+from sdf_texts import model_file
+from sdf_texts import names_of
+from sdf_texts import only_error
+from sdf_texts import posed
+from sdf_texts import TWO_LINKS
+from sdf_texts import warning_codes
+from sdf_texts import world_file
+
+from sdf_pose_bridge import load_text
+
+# Missing, empty and reserved names
+
+@pytest.mark.parametrize('text', [
+    '<sdf version="1.9"><model><link name="l"/></model></sdf>',
+    '<sdf version="1.9"><world/></sdf>',
+    model_file('<link/>'),
+    model_file(LINK + '<frame/>'),
+    model_file(LINK + '<model><link name="l"/></model>'),
+    model_file(TWO_LINKS + '<joint type="fixed"><parent>a</parent><child>b</child></joint>'),
+    world_file('<frame/>'),
+    world_file('<light type="point"/>'),
+    world_file('<actor/>'),
+    *(link_with(element(tag, '').replace('name=""', '')) for tag in LINK_CHILDREN),
+])
+def test_missing_name_is_refused(text):
+    assert codes_of(text)[0] == 'ATTRIBUTE_MISSING'
+
+
+@pytest.mark.parametrize('name', ['', ' ', '\t'])
+@pytest.mark.parametrize('text', [
+    '<sdf version="1.9"><model name="{}"><link name="l"/></model></sdf>',
+    '<sdf version="1.9"><world name="{}"/></sdf>',
+    model_file('<link name="{}"/>'),
+    model_file(LINK + '<frame name="{}"/>'),
+    link_with('<visual name="{}"/>'),
+])
+def test_empty_name_is_refused(text, name):
+    assert codes_of(text.format(name))[0] == 'ATTRIBUTE_INVALID'
+
+
+@pytest.mark.parametrize('name', ['world', '__model__', '__root__', '____', ' __x__ '])
+@pytest.mark.parametrize('text', [
+    '<sdf version="1.9"><model name="{}"><link name="l"/></model></sdf>',
+    '<sdf version="1.9"><world name="{}"/></sdf>',
+    model_file('<link name="{}"/>'),
+    model_file(LINK + '<frame name="{}"/>'),
+    model_file(LINK + '<model name="{}"><link name="l"/></model>'),
+    model_file(TWO_LINKS + fixed_joint('{}', 'a', 'b')),
+    world_file('<light name="{}" type="point"/>'),
+    *(link_with(element(tag, '{}')) for tag in LINK_CHILDREN),
+])
+def test_reserved_name_is_refused(text, name):
+    error = only_error(text.format(name))
+    assert error.code == 'RESERVED_NAME'
+    assert f'"{name.strip()}"' in error.message
+
+
+def test_actor_may_have_a_reserved_name():
+    scene = load_text(world_file('<actor name="__a__"><pose>1 0 0 0 0 0</pose></actor>'))
+    assert_at(scene, '__a__', (1, 0, 0))
+
+
+@pytest.mark.parametrize('name', [
+    '___', '__x_', 'World', 'a b', 'a/b', 'a.b', ':a', 'a:b', 'größe', '手', '1', '&lt;', '"'])
+def test_any_other_name_is_allowed(name):
+    escaped = name.replace('"', '&quot;')
+    scene = load_text(model_file(f'<link name="{escaped}"/>'))
+    assert names_of(scene)[1] == 'm::' + name.replace('&lt;', '<')
+
+
+def test_name_is_stripped():
+    scene = load_text(model_file(
+        posed('link', ' a\n', '1 0 0 0 0 0') + posed('link', 'b', '1 0 0 0 0 0', 'a')))
+    assert_at(scene, 'm::b', (2, 0, 0))
+
+
+# Duplicate names
+
+@pytest.mark.parametrize('second', [
+    '<link name="l"/>', '<link name=" l "/>', '<frame name="l"/>',
+    '<model name="l"><link name="k"/></model>', fixed_joint('l', 'l', 'k') + '<link name="k"/>',
+])
+def test_frames_of_a_model_cannot_share_a_name(second):
+    assert codes_of(model_file(LINK + second)) == ['DUPLICATE_NAME']
+
+
+@pytest.mark.parametrize('second', [
+    '<model name="a"><link name="l"/></model>', '<frame name="a"/>',
+    fixed_joint('a', 'a', 'b') + '<model name="b"><link name="l"/></model>',
+])
+def test_frames_of_a_world_cannot_share_a_name(second):
+    error = only_error(world_file('<model name="a"><link name="l"/></model>' + second))
+    assert error.code == 'DUPLICATE_NAME'
+    assert '"a"' in error.message
+
+
+@pytest.mark.parametrize('tag', LINK_CHILDREN)
+def test_children_of_a_link_of_one_kind_cannot_share_a_name(tag):
+    assert codes_of(link_with(element(tag, 'x') * 2)) == ['DUPLICATE_NAME']
+
+
+def test_sensors_of_a_joint_cannot_share_a_name():
+    sensor = '<sensor name="s" type="imu"/>'
+    assert codes_of(model_file(TWO_LINKS + fixed_joint('j', 'a', 'b', sensor * 2))) == [
+        'DUPLICATE_NAME']
+
+
+@pytest.mark.parametrize('content', [
+    '<light name="x" type="point"/>' * 2, '<actor name="x"/>' * 2, '<frame name="x"/>' * 3,
+])
+def test_elements_of_a_world_of_one_kind_cannot_share_a_name(content):
+    assert set(codes_of(world_file(content))) == {'DUPLICATE_NAME'}
+
+
+def test_worlds_cannot_share_a_name():
+    assert codes_of('<sdf version="1.9"><world name="w"/><world name="w"/></sdf>') == [
+        'DUPLICATE_NAME']
+
+
+def test_message_has_kind_and_place_of_the_other_element():
+    error = only_error(model_file('\n<link name="a"/>\n<link name="l"/>\n<frame name="l"/>'))
+    assert error.line == 4
+    assert error.message == (
+        'the name "l" belongs to a link of this scope already, see file.sdf:3')
+
+
+def test_message_has_the_article_of_the_kind():
+    error = only_error(world_file('<actor name="x"/>' * 2))
+    assert 'belongs to an actor of this scope' in error.message
+
+
+def test_children_of_a_link_of_different_kinds_may_share_a_name():
+    scene = load_text(link_with(''.join(element(tag, 'x') for tag in LINK_CHILDREN)))
+    assert names_of(scene).count('m::l::x') == len(LINK_CHILDREN)
+
+
+def test_light_and_actor_may_share_the_name_of_a_model():
+    scene = load_text(world_file(
+        '<model name="x"><link name="l"/></model><light name="x" type="point"/>'
+        '<actor name="x"/>'))
+    assert names_of(scene) == ['x', 'x::l', 'x', 'x']
+
+
+def test_elements_of_different_scopes_may_share_a_name():
+    scene = load_text(model_file(
+        '<link name="x"><visual name="x"/></link><model name="n"><link name="x"/></model>'))
+    assert names_of(scene) == ['m', 'm::x', 'm::x::x', 'm::n', 'm::n::x']
+
+
+# Elements of different kinds with one name in files below 1.7
+
+J = fixed_joint('l', 'l', 'k')
+
+
+@pytest.mark.parametrize('content', [
+    '<link name="l"/><link name="l"/>', '<frame name="l"/><frame name="l"/>' + LINK,
+    '<model name="l"><link name="k"/></model>' * 2,
+])
+def test_elements_of_one_kind_cannot_share_a_name_in_old_files(content):
+    assert codes_of(model_file(content, version='1.6')) == ['DUPLICATE_NAME']
+
+
+@pytest.mark.parametrize('version', ['1.7', '1.10'])
+def test_nothing_is_renamed_in_newer_files(version):
+    assert codes_of(model_file(LINK + '<frame name="l"/>', version=version)) == [
+        'DUPLICATE_NAME']
+
+
+def test_model_is_not_renamed_in_old_files():
+    text = model_file(LINK + '<model name="l"><link name="k"/></model>', version='1.6')
+    assert codes_of(text) == ['DUPLICATE_NAME']
+
+
+def test_joint_of_a_world_is_not_renamed_in_old_files():
+    text = world_file(
+        '<model name="a"><link name="l"/></model><model name="b"><link name="l"/></model>'
+        + fixed_joint('a', 'a', 'b'), version='1.6')
+    assert codes_of(text) == ['DUPLICATE_NAME']
+
+
+@pytest.mark.parametrize(('content', 'name'), [
+    (LINK + '<frame name="l"/>', 'm::l_frame'),
+    (LINK + '<link name="k"/>' + J, 'm::l_joint'),
+    ('<frame name="l"/><link name="k"/>' + LINK, 'm::l_link'),
+    (LINK + '<link name="k"/><link name="l_joint"/>' + J, 'm::l_joint0'),
+    (LINK + '<link name="k"/><link name="l_joint"/><frame name="l_joint0"/>' + J, 'm::l_joint1'),
+])
+def test_later_element_is_renamed_in_old_files(content, name):
+    scene = load_text(model_file(content, version='1.6'))
+    assert name in names_of(scene)
+    assert warning_codes(scene) == ['WARNING']
+
+
+def test_frame_of_a_world_is_renamed_in_old_files():
+    scene = load_text(world_file(
+        '<model name="a"><link name="l"/></model><frame name="a"/>', version='1.6'))
+    assert names_of(scene) == ['a', 'a::l', 'a_frame']
+
+
+def test_references_name_the_earlier_element_in_old_files():
+    scene = load_text(model_file(
+        posed('link', 'l', '1 0 0 0 0 0') + posed('frame', 'l', '0 1 0 0 0 0')
+        + posed('frame', 'f', '0 0 1 0 0 0', 'l'), version='1.6'))
+    assert_at(scene, 'm::f', (1, 0, 1))
+    assert_at(scene, 'm::l_frame', (0, 1, 0))

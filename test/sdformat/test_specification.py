@@ -1,0 +1,80 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The definitions of elements: all refer to others that exist, and none is left over."""
+
+import re
+
+import pytest
+
+from sdf_pose_bridge import Kind
+from sdf_pose_bridge.sdformat.grammar import definition_of
+from sdf_pose_bridge.sdformat.grammar import ValueType
+from sdf_pose_bridge.sdformat.specification import ELEMENTS
+
+CONTENTS = {**ELEMENTS, **{kind.label: kind.content for kind in Kind if kind is not Kind.ROOT}}
+"""The content of each element, by its identifier."""
+
+
+def identifiers_reachable_from(top):
+    """Return the identifiers of all definitions that a definition leads to."""
+    found, waiting = set(), [top]
+    while waiting:
+        identifier = waiting.pop()
+        if identifier not in found:
+            found.add(identifier)
+            waiting += [
+                child.identifier for child in definition_of(identifier).children.values()
+                if has_definition(child)]
+    return found
+
+
+def has_definition(child):
+    """Return whether a child element is one with a definition, and not one with a value alone."""
+    if child.identifier not in CONTENTS:
+        return False
+    definition = definition_of(child.identifier)
+    return (child.value_type, child.attributes, set(child.children)) == (
+        definition.value_type, definition.attributes, set(definition.children))
+
+
+def parents_of_kind(tag):
+    """Return the elements in which a tag is a kind; those need no item for it."""
+    return next((kind.parents for kind in Kind if kind.label == tag), ())
+
+
+@pytest.mark.parametrize('identifier', sorted(CONTENTS))
+def test_every_item_of_a_definition_is_read(identifier):
+    words = CONTENTS[identifier].split()
+    definition = definition_of(identifier)
+    own = [tag for tag in definition.children if identifier not in parents_of_kind(tag)]
+    read = [*(f'@{name}' for name in definition.attributes), *own]
+    named = [re.match(r'@?\w*', word)[0] for word in words if word[0] not in ':*']
+    assert sorted(read) == sorted(named)
+
+
+def test_every_type_exists():
+    types = re.findall(r':(\w+)', ' '.join(CONTENTS.values()))
+    assert set(types) <= {value_type.value for value_type in ValueType}
+
+
+def test_every_definition_that_is_referred_to_exists():
+    assert set(re.findall(r'=(\S+)', ' '.join(CONTENTS.values()))) <= set(CONTENTS)
+
+
+@pytest.mark.parametrize('identifier', [name for name in sorted(CONTENTS) if '/' in name])
+def test_definition_for_one_parent_is_used_there(identifier):
+    parent, tag = identifier.split('/')
+    assert definition_of(parent).children[tag].identifier == identifier
+
+
+def test_every_parent_of_a_kind_exists():
+    assert {parent for kind in Kind for parent in kind.parents} <= set(CONTENTS)
+
+
+def test_every_element_is_reachable():
+    assert identifiers_reachable_from('sdf') == set(CONTENTS)
+
+
+@pytest.mark.parametrize('kind', [kind for kind in Kind if kind.parents and kind != Kind.WORLD])
+def test_every_kind_has_a_pose(kind):
+    assert definition_of(kind.label).children['pose'].is_pose

@@ -1,0 +1,190 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Values that no pose depends on, but that libsdformat refuses."""
+
+import pytest
+from sdf_texts import codes_of
+from sdf_texts import link_with
+from sdf_texts import model_file
+from sdf_texts import only_error
+from sdf_texts import TWO_LINKS
+
+from sdf_pose_bridge import load_text
+from sdf_pose_bridge.sdformat.grammar import ValueType
+from sdf_pose_bridge.sdformat.values import boolean_from_text
+from sdf_pose_bridge.sdformat.values import is_of_type
+
+
+def visual(content):
+    return link_with(f'<visual name="v">{content}</visual>')
+
+
+def material(content):
+    return visual(f'<material>{content}</material>')
+
+
+def box(size):
+    return visual(f'<geometry><box><size>{size}</size></box></geometry>')
+
+
+def axis(content):
+    return model_file(
+        TWO_LINKS + '<joint name="j" type="revolute"><parent>a</parent><child>b</child>'
+        f'<axis>{content}</axis></joint>')
+
+
+def surface(content):
+    return link_with(f'<collision name="c"><surface>{content}</surface></collision>')
+
+
+def ode(content):
+    return surface(f'<friction><ode>{content}</ode></friction>')
+
+
+@pytest.mark.parametrize('text', [
+    link_with('<inertial><mass>heavy</mass></inertial>'),
+    link_with('<inertial><mass>,</mass></inertial>'),
+    link_with('<gravity>maybe</gravity>'),
+    box('1 1'),
+    box('1 x 1 1'),
+    box('1,1,1'),
+    box('1 1 \u0661'),
+    visual('<transparency>,</transparency>'),
+    visual('<transparency>\u0661</transparency>'),
+    visual('<transparency>\u00bd</transparency>'),
+    visual('<visibility_flags>x1</visibility_flags>'),
+    visual('<visibility_flags>.5</visibility_flags>'),
+    visual('<visibility_flags>\u0661</visibility_flags>'),
+    material('<ambient>1 1</ambient>'),
+    material('<ambient>1 1 2 1</ambient>'),
+    material('<ambient>1 1 5e-0_1</ambient>'),
+    material('<ambient>1 1 1 1 1</ambient>'),
+    material('<ambient>1 1 1 red</ambient>'),
+    material('<ambient>1 1 -0.1</ambient>'),
+    material('<ambient>1 1 nan</ambient>'),
+    axis('<xyz>0 0 0</xyz>'),
+    axis('<xyz>0 1</xyz>'),
+    axis('<xyz>0 0 1</xyz><limit><lower>low</lower></limit>'),
+    ode('<mu>-1</mu>'),
+    surface('<bounce><restitution_coefficient>1.1</restitution_coefficient></bounce>'),
+    model_file('<static>maybe</static><link name="l"/>'),
+    model_file('<link name="l"/><static>2</static>'),
+    model_file('<static>-1</static><link name="l"/>'),
+])
+def test_wrong_value_is_refused(text):
+    assert codes_of(text) == ['ELEMENT_INVALID']
+
+
+@pytest.mark.parametrize('text', [
+    link_with('<light name="x"/>'),
+    link_with('<sensor name="x"/>'),
+    model_file('<link name="l"/><plugin name="p"/>'),
+    model_file('<link name="l"/><gripper/>'),
+    model_file(TWO_LINKS + '<joint name="j"><parent>a</parent><child>b</child></joint>'),
+])
+def test_missing_attribute_is_refused(text):
+    assert codes_of(text) == ['ATTRIBUTE_MISSING']
+
+
+@pytest.mark.parametrize('text', [
+    link_with('<sensor name="x" type=""/>'),
+    link_with('<light name="x" type=" "/>'),
+    model_file('<link name="l"/><plugin name="p" filename=""/>'),
+    model_file('<link name="l"/><gripper name=""/>'),
+])
+def test_empty_attribute_that_is_required_is_refused(text):
+    assert codes_of(text) == ['ATTRIBUTE_INVALID']
+
+
+@pytest.mark.parametrize('text', [
+    link_with('<inertial auto="maybe"/>'),
+    '<sdf version="1.10"><world name="w"><gui fullscreen="2"/></world></sdf>',
+])
+def test_attribute_of_another_type_is_refused(text):
+    assert codes_of(text) == ['ATTRIBUTE_INVALID']
+
+
+@pytest.mark.parametrize('text', [
+    link_with('<inertial><mass> 1.5kg </mass></inertial>'),
+    link_with('<inertial><mass/></inertial>'),
+    link_with('<inertial><mass> \n </mass></inertial>'),
+    link_with('<inertial><mass>true</mass></inertial>'),
+    link_with('<inertial><mass>1_000</mass></inertial>'),
+    link_with('<gravity>1</gravity>'),
+    box('1 1 1 1'),
+    visual('<visibility_flags>0x0F</visibility_flags>'),
+    visual('<transparency>-.5</transparency>'),
+    visual('<transparency>5.</transparency>'),
+    material('<ambient>1 1 0.5</ambient>'),
+    material('<ambient>1 1_0 0.5x</ambient>'),
+    material('<ambient>1 1_0 0.5</ambient>'),
+    axis('<xyz>0 0 1e-3</xyz>'),
+    ode('<mu>1e9</mu>'),
+    surface('<bounce><restitution_coefficient>1_0</restitution_coefficient></bounce>'),
+    link_with('<unknown><mass>heavy</mass></unknown>'),
+    model_file('<link name="l"/><plugin name="p" filename="f"><inertial><mass>x</mass></inertial>'
+               '<plugin/></plugin>'),
+    model_file('<link name="l"/><x:inertial><mass>heavy</mass></x:inertial>'),
+])
+def test_value_that_libsdformat_accepts_is_accepted(text):
+    assert load_text(text).names
+
+
+@pytest.mark.parametrize('text', [
+    link_with(f'<inertial><mass>{" " * 100_000}</mass></inertial>'),
+    axis(f'<xyz>{" " * 100_000}1 0 0</xyz>'),
+], ids=['a number', 'an axis'])
+def test_long_runs_of_white_space_are_read_fast(text):
+    assert load_text(text).names
+
+
+def test_message_has_the_value_and_the_rule():
+    error = only_error(model_file('<link name="l"/><static>maybe</static>'))
+    assert error.message == '"maybe" is not a boolean (true, false, 1 or 0)'
+
+
+def test_message_has_the_range():
+    assert only_error(ode('<mu>-1</mu>')).message == '"-1" must be at least 0'
+
+
+def test_long_value_is_cut_in_the_message():
+    assert len(only_error(visual(f'<transparency>{"x" * 10_000}</transparency>')).message) < 200
+
+
+# Booleans
+
+@pytest.mark.parametrize('text', [
+    'yes', 'no', 't', '2', '-1', '01', '1.0', 'tru e', '\u0661', '\u00a01', ''])
+def test_text_that_is_no_boolean(text):
+    assert boolean_from_text(text) is None
+
+
+@pytest.mark.parametrize('text', ['true', 'True', 'TRUE', '1', ' true\n'])
+def test_true(text):
+    assert boolean_from_text(text) is True
+
+
+@pytest.mark.parametrize('text', ['false', 'False', 'FALSE', '0', '\t0 '])
+def test_false(text):
+    assert boolean_from_text(text) is False
+
+
+# Types
+
+@pytest.mark.parametrize(('text', 'value_type'), [
+    ('x', ValueType.NUMBER), ('.', ValueType.NUMBER), ('.5', ValueType.INTEGER),
+    ('1 2', ValueType.THREE_NUMBERS), ('1', ValueType.TWO_NUMBERS), ('yes', ValueType.BOOLEAN),
+    ('1 2', ValueType.COLOR), ('0 0 0 0 0', ValueType.COLOR), ('1 1 1.5', ValueType.COLOR),
+])
+def test_text_that_is_not_of_a_type(text, value_type):
+    assert not is_of_type(text, value_type)
+
+
+@pytest.mark.parametrize(('text', 'value_type'), [
+    ('-1.5e3', ValueType.NUMBER), ('true', ValueType.NUMBER), ('+5x', ValueType.INTEGER),
+    ('false', ValueType.INTEGER), ('1 2 3 4', ValueType.THREE_NUMBERS), ('1', ValueType.BOOLEAN),
+    ('1 2', ValueType.TWO_NUMBERS), ('0 0.5 1', ValueType.COLOR), ('0 0.5 1 1', ValueType.COLOR),
+    ('any', ValueType.STRING),
+])
+def test_text_that_is_of_a_type(text, value_type):
+    assert is_of_type(text, value_type)

@@ -1,0 +1,308 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Parsing XML: broken and hostile files are refused, what libsdformat accepts is accepted."""
+
+import socket
+
+import pytest
+from sdf_texts import assert_at
+from sdf_texts import codes_of
+from sdf_texts import LINK
+from sdf_texts import link_with
+from sdf_texts import model_file
+from sdf_texts import names_of
+from sdf_texts import only_error
+
+from sdf_pose_bridge import load_text
+from sdf_pose_bridge import SdfError
+from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
+from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
+
+NESTED_ENTITIES = ''.join(
+    f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' if i else '<!ENTITY e0 "1 2 3 0 0 0 ">'
+    for i in range(12))
+"""Entities of which the last one would expand to 10 to the power of 11 poses."""
+
+MANY_PREFIXES = LINK + '<undeclared:element/>\n' * 150
+"""More errors than libxml2 reports: all of these prefixes are accepted."""
+
+
+def error_of(content):
+    """Parse bytes that are refused; return the error."""
+    with pytest.raises(SdfError) as caught:
+        xml_from_bytes(content, 'file.sdf')
+    return caught.value
+
+
+def names_in(text):
+    return names_of(load_text(text))
+
+
+# Files that cannot be read
+
+@pytest.mark.parametrize('path', ['none.sdf', '', 'a\0b', 'x' * 1000])
+def test_unreadable_file_is_refused(tmp_path, path):
+    with pytest.raises(SdfError) as caught:
+        bytes_from_file(str(tmp_path / path))
+    assert (caught.value.code, caught.value.file) == ('FILE_READ', str(tmp_path / path))
+
+
+@pytest.mark.parametrize('content', [
+    b'', b' \n', b'not XML', b'\0\1\2\3' * 100, b'\xff\xfe\x00\xd8', b'{"sdf": 1}',
+    b'<sdf version="1.9">', b'<sdf version="1.9"><model name="m"></sdf>',
+    b'<sdf version="1.9"><model name="m" name="n"><link name="l"/></model></sdf>',
+    b'<sdf version=1.9></sdf>', b'<sdf version="1.9">\xff</sdf>',
+    b'<!-- only a comment -->', b'<?xml version="1.0"?>',
+], ids=repr)
+def test_text_that_is_not_well_formed_is_refused(content):
+    assert error_of(content).code == 'FILE_READ'
+
+
+def test_error_has_the_line_of_broken_xml():
+    error = error_of(b'<sdf version="1.9">\n<model name="m">\n</sdf>')
+    assert (error.file, error.line) == ('file.sdf', 3)
+
+
+def test_undeclared_entity_is_refused():
+    assert codes_of(model_file('<link name="&e;"/>')) == ['FILE_READ']
+
+
+@pytest.mark.parametrize('content', [
+    '<link name="k"><pose>1 2 3 0 0 0</poze></link>', '<link name="k" name="h"/>', '&undeclared;',
+    '<link name=k/>'])
+def test_error_behind_many_undeclared_prefixes_is_reported(content):
+    error = only_error('\n' + model_file(f'{MANY_PREFIXES}{content}'))
+    assert (error.code, error.line) == ('FILE_READ', 152)
+
+
+def test_error_behind_a_declaration_that_does_not_stand_first_has_its_line():
+    text = f' \n\n<?xml version="1.0"?>\n<a>{MANY_PREFIXES}<b c="1" c="2"/></a>'
+    assert error_of(text.encode()).line == 154
+
+
+# Hostile files
+
+def only_error_with_document_type(declarations, content=LINK):
+    return only_error(f'<!DOCTYPE sdf [{declarations}]>' + model_file(content))
+
+
+@pytest.mark.parametrize('declarations', [
+    '<!ENTITY e "1 2 3 0 0 0">', '<!ENTITY % p "1">', '<!ENTITY e SYSTEM "file:///etc/passwd">',
+    '<!ATTLIST pose degrees CDATA "true">', '<!ATTLIST link name ID #IMPLIED>',
+    '<!ELEMENT sdf ANY>', '<!NOTATION n SYSTEM "n">',
+    '<!ELEMENT sdf ANY><!ATTLIST pose degrees CDATA "true"><!ENTITY e "1">',
+])
+def test_document_type_with_an_internal_subset_is_refused(declarations):
+    error = only_error_with_document_type(declarations)
+    assert (error.code, error.line) == ('FILE_READ', 1)
+    assert 'document type' in error.message
+    assert '\n' not in str(error)
+
+
+def test_document_type_with_external_and_internal_subset_is_refused():
+    text = '<!DOCTYPE sdf SYSTEM "sdf.dtd" [<!ATTLIST pose degrees CDATA "true">]>'
+    assert codes_of(text + model_file(LINK)) == ['FILE_READ']
+
+
+@pytest.mark.parametrize('document_type', [
+    '<!DOCTYPE sdf>', '<!DOCTYPE sdf SYSTEM "sdf.dtd">', '<!DOCTYPE sdf PUBLIC "sdf" "sdf.dtd">',
+    '<?xml version="1.0"?>\n<!DOCTYPE sdf>', '<!DOCTYPE something>',
+])
+def test_document_type_without_an_internal_subset_is_skipped(document_type):
+    assert names_in(document_type + model_file(LINK)) == ['m', 'm::l']
+
+
+def test_text_of_another_file_is_not_read(tmp_path):
+    (tmp_path / 'secret').write_text('1 2 3 0 0 0')
+    error = only_error_with_document_type(
+        f'<!ENTITY e SYSTEM "{(tmp_path / "secret").as_uri()}">',
+        '<link name="l"><pose>&e;</pose></link>')
+    assert error.code == 'FILE_READ'
+
+
+def test_file_of_an_entity_is_not_opened(tmp_path):
+    # Otherwise the message would be about the file, which is missing.
+    error = only_error_with_document_type(
+        f'<!ENTITY e SYSTEM "{(tmp_path / "none").as_uri()}">',
+        '<link name="l"><pose>&e;</pose></link>')
+    assert 'declares entities' in error.message
+
+
+def test_entity_in_a_pose_is_not_skipped():
+    error = only_error_with_document_type(
+        '<!ENTITY e "1 2 3 0 0 0">', '<link name="l"><pose>&e;</pose></link>')
+    assert error.code == 'FILE_READ'
+
+
+@pytest.mark.parametrize('content', [
+    '<link name="l"><pose>&e11;</pose></link>', '<link name="&e11;"/>',
+])
+def test_nested_entities_are_not_expanded(content):
+    assert only_error_with_document_type(NESTED_ENTITIES, content).code == 'FILE_READ'
+
+
+def test_entities_that_contain_one_another_are_refused():
+    error = only_error_with_document_type(
+        '<!ENTITY a "&b;"><!ENTITY b "&a;">', '<link name="&a;"/>')
+    assert error.code == 'FILE_READ'
+
+
+def test_nothing_is_read_from_the_network():
+    with socket.create_server(('127.0.0.1', 0)) as server:
+        url = f'http://127.0.0.1:{server.getsockname()[1]}/sdf.dtd'
+        load_text(f'<!DOCTYPE sdf SYSTEM "{url}">' + model_file(LINK))
+        server.setblocking(False)
+        with pytest.raises(BlockingIOError):
+            server.accept()
+
+
+@pytest.mark.parametrize('content', [
+    '<model name="m">' * 1000 + '</model>' * 1000,
+    f'<model name="m"><link name="l"><a>{"<a>" * 300}{"</a>" * 300}</a></link></model>',
+    f'<model name="m"><link name="l"><a>{"a" * 10_500_000}</a></link></model>',
+], ids=['models', 'other elements', 'a text'])
+def test_too_deep_or_too_long_content_is_refused(content):
+    assert codes_of(f'<sdf version="1.9">{content}</sdf>') == ['FILE_READ']
+
+
+# A search that backtracks would take minutes for these.
+
+@pytest.mark.parametrize('text', [
+    model_file(LINK) + '<!--' * 20_000, model_file(LINK + '<!-- -- -->' + '<!--' * 20_000),
+    model_file(LINK, attributes='a' * 100_000),
+], ids=['comments', 'comments and hyphens', 'an attribute'])
+def test_long_runs_that_are_not_well_formed_are_refused(text):
+    assert codes_of(text) == ['FILE_READ']
+
+
+@pytest.mark.parametrize('content', [
+    '<!--' * 20_000, '<a b="' * 20_000, "<a b='" * 20_000, '<![CDATA[' * 20_000, '<' * 20_000,
+    '<?' * 20_000,
+], ids=lambda content: content[:9])
+def test_long_runs_beyond_the_last_line_of_libxml2_are_refused(content):
+    assert codes_of(model_file(LINK + '\n' * 70_000 + content)) == ['FILE_READ']
+
+
+# Well-formedness that libsdformat does not need
+
+@pytest.mark.parametrize('text', [
+    model_file(LINK + '<drake:joint name="x::y"><pose>no</pose></drake:joint>'),
+    model_file(LINK + '<a:b:c/>'),
+    model_file(LINK, attributes='experimental:x="1"'),
+    model_file(LINK, attributes='xmlns:experimental="http://a" experimental:x="1"'),
+    model_file(LINK + '<d:link xmlns:d="http://d" name="k"><d:pose>no</d:pose></d:link>'),
+    model_file('<x:link name="l"/>' + LINK + '<x:frame name="f"/>'),
+    model_file('<x:link xmlns:x="http://x" name="l"/>' + LINK),
+    model_file(LINK + '<x:y><link name="k"/></x:y>'),
+])
+def test_elements_and_attributes_with_a_prefix_are_skipped(text):
+    assert names_in(text) == ['m', 'm::l']
+
+
+def test_many_undeclared_prefixes_are_accepted():
+    text = f' \n<?xml version="1.0"?>{model_file(MANY_PREFIXES)}<x/>'
+    assert names_in(text) == ['m', 'm::l']
+
+
+@pytest.mark.parametrize('encoding', ['ISO-8859-1', 'UTF-16', 'EUC-JP'])
+def test_many_undeclared_prefixes_in_another_encoding_are_accepted(encoding):
+    text = f'<?xml version="1.0" encoding="{encoding}"?>{model_file(MANY_PREFIXES)}'
+    assert names_in(text.encode(encoding)) == ['m', 'm::l']
+
+
+@pytest.mark.parametrize('text', [
+    link_with('<pose>1 2 3 0 0 0</pose>').replace('<sdf', '<sdf xmlns="http://sdformat.org"'),
+    link_with('<pose>1 2 3 0 0 0</pose>').replace('<model', '<model xmlns="urn:x"'),
+])
+def test_default_namespace_is_ignored(text):
+    assert_at(load_text(text), 'm::l', (1, 2, 3))
+
+
+@pytest.mark.parametrize('rest', ['<sdf version="1.9"/>', '<a/><b/>', '</a>'])
+def test_content_after_the_outermost_element_is_ignored_with_a_warning(rest):
+    scene = load_text(model_file(LINK) + rest)
+    assert names_of(scene) == ['m', 'm::l']
+    assert 'not well-formed' in scene.warnings[0].message
+
+
+def test_white_space_before_the_declaration_is_accepted_with_a_warning():
+    scene = load_text('\n <?xml version="1.0"?>' + model_file(LINK))
+    assert names_of(scene) == ['m', 'm::l']
+    assert scene.warnings[0].place.line == 2
+
+
+def test_processing_instruction_in_an_element_does_not_hide_its_text():
+    # libsdformat refuses such a file.
+    text = link_with('<pose><?x y?>1 2 3 0 0 0</pose>')
+    assert 'processing instruction' in only_error(text).message
+
+
+def test_processing_instruction_before_the_outermost_element_is_accepted():
+    assert names_in('<?x y?>' + model_file(LINK)) == ['m', 'm::l']
+
+
+# Comments
+
+@pytest.mark.parametrize('comment', [
+    '<!-- a -- b -->', '<!-- a --->', '<!------- a ------->', '<!------ a ------>', '<!----->',
+    '<!-- a\n---\nb --->', '<!--> a --->', '<!-- <!-- a -->', '<!-- <?a -- ?> -->',
+    '<!-- <![CDATA[ -- ]]> -->',
+])
+def test_comment_ends_where_it_ends_in_libsdformat(comment):
+    text = model_file(f'{comment}\n<link name="a"/>{comment}<link name="b"/>')
+    assert names_in(text) == ['m', 'm::a', 'm::b']
+
+
+def test_comments_with_hyphens_behind_many_undeclared_prefixes_are_accepted():
+    text = model_file(MANY_PREFIXES + '<!-- a ---><link name="k"/><!-- -->')
+    assert names_in(text) == ['m', 'm::l', 'm::k']
+
+
+def test_hyphens_in_several_comments_give_one_warning():
+    scene = load_text(model_file('\n<!-- fine -->\n<!--- a --->' + LINK + '<!-- b --->\n'))
+    (warning,) = scene.warnings
+    assert (warning.message, warning.place.line) == (
+        'this is not well-formed XML: 2 comments hold two hyphens in a row', 3)
+
+
+def test_hyphens_in_one_comment_give_a_warning():
+    (warning,) = load_text(model_file('<!-- a ---- b --->' + LINK)).warnings
+    assert warning.message == 'this is not well-formed XML: a comment holds two hyphens in a row'
+
+
+@pytest.mark.parametrize('text', ['1-2', '<!--1-2-->'])
+def test_hyphens_outside_of_comments_are_kept(text):
+    root = xml_from_bytes(f'<a><![CDATA[{text}]]><!-- - --- --></a>'.encode(), 'f').root
+    assert root.text == text
+
+
+def test_start_of_a_comment_in_a_processing_instruction_is_none():
+    text = '<?x <!-- ?>' + model_file('<!-- a ---><link name="a"/><!-- -->')
+    assert names_in(text) == ['m', 'm::a']
+
+
+def test_hyphens_in_comments_of_utf_16_are_refused():
+    text = '<?xml version="1.0" encoding="UTF-16"?>' + model_file('<!-- a ---><!-- -->' + LINK)
+    assert error_of(text.encode('UTF-16')).code == 'FILE_READ'
+
+
+# Encodings
+
+def test_byte_order_mark_is_skipped():
+    assert names_in(b'\xef\xbb\xbf' + model_file(LINK).encode()) == ['m', 'm::l']
+
+
+def test_default_encoding_is_utf_8():
+    assert names_in(model_file('<link name="größe 手"/>').encode()) == ['m', 'm::größe 手']
+
+
+@pytest.mark.parametrize('encoding', ['utf-8', 'ISO-8859-1', 'UTF-16'])
+def test_bytes_are_in_the_encoding_that_is_declared(encoding):
+    text = f'<?xml version="1.0" encoding="{encoding}"?>' + model_file('<link name="größe"/>')
+    assert names_in(text.encode(encoding)) == ['m', 'm::größe']
+
+
+@pytest.mark.parametrize('encoding', ['utf-8', 'ISO-8859-1', 'UTF-16'])
+def test_declared_encoding_does_not_matter_for_decoded_text(encoding):
+    text = f'<?xml version="1.0" encoding="{encoding}"?>' + model_file('<link name="größe"/>')
+    assert names_in(text) == ['m', 'm::größe']

@@ -1,0 +1,112 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Reading values from XML elements: text, attributes, prefixes, steps of paths."""
+
+import pytest
+
+from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of
+from sdf_pose_bridge.sdformat.xml_tree import child_elements
+from sdf_pose_bridge.sdformat.xml_tree import described
+from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import is_foreign
+from sdf_pose_bridge.sdformat.xml_tree import text_of
+from sdf_pose_bridge.sdformat.xml_tree import value_of
+from sdf_pose_bridge.sdformat.xml_tree import written_tag
+
+
+def xml(text):
+    return xml_from_bytes(text.encode(), 'f').root
+
+
+# Text
+
+@pytest.mark.parametrize(('content', 'text'), [
+    ('', ''),
+    (' \n ', ''),
+    ('<x/>1 2', ''),
+    ('<!-- c --><x/>1 2', ''),
+    ('<x/><!-- c -->1 2', ''),
+    ('1 2', '1 2'),
+    ('<!-- c -->1 2', '1 2'),
+    (' \n<!-- c --> <!-- d -->1 2', '1 2'),
+    ('1 <!-- c -->2', '1 '),
+    ('1 <x/>2', '1 '),
+    ('<![CDATA[1 2]]>', '1 2'),
+    ('1&#32;2', '1 2'),
+])
+def test_first_run_of_character_data_is_the_text(content, text):
+    assert text_of(xml(f'<pose>{content}</pose>')) == text
+
+
+@pytest.mark.parametrize(('content', 'value'), [
+    ('', ''), (' \t\n', ''), ('a', 'a'), (' a\n', 'a'), ('\ta \n b\t', 'a b'),
+    ('\t\u00a0x \n', '\u00a0x'), ('<!-- c --> a <!-- d -->b', 'a'),
+])
+def test_value_has_no_ascii_white_space_around_it(content, value):
+    assert value_of(xml(f'<a>{content}</a>')) == value
+
+
+# Attributes
+
+@pytest.mark.parametrize(('attributes', 'value'), [
+    ('', ''), ('name=""', ''), ('name="  "', ''), ('name=" a "', 'a'), ('name="&#10;a&#9;"', 'a'),
+    ('name="\u00a0a"', '\u00a0a'), ('x:name="a"', ''), ('Name="a"', ''),
+])
+def test_attribute_has_no_ascii_white_space_around_it(attributes, value):
+    assert attribute_of(xml(f'<link {attributes}/>'), 'name') == value
+
+
+# Children
+
+def test_comments_are_no_child_elements():
+    children = child_elements(xml('<a><!-- c --><b/><c/><!-- d --></a>'))
+    assert [child.tag for child in children] == ['b', 'c']
+
+
+def test_child_elements_of_some_tags_are_in_file_order():
+    children = child_elements(xml('<a><d/><b n="1"/><c/><b n="2"/></a>'), 'c', 'b')
+    assert [child.tag for child in children] == ['b', 'c', 'b']
+
+
+def test_element_without_the_child_has_no_first_child():
+    assert first_child(xml('<a><b/><x:c/><d><c/></d></a>'), 'c') is None
+
+
+def test_first_child_is_the_first_of_its_tag():
+    assert first_child(xml('<a><b/><c n="1"/><c n="2"/></a>'), 'c').get('n') == '1'
+
+
+# Prefixes
+
+@pytest.mark.parametrize(('text', 'tag'), [
+    ('<a/>', 'a'), ('<x:a/>', 'x:a'), ('<x:y:a/>', 'x:y:a'), ('<x:a xmlns:x="urn:x"/>', 'x:a'),
+    ('<a xmlns="urn:x"/>', 'a'),
+])
+def test_tag_as_it_is_written(text, tag):
+    assert written_tag(xml(text)) == tag
+
+
+@pytest.mark.parametrize('text', [
+    '<x:a/>', '<x:a xmlns:x="urn:x"/>', '<plugin/>', '<plugin><a/></plugin>',
+    '<x:y><z><a/></z></x:y>',
+])
+def test_element_in_a_plugin_or_with_a_prefix_is_foreign(text):
+    *_, innermost = xml(text).iter()
+    assert is_foreign(innermost)
+
+
+@pytest.mark.parametrize('text', ['<a/>', '<b><a/></b>', '<b><plugin/><x:c/><a/></b>'])
+def test_other_elements_are_not_foreign(text):
+    *_, last = xml(text).iter()
+    assert not is_foreign(last)
+
+
+# Paths
+
+@pytest.mark.parametrize(('text', 'step'), [
+    ('<link/>', 'link'), ('<link name=""/>', 'link'), ('<link name=" l "/>', 'link[@name="l"]'),
+    ('<x:link name="l"/>', 'x:link[@name="l"]'),
+])
+def test_step_of_a_path(text, step):
+    assert described(xml(text)) == step
