@@ -4,7 +4,8 @@
 Check that every joint joins two bodies.
 
 Source: ``checkJointParentChildNames`` and ``checkJointAxisExpressedInValues`` of libsdformat. They
-skip joints of models in models, except for unknown children; here these are warnings.
+skip joints of models in models, except for unknown children and one name at both ends; here the
+rest are warnings.
 """
 
 from __future__ import annotations
@@ -101,7 +102,8 @@ class _JointChecks:
         else:
             msg = (f'parent "{parent.name}" and child "{child.name}" are both attached to '
                    f'"{self._scopes.names[child_body]}"; a joint joins two bodies')
-            self._report(JointSameLinkError, msg, joint, 0, '')
+            report = self._error if parent.name == child.name else self._report
+            report(JointSameLinkError, msg, joint, 0, '')
         return False
 
     def _report_unknown(
@@ -124,7 +126,7 @@ class _JointChecks:
             self._error(error_class, message, joint, line, part)
         else:
             place = self._elements.place(joint, line, part)
-            self._problems.warning(f'{message}; the joint moves nothing', place, error_class.code)
+            self._problems.warning(f'{message}; libsdformat does not check this here', place, error_class.code)
 
     def _error(
         self, error_class: type[SdfError], message: str, joint: int, line: int, part: str,

@@ -19,6 +19,7 @@ from typing import TypeVar
 import numpy as np
 
 from sdf_pose_bridge.errors import Problems
+from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene.frame_graph import frame_graph_from_elements
 from sdf_pose_bridge.scene.frame_graph import FrameGraph
 from sdf_pose_bridge.scene.resolution import root_poses_from_graph
@@ -151,7 +152,9 @@ def _canonical_link(root: XmlElement, sources: Sources, problems: Problems) -> s
         return None
     model = 1  # element 0 is the implicit root
     link = int(graph.canonical_links[model])
-    return graph.names[link].partition('::')[2] if link != NO_ELEMENT else ''
+    if link == NO_ELEMENT:
+        return ''
+    return graph.names[link].removeprefix(f'{graph.names[model]}{SEPARATOR}')
 
 
 def _scene_from_graph(

@@ -86,7 +86,7 @@ def _check_scoped_names(root: XmlElement, sources: Sources, problems: Problems) 
     for xml in xmls:
         if is_foreign(xml) or all(
                 allows_scoped_names(sources.versions[path])
-                for path in sources.enclosing_paths(xml)):
+                for path in sources.enclosing_paths_of_name(xml)):
             continue
         msg = f'the name "{xml.get("name")}" holds "{SEPARATOR}", which separates scopes'
         problems.error(ReservedNameError(msg, sources.place_of_name(xml)))
@@ -188,7 +188,7 @@ class _Reader:
         if depth > _DEEPEST:
             msg = f'elements are nested more than {_DEEPEST} deep'
             self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
-            return
+            self._problems.raise_errors()
         definitions = definition.children
         for child in xml:
             child_definition = definitions.get(child.tag)
@@ -196,7 +196,10 @@ class _Reader:
                 continue
             if child_definition.checked_attributes:
                 self._check_attributes(child, child_definition)
-            if child_definition.value_type is None:
+            if child_definition.kind is not None:
+                self._read_frame(
+                    child, child_definition, child_definition.kind, parent, scope, path, depth + 1)
+            elif child_definition.value_type is None:
                 self._read(child, child_definition, parent, scope, path, depth + 1)
             elif child_definition.is_pose:
                 if parent == NO_ELEMENT or self._builder.pose_lines[parent]:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from collections.abc import Mapping
 import copy
+from itertools import islice
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import Place
@@ -53,6 +54,7 @@ class Sources:
         self._files: dict[XmlElement, str] = {}
         self._lines: dict[XmlElement, int] = {}
         self._includes: dict[XmlElement, Place] = {}
+        self._named_by_includes: set[XmlElement] = set()
         self._composed_trees: set[XmlElement] = set()
 
     def add_path(self, path: str) -> None:
@@ -107,6 +109,14 @@ class Sources:
         """
         self._includes[xml] = self.place(include)
 
+    def set_named_by_include(self, xml: XmlElement) -> None:
+        """
+        Set that the name of an included element is written in the file that includes it.
+
+        :param xml: the included element.
+        """
+        self._named_by_includes.add(xml)
+
     def path_at(self, xml: XmlElement, default: str) -> str:
         """
         Return the file of an element whose parent's file is known.
@@ -136,6 +146,15 @@ class Sources:
         for element in (xml, *xml.iterancestors()):
             if element in self._files:
                 yield self._files[element]
+
+    def enclosing_paths_of_name(self, xml: XmlElement) -> Iterator[str]:
+        """
+        Iterate over the files that lead to the name of an element.
+
+        :param xml: the element.
+        :return: as of :meth:`enclosing_paths`, from the file in which the name is written.
+        """
+        return islice(self.enclosing_paths(xml), int(xml in self._named_by_includes), None)
 
     def line(self, xml: XmlElement) -> int:
         """
@@ -183,5 +202,7 @@ class Sources:
                     self._lines[new] = self._lines[old]
                 if old in self._includes:
                     self._includes[new] = self._includes[old]
+                if old in self._named_by_includes:
+                    self._named_by_includes.add(new)
         self._files[result] = self.path(xml)
         return result

@@ -103,8 +103,11 @@ def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> b
 def _leading_numbers(text: str, count: int) -> Sequence[float]:
     """Return the numbers that the first words begin with, without words that begin with none."""
     words = text.split()[:count]
-    try:
-        return [float(word) for word in words]
-    except ValueError:
-        matches = map(_LEADING_NUMBER.match, words)
-        return [float(number[0]) for number in matches if number]
+    # Python also reads 1_000 and the digits of all scripts.
+    if '_' not in text and text.isascii():
+        try:
+            return [float(word) for word in words]
+        except ValueError:
+            pass
+    matches = map(_LEADING_NUMBER.match, words)
+    return [float(number[0]) for number in matches if number]

@@ -9,6 +9,7 @@ Depth and sizes are limited as libxml2 does without its option ``huge``.
 from __future__ import annotations
 
 from collections.abc import Mapping
+import contextlib
 from itertools import chain
 from itertools import islice
 from pathlib import Path
@@ -38,8 +39,11 @@ _LAST_LINE = 65_535
 
 _START_TAG = re.compile(
     rb'<(?:([^/!?][^"\'>]*(?:"[^"]*"[^"\'>]*|\'[^\']*\'[^"\'>]*)*)>'
-    rb'|!--.*?-->|!\[CDATA\[.*?\]\]>|\?.*?\?>)', re.DOTALL)
+    rb'|!--.*?-->|!\[CDATA\[.*?\]\]>|![A-Z](?:[^"\'>]|"[^"]*"|\'[^\']*\')*>|\?.*?\?>)', re.DOTALL)
 """A start tag, or what may hold something that looks like one."""
+
+
+_INTERNAL_SUBSET = re.compile(rb'<!DOCTYPE(?:[^"\'\[>]|"[^"]*"|\'[^\']*\')*\[')
 
 
 class XmlFile(NamedTuple):
@@ -84,17 +88,17 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
         repair = repaired(text, encoding)
         if repair is None:
             raise error
-        text = repair.text
-        root, second_error, is_complete = _parsed(text, path, 'utf-8')
+        text, encoding = repair.text, 'utf-8'
+        root, second_error, is_complete = _parsed(text, path, encoding)
         if second_error is not None:
-            raise error
+            raise second_error
         warnings = [
             SdfWarning('WARNING', f'this is not well-formed XML: {fault}', Place(path, line))
             for line, fault in repair.faults]
     if root is None:
         msg = 'this is not XML: it has no element'
         raise FileReadError(msg, Place(path))
-    _check_document_type(root, path)
+    _check_document_type(root, text, path)
     _check_instructions(root, text, path)
     if not is_complete:
         _check_with_expat(text, encoding, path)
@@ -129,13 +133,14 @@ def _parsed(
     return root, error, len(parser.error_log) < _MOST_ERRORS
 
 
-def _check_document_type(root: XmlElement, path: str) -> None:
-    document_type = root.getroottree().docinfo.internalDTD
-    if document_type is not None and any(
-            next(declarations, None) is not None for declarations in (
-                document_type.iterentities(), document_type.iterelements())):
-        msg = 'the document type declares entities or attributes, which SDFormat does not have'
-        raise FileReadError(msg, Place(path, 1))
+def _check_document_type(root: XmlElement, text: bytes, path: str) -> None:
+    if root.getroottree().docinfo.internalDTD is None:
+        return
+    # Without zero bytes, UTF-16 can be searched too.
+    subset = _INTERNAL_SUBSET.search(text.replace(b'\0', b''))
+    if subset is not None:
+        msg = 'the document type has declarations of its own, which SDFormat does not have'
+        raise FileReadError(msg, Place(path, 1 + text.count(b'\n', 0, subset.start())))
 
 
 def _check_instructions(root: XmlElement, text: bytes, path: str) -> None:
@@ -186,12 +191,14 @@ def _lines_beyond_last(root: XmlElement, text: bytes) -> dict[XmlElement, int]:
     """
     if text.count(b'\n') < _LAST_LINE:
         return {}
-    encoding = root.getroottree().docinfo.encoding or ''
-    if encoding.upper().startswith(('UTF-16', 'UTF-32')):
+    encoding = root.getroottree().docinfo.encoding or 'utf-8'
+    if text.startswith((b'\xff\xfe', b'\xfe\xff')):
+        encoding = 'utf-16'
+    with contextlib.suppress(LookupError, UnicodeDecodeError):
         text = text.decode(encoding).encode()
     ends = [tag.end(1) for tag in _START_TAG.finditer(text) if tag[1]]
     line_ends = np.flatnonzero(np.frombuffer(text, np.uint8) == ord('\n'))
     lines = np.searchsorted(line_ends, ends) + 1
     first = int(np.searchsorted(lines, _LAST_LINE))
     elements = islice(root.iter(etree.Element), first, None)
-    return dict(zip(elements, lines[first:].tolist(), strict=True))
+    return dict(zip(elements, lines[first:].tolist(), strict=False))

@@ -10,12 +10,12 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from rclpy.parameter import Parameter
 
-from sdf_pose_bridge.names import Kind
 from sdf_pose_bridge.ros.parameters import changed_settings
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.ros.parameters import settings_from_node
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.loading import MissingInclude
+from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.tree import AnchorModels
 from sdf_pose_bridge.tf.tree import TfOptions

@@ -94,10 +94,6 @@ def test_text_may_be_bytes():
     assert load_text(text.encode()).names == load_text(text).names
 
 
-def test_lone_surrogate_is_refused():
-    assert codes_of(model_file('<link name="\ud800"/>')) == ['FILE_READ']
-
-
 def test_name_of_the_text_is_that_of_the_file():
     assert load_text(model_file(LINK), 'a.sdf').files == ('a.sdf',)
 

@@ -49,7 +49,6 @@ DEEPEST = 64
 _TOP_TAGS = ('model', 'actor', 'light')
 """What can be included, in the order of preference."""
 
-_PARENT_TAGS = frozenset({'sdf', 'world', 'model'})
 
 
 class IncludeExpansion:
@@ -90,7 +89,7 @@ class IncludeExpansion:
     def _expand_in(self, root: XmlElement, files: tuple[str, ...]) -> None:
         """Replace the includes in a tree; ``files`` led to it, each included by the one before."""
         for include in list(root.iter('include')):
-            if all(parent.tag in _PARENT_TAGS for parent in include.iterancestors()):
+            if all(map(_may_hold_includes, include.iterancestors())):
                 self._expand_include(include, files)
 
     def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
@@ -203,6 +202,8 @@ class IncludeExpansion:
         name = self._override_value(include, 'name')
         if name:
             top.set('name', name)
+            self._sources.set_named_by_include(top)
+        self._check_static(include, top)
         if top.tag == 'model':
             self._override_element(include, top, 'static')
             placement = self._placement_frame(include)
@@ -215,6 +216,16 @@ class IncludeExpansion:
                 self._sources.set_source(child, self._sources.path_at(child, path))
             including_file = self._sources.path(include)
             self._sources.set_source(top, including_file, self._sources.line(include))
+
+    def _check_static(self, include: XmlElement, top: XmlElement) -> None:
+        static = first_child(include, 'static')
+        if static is None:
+            return
+        value = value_of(static)
+        # The value that a model takes over is checked in the model.
+        if boolean_from_text(value) is None and (top.tag != 'model' or not value):
+            msg = f'"{value}" is not a boolean (true, false, 1 or 0)'
+            self._problems.error(ElementInvalidError(msg, self._sources.place(static)))
 
     def _override_value(self, include: XmlElement, tag: str) -> str:
         element = first_child(include, tag)
@@ -272,3 +283,7 @@ class IncludeExpansion:
             parent.remove(include)
         else:
             parent.replace(include, top)
+
+
+def _may_hold_includes(xml: XmlElement) -> bool:
+    return xml.tag in ('model', 'world') or (xml.tag == 'sdf' and xml.getparent() is None)

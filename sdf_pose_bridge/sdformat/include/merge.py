@@ -15,11 +15,14 @@ import copy
 
 from lxml import etree
 
+from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import MergeIncludeError
 from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.names import MODEL_FRAME
+from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.sdformat.details import PLACEMENT_OF_MERGED_MODEL
+from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.sibling_names import MERGED_MODEL_PREFIX
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
@@ -31,7 +34,7 @@ from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _MOVED_TAGS = frozenset({'frame', 'gripper', 'include', 'joint', 'link', 'model', 'plugin'})
-_NOT_IN_WORLDS = frozenset({'gripper', 'link'})
+_NOT_IN_WORLDS = ('gripper', 'link')
 
 
 def merge(
@@ -55,8 +58,8 @@ def merge(
                'into a model or a world')
         problems.error(MergeIncludeError(msg, sources.place(include)))
         return
-    proxy = _proxy_frame(include, model, parent, sources, canonical_link_of)
-    if proxy is not None:
+    proxy = _proxy_frame(include, model, parent, sources, problems, canonical_link_of)
+    if proxy is not None and _fits_in(parent, model, sources, problems):
         include.addprevious(proxy)
         _move_children(include, model, attribute_of(proxy, 'name'), sources, problems)
         parent.remove(include)
@@ -64,7 +67,7 @@ def merge(
 
 def _proxy_frame(
     include: XmlElement, model: XmlElement, parent: XmlElement, sources: Sources,
-    canonical_link_of: Callable[[XmlElement], str | None],
+    problems: Problems, canonical_link_of: Callable[[XmlElement], str | None],
 ) -> XmlElement | None:
     """Return the frame that takes the place of the model frame; None for an invalid model."""
     pose = first_child(model, 'pose')
@@ -74,6 +77,10 @@ def _proxy_frame(
         sources.set_source(proxy_pose, sources.path(pose), sources.line(pose))
         # By itself, the model has nothing to be relative to.
         pose.attrib.pop('relative_to', None)
+    if attribute_of(proxy_pose, 'relative_to') == ROOT_FRAME:
+        msg = f'relative_to="{ROOT_FRAME}" is not {ValueType.FRAME.description}'
+        problems.error(AttributeInvalidError(msg, sources.place(proxy_pose)))
+        return None
     if not attribute_of(proxy_pose, 'relative_to'):
         proxy_pose.set('relative_to', MODEL_FRAME if parent.tag == 'model' else WORLD_FRAME)
     canonical_link = _canonical_link(include, model, sources, canonical_link_of)
@@ -88,6 +95,8 @@ def _proxy_frame(
     proxy.append(proxy_pose)
     sources.set_source(proxy, sources.path(model), sources.line(model))
     sources.set_include(proxy, include)
+    if first_child(include, 'name') is not None:
+        sources.set_named_by_include(proxy)
     return proxy
 
 
@@ -101,19 +110,22 @@ def _canonical_link(
     return canonical_link_of(root)
 
 
+def _fits_in(
+    parent: XmlElement, model: XmlElement, sources: Sources, problems: Problems,
+) -> bool:
+    misfits = list(child_elements(model, *_NOT_IN_WORLDS)) if parent.tag == 'world' else []
+    for child in misfits:
+        msg = f'{described(child)} cannot be merged into a world, which has no links of its own'
+        problems.error(MergeIncludeError(msg, sources.place(child)))
+    return not misfits
+
+
 def _move_children(
     include: XmlElement, model: XmlElement, proxy: str, sources: Sources, problems: Problems,
 ) -> None:
-    parent = include.getparent()
-    assert parent is not None
     for child in list(child_elements(model)):
         tag = written_tag(child)
         if tag not in _MOVED_TAGS and ':' not in tag:
-            continue
-        if parent.tag == 'world' and tag in _NOT_IN_WORLDS:
-            msg = (f'{described(child)} cannot be merged into a world, which has no links of its '
-                   'own')
-            problems.error(MergeIncludeError(msg, sources.place(child)))
             continue
         _warn_of_model_frame_in(child, sources, problems)
         _replace_model_frame(child, proxy)
