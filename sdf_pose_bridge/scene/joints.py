@@ -126,7 +126,8 @@ class _JointChecks:
             self._error(error_class, message, joint, line, part)
         else:
             place = self._elements.place(joint, line, part)
-            self._problems.warning(f'{message}; libsdformat does not check this here', place, error_class.code)
+            self._problems.warning(
+                f'{message}; libsdformat does not check this here', place, error_class.code)
 
     def _error(
         self, error_class: type[SdfError], message: str, joint: int, line: int, part: str,

@@ -18,7 +18,7 @@ _NAME = r'[^\W\d][\w:.\-]*|:[\w:.\-]*'
 _ATTRIBUTE = re.compile(rf'(\s*)((?:{_NAME})\s*=\s*)("[^"]*"|\'[^\']*\')')
 _TOKEN = re.compile(
     rf'(?P<comment><!--.*?-->)|(?P<verbatim><!\[CDATA\[.*?\]\]>)|(?P<instruction><\?.*?\?>)'
-    rf'|(?P<other><![^>]*>)|(?P<text>[^<]+)'
+    rf'|(?P<other><!(?!--|\[CDATA\[)[^>]*>)|(?P<text>[^<]+)'
     rf'|<(?P<end>/?)(?P<tag>{_NAME})(?P<attributes>(?:{_ATTRIBUTE.pattern})*)'
     rf'(?P<rest>\s*(?P<empty>/?)>)', re.DOTALL)
 _BARE_AMPERSAND = re.compile(r'&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)')
@@ -137,8 +137,10 @@ class _Repairer:
         return self._repaired_ampersands(text).replace(']]>', ']]&gt;')
 
     def _repaired_ampersands(self, text: str) -> str:
-        if _BARE_AMPERSAND.search(text):
-            self._note('"&" is not the beginning of a known entity')
+        ampersand = _BARE_AMPERSAND.search(text)
+        if ampersand is not None:
+            line = self._line + text.count('\n', 0, ampersand.start())
+            self._note('"&" is not the beginning of a known entity', line)
         return _BARE_AMPERSAND.sub('&amp;', text)
 
     def _decoded(self, text: bytes, encoding: str | None) -> str:
