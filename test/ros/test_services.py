@@ -85,7 +85,7 @@ def test_both_representations_are_answered():
     assert not response.gimbal_lock
 
 
-def test_gimbal_lock_is_told():
+def test_gimbal_lock_is_reported():
     assert convert_rotation(rpy=(0.0, math.pi / 2, 0.0)).gimbal_lock
 
 
