@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The executable ``bridge``; it imports ROS only after signals end the process well."""
+"""The executable ``bridge``; it handles signals before it imports ROS, which takes a while."""
 
 from __future__ import annotations
 

@@ -10,8 +10,8 @@ import traceback
 from typing import Any
 from typing import TypeAlias
 
-from builtin_interfaces.msg import Time
 import numpy as np
+from rclpy.clock import Clock
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.node import Node
 
@@ -39,7 +39,7 @@ def add_services(node: Node, lookup: Callable[[], PoseLookup]) -> None:
     def answer_to_lookup(
         request: LookupPose.Request, response: LookupPose.Response,
     ) -> LookupPose.Response:
-        return answer_to_lookup_pose(request, response, lookup(), node.get_clock().now().to_msg())
+        return answer_to_lookup_pose(request, response, lookup(), node.get_clock())
 
     logger = node.get_logger()
     for service_type, name, answer in (
@@ -101,7 +101,7 @@ def answer_to_convert_poses(
 
 
 def answer_to_lookup_pose(
-    request: LookupPose.Request, response: LookupPose.Response, lookup: PoseLookup, stamp: Time,
+    request: LookupPose.Request, response: LookupPose.Response, lookup: PoseLookup, clock: Clock,
 ) -> LookupPose.Response:
     """
     Look up a pose.
@@ -109,7 +109,7 @@ def answer_to_lookup_pose(
     :param request: the request.
     :param response: an empty response, which is filled.
     :param lookup: what the pose is looked up in.
-    :param stamp: the stamp of the pose.
+    :param clock: the clock that stamps the pose.
     :return: that response.
     """
     try:
@@ -123,7 +123,7 @@ def answer_to_lookup_pose(
     position.x, position.y, position.z = found.pose[:3]
     orientation.x, orientation.y, orientation.z, orientation.w = found.pose[3:]
     response.pose.header.frame_id = found.frame_id
-    response.pose.header.stamp = stamp
+    response.pose.header.stamp = clock.now().to_msg()
     response.success = True
     return response
 

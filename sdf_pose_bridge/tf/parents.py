@@ -68,11 +68,12 @@ def tf_parents_from_scene(scene: Scene) -> TfParents:
     starts = representatives[_elements_by_rank(scene, [child for _, child in ends])].tolist()
     loop_joints: list[int] = []
     joint_parents = _parents_along_joints(ends, starts)
+    # Without loops every joint leads to another body.
     if len(joint_parents) < len(ends):
         loop_joints = _joints_that_close_loops(ends)
-        for joint in reversed(loop_joints):
-            del ends[joint]
-        joint_parents = _parents_along_joints(ends, starts)
+        left_out = set(loop_joints)
+        joint_parents = _parents_along_joints(
+            [pair for joint, pair in enumerate(ends) if joint not in left_out], starts)
     free_parents = _parents_of_free_bodies(scene, joint_parents)
     for chosen in (joint_parents, free_parents):
         parents[list(chosen)] = list(chosen.values())

@@ -193,7 +193,7 @@ def _check_frame_ids(
     problems: Problems,
 ) -> None:
     """
-    Check that frame ids are unique and that TF takes them.
+    Check that frame ids are unique and that TF accepts them.
 
     :param frame_ids: the ids of all frames.
     :param owners: the element of each frame; the camera of an optical frame.
@@ -201,9 +201,6 @@ def _check_frame_ids(
     :param root_frame: frame id of the root.
     :param problems: takes what is wrong.
     """
-    text = ''.join(frame_ids)
-    if len({'', root_frame, *frame_ids}) == len(frame_ids) + 2 and not _has_white_space(text):
-        return
     first: dict[str, int] = {}
     for index, (frame_id, owner) in enumerate(zip(frame_ids, owners, strict=True)):
         if not frame_id:
@@ -220,13 +217,9 @@ def _check_frame_ids(
                    f'{scene.lines[other]}) would share the frame id "{frame_id}"; frame_names '
                    '"scoped", or another frame_separator, can tell them apart')
             problems.error(DuplicateNameError(msg, scene.place(owner)))
-        elif _has_white_space(frame_id):
+        elif frame_id.split() != [frame_id]:
             msg = f'the frame id "{frame_id}" holds white space, which some tools cannot take'
             problems.warning(msg, scene.place(owner))
-
-
-def _has_white_space(text: str) -> bool:
-    return text.split(maxsplit=1) != [text]
 
 
 def _description(scene: Scene, element: int) -> str:

@@ -194,7 +194,7 @@ def test_frames_that_are_gone_are_named(bridge, file):
     assert '"crate", "crate/body"' in line
 
 
-def test_warnings_are_told_by_the_diagnostics(start_bridge, start_listener, file):
+def test_warnings_are_in_the_diagnostics(start_bridge, start_listener, file):
     light = """<model name="k"><link name="l">
       <light name="i" type="point"><pose relative_to="x"/></light></link></model>"""
     file.write_text(world(1, extra=light))

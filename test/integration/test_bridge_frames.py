@@ -184,6 +184,7 @@ def test_models_that_are_not_anchored_still_have_poses(start_bridge, start_liste
     listener.listen_to_poses(TOPICS.values())
     listener.wait_for_keys(listener.poses, TOPICS.values())
     listener.wait_for_keys(listener.transforms, PARENTS_AND_POSES.keys() - {'robot/base'})
+    listener.wait(lambda: listener.tf_messages, lambda: '/tf_static')
     (message,) = listener.tf_messages
     assert 'robot/base' not in {each.child_frame_id for each in message.transforms}
     xyz = listener.poses[TOPICS['robot/base']].pose.position

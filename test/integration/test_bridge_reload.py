@@ -252,7 +252,7 @@ def test_what_changed_while_nobody_watched_is_read_when_watching_begins(
 # What is kept when something is wrong
 
 
-def test_a_failure_is_told_until_a_load_goes_well(bridge, file, listener):
+def test_a_failure_is_reported_until_a_load_succeeds(bridge, file, listener):
     monitor = Monitor(listener)
     monitor.wait_for(DiagnosticStatus.OK)
     replace(file, 'not XML')

@@ -109,7 +109,7 @@ def test_arguments_win_over_the_params_file_and_leave_it_the_rest(
     assert wait_for_parents(listener, ['a/base'])['a/base'] == 'map'
 
 
-def test_a_file_that_is_not_valid_is_told(launch, tmp_path):
+def test_a_file_that_is_not_valid_is_reported(launch, tmp_path):
     launched = launch('bridge.launch.py', sdf_file=tmp_path / 'missing.sdf')
     launched.wait_for_line('missing.sdf: FILE_READ: ')
     launched.wait_for_line('exit code 1')

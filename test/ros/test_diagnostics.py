@@ -54,7 +54,7 @@ def test_a_failed_load_is_an_error_whatever_is_served(status_of):
         'the last load failed, what was loaded before is served: cell.sdf:3: first')
 
 
-def test_the_values_tell_what_is_served_and_what_is_wrong(status_of, tmp_path):
+def test_the_values_describe_what_is_served_and_what_is_wrong(status_of, tmp_path):
     status = status_of(GOOD, 'first', 'second')
     values = {value.key: value.value for value in status.values}
     assert values.pop('time to load').endswith(' ms')

@@ -40,7 +40,7 @@ def test_scoped_and_relative(text, names, ids):
     assert ids_of(text, names) == ids
 
 
-def test_names_of_the_world_stand_for_themselves():
+def test_names_in_the_world_stay():
     text = world_file(
         '<model name="m"><link name="l"/></model><frame name="f"/>'
         + fixed_joint('j', 'world', 'm'))

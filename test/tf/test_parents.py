@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Parents in TF: what a frame is fixed to, or what a joint moves it on."""
+"""Parents in TF: what a frame is fixed to, or what a joint connects it to."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -50,21 +50,21 @@ def joints(*pairs):
 
 @pytest.mark.parametrize('tag', [
     'visual', 'collision', 'sensor', 'light', 'particle_emitter', 'projector'])
-def test_children_of_a_link_hang_on_it(tag):
+def test_the_parent_of_a_child_of_a_link_is_the_link(tag):
     text = model_file('<link name="a"/><link name="b">' + posed(tag, 'x', '', 'a') + '</link>')
     assert parents_of(text)['m::b::x'] == 'm::b'
 
 
-def test_an_inertial_hangs_on_its_link():
+def test_the_parent_of_an_inertial_is_its_link():
     assert parents_of(model_file('<link name="a"><inertial/></link>'))['m::a::inertial'] == 'm::a'
 
 
-def test_a_sensor_of_a_joint_hangs_on_the_child_link():
+def test_the_parent_of_a_sensor_of_a_joint_is_the_child_link():
     text = model_file(LINKS + fixed_joint('j', 'a', 'b', element('sensor', 's')))
     assert parents_of(text)['m::j::s'] == 'm::b'
 
 
-def test_a_sensor_of_a_joint_whose_child_is_a_frame_hangs_on_the_link():
+def test_the_parent_of_a_sensor_of_a_joint_to_a_frame_is_the_link():
     text = model_file(
         LINKS + '<frame name="f" attached_to="b"/>'
         + fixed_joint('j', 'a', 'f', element('sensor', 's')))
@@ -75,7 +75,7 @@ def test_a_sensor_of_a_joint_whose_child_is_a_frame_hangs_on_the_link():
     ('b', 'm::b'), ('g', 'm::g'), ('j', 'm::j'), ('n', 'm::n'), ('n::k', 'm::n::k'), ('', 'm'),
     ('__model__', 'm'),
 ])
-def test_a_frame_hangs_on_what_it_is_attached_to(attached_to, parent):
+def test_the_parent_of_a_frame_is_what_it_is_attached_to(attached_to, parent):
     text = model_file(
         LINKS + joints(('a', 'b')).replace('a_b', 'j') + '<frame name="g" attached_to="c"/>'
         + model('n', '<link name="k"/>')
@@ -92,7 +92,7 @@ def test_a_frame_of_a_world(attached_to, parent):
     assert parents_of(text)['f'] == parent
 
 
-def test_a_joint_hangs_on_its_child_link():
+def test_the_parent_of_a_joint_is_its_child_link():
     text = model_file(
         LINKS + '<frame name="f" attached_to="c"/>' + joints(('a', 'b'), ('b', 'f')))
     assert parents_of(text)['m::a_b'] == 'm::b'
@@ -100,20 +100,20 @@ def test_a_joint_hangs_on_its_child_link():
 
 
 @pytest.mark.parametrize(('canonical', 'link'), [('', 'm::a'), ('b', 'm::b'), ('n::k', 'm::n::k')])
-def test_a_model_hangs_on_its_canonical_link(canonical, link):
+def test_the_parent_of_a_model_is_its_canonical_link(canonical, link):
     text = model_file(
         LINKS + model('n', '<link name="k"/>'), attributes=f'canonical_link="{canonical}"')
     assert parents_of(text)['m'] == link
     assert parents_of(text)['m::n'] == 'm::n::k'
 
 
-def test_a_model_of_models_hangs_on_the_first_link_below():
+def test_the_parent_of_a_model_of_models_is_the_first_link_below():
     text = model_file(model('n', '<link name="k"/>'))
     assert parents_of(text)['m'] == 'm::n::k'
     assert parents_of(text)['m::n::k'] == '__root__'
 
 
-def test_a_link_that_a_joint_moves_hangs_on_the_other_side():
+def test_the_parent_of_a_link_is_on_the_other_side_of_a_joint():
     parents = parents_of(model_file(LINKS + joints(('a', 'b'), ('b', 'c'))))
     assert (parents['m::c'], parents['m::b'], parents['m::a']) == ('m::b', 'm::a', '__root__')
 
@@ -126,17 +126,17 @@ def test_joints_are_followed_in_both_directions_from_the_canonical_link():
         'a': 'm::b', 'b': 'm::c', 'c': '__root__', 'd': 'm::c'}
 
 
-def test_a_link_without_a_joint_hangs_on_the_canonical_link():
+def test_the_parent_of_a_link_without_a_joint_is_the_canonical_link():
     parents = parents_of(model_file(LINKS, attributes='canonical_link="b"'))
     assert (parents['m::a'], parents['m::b'], parents['m::c']) == ('m::b', '__root__', 'm::b')
 
 
-def test_the_first_of_joined_links_without_a_way_to_the_canonical_link_hangs_on_it():
+def test_the_canonical_link_is_the_parent_of_the_first_of_joined_links():
     parents = parents_of(model_file(LINKS + '<link name="d"/>' + joints(('c', 'b'), ('b', 'd'))))
     assert (parents['m::c'], parents['m::b'], parents['m::d']) == ('m::a', 'm::c', 'm::b')
 
 
-def test_a_nested_model_without_a_joint_hangs_on_the_canonical_link_around_it():
+def test_the_parent_of_a_nested_model_without_a_joint_is_the_canonical_link_around_it():
     parents = parents_of(model_file(
         LINKS + model('n', '<link name="k"/><link name="k2"/>' + model('o', '<link name="p"/>'))))
     assert parents['m::n::k'] == 'm::a'
@@ -144,7 +144,7 @@ def test_a_nested_model_without_a_joint_hangs_on_the_canonical_link_around_it():
     assert parents['m::n::o::p'] == 'm::n::k'
 
 
-def test_a_nested_model_hangs_on_what_a_joint_holds_it_to():
+def test_the_parent_of_a_nested_model_is_what_a_joint_connects_it_to():
     parents = parents_of(model_file(
         LINKS + model('n', '<link name="k"/><link name="k2"/>') + joints(('b', 'n::k2'))))
     assert parents['m::n::k2'] == 'm::b'
@@ -152,7 +152,7 @@ def test_a_nested_model_hangs_on_what_a_joint_holds_it_to():
     assert parents['m::n::k'] != 'm::n::k'
 
 
-def test_lights_and_actors_of_a_world_hang_on_it():
+def test_the_parent_of_lights_and_actors_of_a_world_is_the_world():
     parents = parents_of(world_file(
         model('m', LINKS) + posed('light', 'sun', '', 'm') + element('actor', 'man')))
     assert (parents['sun'], parents['man']) == ('world', 'world')
@@ -181,7 +181,7 @@ def test_a_joint_to_a_static_model():
     assert (parents['m::b'], parents['m::a'], parents['s::l']) == ('s::l', 'world', 'world')
 
 
-def test_the_static_side_of_a_joint_holds_the_other_whatever_the_order():
+def test_the_static_side_of_a_joint_is_the_parent_in_either_order():
     parents = parents_of(world_file(
         model('m', LINKS) + model('s', '<static>1</static><link name="l"/>')
         + joints(('m::a', 's'))))
@@ -190,7 +190,7 @@ def test_the_static_side_of_a_joint_holds_the_other_whatever_the_order():
 
 # The world and other models
 
-def test_a_link_that_is_joined_to_the_world_hangs_on_it():
+def test_the_parent_of_a_link_that_is_joined_to_the_world_is_the_world():
     parents = parents_of(world_file(
         model('m', LINKS + joints(('a', 'b'), ('world', 'b'), ('b', 'c')))))
     assert (parents['m::b'], parents['m::a'], parents['m::c']) == ('world', 'm::b', 'm::b')
@@ -208,7 +208,7 @@ def test_a_joint_to_a_frame_of_the_world():
     assert parents['m::b'] == 'world'
 
 
-def test_models_that_are_joined_hang_on_one_another():
+def test_joined_models_form_one_tree():
     parents = parents_of(world_file(
         model('p', LINKS) + model('q', LINKS) + joints(('p::c', 'q::b'))))
     assert parents['q::b'] == 'p::c'
@@ -216,7 +216,7 @@ def test_models_that_are_joined_hang_on_one_another():
     assert parents['p::a'] == 'world'
 
 
-def test_a_chain_of_models_hangs_on_the_one_that_is_bolted_down():
+def test_a_chain_of_models_starts_at_the_one_that_is_joined_to_the_world():
     parents = parents_of(world_file(
         ''.join(model(name, f'<link name="{name}"/>') for name in 'pqr')
         + joints(('p', 'q'), ('q', 'r'), ('world', 'r'))))

@@ -104,7 +104,7 @@ def test_a_clash_names_both_and_their_lines():
     assert '(line 2)' in error.message
 
 
-def test_all_clashes_are_told():
+def test_all_clashes_are_reported():
     text = world_file(model('p', '<link name="a"/><link name="b"/>')
                       + model('q', '<link name="a"/><link name="b"/>'))
     assert len(tree_errors_of(text, frame_names=FrameNames.RELATIVE)) == 2
