@@ -168,14 +168,15 @@ class _Reader:
     ) -> None:
         """Add an element to the table, with all that it holds."""
         has_name = 'name' in definition.attributes
-        name = self._names.add(kind, xml, parent) if has_name else kind.label
+        name = self._names.add(kind, xml, parent, parent_path) if has_name else kind.label
         if name is None:
             without_frames = definition_of(kind.label)
             self._read_children(xml, without_frames, NO_ELEMENT, scope, parent_path, depth)
             return
         path = self._sources.path_at(xml, parent_path)
         index = self._builder.add(
-            kind, name, parent, scope, self._file_indices[path], self._sources.line(xml))
+            kind, name, parent, scope,
+            self._file_indices[self._sources.path_of_pose(xml, path)], self._sources.line(xml))
         if kind is Kind.WORLD or kind is Kind.MODEL:
             scope = index
         self._read_details(xml, kind, index)

@@ -27,9 +27,6 @@ from sdf_pose_bridge.sdformat.versions import renames_duplicates
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-MERGED_MODEL_PREFIX = '_merged__'
-"""The name of the frame that replaces the model frame of a merged model begins with this."""
-
 _ARTICLES = {Kind.ACTOR: 'an', Kind.INERTIAL: 'an'}
 
 
@@ -52,13 +49,14 @@ class SiblingNames:
         self._renamed: set[tuple[int, Kind, str]] = set()
         self._new_names: set[tuple[int, Kind | None, str]] = set()
 
-    def add(self, kind: Kind, xml: XmlElement, parent: int) -> str | None:
+    def add(self, kind: Kind, xml: XmlElement, parent: int, parent_path: str) -> str | None:
         """
         Add the name of the element that is added to the table next.
 
         :param kind: kind of the element.
         :param xml: the element.
         :param parent: index of its parent element; -1 for the file.
+        :param parent_path: file of the parent element.
         :return: its name. Below version 1.7 that is a new one if another kind of element has the
             name. None if the name is missing or in use, which is then reported.
         """
@@ -75,7 +73,7 @@ class SiblingNames:
         other, index = self._used[key]
         has_duplicate = (other is kind and key not in self._new_names) or (
             (parent, kind, name) in self._renamed)
-        if not has_duplicate and self._is_renamed(kind, parent):
+        if not has_duplicate and self._is_renamed(kind, parent, parent_path):
             self._renamed.add((parent, kind, name))
             return self._new_name(kind, xml, parent, name)
         msg = (f'the name "{name}" belongs to {_ARTICLES.get(other, "a")} {other.label} of this '
@@ -92,17 +90,16 @@ class SiblingNames:
             self._problems.error(AttributeInvalidError(msg, place))
 
     def _check_reserved_name(self, kind: Kind, xml: XmlElement, name: str) -> None:
-        if kind is not Kind.ACTOR and not name.startswith(MERGED_MODEL_PREFIX):
+        if kind is not Kind.ACTOR:
             rule = ('it means the frame of the world' if name == WORLD_FRAME else
                     'so are all that begin and end with two underscores')
             msg = f'the name "{name}" is reserved; {rule}'
             self._problems.error(ReservedNameError(msg, self._sources.place_of_name(xml)))
 
-    def _is_renamed(self, kind: Kind, parent: int) -> bool:
+    def _is_renamed(self, kind: Kind, parent: int, parent_path: str) -> bool:
         if parent < 0 or not kind.is_frame or kind is Kind.MODEL:
             return False
-        path = self._sources.paths[self._builder.file_indices[parent]]
-        return renames_duplicates(self._sources.versions[path]) and (
+        return renames_duplicates(self._sources.versions[parent_path]) and (
             self._builder.kinds[parent] == Kind.MODEL or kind is Kind.FRAME)
 
     def _new_name(self, kind: Kind, xml: XmlElement, parent: int, name: str) -> str:
@@ -119,7 +116,5 @@ class SiblingNames:
         return new_name
 
     def _described_place(self, index: int) -> str:
-        if index >= len(self._builder.names):
-            return 'which is not valid itself'
         path = self._sources.paths[self._builder.file_indices[index]]
         return f'see {Place(path, self._builder.lines[index])}'

@@ -55,6 +55,7 @@ class Sources:
         self._lines: dict[XmlElement, int] = {}
         self._includes: dict[XmlElement, Place] = {}
         self._named_by_includes: set[XmlElement] = set()
+        self._placed_by_includes: dict[XmlElement, tuple[str, int]] = {}
         self._composed_trees: set[XmlElement] = set()
 
     def add_path(self, path: str) -> None:
@@ -117,6 +118,16 @@ class Sources:
         """
         self._named_by_includes.add(xml)
 
+    def set_placed_by_include(self, xml: XmlElement, include: XmlElement) -> None:
+        """
+        Set that the pose of an included element is written in the include.
+
+        :param xml: the included element. It stands where its pose is written; what it holds does
+            not, and its version is that of its own file.
+        :param include: the ``<include>``.
+        """
+        self._placed_by_includes[xml] = self.path(include), self.line(include)
+
     def path_at(self, xml: XmlElement, default: str) -> str:
         """
         Return the file of an element whose parent's file is known.
@@ -156,6 +167,16 @@ class Sources:
         """
         return islice(self.enclosing_paths(xml), int(xml in self._named_by_includes), None)
 
+    def path_of_pose(self, xml: XmlElement, default: str) -> str:
+        """
+        Return the file in which an element is placed.
+
+        :param xml: the element.
+        :param default: its own file.
+        :return: the file of its pose.
+        """
+        return self._placed_by_includes.get(xml, (default, 0))[0]
+
     def line(self, xml: XmlElement) -> int:
         """
         Return the line of an element.
@@ -163,6 +184,8 @@ class Sources:
         :param xml: the element.
         :return: the line of the end of its start tag, from 1; 0 if it is not known.
         """
+        if xml in self._placed_by_includes:
+            return self._placed_by_includes[xml][1]
         return self._lines.get(xml) or xml.sourceline or 0
 
     def place(self, xml: XmlElement, part: str = '') -> Place:
@@ -175,7 +198,8 @@ class Sources:
         """
         steps = [described(each) for each in xml.iterancestors()]
         path = '/'.join(['', *reversed(steps), described(xml)])
-        return Place(self.path(xml), self.line(xml), f'{path}/{part}' if part else path)
+        file = self.path_of_pose(xml, self.path(xml))
+        return Place(file, self.line(xml), f'{path}/{part}' if part else path)
 
     def place_of_name(self, xml: XmlElement) -> Place:
         """
@@ -204,5 +228,7 @@ class Sources:
                     self._includes[new] = self._includes[old]
                 if old in self._named_by_includes:
                     self._named_by_includes.add(new)
+                if old in self._placed_by_includes:
+                    self._placed_by_includes[new] = self._placed_by_includes[old]
         self._files[result] = self.path(xml)
         return result

@@ -210,12 +210,7 @@ class IncludeExpansion:
             if placement:
                 top.set('placement_frame', placement)
         if self._override_element(include, top, 'pose'):
-            # An element stands where its pose is written.
-            path = self._sources.path(top)
-            for child in child_elements(top):
-                self._sources.set_source(child, self._sources.path_at(child, path))
-            including_file = self._sources.path(include)
-            self._sources.set_source(top, including_file, self._sources.line(include))
+            self._sources.set_placed_by_include(top, include)
 
     def _check_static(self, include: XmlElement, top: XmlElement) -> None:
         static = first_child(include, 'static')

@@ -23,7 +23,6 @@ from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.sdformat.details import PLACEMENT_OF_MERGED_MODEL
 from sdf_pose_bridge.sdformat.grammar import ValueType
-from sdf_pose_bridge.sdformat.sibling_names import MERGED_MODEL_PREFIX
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
@@ -86,14 +85,15 @@ def _proxy_frame(
     canonical_link = _canonical_link(include, model, sources, canonical_link_of)
     if canonical_link is None:
         return None
-    name = f'{MERGED_MODEL_PREFIX}{attribute_of(model, "name")}__model__'
+    name = f'_merged__{attribute_of(model, "name")}__model__'
     proxy = etree.Element('frame', {
         'name': name, 'attached_to': attribute_of(model, 'canonical_link') or canonical_link})
     placement = attribute_of(model, 'placement_frame')
     if placement:
         proxy.set(PLACEMENT_OF_MERGED_MODEL, name if placement == MODEL_FRAME else placement)
     proxy.append(proxy_pose)
-    sources.set_source(proxy, sources.path(model), sources.line(model))
+    place = sources.place(model)
+    sources.set_source(proxy, place.file, place.line)
     sources.set_include(proxy, include)
     if first_child(include, 'name') is not None:
         sources.set_named_by_include(proxy)

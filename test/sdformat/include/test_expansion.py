@@ -5,10 +5,12 @@
 import pytest
 from sdf_texts import assert_at
 from sdf_texts import errors_of_file
+from sdf_texts import fixed_joint
 from sdf_texts import LINK
 from sdf_texts import model_file
 from sdf_texts import names_of
 from sdf_texts import posed
+from sdf_texts import TWO_LINKS
 from sdf_texts import world_file
 from sdf_texts import write_files
 
@@ -350,3 +352,11 @@ def test_include_at_the_top_is_placed_in_the_including_file(scene_of):
         posed('frame', 'desk', '0 0 50 0 0 0') + include('outer.sdf'),
         **with_include_at_the_top(content))
     assert_at(scene, 'leaf', (1, 0, 50))
+
+
+@pytest.mark.parametrize('pose', ['', '<pose>1 0 0 0 0 0</pose>'])
+def test_names_in_an_old_file_are_judged_by_its_version(tmp_path, pose):
+    leaf = model_file(TWO_LINKS + fixed_joint('a', 'a', 'b'), version='1.6')
+    main = world_file(f'<include><uri>leaf.sdf</uri>{pose}</include>')
+    write_files(tmp_path, leaf=leaf, main=main)
+    assert 'm::a_joint' in load(tmp_path / 'main.sdf').names
