@@ -53,10 +53,22 @@ def hint_from_names(wanted: str, names: Iterable[str]) -> str:
     :param names: the names that exist.
     :return: ``; did you mean "..."?`` with the nearest name, or an empty string.
     """
+    nearest = nearest_name(wanted, names)
+    return f'; did you mean "{nearest}"?' if nearest else ''
+
+
+def nearest_name(wanted: str, names: Iterable[str]) -> str:
+    """
+    Return the name that was probably meant.
+
+    :param wanted: a name that was not found.
+    :param names: the names that exist.
+    :return: the nearest of them, or an empty string if none is near.
+    """
     # The import takes a millisecond, and most processes do not need it.
     import difflib
     near = difflib.get_close_matches(wanted, _likely_names(wanted, list(names)), n=1, cutoff=0.6)
-    return f'; did you mean "{near[0]}"?' if near else ''
+    return near[0] if near else ''
 
 
 def _likely_names(wanted: str, names: list[str]) -> list[str]:

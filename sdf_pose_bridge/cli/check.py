@@ -39,6 +39,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description='Print every error and warning of files, one per line: FILE:LINE: CODE: '
                     'MESSAGE. The exit code is 1 if a file has an error.')
     add_file_arguments(parser)
+    parser.add_argument(
+        '--strict', action='store_true', help='the exit code is 1 for a warning too')
     parser.set_defaults(run=run)
 
 
@@ -47,13 +49,14 @@ def run(options: argparse.Namespace) -> int:
     Check files.
 
     :param options: the parsed arguments.
-    :return: exit code: 0 if all files are valid, else 1.
+    :return: exit code: 0 if all files are valid, else 1; if strict, 1 for warnings too.
     """
     are_valid = True
     for path in options.files:
         loaded = load_file(path, options)
         print_problems(loaded.errors, loaded.warnings, sys.stdout)
-        are_valid = are_valid and loaded.scene is not None
+        are_valid = are_valid and loaded.scene is not None and not (
+            options.strict and loaded.warnings)
     return 0 if are_valid else 1
 
 

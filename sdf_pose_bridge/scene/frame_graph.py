@@ -235,7 +235,7 @@ class _Builder:
             msg = (f'relative_to="{name}" names no frame in {self._scopes.described(scope)}'
                    f'{self._scopes.hint(scope, name)}; the {elements.kind(index).label} is left '
                    'out')
-            place = elements.place(index, int(elements.pose_lines[index]), 'pose')
+            place = elements.place_of_pose(index)
             self._problems.warning(msg, place, RelativeToError.code)
         return NO_ELEMENT
 

@@ -133,6 +133,9 @@ class NameScopes:
                     return (f'; {self.described(outer)} has a frame of that name, but names of '
                             'enclosing scopes cannot be used')
                 outer = int(self._elements.parents[outer])
+        scoped = reference.replace('/', SEPARATOR)
+        if scoped != reference and self.frame(scope, scoped) is not None:
+            return f'; did you mean "{scoped}"?'
         return hint_from_names(
             reference, islice(self._visible_names(scope), _MOST_NAMES_COMPARED))
 

@@ -13,7 +13,9 @@ from typing import TypeAlias
 
 import numpy as np
 
+from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.pose_text import IDENTITY
 from sdf_pose_bridge.sdformat.pose_text import PoseFormat
@@ -143,6 +145,16 @@ class Elements(NamedTuple):
         return Place(path, line, '/'.join(['/sdf', *reversed(steps)]))
 
 
+    def place_of_pose(self, index: int) -> Place:
+        """
+        Return the place of the pose of an element.
+
+        :param index: index of the element.
+        :return: file, line and path.
+        """
+        return self.place(index, int(self.pose_lines[index]), 'pose')
+
+
 class ElementsBuilder:
     """
     The table while it grows.
@@ -201,19 +213,23 @@ class ElementsBuilder:
         self._texts[pose_format].append(text)
         self._indices[pose_format].append(index)
 
-    def elements(self) -> tuple[Elements, list[tuple[int, str]]]:
+    def elements(self, problems: Problems) -> Elements:
         """
         Return the table.
 
-        :return: the table; and for each pose that is not valid, and therefore the identity, the
-            index of its element and the reason.
+        :param problems: takes the poses that are not valid, and therefore the identity, and those
+            that may mean another pose.
+        :return: the table.
         """
         poses = np.tile(IDENTITY, (len(self.names), 1))
         failures = []
+        doubts = []
         for pose_format, texts in self._texts.items():
             indices = self._indices[pose_format]
-            poses[indices], failed = poses_from_texts(texts, pose_format)
-            failures += [(indices[row], reason) for row, reason in failed]
+            result = poses_from_texts(texts, pose_format)
+            poses[indices] = result.poses
+            failures += [(indices[row], reason) for row, reason in result.failures]
+            doubts += [(indices[row], reason) for row, reason in result.doubts]
         table = Elements(
             kinds=np.array(self.kinds, dtype=np.uint8), names=self.names,
             parents=_indices(self.parents), scopes=_indices(self._scopes),
@@ -221,7 +237,11 @@ class ElementsBuilder:
             pose_lines=_indices(self.pose_lines), poses=poses, relative_to=self.relative_to,
             models=self.models, frames=self.frames, joints=self.joints, sensors=self.sensors,
             paths=self._paths, missing_includes=self.missing_includes)
-        return table, failures
+        for index, reason in failures:
+            problems.error(ElementInvalidError(reason, table.place_of_pose(index)))
+        for index, reason in doubts:
+            problems.warning(reason, table.place_of_pose(index))
+        return table
 
 
 def _indices(column: array[int]) -> Indices:

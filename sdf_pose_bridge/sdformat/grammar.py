@@ -187,11 +187,21 @@ class Definition:
             self.value_type in (ValueType.NUMBER, ValueType.INTEGER))
 
     @cached_property
+    def takes_any_children(self) -> bool:
+        """Whether the element may hold elements that are not defined."""
+        return any(item['name'] == '*' for item in self._items)
+
+    @cached_property
     def attributes(self) -> Mapping[str, Attribute]:
         """The attributes by name."""
         return {
             item['name']: Attribute(ValueType(item['type'] or 'string'), bool(item['required']))
             for item in self._items if item['attribute']}
+
+    @cached_property
+    def has_required_attributes(self) -> bool:
+        """Whether the element must have attributes."""
+        return any(attribute.is_required for attribute in self.attributes.values())
 
     @cached_property
     def checked_attributes(self) -> tuple[tuple[str, Attribute], ...]:

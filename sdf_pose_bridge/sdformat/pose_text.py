@@ -36,6 +36,12 @@ SHORTEST_QUATERNION = 1e-9
 _LARGEST_NORM = 1e150
 """The squares of larger norms are beyond the range of a double."""
 
+_NORM_TOLERANCE = 1e-3
+"""A quaternion whose norm differs more from 1 is probably not what was meant."""
+
+_LARGEST_ANGLE_RAD = 6.3
+"""A larger angle, of more than a turn, was probably meant in degrees."""
+
 _IDENTITY_TEXTS = {6: '0 0 0 0 0 0', 7: '0 0 0 0 0 0 1'}
 _NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?')
 _NOT_ZERO = re.compile(r'[^eE]*[1-9]')
@@ -63,28 +69,39 @@ class PoseTextError(ValueError):
     """The text is not a pose; the message has the value and the rule."""
 
 
-def poses_from_texts(
-    texts: Sequence[str], pose_format: PoseFormat,
-) -> tuple[npt.NDArray[np.float64], list[tuple[int, str]]]:
+class PosesFromTexts(NamedTuple):
+    """Result of :func:`poses_from_texts`."""
+
+    poses: npt.NDArray[np.float64]
+    """Shape (n, 7): x y z in metres, unit quaternion x y z w; the identity for each failure."""
+    failures: list[tuple[int, str]]
+    """The index of each text that is not a pose, and the reason."""
+    doubts: list[tuple[int, str]]
+    """The index of each text that may mean another pose, and the reason."""
+
+
+def poses_from_texts(texts: Sequence[str], pose_format: PoseFormat) -> PosesFromTexts:
     """
     Convert many texts.
 
     :param texts: n poses as written; a blank text is the identity.
     :param pose_format: the format of all of them.
-    :return: the poses, shape (n, 7), x y z in metres, unit quaternion x y z w, the identity for a
-        text that is not a pose; and for each of these its index and the reason.
+    :return: the poses.
     """
-    numbers = _numbers_from_texts(texts, len(pose_format.layout.split()))
-    if numbers is not None:
-        return _poses_from_numbers(numbers, pose_format), []
-    poses = np.tile(IDENTITY, (len(texts), 1))
     failures: list[tuple[int, str]] = []
-    for index, text in enumerate(texts):
-        try:
-            poses[index] = pose_from_text(text, pose_format)
-        except PoseTextError as error:
-            failures.append((index, str(error)))
-    return poses, failures
+    numbers = _numbers_from_texts(texts, len(pose_format.layout.split()))
+    if numbers is None:
+        rows = []
+        for index, text in enumerate(texts):
+            try:
+                rows.append(_numbers_from_text(text, pose_format))
+            except PoseTextError as error:
+                failures.append((index, str(error)))
+                rows.append(_numbers_from_text('', pose_format))
+        numbers = np.array(rows)
+    doubts = [
+        (row, _doubt(texts[row], pose_format)) for row in _doubtful_rows(numbers, pose_format)]
+    return PosesFromTexts(_poses_from_numbers(numbers, pose_format), failures, doubts)
 
 
 def pose_from_text(text: str, pose_format: PoseFormat) -> Sequence[float]:
@@ -96,11 +113,17 @@ def pose_from_text(text: str, pose_format: PoseFormat) -> Sequence[float]:
     :return: x y z in metres, unit quaternion x y z w.
     :raises PoseTextError: if it is not a pose.
     """
-    words = re.split(f'[{WHITE_SPACE}]+', text.strip(WHITE_SPACE))
-    if words == ['']:
-        return IDENTITY
-    shown = ' '.join(words)
-    shown = shown if len(shown) <= 80 else shown[:77] + '...'
+    numbers = np.array([_numbers_from_text(text, pose_format)])
+    pose: list[float] = _poses_from_numbers(numbers, pose_format)[0].tolist()
+    return pose
+
+
+def _numbers_from_text(text: str, pose_format: PoseFormat) -> list[float]:
+    """Read the numbers of a text; those of a quaternion that is too large are scaled."""
+    layout = pose_format.layout
+    count = len(layout.split())
+    words = _words(text) or _IDENTITY_TEXTS[count].split()
+    shown = _shown(text)
     for word in words:
         if not _NUMBER.fullmatch(word):
             msg = f'"{word[:80]}" in the pose "{shown}" is not a finite decimal number'
@@ -108,23 +131,48 @@ def pose_from_text(text: str, pose_format: PoseFormat) -> Sequence[float]:
         if not _is_representable(word):
             msg = f'"{word[:80]}" in the pose "{shown}" is beyond the range of a double'
             raise PoseTextError(msg)
-    layout = pose_format.layout
-    count = len(layout.split())
     if len(words) != count:
         msg = f'a pose has {count} values ({layout}), "{shown}" has {len(words)}'
         raise PoseTextError(msg)
-    numbers = np.array([[float(word) for word in words]])
+    numbers = [float(word) for word in words]
     if pose_format.is_quaternion:
-        norm = math.hypot(*numbers[0, 3:])
+        norm = math.hypot(*numbers[3:])
         if norm < SHORTEST_QUATERNION:
             msg = f'the quaternion of the pose "{shown}" is zero, so it is not a rotation'
             raise PoseTextError(msg)
         if math.isinf(norm):
             msg = f'the quaternion of the pose "{shown}" is beyond the range of a double'
             raise PoseTextError(msg)
-        numbers[0, 3:] /= norm
-    pose: list[float] = _poses_from_numbers(numbers, pose_format)[0].tolist()
-    return pose
+        if norm > _LARGEST_NORM:
+            numbers[3:] = [number / norm for number in numbers[3:]]
+    return numbers
+
+
+def _words(text: str) -> list[str]:
+    stripped = text.strip(WHITE_SPACE)
+    return re.split(f'[{WHITE_SPACE}]+', stripped) if stripped else []
+
+
+def _shown(text: str) -> str:
+    shown = ' '.join(_words(text))
+    return shown if len(shown) <= 80 else shown[:77] + '...'
+
+
+def _doubtful_rows(numbers: npt.NDArray[np.float64], pose_format: PoseFormat) -> list[int]:
+    if pose_format.is_quaternion:
+        is_doubtful = np.abs(np.linalg.norm(numbers[:, 3:], axis=1) - 1.0) > _NORM_TOLERANCE
+    elif pose_format.is_degrees:
+        return []
+    else:
+        is_doubtful = np.abs(numbers[:, 3:]).max(axis=1, initial=0.0) > _LARGEST_ANGLE_RAD
+    rows: list[int] = np.flatnonzero(is_doubtful).tolist()
+    return rows
+
+
+def _doubt(text: str, pose_format: PoseFormat) -> str:
+    if pose_format.is_quaternion:
+        return f'the quaternion of the pose "{_shown(text)}" is not of length 1; it is normalised'
+    return f'the angles of the pose "{_shown(text)}" are radians; did you mean degrees="true"?'
 
 
 def _numbers_from_texts(texts: Sequence[str], count: int) -> npt.NDArray[np.float64] | None:
@@ -149,12 +197,11 @@ def _numbers_from_texts(texts: Sequence[str], count: int) -> npt.NDArray[np.floa
     except ValueError:
         return None
     numbers = numbers.reshape(-1, count)
-    if np.abs(numbers).max(initial=0.0) > sys.float_info.max:
+    is_quaternion = count == len(IDENTITY)
+    if np.abs(numbers).max(initial=0.0) > (_LARGEST_NORM if is_quaternion else sys.float_info.max):
         return None
-    if count == len(IDENTITY):
-        norms = np.linalg.norm(numbers[:, 3:], axis=1)
-        if not ((norms >= SHORTEST_QUATERNION) & (norms <= _LARGEST_NORM)).all():
-            return None
+    if is_quaternion and (np.linalg.norm(numbers[:, 3:], axis=1) < SHORTEST_QUATERNION).any():
+        return None
     return numbers
 
 

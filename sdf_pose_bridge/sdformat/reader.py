@@ -31,6 +31,7 @@ from sdf_pose_bridge.sdformat.pose_text import PoseFormat
 from sdf_pose_bridge.sdformat.pose_text import PoseTextError
 from sdf_pose_bridge.sdformat.sibling_names import SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.values import is_of_type
 from sdf_pose_bridge.sdformat.values import value_fault
@@ -100,6 +101,7 @@ class _Reader:
         self._builder = ElementsBuilder(sources.paths)
         self._names = SiblingNames(self._builder, sources, problems)
         self._details = DetailsReader(sources, problems)
+        self._undefined = UndefinedReporter(sources, problems)
         self._file_indices = {path: index for index, path in enumerate(sources.paths)}
 
     def check(self, xml: XmlElement, definition: Definition) -> None:
@@ -108,11 +110,7 @@ class _Reader:
 
     def elements(self, root: XmlElement) -> Elements:
         self._read_file(root)
-        elements, failures = self._builder.elements()
-        for index, reason in failures:
-            place = elements.place(index, int(elements.pose_lines[index]), 'pose')
-            self._problems.error(ElementInvalidError(reason, place))
-        return elements
+        return self._builder.elements(self._problems)
 
     def _read_file(self, root: XmlElement) -> None:
         """Read worlds, and the one model, light or actor that may stand beside them."""
@@ -122,6 +120,7 @@ class _Reader:
         for child in root:
             definition = definitions.get(child.tag)
             if definition is None:
+                self._undefined.report_element(child, definition_of('sdf'))
                 continue
             self._check_attributes(child, definition)
             if definition.kind is Kind.WORLD:
@@ -194,8 +193,9 @@ class _Reader:
         for child in xml:
             child_definition = definitions.get(child.tag)
             if child_definition is None:
+                self._undefined.report_element(child, definition)
                 continue
-            if child_definition.checked_attributes:
+            if child_definition.has_required_attributes or child.keys():
                 self._check_attributes(child, child_definition)
             if child_definition.kind is not None:
                 self._read_frame(
@@ -203,14 +203,21 @@ class _Reader:
             elif child_definition.value_type is None:
                 self._read(child, child_definition, parent, scope, path, depth + 1)
             elif child_definition.is_pose:
-                if parent == NO_ELEMENT or self._builder.pose_lines[parent]:
+                if parent == NO_ELEMENT:
                     self._check_pose(child)
+                elif self._builder.pose_lines[parent]:
+                    self._check_pose(child)
+                    msg = 'a second <pose> is ignored; the first one counts'
+                    self._problems.warning(msg, self._sources.place(child))
                 else:
                     self._read_pose(child, child_definition, parent)
             elif not child_definition.is_text:
                 fault = value_fault(text_of(child), child_definition)
                 if fault:
                     self._problems.error(ElementInvalidError(fault, self._sources.place(child)))
+            if child_definition.value_type is not None:
+                for grandchild in child:
+                    self._undefined.report_element(grandchild, child_definition)
 
     def _read_details(self, xml: XmlElement, kind: Kind, index: int) -> None:
         if kind is Kind.MODEL:
@@ -225,6 +232,10 @@ class _Reader:
     # Attributes and poses
 
     def _check_attributes(self, xml: XmlElement, definition: Definition) -> None:
+        names = xml.keys()
+        for name in names:
+            if name not in definition.attributes:
+                self._undefined.report_attribute(xml, name, definition)
         for name, attribute in definition.checked_attributes:
             value = xml.get(name)
             if value is None:
@@ -260,16 +271,11 @@ class _Reader:
     def _read_relative_to(self, xml: XmlElement, definition: Definition, index: int) -> None:
         builder = self._builder
         kind = Kind(builder.kinds[index])
-        if xml.get('frame') is not None:
-            msg = f'frame="{xml.get("frame")}" has no meaning since 1.7; relative_to has'
-            self._problems.warning(msg, self._sources.place(xml))
         relative_to = reference_of(xml, 'relative_to')
-        if not relative_to:
+        if not relative_to or 'relative_to' not in definition.attributes:
             return
         reason = ''
-        if 'relative_to' not in definition.attributes:
-            reason = 'an inertial is placed in its link'
-        elif kind is Kind.ACTOR:
+        if kind is Kind.ACTOR:
             reason = 'an actor is placed in the world'
         elif kind is Kind.LIGHT and builder.kinds[builder.parents[index]] == Kind.ROOT:
             reason = 'a light at the top of a file is placed in the implicit root'

@@ -25,6 +25,9 @@ class Version(NamedTuple):
     major: int
     minor: int
 
+    def __str__(self) -> str:
+        return f'{self.major}.{self.minor}'
+
 
 class Document(NamedTuple):
     """One file as a tree."""

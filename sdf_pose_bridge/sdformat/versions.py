@@ -5,7 +5,7 @@ Convert files of older versions of SDFormat to the newest grammar.
 
 The declared version switches nothing off: what newer versions brought works in every file. It
 decides what names and attributes of its time mean. Source: libsdformat's ``Converter.cc`` and
-``sdf/*.convert``. Steps that touch neither poses nor names of frames are left out.
+``sdf/*.convert``.
 """
 
 from __future__ import annotations
@@ -32,6 +32,16 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 OLDEST = Version(1, 2)
 NEWEST = Version(1, 12)
 
+_MOVED_ELEMENTS = (
+    (Version(1, 4), 'world/physics', 'update_rate', 'real_time_update_rate'),
+    (Version(1, 4), 'world/physics', 'ode/solver/dt', 'max_step_size'),
+    (Version(1, 4), 'world/physics', 'bullet/dt', 'max_step_size'),
+    (Version(1, 6), 'world', 'physics/gravity', 'gravity'),
+    (Version(1, 6), 'world', 'physics/magnetic_field', 'magnetic_field'),
+)
+"""Elements without poses: in files below a version, what an element at a path held as, and its
+tag in that element now."""
+
 _SCOPED_TAGS = frozenset({'link', 'joint', 'frame', 'model', 'gripper'})
 _REFERENCE_ATTRIBUTES = ('relative_to', 'attached_to', 'expressed_in')
 
@@ -43,14 +53,14 @@ def version_from_text(text: str, place: Place) -> Version:
     :param text: such as ``1.10``.
     :param place: where it stands.
     :return: the version.
-    :raises ConversionError: if it is not one from 1.2 to 1.12.
+    :raises ConversionError: if it is older than :data:`OLDEST`, or newer than :data:`NEWEST`.
     """
     major, _, minor = text.partition('.')
     if text.isascii() and major.isdigit() and minor.isdigit() and len(text) < 10:
         version = Version(int(major), int(minor))
-        if OLDEST <= version <= NEWEST and text == f'{version.major}.{version.minor}':
+        if OLDEST <= version <= NEWEST and text == str(version):
             return version
-    msg = f'version="{text}" is not supported; versions 1.2 to 1.12 are'
+    msg = f'version="{text}" is not supported; versions {OLDEST} to {NEWEST} are'
     raise ConversionError(msg, place)
 
 
@@ -82,14 +92,33 @@ def convert(document: Document, sources: Sources) -> None:
     :param sources: where its elements were written.
     :raises ConversionError: if names in it cannot be converted.
     """
+    _move_elements(document)
     if document.version < Version(1, 5):
         _express_axes_in_model(document.root)
     if document.version < Version(1, 7):
         _rename_frame_attributes(document.root)
         _convert_use_parent_model_frame(document.root)
+    if document.version < Version(1, 8):
+        _remove_empty_relative_to(document.root)
     if allows_scoped_names(document.version) and document.may_hold_scoped_names:
         for model in document.root.iterfind('world/model'):
             _nest_scoped_elements(model, sources)
+
+
+def _move_elements(document: Document) -> None:
+    for version, path, old, new_tag in _MOVED_ELEMENTS:
+        for parent in document.root.iterfind(path) if document.version < version else ():
+            element = parent.find(old)
+            if element is not None:
+                element.tag = new_tag
+                parent.append(element)
+    if document.version < Version(1, 6):
+        # Its numbers become those of the noise of each axis.
+        for path in ('world/model/link/sensor/imu', 'model/link/sensor/imu'):
+            for imu in document.root.iterfind(path):
+                noise = first_child(imu, 'noise')
+                if noise is not None:
+                    imu.remove(noise)
 
 
 def _express_axes_in_model(root: XmlElement) -> None:
@@ -121,6 +150,13 @@ def _convert_use_parent_model_frame(root: XmlElement) -> None:
         if boolean_from_text(text_of(flag)) and xyz is not None:
             xyz.set('expressed_in', MODEL_FRAME)
         axis.remove(flag)
+
+
+def _remove_empty_relative_to(root: XmlElement) -> None:
+    """1.7 to 1.8: ``inertial/pose`` has no ``relative_to``; an empty one meant nothing."""
+    for pose in root.iterfind('.//inertial/pose'):
+        if not pose.get('relative_to', 'none'):
+            del pose.attrib['relative_to']
 
 
 def _nest_scoped_elements(model: XmlElement, sources: Sources) -> None:

@@ -44,3 +44,11 @@ def test_includes_are_searched_in_given_directories(sdf_pose, files):
     skipped = sdf_pose('check', '--skip-missing', 'world.sdf')
     assert skipped.returncode == 0
     assert 'WARNING: "model://m.sdf" cannot be included' in skipped.stdout
+
+
+def test_strict_check_exits_with_1_for_a_warning(sdf_pose):
+    assert sdf_pose('check', '--strict', 'warned.sdf').returncode == 1
+
+
+def test_strict_check_exits_with_0_without_warnings(sdf_pose):
+    assert sdf_pose('check', '--strict', 'good.sdf').returncode == 0

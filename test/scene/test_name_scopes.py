@@ -120,6 +120,10 @@ def test_message_has_the_nearest_name_of_a_nested_model():
     assert 'did you mean "n::n2::deep"?' in only_error(in_model('n::n2::dep')).message
 
 
+def test_message_has_the_name_with_the_separator_of_sdformat():
+    assert 'did you mean "n::n2::deep"?' in only_error(in_model('n/n2/deep')).message
+
+
 def test_message_has_no_name_if_none_is_similar():
     assert 'did you mean' not in only_error(in_model('zzzzzz')).message
 

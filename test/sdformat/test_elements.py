@@ -9,9 +9,15 @@ from sdf_texts import only_error
 from sdf_texts import world_file
 
 from sdf_pose_bridge import Kind
+from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.pose_text import PoseFormat
+
+
+@pytest.fixture
+def problems():
+    return Problems(['a.sdf', 'b.sdf'])
 
 
 @pytest.fixture
@@ -26,38 +32,50 @@ def builder():
 
 # Poses
 
-def test_pose_that_is_not_valid_is_the_identity(builder):
+def test_pose_that_is_not_valid_is_the_identity(builder, problems):
     builder.set_pose(1, '1 2', PoseFormat(), 2)
-    elements, _ = builder.elements()
+    elements = builder.elements(problems)
     assert elements.poses[1].tolist() == [0, 0, 0, 0, 0, 0, 1]
 
 
-def test_pose_that_is_not_valid_has_index_and_reason(builder):
+def test_pose_that_is_not_valid_is_reported_with_its_place(builder, problems):
     builder.set_pose(1, '1 2 3 0 0 0', PoseFormat(), 2)
     builder.set_pose(2, '1 2', PoseFormat(), 4)
-    _, ((index, reason),) = builder.elements()
-    assert index == 2
-    assert '"1 2" has 2' in reason
+    builder.elements(problems)
+    (error,) = problems.errors
+    assert error.place == ('b.sdf', 4, '/sdf/model[@name="m"]/link[@name="l"]/pose')
+    assert '"1 2" has 2' in error.message
 
 
-def test_poses_of_different_formats(builder):
+def test_poses_of_different_formats(builder, problems):
     builder.set_pose(0, '1 0 0 0 0 0', PoseFormat(), 1)
     builder.set_pose(1, '2 0 0 0 0 180', PoseFormat(is_degrees=True), 2)
-    builder.set_pose(2, '3 0 0 0 2 0 0', PoseFormat(is_quaternion=True), 4)
-    elements, failures = builder.elements()
-    assert failures == []
+    builder.set_pose(2, '3 0 0 0 1 0 0', PoseFormat(is_quaternion=True), 4)
+    elements = builder.elements(problems)
     np.testing.assert_allclose(elements.poses, [
         [1, 0, 0, 0, 0, 0, 1], [2, 0, 0, 0, 0, 1, 0], [3, 0, 0, 0, 1, 0, 0]], atol=1e-15)
 
 
-def test_element_without_a_pose_is_at_the_identity(builder):
-    elements, _ = builder.elements()
+@pytest.mark.parametrize(('text', 'pose_format', 'message'), [
+    ('0 0 0 0 0 90', PoseFormat(), 'did you mean degrees="true"?'),
+    ('0 0 0 0 0 0 2', PoseFormat(is_quaternion=True), 'is not of length 1'),
+])
+def test_pose_that_may_mean_another_is_a_warning(builder, problems, text, pose_format, message):
+    builder.set_pose(1, text, pose_format, 7)
+    builder.elements(problems)
+    (warning,) = problems.warnings
+    assert message in warning.message
+    assert warning.place.line == 7
+
+
+def test_element_without_a_pose_is_at_the_identity(builder, problems):
+    elements = builder.elements(problems)
     assert elements.poses.tolist() == [[0, 0, 0, 0, 0, 0, 1]] * 3
     assert elements.pose_lines.tolist() == [0, 0, 0]
 
 
-def test_table_has_the_columns_of_all_elements(builder):
-    elements, _ = builder.elements()
+def test_table_has_the_columns_of_all_elements(builder, problems):
+    elements = builder.elements(problems)
     assert elements.parents.tolist() == elements.scopes.tolist() == [-1, 0, 1]
     assert elements.lines.tolist() == [1, 2, 3]
     assert [elements.kind(index) for index in range(3)] == [Kind.ROOT, Kind.MODEL, Kind.LINK]
@@ -69,12 +87,12 @@ def test_table_has_the_columns_of_all_elements(builder):
     (1, ('a.sdf', 2, '/sdf/model[@name="m"]')),
     (2, ('b.sdf', 3, '/sdf/model[@name="m"]/link[@name="l"]')),
 ])
-def test_place_of_an_element(builder, index, place):
-    assert builder.elements()[0].place(index) == place
+def test_place_of_an_element(builder, problems, index, place):
+    assert builder.elements(problems).place(index) == place
 
 
-def test_place_of_a_part_of_an_element(builder):
-    elements, _ = builder.elements()
+def test_place_of_a_part_of_an_element(builder, problems):
+    elements = builder.elements(problems)
     assert elements.place(2, 7, 'pose') == (
         'b.sdf', 7, '/sdf/model[@name="m"]/link[@name="l"]/pose')
 

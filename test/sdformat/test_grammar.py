@@ -115,7 +115,7 @@ MAIN = """<sdf version="1.10"><world name="w">
 <include><uri>crane.sdf</uri><name>c</name><pose>0 20 0 0 0 0</pose></include>
 </world></sdf>"""
 CRANE = """<sdf version="1.8"><model name="crane"><link name="jib">
-<beam name="b"><pose rotation_format="quat_xyzw">0 0 3 0 0 2 0</pose><length>1</length></beam>
+<beam name="b"><pose rotation_format="quat_xyzw">0 0 3 0 0 1 0</pose><length>1</length></beam>
 </link></model></sdf>"""
 WRONG = """<sdf version="1.10"><model name="m"><link name="l">
 <beam><pose>1 0 0 0 0 0</pose></beam>

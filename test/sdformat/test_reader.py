@@ -41,6 +41,13 @@ def test_two_models_of_one_name_at_the_top_are_refused():
     assert codes_of(f'<sdf version="1.9">{model}{model}</sdf>') == ['DUPLICATE_NAME']
 
 
+def test_second_pose_is_ignored_with_a_warning():
+    scene = load_text(link_with('<pose>1 0 0 0 0 0</pose><pose>2 0 0 0 0 0</pose>'))
+    assert scene.pose('m::l').x == 1.0
+    assert [warning.message for warning in scene.warnings] == [
+        'a second <pose> is ignored; the first one counts']
+
+
 @pytest.mark.parametrize('second', ['<light name="k" type="point"/>', '<actor name="k"/>'])
 def test_model_and_something_else_at_the_top_are_refused(second):
     assert codes_of(model_file(LINK).replace('</sdf>', second + '</sdf>')) == [

@@ -35,6 +35,7 @@ from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.sdformat.reader import check_element
 from sdf_pose_bridge.sdformat.sources import Document
 from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
 from sdf_pose_bridge.sdformat.xml_tree import described
@@ -77,6 +78,7 @@ class IncludeExpansion:
         self._canonical_link_of = canonical_link_of
         self._files: dict[str, Document | None] = {}
         self._missing_uris: set[str] = set()
+        self._undefined = UndefinedReporter(sources, problems)
 
     def expand(self, document: Document) -> None:
         """
@@ -94,6 +96,7 @@ class IncludeExpansion:
 
     def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
         is_merge = self._is_merge(include)
+        self._undefined.report_content(include, definition_of('include'))
         for plugin in child_elements(include, 'plugin'):
             check_element(plugin, definition_of('plugin'), self._sources, self._problems)
         uri = self._uri(include)

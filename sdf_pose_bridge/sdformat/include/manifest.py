@@ -66,7 +66,7 @@ def model_file_from_directory(directory: str) -> ModelFile:
     for entry in child_elements(root, 'sdf'):
         version = _version_from_text(entry.get('version', ''))
         if version > NEWEST:
-            msg = f'version {entry.get("version")} of the model is newer than 1.12 and skipped'
+            msg = f'version {entry.get("version")} of the model is newer than {NEWEST} and skipped'
             place = Place(manifest, entry.sourceline or 0, '/model/sdf')
             warnings.append(SdfWarning('WARNING', msg, place))
         elif chosen is None or version > best:

@@ -177,8 +177,12 @@ class _Changer:
     def _new_element(self, xml: XmlElement) -> XmlElement:
         element = copy.deepcopy(xml)
         element.tail = None
-        for attribute in _OWN_ATTRIBUTES:
-            element.attrib.pop(attribute, None)
+        definition = definition_of(written_tag(xml))
+        attributes = element.keys()
+        for attribute in attributes:
+            if attribute in _OWN_ATTRIBUTES or (
+                    attribute not in definition.attributes and ':' not in attribute):
+                del element.attrib[attribute]
         self._sources.set_source(element, self._sources.path(xml), self._sources.line(xml))
         self.added.append(element)
         return element

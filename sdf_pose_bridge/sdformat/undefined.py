@@ -1,0 +1,107 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Warn of elements and attributes that SDFormat does not define; most of them are misspelt.
+
+libsdformat warns of the same ones (``readXml`` and ``readAttributes`` in ``parser.cc``). What has
+a prefix, and what a plugin holds, belongs to others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from sdf_pose_bridge.errors import Problems
+from sdf_pose_bridge.names import nearest_name
+from sdf_pose_bridge.sdformat.grammar import Definition
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.xml_tree import written_tag
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+_ELEMENT_HINTS = {
+    'origin': 'it is from URDF; SDFormat has <pose>x y z roll pitch yaw</pose>',
+}
+"""The ends of messages about elements of other formats."""
+
+_ATTRIBUTE_HINTS = {
+    ('pose', 'frame'): 'since version 1.7 it is relative_to',
+    ('inertial/pose', 'relative_to'): 'an inertial is placed in its link',
+    ('parent', 'link'): 'it is from URDF; SDFormat has <parent>name of a frame</parent>',
+    ('child', 'link'): 'it is from URDF; SDFormat has <child>name of a frame</child>',
+}
+"""The ends of messages about attributes of other versions, elements and formats."""
+
+
+class UndefinedReporter:
+    """
+    Warns of what is not defined.
+
+    :param sources: where elements were written.
+    :param problems: takes the warnings.
+    """
+
+    def __init__(self, sources: Sources, problems: Problems) -> None:
+        self._sources = sources
+        self._problems = problems
+
+    def report_content(self, xml: XmlElement, definition: Definition) -> None:
+        """
+        Warn of the attributes and child elements of an element that are not defined.
+
+        :param xml: an element.
+        :param definition: its definition.
+        """
+        names = xml.keys()
+        for name in names:
+            if name not in definition.attributes:
+                self.report_attribute(xml, name, definition)
+        for child in xml:
+            if child.tag not in definition.children:
+                self.report_element(child, definition)
+
+    def report_element(self, xml: XmlElement, parent: Definition) -> None:
+        """
+        Warn of an element.
+
+        :param xml: a child element, or a comment, that the definition of its parent does not know.
+        :param parent: the definition of the element that holds it.
+        """
+        tag = written_tag(xml)
+        parent_xml = xml.getparent()
+        if (not isinstance(xml.tag, str) or ':' in tag or parent.takes_any_children
+                or parent_xml is None):
+            return
+        hint = _ELEMENT_HINTS.get(tag, '')
+        if not hint and tag in parent.attributes:
+            hint = f'it is an attribute: {tag}="..."'
+        elif not hint:
+            hint = _did_you_mean(tag, map(str, parent.children), '<{}>')
+        self._warn(xml, f'<{tag}> in <{written_tag(parent_xml)}>', hint)
+
+    def report_attribute(self, xml: XmlElement, name: str, definition: Definition) -> None:
+        """
+        Warn of an attribute.
+
+        :param xml: an element.
+        :param name: name of an attribute that its definition does not know.
+        :param definition: its definition.
+        """
+        # lxml writes the namespace of a prefix in braces.
+        if ':' in name or '{' in name:
+            return
+        hint = _ATTRIBUTE_HINTS.get((definition.identifier, name), '')
+        if not hint and name in definition.children:
+            hint = f'it is an element: <{name}>'
+        elif not hint:
+            hint = _did_you_mean(name, definition.attributes, '{}')
+        self._warn(xml, f'{name}="{xml.get(name)}" of <{written_tag(xml)}>', hint)
+
+    def _warn(self, xml: XmlElement, what: str, hint: str) -> None:
+        ending = f'; {hint}' if hint else ''
+        self._problems.warning(
+            f'{what} is not defined in SDFormat{ending}', self._sources.place(xml))
+
+
+def _did_you_mean(name: str, names: Iterable[str], form: str) -> str:
+    nearest = nearest_name(name, names)
+    return f'did you mean {form.format(nearest)}?' if nearest else ''

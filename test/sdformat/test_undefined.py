@@ -1,0 +1,100 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Warnings of elements and attributes that SDFormat does not define."""
+
+import pytest
+from sdf_texts import LINK
+from sdf_texts import link_with
+from sdf_texts import model_file
+from sdf_texts import world_file
+from sdf_texts import write_files
+
+from sdf_pose_bridge import load
+from sdf_pose_bridge import load_text
+
+
+def messages_of(text):
+    return [warning.message for warning in load_text(text).warnings]
+
+
+@pytest.mark.parametrize(('text', 'message'), [
+    (model_file(LINK + '<lnk name="k"/>'),
+     '<lnk> in <model> is not defined in SDFormat; did you mean <link>?'),
+    (model_file(LINK + '<Link name="k"/>'),
+     '<Link> in <model> is not defined in SDFormat; did you mean <link>?'),
+    (model_file(LINK + '<qqqq/>'), '<qqqq> in <model> is not defined in SDFormat'),
+    (link_with('<static>true</static>'), '<static> in <link> is not defined in SDFormat'),
+    (link_with('<pose>1 2 3 0 0 0<relative_to>world</relative_to></pose>'),
+     ('<relative_to> in <pose> is not defined in SDFormat; it is an attribute: '
+     'relative_to="..."')),
+    (link_with('<inertial><mas>1</mas></inertial>'),
+     '<mas> in <inertial> is not defined in SDFormat; did you mean <mass>?'),
+    (world_file('<modle name="m"/>'),
+     '<modle> in <world> is not defined in SDFormat; did you mean <model>?'),
+    (f'<sdf version="1.9"><modell/><model name="m">{LINK}</model></sdf>',
+     '<modell> in <sdf> is not defined in SDFormat; did you mean <model>?'),
+    (link_with('<visual name="v"><origin xyz="1 2 3"/><geometry/></visual>'),
+     ('<origin> in <visual> is not defined in SDFormat; it is from URDF; SDFormat has <pose>x y z '
+     'roll pitch yaw</pose>')),
+])
+def test_element_that_is_not_defined_is_a_warning(text, message):
+    assert messages_of(text) == [message]
+
+
+@pytest.mark.parametrize(('text', 'message'), [
+    (link_with('<pose relativ_to="x">1 2 3 0 0 0</pose>'),
+     'relativ_to="x" of <pose> is not defined in SDFormat; did you mean relative_to?'),
+    (link_with('<pose degree="true">0 0 0 0 0 1</pose>'),
+     'degree="true" of <pose> is not defined in SDFormat; did you mean degrees?'),
+    (model_file(LINK + '<frame name="f" attach_to="l"/>'),
+     'attach_to="l" of <frame> is not defined in SDFormat; did you mean attached_to?'),
+    (model_file(LINK, attributes='static="true"'),
+     'static="true" of <model> is not defined in SDFormat; it is an element: <static>'),
+    (link_with('<pose frame="l"/>'),
+     'frame="l" of <pose> is not defined in SDFormat; since version 1.7 it is relative_to'),
+    (link_with('<inertial><pose relative_to="l"/></inertial>'),
+     'relative_to="l" of <pose> is not defined in SDFormat; an inertial is placed in its link'),
+    (model_file(LINK + '<plugin name="p" filename="f" file="g"/>'),
+     'file="g" of <plugin> is not defined in SDFormat; did you mean filename?'),
+])
+def test_attribute_that_is_not_defined_is_a_warning(text, message):
+    assert messages_of(text) == [message]
+
+
+@pytest.mark.parametrize('text', [
+    model_file(LINK + '<plugin name="p" filename="f"><anything goes="here"/></plugin>'),
+    ('<sdf version="1.9" xmlns:x="y"><model name="m"><link name="l" x:a="b"><x:b/></link></model>'
+    '</sdf>'),
+    model_file(LINK + '<my:tag/>'),
+    model_file(LINK + '<!-- <lnk/> -->'),
+])
+def test_what_belongs_to_others_gives_no_warning(text):
+    assert [message for message in messages_of(text) if 'not defined' in message] == []
+
+
+def test_element_that_is_not_defined_is_not_searched():
+    assert len(messages_of(model_file(LINK + '<a><b c="d"/></a>'))) == 1
+
+
+@pytest.mark.parametrize(('version', 'content'), [
+    ('1.3', '<physics type="ode"><update_rate>1000</update_rate></physics>'),
+    ('1.5', '<physics type="ode"><gravity>0 0 -9</gravity></physics>'),
+    ('1.5', ('<model name="m"><link name="l"><sensor name="s" type="imu"><imu><noise>'
+            '<type>gaussian</type></noise></imu></sensor></link></model>')),
+    ('1.4', f'<model name="m">{LINK}<pose frame="">0 0 1 0 0 0</pose></model>'),
+    ('1.7', ('<model name="m"><link name="l"><inertial><pose relative_to=""/></inertial></link>'
+            '</model>')),
+])
+def test_element_of_an_old_version_gives_no_warning(version, content):
+    text = world_file(content, version=version).replace(
+        '<physics type="ode">', '<physics type="ode"><max_step_size>1</max_step_size>')
+    assert messages_of(text) == []
+
+
+def test_misspelt_element_of_an_include_is_a_warning_with_its_line(tmp_path):
+    write_files(tmp_path, leaf=model_file(LINK), main=world_file(
+        '\n<include>\n<uri>leaf.sdf</uri>\n<nmae>n</nmae>\n</include>'))
+    (warning,) = load(tmp_path / 'main.sdf').warnings
+    assert warning.message == (
+        '<nmae> in <include> is not defined in SDFormat; did you mean <name>?')
+    assert (warning.place.file, warning.place.line) == (str(tmp_path / 'main.sdf'), 4)
