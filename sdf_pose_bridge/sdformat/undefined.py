@@ -20,8 +20,12 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _ELEMENT_HINTS = {
     'origin': 'it is from URDF; SDFormat has <pose>x y z roll pitch yaw</pose>',
+    'sensor/gz_frame_id': 'it is used all the same',
+    'sensor/ignition_frame_id': 'it is used all the same',
+    'gz_frame_id': 'Gazebo looks for it in <sensor>',
+    'ignition_frame_id': 'Gazebo looks for it in <sensor>',
 }
-"""The ends of messages about elements of other formats."""
+"""The ends of messages about elements, by tag, or parent and tag."""
 
 _ATTRIBUTE_HINTS = {
     ('pose', 'frame'): 'since version 1.7 it is relative_to',
@@ -29,7 +33,7 @@ _ATTRIBUTE_HINTS = {
     ('parent', 'link'): 'it is from URDF; SDFormat has <parent>name of a frame</parent>',
     ('child', 'link'): 'it is from URDF; SDFormat has <child>name of a frame</child>',
 }
-"""The ends of messages about attributes of other versions, elements and formats."""
+"""The ends of messages about attributes, by identifier of the element and name."""
 
 
 class UndefinedReporter:
@@ -71,7 +75,7 @@ class UndefinedReporter:
         if (not isinstance(xml.tag, str) or ':' in tag or parent.takes_any_children
                 or parent_xml is None):
             return
-        hint = _ELEMENT_HINTS.get(tag, '')
+        hint = _ELEMENT_HINTS.get(f'{parent.identifier}/{tag}', '') or _ELEMENT_HINTS.get(tag, '')
         if not hint and tag in parent.attributes:
             hint = f'it is an attribute: {tag}="..."'
         elif not hint:
