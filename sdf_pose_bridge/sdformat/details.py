@@ -43,8 +43,11 @@ JOINT_TYPES = frozenset({
 PLACEMENT_OF_MERGED_MODEL = '{sdf_pose_bridge}placement_frame'
 """Attribute of the frame that replaces a merged model's frame: the model's placement frame."""
 
-_SHADER_TYPES = (
-    'normal_map_object_space', 'normal_map_tangent_space', 'pixel', 'vertex')
+_TYPES = {
+    'atmosphere': ('adiabatic',),
+    'shader': ('normal_map_object_space', 'normal_map_tangent_space', 'pixel', 'vertex'),
+}
+"""The types of elements without a frame."""
 
 
 def reference_of(xml: XmlElement, attribute: str) -> str:
@@ -125,10 +128,7 @@ class DetailsReader:
             self._problems.error(error(msg, self._sources.place(xml)))
             return Reference('')
         name = value_of(element)
-        if not name:
-            msg = f'<{tag}> is empty; it must name a frame'
-            self._problems.error(ElementInvalidError(msg, self._sources.place(element)))
-        elif name == ROOT_FRAME:
+        if name == ROOT_FRAME:
             msg = f'"{name}" is reserved; it cannot be the {tag} of a joint'
             self._problems.error(ReservedNameError(msg, self._sources.place(element)))
             name = ''
@@ -176,17 +176,17 @@ class DetailsReader:
         if identifier == 'material/script':
             for tag, error in (('uri', ElementInvalidError), ('name', ElementMissingError)):
                 element = first_child(xml, tag)
-                if element is None or value_of(element) in ('', '__default__'):
-                    msg = f'the <script> of a material has no <{tag}>, or an empty one'
+                if element is None or value_of(element) == '__default__':
+                    msg = f'the <script> of a material has no <{tag}>'
                     self._problems.error(error(msg, self._sources.place(xml)))
-        elif identifier == 'shader':
-            shader_type = attribute_of(xml, 'type')
-            if shader_type not in _SHADER_TYPES:
-                msg = (f'type="{shader_type}" of a shader must be one of '
-                       f'{", ".join(_SHADER_TYPES)}')
+        elif identifier in _TYPES:
+            written_type = attribute_of(xml, 'type')
+            if written_type and written_type not in _TYPES[identifier]:
+                msg = (f'type="{written_type}" of <{identifier}> must be one of '
+                       f'{", ".join(_TYPES[identifier])}')
                 self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
-            elif shader_type.startswith('normal_map') and first_child(xml, 'normal_map') is None:
-                msg = f'a shader of type="{shader_type}" needs a <normal_map>'
+            elif written_type.startswith('normal_map') and first_child(xml, 'normal_map') is None:
+                msg = f'a shader of type="{written_type}" needs a <normal_map>'
                 self._problems.error(ElementMissingError(msg, self._sources.place(xml)))
 
 

@@ -157,14 +157,16 @@ class Definition:
     :param value_type: type of the value, if the content does not tell.
     :param minimum: the smallest value that the element may have.
     :param maximum: the largest value that the element may have.
+    :param is_required: whether the value may not be blank.
     """
 
     def __init__(
         self, identifier: str, content: str, *, has_frames: bool = False,
         value_type: ValueType | None = None, minimum: float = -math.inf,
-        maximum: float = math.inf,
+        maximum: float = math.inf, is_required: bool = False,
     ) -> None:
         self.identifier = identifier
+        self.is_required = is_required
         self.minimum = minimum
         self.maximum = maximum
         self.kind = _KINDS.get(identifier) if has_frames else None
@@ -240,7 +242,7 @@ class Definition:
         return Definition(
             tag, '', value_type=ValueType(item['type'] or 'string'),
             minimum=float(item['minimum'] or -math.inf),
-            maximum=float(item['maximum'] or math.inf))
+            maximum=float(item['maximum'] or math.inf), is_required=bool(item['required']))
 
 
 @cache

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
+from sdf_pose_bridge.sdformat.values import is_representable
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 
 if TYPE_CHECKING:
@@ -44,7 +45,6 @@ _LARGEST_ANGLE_RAD = 6.3
 
 _IDENTITY_TEXTS = {6: '0 0 0 0 0 0', 7: '0 0 0 0 0 0 1'}
 _NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?')
-_NOT_ZERO = re.compile(r'[^eE]*[1-9]')
 _NUMBER_CHARACTERS = b'0123456789+-.eE \t\n\r'
 _THREE_DIGIT_EXPONENT = re.compile(r'[eE]-0*[1-9][0-9][0-9]')
 _LONGEST_PLAIN = 200
@@ -128,7 +128,7 @@ def _numbers_from_text(text: str, pose_format: PoseFormat) -> list[float]:
         if not _NUMBER.fullmatch(word):
             msg = f'"{word[:80]}" in the pose "{shown}" is not a finite decimal number'
             raise PoseTextError(msg)
-        if not _is_representable(word):
+        if not is_representable(word, float(word)):
             msg = f'"{word[:80]}" in the pose "{shown}" is beyond the range of a double'
             raise PoseTextError(msg)
     if len(words) != count:
@@ -218,11 +218,3 @@ def _poses_from_numbers(
         rpy_rad = np.radians(rotations) if pose_format.is_degrees else rotations
         poses[:, 3:] = quaternion_from_rpy(rpy_rad)
     return poses
-
-
-def _is_representable(number: str) -> bool:
-    """Return whether C's strtod takes a number without a range error."""
-    value = float(number)
-    if value == 0.0:
-        return not _NOT_ZERO.match(number)
-    return sys.float_info.min <= abs(value) <= sys.float_info.max

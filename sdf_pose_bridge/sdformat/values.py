@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 import math
 import re
+import sys
 
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.sdformat.grammar import Definition
@@ -26,6 +27,9 @@ _LEADING_INTEGER_OR_BOOLEAN = re.compile(r'[+-]?[0-9]|true|false', re.IGNORECASE
 _LEADING_BOOLEAN = re.compile(r'true|false', re.IGNORECASE)
 _DIGITS = frozenset('0123456789')
 _SHORTEST_AXIS = 1e-6
+_SHORTEST_OVERFLOW = len('1e308')
+"""A number that is written with fewer characters is in the range of a double."""
+_NOT_ZERO = re.compile(r'[^eE]*[1-9]')
 _FEWEST_COLOR_NUMBERS = 3
 # Python takes longer to look up a member of an Enum than a global variable.
 _AXIS, _BOOLEAN, _COLOR = ValueType.AXIS, ValueType.BOOLEAN, ValueType.COLOR
@@ -51,14 +55,16 @@ def value_fault(text: str, definition: Definition) -> str:
     """
     Return what is wrong with the value of an element.
 
-    :param text: the value. A blank one is never wrong: the default applies.
+    :param text: the value. If the element is not required, the default replaces a blank one.
     :param definition: the definition of the element; not that of a pose.
     :return: the value and the rule that it breaks; empty if it is right.
     """
-    if definition.takes_any_number and text[:1] in _DIGITS:
+    if definition.takes_any_number and text[:1] in _DIGITS and len(text) < _SHORTEST_OVERFLOW:
         return ''
     value_type = definition.value_type
-    stripped = text.strip()
+    stripped = text.strip(WHITE_SPACE)
+    if not stripped and definition.is_required and value_type is not None:
+        return f'<{definition.identifier}> is empty; it must have a value'
     if not stripped or value_type is None or definition.is_text:
         return ''
     numbers = leading_numbers(stripped, value_type.count)
@@ -72,6 +78,21 @@ def value_fault(text: str, definition: Definition) -> str:
         return ''
     rule = f'at least {minimum:g}' if maximum == math.inf else f'from {minimum:g} to {maximum:g}'
     return f'"{stripped}" must be {rule}'
+
+
+def is_representable(text: str, number: float) -> bool:
+    """
+    Return whether C's ``strtod`` reads a number without a range error.
+
+    :param text: the number as written, such as ``1e-3`` or ``inf``.
+    :param number: the number as a double.
+    :return: False for numbers such as ``1e400`` and ``1e-400``.
+    """
+    if number == 0.0:
+        return not _NOT_ZERO.match(text)
+    if math.isinf(number):
+        return text.lstrip('+-')[:1] in 'iI'
+    return math.isnan(number) or abs(number) >= sys.float_info.min
 
 
 def is_of_type(text: str, value_type: ValueType) -> bool:
@@ -88,9 +109,10 @@ def is_of_type(text: str, value_type: ValueType) -> bool:
 def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> bool:
     if value_type is _COLOR:
         return len(numbers) == len(text.split()) >= _FEWEST_COLOR_NUMBERS and all(
-            0.0 <= number <= 1.0 for number in numbers)
+            not (number < 0.0 or number > 1.0) for number in numbers)
     if value_type is _NUMBER:
-        return bool(numbers) or _LEADING_BOOLEAN.match(text) is not None
+        return (bool(numbers) and is_representable(text, numbers[0])) or (
+            _LEADING_BOOLEAN.match(text) is not None)
     if value_type is _INTEGER:
         return _LEADING_INTEGER_OR_BOOLEAN.match(text) is not None
     if value_type is _BOOLEAN:

@@ -8,6 +8,7 @@ from sdf_texts import link_with
 from sdf_texts import model_file
 from sdf_texts import only_error
 from sdf_texts import TWO_LINKS
+from sdf_texts import world_file
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.grammar import ValueType
@@ -44,7 +45,15 @@ def ode(content):
 @pytest.mark.parametrize('text', [
     link_with('<inertial><mass>heavy</mass></inertial>'),
     link_with('<inertial><mass>,</mass></inertial>'),
+    link_with('<inertial><mass>1e400</mass></inertial>'),
+    link_with('<inertial><mass>-1e400</mass></inertial>'),
+    link_with('<inertial><mass>1e-400</mass></inertial>'),
     link_with('<gravity>maybe</gravity>'),
+    world_file('<gravity/>'),
+    world_file('<physics type="ode"><max_step_size> </max_step_size></physics>'),
+    world_file('<atmosphere type="thin"/>'),
+    world_file('<gui><camera name="c"><pose rotation_format="x"/></camera></gui>'),
+    box(''),
     box('1 1'),
     box('1 x 1 1'),
     box('1,1,1'),
@@ -61,7 +70,6 @@ def ode(content):
     material('<ambient>1 1 1 1 1</ambient>'),
     material('<ambient>1 1 1 red</ambient>'),
     material('<ambient>1 1 -0.1</ambient>'),
-    material('<ambient>1 1 nan</ambient>'),
     axis('<xyz>0 0 0</xyz>'),
     axis('<xyz>0 1</xyz>'),
     axis('<xyz>0 0 1</xyz><limit><lower>low</lower></limit>'),
@@ -116,6 +124,9 @@ def test_attribute_of_another_type_is_refused(text):
     visual('<transparency>-.5</transparency>'),
     visual('<transparency>5.</transparency>'),
     material('<ambient>1 1 0.5</ambient>'),
+    material('<ambient>1 1 nan</ambient>'),
+    link_with('<inertial><mass>inf</mass></inertial>'),
+    link_with('<inertial><mass>1e-300</mass></inertial>'),
     material('<ambient>1 1_0 0.5x</ambient>'),
     material('<ambient>1 1_0 0.5</ambient>'),
     axis('<xyz>0 0 1e-3</xyz>'),

@@ -146,7 +146,8 @@ class _Changer:
                    f'no such element{hint_for_id(self._top, element_id)}')
             self._error(ElementMissingError, xml, msg)
         elif self._is_defined(xml, tag):
-            parent.append(self._new_element(xml))
+            around = self._definition(parent)
+            parent.append(self._new_element(xml, around and around.children.get(tag)))
 
     def _change_child(self, xml: XmlElement, parent_tag: str, target: XmlElement) -> None:
         tag, action = written_tag(xml), xml.get('action')
@@ -156,7 +157,8 @@ class _Changer:
             return
         if not self._is_action(xml, action):
             return
-        if action in ('add', 'replace') and tag not in definition_of(parent_tag).children:
+        definition = definition_of(parent_tag).children.get(tag)
+        if action in ('add', 'replace') and definition is None:
             msg = f'SDFormat defines no <{tag}> in a <{parent_tag}>'
             self._error(ElementInvalidError, xml, msg)
             return
@@ -164,7 +166,7 @@ class _Changer:
             self._warning(xml, 'an <include> that is added by itself includes nothing')
             return
         if action == 'add':
-            target.append(self._new_element(xml))
+            target.append(self._new_element(xml, definition))
             return
         found = self._child(target, xml, takes_first=action == 'modify')
         if found is not None and action == 'replace':
@@ -174,14 +176,15 @@ class _Changer:
 
     # Actions
 
-    def _new_element(self, xml: XmlElement) -> XmlElement:
+    def _new_element(self, xml: XmlElement, definition: Definition | None) -> XmlElement:
+        """Copy an element without attributes that are not defined, as libsdformat does."""
         element = copy.deepcopy(xml)
         element.tail = None
-        definition = definition_of(written_tag(xml))
         attributes = element.keys()
         for attribute in attributes:
             if attribute in _OWN_ATTRIBUTES or (
-                    attribute not in definition.attributes and ':' not in attribute):
+                    definition is not None and attribute not in definition.attributes
+                    and ':' not in attribute):
                 del element.attrib[attribute]
         self._sources.set_source(element, self._sources.path(xml), self._sources.line(xml))
         self.added.append(element)
@@ -193,7 +196,7 @@ class _Changer:
             msg = f'<{tag}> is to replace <{tag} name="{target.get("name")}">, so it needs a name'
             self._error(AttributeMissingError, xml, msg)
         elif parent is not None:
-            parent.replace(target, self._new_element(xml))
+            parent.replace(target, self._new_element(xml, self._definition(target)))
 
     def _remove(self, xml: XmlElement, target: XmlElement) -> None:
         if _is_empty(xml):
@@ -229,6 +232,11 @@ class _Changer:
             self._modify(xml, found)
         elif self._holds_value(found):
             is_end = written_tag(target) == 'joint' and found.tag in ('parent', 'child')
+            definition = self._definition(found)
+            if definition is not None and definition.is_required and not is_end:
+                # Without the element its default applies.
+                _take_out(found)
+                return
             self._set_text(_DEFAULT_JOINT_END if is_end else '', xml, found)
             self._change_attributes(xml, found, is_read_before=False)
         else:
