@@ -176,8 +176,9 @@ class DetailsReader:
         if identifier == 'material/script':
             for tag, error in (('uri', ElementInvalidError), ('name', ElementMissingError)):
                 element = first_child(xml, tag)
-                if element is None or value_of(element) == '__default__':
-                    msg = f'the <script> of a material has no <{tag}>'
+                value = '__default__' if element is None else value_of(element)
+                if value == '__default__' or (tag == 'uri' and not value):
+                    msg = f'the <script> of a material has no <{tag}>, or an empty one'
                     self._problems.error(error(msg, self._sources.place(xml)))
         elif identifier in _TYPES:
             written_type = attribute_of(xml, 'type')

@@ -15,7 +15,8 @@ separated by blanks:
 * ``*``: any children, which are not read.
 
 ``!`` after a tag or a name: the element or attribute is required. Where a required child element
-is missing, libsdformat adds it with its default value, except in joints.
+is missing, libsdformat adds it with its default value, except in joints. ``+`` is the same for an
+element that may be repeated; its value may be blank, which a required value may not be otherwise.
 """
 
 from __future__ import annotations
@@ -91,7 +92,7 @@ class Kind(enum.IntEnum):
     """The implicit root of a model file, in which its poses are resolved. No file writes it."""
     WORLD = 'sdf', (
         '@name! audio wind include gravity!:vector3 magnetic_field!:vector3 atmosphere! gui '
-        'physics! scene! plugin road spherical_coordinates state population')
+        'physics+ scene! plugin road spherical_coordinates state population')
     MODEL = 'sdf world model', (
         '@name! @canonical_link:frame @placement_frame:frame pose static:bool self_collide:bool '
         'allow_auto_disable:bool enable_wind:bool plugin gripper include'), True
@@ -135,7 +136,7 @@ class Kind(enum.IntEnum):
 
 
 _ITEM = re.compile(
-    r'(?P<attribute>@?)(?P<name>[\w*]*)(?P<required>!?)(?:=(?P<identifier>\w+(?:/\w+)?))?'
+    r'(?P<attribute>@?)(?P<name>[\w*]*)(?P<required>[!+]?)(?:=(?P<identifier>\w+(?:/\w+)?))?'
     r'(?::(?P<type>\w+))?(?:\[(?P<minimum>[^,]*),(?P<maximum>.*)\])?')
 _KINDS = {kind.label: kind for kind in Kind}
 
@@ -242,7 +243,7 @@ class Definition:
         return Definition(
             tag, '', value_type=ValueType(item['type'] or 'string'),
             minimum=float(item['minimum'] or -math.inf),
-            maximum=float(item['maximum'] or math.inf), is_required=bool(item['required']))
+            maximum=float(item['maximum'] or math.inf), is_required=item['required'] == '!')
 
 
 @cache
