@@ -121,6 +121,12 @@ class FileReadError(SdfError):
     code = 'FILE_READ'
 
 
+class LimitError(SdfError):
+    """The file needs more than a load may use."""
+
+    code = 'LIMIT'
+
+
 class ParsingError(SdfError):
     """The XML is not SDFormat."""
 

@@ -35,6 +35,7 @@ from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.elements import ModelDetails
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.limits import Usage
 
 _MOST_NAMES_SHOWN = 5
 _LONGEST_CYCLE_SHOWN = 12
@@ -64,23 +65,27 @@ class FrameGraph(NamedTuple):
     libsdformat loads all the same, and those that refer to an include that was not found."""
 
 
-def frame_graph_from_elements(elements: Elements, problems: Problems) -> FrameGraph:
+def frame_graph_from_elements(
+    elements: Elements, usage: Usage, problems: Problems,
+) -> FrameGraph:
     """
     Look up and check every reference.
 
     :param elements: the elements.
+    :param usage: counts the characters of names.
     :param problems: takes what is wrong with references.
     :return: the graph; a wrong reference in it is replaced by the default of its kind.
+    :raises LimitError: if the absolute names are too long.
     """
-    return _Builder(elements, problems).graph()
+    return _Builder(elements, usage, problems).graph()
 
 
 class _Builder:
 
-    def __init__(self, elements: Elements, problems: Problems) -> None:
+    def __init__(self, elements: Elements, usage: Usage, problems: Problems) -> None:
         self._elements = elements
         self._problems = problems
-        self._scopes = NameScopes(elements)
+        self._scopes = NameScopes(elements, usage)
         self._scope_of: list[int] = elements.scopes.tolist()
         self._reported_cycles: set[frozenset[int]] = set()
         self._unresolved: dict[int, str] = {}

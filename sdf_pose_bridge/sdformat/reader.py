@@ -43,9 +43,6 @@ from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-_DEEPEST = 300
-"""How deep elements may be nested. libxml2 allows 256 levels in a file."""
-
 
 def elements_from_tree(
     root: XmlElement, sources: Sources, problems: Problems, *, may_hold_scoped_names: bool,
@@ -98,6 +95,7 @@ class _Reader:
     def __init__(self, sources: Sources, problems: Problems) -> None:
         self._sources = sources
         self._problems = problems
+        self._deepest = sources.usage.limits.depth
         self._builder = ElementsBuilder(sources.paths)
         self._names = SiblingNames(self._builder, sources, problems)
         self._details = DetailsReader(sources, problems)
@@ -185,10 +183,8 @@ class _Reader:
         self, xml: XmlElement, definition: Definition, parent: int, scope: int, path: str,
         depth: int,
     ) -> None:
-        if depth > _DEEPEST:
-            msg = f'elements are nested more than {_DEEPEST} deep'
-            self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
-            self._problems.raise_errors()
+        if depth > self._deepest:
+            self._sources.usage.check('depth', depth, self._sources.place(xml))
         definitions = definition.children
         for child in xml:
             child_definition = definitions.get(child.tag)

@@ -15,6 +15,9 @@ from itertools import islice
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
+from sdf_pose_bridge.sdformat.limits import Limits
+from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
@@ -47,9 +50,13 @@ class Sources:
     The files of a load, and where each XML element was written.
 
     An element stands in the file that :meth:`set_source` gave to it or to its nearest ancestor.
+
+    :param limits: what the load may use.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, limits: Limits = DEFAULT_LIMITS) -> None:
+        self.usage = Usage(limits)
+        """What the load has used so far."""
         self.paths: list[str] = []
         """All files that were read, in the order of reading."""
         self.versions: dict[str, Version] = {}
