@@ -12,6 +12,7 @@ from typing import TextIO
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.scene.scene import Scene
@@ -113,5 +114,5 @@ def print_problems(
         is_error = isinstance(problem, SdfError)
         colour = '' if not is_coloured else _RED if is_error else _YELLOW
         kind = '' if is_error or problem.code == 'WARNING' else 'WARNING: '
-        print(f'{bold}{problem.place}:{plain} {colour}{kind}{problem.code}:{plain} '
-              f'{problem.message}', file=stream)
+        place, message = printable(str(problem.place)), printable(problem.message)
+        print(f'{bold}{place}:{plain} {colour}{kind}{problem.code}:{plain} {message}', file=stream)

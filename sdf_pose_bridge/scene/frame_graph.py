@@ -238,8 +238,8 @@ class _Builder:
         self._unresolved[index] = self._scopes.missing_uri(scope, name)
         if not self._unresolved[index]:
             msg = (f'relative_to="{name}" names no frame in {self._scopes.described(scope)}'
-                   f'{self._scopes.hint(scope, name)}; the {elements.kind(index).label} is left '
-                   'out')
+                   f'{self._scopes.hint(scope, name, self._problems)}; the '
+                   f'{elements.kind(index).label} is left out')
             place = elements.place_of_pose(index)
             self._problems.warning(msg, place, RelativeToError.code)
         return NO_ELEMENT
@@ -270,7 +270,7 @@ class _Builder:
             self._unresolved[index] = uri
             return
         msg = (f'{attribute}="{name}" names no frame in {self._scopes.described(scope)}'
-               f'{self._scopes.hint(scope, name)}')
+               f'{self._scopes.hint(scope, name, self._problems)}')
         self._problems.error(error_class(msg, self._elements.place(index, line, part)))
 
     def _add_dependents(

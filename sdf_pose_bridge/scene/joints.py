@@ -112,7 +112,7 @@ class _JointChecks:
     ) -> None:
         scope = self._scope_of[joint]
         msg = (f'{what} "{reference.name}" names no frame in {self._scopes.described(scope)}'
-               f'{self._scopes.hint(scope, reference.name)}')
+               f'{self._scopes.hint(scope, reference.name, self._problems)}')
         report = self._error if error_class is JointChildError else self._report
         report(error_class, msg, joint, reference.line, part or what)
 

@@ -75,7 +75,7 @@ def load(
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
     """
     sources = Sources(limits)
-    problems = Problems(sources.paths)
+    problems = Problems(sources.paths, sources.includes)
     with _without_garbage_collection(), _limit_error_last(problems):
         document = document_from_file(os.fspath(path), sources, problems)
         return _scene(
@@ -102,7 +102,7 @@ def load_text(
     :raises SdfError: as for :func:`load`.
     """
     sources = Sources(limits)
-    problems = Problems(sources.paths)
+    problems = Problems(sources.paths, sources.includes)
     with _without_garbage_collection(), _limit_error_last(problems):
         document = document_from_text(text, name, sources, problems)
         return _scene(
@@ -161,11 +161,11 @@ def _canonical_link(root: XmlElement, sources: Sources, problems: Problems) -> s
     :return: name of the canonical link in the model; empty if it has none; None if there are
         errors.
     """
-    own_problems = Problems(sources.paths)
+    own_problems = Problems(sources.paths, parent=problems)
     elements = elements_from_tree(root, sources, own_problems, may_hold_scoped_names=True)
     graph = frame_graph_from_elements(elements, sources.usage, own_problems)
     if own_problems.errors:
-        problems.extend([*own_problems.errors, *own_problems.warnings])
+        own_problems.extend_parent()
         return None
     model = 1  # element 0 is the implicit root
     link = int(graph.canonical_links[model])

@@ -15,6 +15,7 @@ from itertools import islice
 
 import numpy as np
 
+from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import ROOT_FRAME
@@ -117,15 +118,18 @@ class NameScopes:
         name = self._elements.names[scope] if kind is Kind.WORLD else self.names[scope]
         return f'{kind.label} "{name}"'
 
-    def hint(self, scope: int, reference: str) -> str:
+    def hint(self, scope: int, reference: str, problems: Problems) -> str:
         """
         Return the end of a message about a reference that names no frame.
 
         :param scope: index of the model, world or root in which the reference is written.
         :param reference: the name as written.
+        :param problems: those of the load, which limit the number of hints.
         :return: the likely reason, or the nearest name that exists; else an empty string.
         """
-        first = reference.split(SEPARATOR)[0]
+        if not problems.allows_hint():
+            return ''
+        first = reference.split(SEPARATOR, 1)[0]
         if self._is_model[scope]:
             if first == self._elements.names[scope]:
                 rest = reference[len(first) + len(SEPARATOR):]

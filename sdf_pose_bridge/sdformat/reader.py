@@ -107,7 +107,8 @@ class _Reader:
         self._read(xml, definition, NO_ELEMENT, NO_ELEMENT, '', 1)
 
     def elements(self, root: XmlElement) -> Elements:
-        self._read_file(root)
+        with self._sources.unchanged_trees():
+            self._read_file(root)
         return self._builder.elements(self._problems)
 
     def _read_file(self, root: XmlElement) -> None:

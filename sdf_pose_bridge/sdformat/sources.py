@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from collections.abc import Mapping
+import contextlib
 import copy
 from itertools import islice
 from typing import NamedTuple
@@ -20,6 +21,8 @@ from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+_MOST_PATHS_REMEMBERED = 1000
 
 
 class Version(NamedTuple):
@@ -61,12 +64,16 @@ class Sources:
         """All files that were read, in the order of reading."""
         self.versions: dict[str, Version] = {}
         """The version of each SDFormat file by its path."""
+        self.includes: dict[str, Place] = {}
+        """The place of the include that first led to each included file, by its path."""
         self._files: dict[XmlElement, str] = {}
         self._lines: dict[XmlElement, int] = {}
         self._includes: dict[XmlElement, Place] = {}
         self._named_by_includes: set[XmlElement] = set()
         self._placed_by_includes: dict[XmlElement, tuple[str, int]] = {}
         self._composed_trees: set[XmlElement] = set()
+        self._element_paths: dict[XmlElement, str] = {}
+        self._remembers_paths = False
 
     def add_path(self, path: str) -> None:
         """
@@ -206,10 +213,35 @@ class Sources:
         :param part: path of a missing element in it; empty for the element itself.
         :return: its file, its line and its path in the tree.
         """
-        steps = [described(each) for each in xml.iterancestors()]
-        path = '/'.join(['', *reversed(steps), described(xml)])
+        parent = xml.getparent()
+        path = f'{"" if parent is None else self._element_path(parent)}/{described(xml)}'
         file = self.path_of_pose(xml, self.path(xml))
         return Place(file, self.line(xml), f'{path}/{part}' if part else path)
+
+    @contextlib.contextmanager
+    def unchanged_trees(self) -> Iterator[None]:
+        """Remember paths: to copy a very long name for each of many errors in it takes long."""
+        self._remembers_paths = True
+        try:
+            yield
+        finally:
+            self._remembers_paths = False
+            self._element_paths.clear()
+
+    def _element_path(self, xml: XmlElement) -> str:
+        path = ''
+        steps: list[str] = []
+        for element in (xml, *xml.iterancestors()):
+            if element in self._element_paths:
+                path = self._element_paths[element]
+                break
+            steps.append(described(element))
+        path = '/'.join([path, *reversed(steps)])
+        if self._remembers_paths:
+            if len(self._element_paths) == _MOST_PATHS_REMEMBERED:
+                self._element_paths.clear()
+            self._element_paths[xml] = path
+        return path
 
     def place_of_name(self, xml: XmlElement) -> Place:
         """

@@ -16,6 +16,7 @@ from sdf_pose_bridge import Limits
 from sdf_pose_bridge import load
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge import SdfError
+from sdf_pose_bridge.errors import MOST_PROBLEMS
 
 FILES = 30
 TWICE = ('<include><name>a</name><uri>{0}.sdf</uri></include>'
@@ -52,6 +53,16 @@ def test_long_name_of_many_elements_is_refused(tmp_path):
 def test_too_many_elements_are_refused_before_they_are_parsed(tmp_path):
     write_files(tmp_path, flat=model_file('<a/>' * 10_000_000))
     assert exceeded_limit(tmp_path / 'flat.sdf') == 'elements'
+
+
+def test_errors_in_a_long_name_take_no_long_time_and_are_short(tmp_path):
+    links = '<link name="l"/>' * 20_000
+    write_files(tmp_path, long=model_file(links).replace('"m"', f'"{"m" * 350_000}"'))
+    text = '<sdf version="1.9">' + ''.join(
+        f'<world name="{"w" * 200}{number}"/>' * 2 for number in range(2000)) + '</sdf>'
+    (tmp_path / 'many.sdf').write_text(text)
+    assert len(str(errors_of_file(tmp_path / 'long.sdf')[0])) < 1000
+    assert len(errors_of_file(tmp_path / 'many.sdf')) == MOST_PROBLEMS + 1
 
 
 def test_included_pipe_is_refused(tmp_path):

@@ -104,7 +104,7 @@ class IncludeExpansion:
         uri = self._uri(include)
         if uri is None:
             return
-        found = self._included_file(uri, self._sources.path(include), files)
+        found = self._included_file(include, uri, files)
         if isinstance(found, str):
             self._report_missing(include, uri, found)
             return
@@ -144,10 +144,10 @@ class IncludeExpansion:
         return uri
 
     def _included_file(
-        self, uri: str, including_file: str, files: tuple[str, ...],
+        self, include: XmlElement, uri: str, files: tuple[str, ...],
     ) -> Document | str | None:
         """Return a file; the reason why it is not found; or None if it cannot be read."""
-        path = self._finder.path_from_uri(uri, including_file)
+        path = self._finder.path_from_uri(uri, self._sources.path(include))
         if path is None:
             return ('nothing of that name was found beside the file or in the resource paths, to '
                     'which the variable GZ_SIM_RESOURCE_PATH adds')
@@ -166,6 +166,7 @@ class IncludeExpansion:
         if len(files) >= self._sources.usage.limits.include_depth:
             return f'files include one another more than {len(files)} levels deep'
         if real_path not in self._files:
+            self._sources.includes[path] = self._sources.place(include)
             self._files[real_path] = self._read(path, (*files, real_path))
         return self._files[real_path]
 

@@ -16,6 +16,7 @@ from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.versions import NEWEST
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
@@ -71,7 +72,8 @@ def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
     for entry in child_elements(root, 'sdf'):
         version = _version_from_text(entry.get('version', ''))
         if version > NEWEST:
-            msg = f'version {entry.get("version")} of the model is newer than {NEWEST} and skipped'
+            written = shortened(entry.get('version', ''))
+            msg = f'version {written} of the model is newer than {NEWEST} and skipped'
             place = Place(manifest, entry.sourceline or 0, '/model/sdf')
             warnings.append(SdfWarning('WARNING', msg, place))
         elif chosen is None or version > best:

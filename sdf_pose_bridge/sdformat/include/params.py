@@ -113,7 +113,7 @@ class _Changer:
         target = element_by_id(self._top, element_id, tag)
         if target is None:
             msg = (f'the included model has no <{tag}> "{element_id}"'
-                   f'{hint_for_id(self._top, element_id, tag)}')
+                   f'{self._hint(element_id, tag)}')
             self._error(ElementMissingError, xml, msg)
         elif action is not None:
             self._act(action, xml, tag, target)
@@ -143,7 +143,7 @@ class _Changer:
         parent = element_by_id(self._top, element_id) if element_id else self._top
         if parent is None:
             msg = (f'<{tag}> cannot be added to element_id="{element_id}": the included model has '
-                   f'no such element{hint_for_id(self._top, element_id)}')
+                   f'no such element{self._hint(element_id)}')
             self._error(ElementMissingError, xml, msg)
         elif self._is_defined(xml, tag):
             parent.append(self._new_element(xml))
@@ -318,6 +318,10 @@ class _Changer:
         return definition is None or definition.value_type is not None
 
     # Errors
+
+    def _hint(self, element_id: str, tag: str = '') -> str:
+        allowed = self._problems.allows_hint()
+        return hint_for_id(self._top, element_id, tag) if allowed else ''
 
     def _is_action(self, xml: XmlElement, action: str) -> bool:
         if action in _ACTIONS:
