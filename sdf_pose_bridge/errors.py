@@ -234,6 +234,12 @@ class AttachedToCycleError(SdfError):
     code = 'FRAME_ATTACHED_TO_CYCLE'
 
 
+class LinkInertiaError(SdfError):
+    """The inertia of a link cannot be computed."""
+
+    code = 'LINK_INERTIA_INVALID'
+
+
 class JointChildError(SdfError):
     """The child of a joint is not valid."""
 

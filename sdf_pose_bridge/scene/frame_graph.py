@@ -230,7 +230,7 @@ class _Builder:
         """Report an unknown ``relative_to``; return the reference to use instead."""
         elements = self._elements
         scope = self._scope_of[index]
-        if IS_FRAME_KIND[elements.kinds[index]]:
+        if IS_FRAME_KIND[elements.kinds[index]] or elements.has_automatic_mass(index):
             self._report_unknown(
                 RelativeToError, index, 'relative_to', name, scope,
                 int(elements.pose_lines[index]), 'pose')

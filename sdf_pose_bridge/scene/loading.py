@@ -25,6 +25,7 @@ from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene.frame_graph import frame_graph_from_elements
 from sdf_pose_bridge.scene.frame_graph import FrameGraph
 from sdf_pose_bridge.scene.resolution import root_poses_from_graph
+from sdf_pose_bridge.scene.resolution import set_automatic_inertials
 from sdf_pose_bridge.scene.scene import Joint
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.documents import document_from_file
@@ -178,6 +179,8 @@ def _scene_from_graph(
     path: str, elements: Elements, graph: FrameGraph, problems: Problems,
 ) -> Scene:
     """Resolve the poses, and leave out unresolved elements."""
+    poses = root_poses_from_graph(elements.poses, graph)
+    set_automatic_inertials(poses, elements)
     count = len(elements.names)
     is_kept = np.ones(count, dtype=bool)
     is_kept[list(graph.unresolved)] = False
@@ -195,7 +198,7 @@ def _scene_from_graph(
         kinds=_frozen(elements.kinds[is_kept]),
         parents=reindexed(elements.parents),
         roots=reindexed(graph.roots),
-        poses=_frozen(root_poses_from_graph(elements.poses, graph)[is_kept]),
+        poses=_frozen(poses[is_kept]),
         attachments=reindexed(graph.attachments),
         bodies=reindexed(graph.bodies),
         canonical_links=reindexed(graph.canonical_links),

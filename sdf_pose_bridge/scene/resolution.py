@@ -15,7 +15,10 @@ from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.scene.frame_graph import FrameGraph
+from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import Indices
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.pose_text import IDENTITY
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -41,6 +44,27 @@ def root_poses_from_graph(poses: PoseArray, graph: FrameGraph) -> PoseArray:
     resolved[:, 3:] = canonical_quaternion(resolved[:, 3:])
     resolved[:, :3] += 0.0  # no negative zeros
     return resolved
+
+
+def set_automatic_inertials(root_poses: PoseArray, elements: Elements) -> None:
+    """
+    Move automatic inertials to the centres of mass of their links' collisions.
+
+    :param root_poses: shape (n, 7), pose of each element in its root; changed in place.
+    :param elements: the elements.
+    """
+    collisions: dict[int, list[int]] = {}
+    if elements.automatic_inertials:
+        for index in np.flatnonzero(elements.kinds == Kind.COLLISION).tolist():
+            collisions.setdefault(int(elements.parents[index]), []).append(index)
+    for index, masses in elements.automatic_inertials.items():
+        link = int(elements.parents[index])
+        centers = np.tile(IDENTITY, (len(masses), 1))
+        centers[:, 2] = [mass.center_z_m for mass in masses]
+        points = pose_products(root_poses[collisions[link]], centers)[:, :3]
+        root_poses[index, :3] = np.average(
+            points, axis=0, weights=[mass.mass_kg for mass in masses])
+        root_poses[index, 3:] = root_poses[link, 3:]
 
 
 def _poses_along_chains(

@@ -67,6 +67,14 @@ class JointDetails(NamedTuple):
     """The frames that the axes are expressed in, where they are given."""
 
 
+class CollisionMass(NamedTuple):
+    """The mass of a collision that an automatic inertial is computed from."""
+
+    mass_kg: float
+    center_z_m: float
+    """The z of the centre of mass in the frame of the collision; its x and y are 0."""
+
+
 class SensorDetails(NamedTuple):
     """What only a sensor has."""
 
@@ -109,6 +117,8 @@ class Elements(NamedTuple):
     frames: Mapping[int, FrameDetails]
     joints: Mapping[int, JointDetails]
     sensors: Mapping[int, SensorDetails]
+    automatic_inertials: Mapping[int, tuple[CollisionMass, ...]]
+    """For each inertial that is computed: the masses of its link's collisions in their order."""
     paths: Sequence[str]
     """The files of the load."""
     missing_includes: Mapping[int, Mapping[str, str]]
@@ -123,6 +133,16 @@ class Elements(NamedTuple):
         :return: its kind.
         """
         return Kind(int(self.kinds[index]))
+
+    def has_automatic_mass(self, index: int) -> bool:
+        """
+        Return whether an automatic inertial depends on an element.
+
+        :param index: index of the element.
+        :return: True for a collision in a link with such an inertial.
+        """
+        return self.kind(index) is Kind.COLLISION and any(
+            self.parents[inertial] == self.parents[index] for inertial in self.automatic_inertials)
 
     def place(self, index: int, line: int = 0, part: str = '') -> Place:
         """
@@ -174,6 +194,7 @@ class ElementsBuilder:
         self.frames: dict[int, FrameDetails] = {}
         self.joints: dict[int, JointDetails] = {}
         self.sensors: dict[int, SensorDetails] = {}
+        self.automatic_inertials: dict[int, tuple[CollisionMass, ...]] = {}
         self.missing_includes: dict[int, dict[str, str]] = {}
         self._scopes = array('i')
         self._paths = paths
@@ -236,7 +257,8 @@ class ElementsBuilder:
             file_indices=_indices(self.file_indices), lines=_indices(self.lines),
             pose_lines=_indices(self.pose_lines), poses=poses, relative_to=self.relative_to,
             models=self.models, frames=self.frames, joints=self.joints, sensors=self.sensors,
-            paths=self._paths, missing_includes=self.missing_includes)
+            automatic_inertials=self.automatic_inertials, paths=self._paths,
+            missing_includes=self.missing_includes)
         for index, reason in failures:
             problems.error(ElementInvalidError(reason, table.place_of_pose(index)))
         for index, reason in doubts:

@@ -18,6 +18,7 @@ from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.sdformat.automatic_inertia import collision_masses
 from sdf_pose_bridge.sdformat.details import DetailsReader
 from sdf_pose_bridge.sdformat.details import reference_of
 from sdf_pose_bridge.sdformat.elements import Elements
@@ -225,6 +226,10 @@ class _Reader:
             self._builder.joints[index] = self._details.joint(xml)
         elif kind is Kind.SENSOR:
             self._builder.sensors[index] = self._details.sensor(xml)
+        elif kind is Kind.INERTIAL and boolean_from_text(xml.get('auto', '')):
+            masses = collision_masses(xml, self._sources, self._problems)
+            if masses:
+                self._builder.automatic_inertials[index] = masses
 
     # Attributes and poses
 

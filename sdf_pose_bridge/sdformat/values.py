@@ -61,7 +61,7 @@ def value_fault(text: str, definition: Definition) -> str:
     stripped = text.strip()
     if not stripped or value_type is None or definition.is_text:
         return ''
-    numbers = _leading_numbers(stripped, value_type.count)
+    numbers = leading_numbers(stripped, value_type.count)
     if not _is_of_type(stripped, numbers, value_type):
         return f'"{stripped[:80]}" is not {value_type.description}'
     if value_type is _AXIS and math.hypot(*numbers) <= _SHORTEST_AXIS:
@@ -82,7 +82,7 @@ def is_of_type(text: str, value_type: ValueType) -> bool:
     :param value_type: any type but ``POSE``.
     :return: True if it does.
     """
-    return _is_of_type(text, _leading_numbers(text, value_type.count), value_type)
+    return _is_of_type(text, leading_numbers(text, value_type.count), value_type)
 
 
 def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> bool:
@@ -100,8 +100,14 @@ def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> b
     return len(numbers) == value_type.count  # 0 for a text
 
 
-def _leading_numbers(text: str, count: int) -> Sequence[float]:
-    """Return the numbers that the first words begin with, without words that begin with none."""
+def leading_numbers(text: str, count: int) -> Sequence[float]:
+    """
+    Return the numbers that the first words of a text begin with.
+
+    :param text: the value of an element.
+    :param count: how many words are read.
+    :return: the numbers; none for a word that begins with none.
+    """
     words = text.split()[:count]
     # Python also reads 1_000 and the digits of all scripts.
     if '_' not in text and text.isascii():

@@ -51,6 +51,8 @@ def main() -> int:
     except ReferenceMissingError as error:
         print(f'differential: {error}', file=sys.stderr)
         return 2
+    if int(reference.version.split('.')[0]) < 14:
+        features -= {Feature.AUTOMATIC_INERTIALS}
     print(f'libsdformat {reference.version}, {arguments.scenes} scenes, seed {arguments.seed}, '
           f'with {", ".join(sorted(f.value for f in features)) or "nothing special"}')
     started, told = time.monotonic(), time.monotonic()

@@ -46,6 +46,9 @@ KNOWN_DEFECTS = (
     PROJECTOR,
     MERGED_PLACEMENT,
     KnownDefect(
+        'version 1.12', '15.0', Remedy.NOT_DRAWN,
+        'releases 13 and 14 refuse it, though its poses are those of 1.11'),
+    KnownDefect(
         'quaternion of another length than one', '', Remedy.NOT_DRAWN,
         'it is not normalised, so that inverses, and with them placement frames, come out wrong'),
     KnownDefect(

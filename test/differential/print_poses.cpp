@@ -202,7 +202,9 @@ class Printer
       // Read from the element: the link's Inertial() also turns with the moments of inertia.
       auto raw = Pose::Zero;
       const auto inertial = _link.Element()->GetElement("inertial");
-      if (inertial->HasElement("pose"))
+      if (inertial->HasAttribute("auto") && inertial->Get<bool>("auto"))
+        raw = _link.Inertial().Pose();
+      else if (inertial->HasElement("pose"))
         raw = inertial->Get<Pose>("pose");
       this->Print("inertial", scope + "inertial", _modelPose * pose * raw);
     }

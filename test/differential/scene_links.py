@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 
 from hypothesis import strategies as st
 
+from differential.scene_parts import Feature
 from differential.scene_text import Draw
 from differential.scene_text import NAMES
 from differential.scene_text import new_pose
@@ -22,6 +23,12 @@ AXES = {
 SENSORS = ('imu', 'contact', 'magnetometer', 'altimeter', 'air_pressure', 'force_torque',
            'navsat', 'logical_camera', 'camera', 'gpu_lidar')
 LINK_CHILDREN = ('visual', 'visual', 'collision', 'sensor', 'light', 'particle_emitter')
+SHAPES = {
+    'box': {'size': 3}, 'capsule': {'radius': 1, 'length': 1}, 'cone': {'radius': 1, 'length': 1},
+    'cylinder': {'radius': 1, 'length': 1}, 'ellipsoid': {'radii': 3}, 'sphere': {'radius': 1},
+}
+"""Shapes with a volume: the elements that they must have, and how many numbers these have."""
+
 UNKNOWN_FRAME = 'no such frame'
 
 
@@ -43,8 +50,9 @@ def joint_body(draw: Draw, name: str, parent: str, child: str) -> ElementTree.El
 class LinkBuilder:
     """Draws the children of links and joints; none of them can make a scene invalid."""
 
-    def __init__(self, draw: Draw) -> None:
+    def __init__(self, draw: Draw, features: frozenset[Feature]) -> None:
         self.draw: Any = draw
+        self.features = features
 
     def fill(self, element: ElementTree.Element, references: list[str]) -> None:
         """
@@ -82,11 +90,37 @@ class LinkBuilder:
             elif kind == 'particle_emitter':
                 child.set('type', 'box')
             else:
-                geometry = ElementTree.SubElement(child, 'geometry')
-                sphere = ElementTree.SubElement(geometry, 'sphere')
-                ElementTree.SubElement(sphere, 'radius').text = '0.1'
+                child.append(self.geometry())
+        if (Feature.AUTOMATIC_INERTIALS in self.features and element.find('inertial') is not None
+                and element.find('collision') is not None):
+            self.make_inertial_automatic(element)
         if self.draw(st.integers(0, 15)) == 0:
             self.add_foreign(element)
+
+    def geometry(self) -> ElementTree.Element:
+        """Draw a shape."""
+        geometry = ElementTree.Element('geometry')
+        tag = self.draw(st.sampled_from(sorted(SHAPES)))
+        shape = ElementTree.SubElement(geometry, tag)
+        for child, count in SHAPES[tag].items():
+            sizes = self.draw(st.lists(st.integers(1, 50), min_size=count, max_size=count))
+            ElementTree.SubElement(shape, child).text = ' '.join(str(size / 10) for size in sizes)
+        return geometry
+
+    def make_inertial_automatic(self, link: ElementTree.Element) -> None:
+        """Let the collisions of a link give the inertial, most of the time."""
+        inertial = link.find('inertial')
+        if inertial is None or self.draw(st.integers(0, 3)) == 0:
+            return
+        inertial.set('auto', 'true')
+        for element in (inertial, *link.iterfind('collision')):
+            if self.draw(st.booleans()):
+                density = self.draw(st.integers(1, 9000))
+                ElementTree.SubElement(element, 'density').text = str(density)
+        for pose in link.iterfind('collision/pose'):
+            # The collision has to be somewhere for its mass to count.
+            if pose.get('relative_to', '').strip() == UNKNOWN_FRAME:
+                del pose.attrib['relative_to']
 
     def posed(self, element: ElementTree.Element, kind: str, name: str,
               references: list[str]) -> ElementTree.Element:

@@ -28,6 +28,7 @@ class Feature(enum.Enum):
     MERGES = 'merges'
     OLD_VERSIONS = 'old-versions'
     WORLDS = 'several-worlds'
+    AUTOMATIC_INERTIALS = 'automatic-inertials'
     DEFECTS = 'defects'
 
 

@@ -42,7 +42,7 @@ class SceneBuilder:
         self.files: dict[str, str] = {}
         self.traits: set[str] = set()
         self.last_body = WORLD
-        self.links = LinkBuilder(draw)
+        self.links = LinkBuilder(draw, features)
 
     def new_body(self) -> int:
         """Count one more body."""
@@ -71,7 +71,7 @@ class SceneBuilder:
 
     def file_text(self, content: list[ElementTree.Element]) -> str:
         """Write elements as a file, with a version drawn for it."""
-        versions = ['1.7', '1.8', '1.9', '1.9', '1.10', '1.11', '1.12']
+        versions = ['1.7', '1.8', '1.9', '1.9', '1.10', '1.11']
         if Feature.OLD_VERSIONS in self.features:
             versions += ['1.2', '1.3', '1.4', '1.5', '1.6', '1.6']
         version = self.draw(st.sampled_from(versions))
