@@ -6,10 +6,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sdf_pose_bridge.errors import MOST_PROBLEMS
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros.parameters import SettingsError
 
 MOST_WARNINGS = 20

@@ -239,7 +239,8 @@ class Settings:
         ['*'],
         'Which frames get a topic ~/poses/<frame> with their pose in root_frame.',
         'glob patterns for frame ids, such as robot/* (which matches robot/arm/tool too); '
-        'none if empty, at most 1000; * alone means none where there are more than 1000 frames, ?* means all',
+        'none if empty; at most 1000 of them; * alone means none where there are more than 1000 '
+        'frames, ?* means all',
         _patterns,
         needs_load=False,
     )

@@ -18,11 +18,11 @@ from sdf_pose_bridge.errors import AttachedToCycleError
 from sdf_pose_bridge.errors import AttachedToError
 from sdf_pose_bridge.errors import CanonicalLinkError
 from sdf_pose_bridge.errors import ModelWithoutLinkError
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import RelativeToCycleError
 from sdf_pose_bridge.errors import RelativeToError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.joints import JointEnds
 from sdf_pose_bridge.scene.joints import valid_joints
 from sdf_pose_bridge.scene.name_scopes import IS_FRAME_KIND

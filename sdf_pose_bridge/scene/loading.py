@@ -20,8 +20,8 @@ import numpy as np
 
 from sdf_pose_bridge.errors import LimitError
 from sdf_pose_bridge.errors import LoadError
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.frame_graph import frame_graph_from_elements
 from sdf_pose_bridge.scene.frame_graph import FrameGraph
 from sdf_pose_bridge.scene.resolution import root_poses_from_graph

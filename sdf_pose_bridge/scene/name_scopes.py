@@ -15,13 +15,13 @@ from itertools import islice
 
 import numpy as np
 
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind

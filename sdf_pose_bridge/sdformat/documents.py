@@ -8,8 +8,8 @@ from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.sources import Document
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.versions import convert

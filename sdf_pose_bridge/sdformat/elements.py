@@ -15,7 +15,7 @@ import numpy as np
 
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import Problems
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.pose_text import IDENTITY
 from sdf_pose_bridge.sdformat.pose_text import PoseFormat

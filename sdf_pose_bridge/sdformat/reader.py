@@ -14,10 +14,10 @@ from sdf_pose_bridge.errors import AttributeMissingError
 from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementIncorrectTypeError
 from sdf_pose_bridge.errors import ElementInvalidError
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.automatic_inertia import collision_masses
 from sdf_pose_bridge.sdformat.details import DetailsReader
 from sdf_pose_bridge.sdformat.details import reference_of

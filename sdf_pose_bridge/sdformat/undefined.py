@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.names import nearest_name
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import written_tag

@@ -7,9 +7,9 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from sdf_pose_bridge.errors import LoadError
-from sdf_pose_bridge.errors import MOST_PROBLEMS
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
 from sdf_pose_bridge.ros.log_lines import MOST_ERRORS

@@ -56,7 +56,7 @@ def test_a_whole_number_for_a_rate_says_how_to_write_it(make_node):
 def test_too_many_patterns_are_refused(make_node):
     settings = settings_from_node(make_node('bridge', *FILE))
     too_many = Parameter('pose_topics', value=['x'] * 1001)
-    with pytest.raises(SettingsError, match='pose_topics has 1001 patterns; .* at most 1000'):
+    with pytest.raises(SettingsError, match='pose_topics has 1001 patterns; it must'):
         changed_settings(settings, [too_many])
 
 

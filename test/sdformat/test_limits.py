@@ -16,7 +16,7 @@ from sdf_pose_bridge import Limits
 from sdf_pose_bridge import load
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge import SdfError
-from sdf_pose_bridge.errors import MOST_PROBLEMS
+from sdf_pose_bridge.problems import MOST_PROBLEMS
 
 FILES = 30
 TWICE = ('<include><name>a</name><uri>{0}.sdf</uri></include>'

@@ -23,11 +23,11 @@ from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import LimitError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import PlacementFrameError
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import UriLookupError
 from sdf_pose_bridge.names import ROOT_FRAME
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.documents import document_from_file
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.manifest import model_file_from_directory

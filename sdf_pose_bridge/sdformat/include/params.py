@@ -20,9 +20,9 @@ from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.element_ids import element_by_id
