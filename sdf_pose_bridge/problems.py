@@ -101,6 +101,14 @@ class Problems:
         self._errors.more += errors
         self._warnings.more += warnings
 
+    def keeps_warnings(self) -> bool:
+        """
+        Return whether another warning would be kept, and not only counted.
+
+        :return: False if it need not be made, but only counted.
+        """
+        return len(self._warnings.problems) < MOST_PROBLEMS
+
     def allows_hint(self) -> bool:
         """
         Return whether a message may end in a hint that takes long to find, and count it.

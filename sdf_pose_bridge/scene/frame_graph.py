@@ -280,14 +280,16 @@ class _Builder:
         if not self._unresolved:
             return
         columns = self._elements.parents.tolist(), references.tolist(), attachments.tolist()
-        count = 0
-        while count != len(self._unresolved):
-            count = len(self._unresolved)
-            for index, pointers in enumerate(zip(*columns, strict=True)):
-                needed = [*pointers, joints[index].parent] if index in joints else pointers
-                for other in needed:
-                    if other in self._unresolved:
-                        self._unresolved.setdefault(index, self._unresolved[other])
+        dependents: dict[int, list[int]] = {}
+        for index, pointers in enumerate(zip(*columns, strict=True)):
+            needed = [*pointers, joints[index].parent] if index in joints else pointers
+            for other in needed:
+                dependents.setdefault(other, []).append(index)
+        found = list(self._unresolved)
+        for other in found:
+            new = [index for index in dependents.get(other, ()) if index not in self._unresolved]
+            self._unresolved.update(dict.fromkeys(new, self._unresolved[other]))
+            found += new
         if self._problems.errors:
             return
         for uri in sorted(set(self._unresolved.values()) - {''}):

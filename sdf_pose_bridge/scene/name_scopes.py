@@ -29,6 +29,8 @@ from sdf_pose_bridge.sdformat.limits import Usage
 
 _OWN_FRAME = SEPARATOR + MODEL_FRAME
 _MOST_NAMES_COMPARED = 2000
+_MOST_STEPS = 300
+"""How many steps of a reference can lead to an include; elements are not nested deeper."""
 
 IS_FRAME_KIND = np.array([kind.is_frame for kind in Kind])
 """For each kind whether references can name elements of it."""
@@ -96,7 +98,7 @@ class NameScopes:
         missing = self._elements.missing_includes
         if not missing:
             return ''
-        steps = reference.split(SEPARATOR)
+        steps = reference.split(SEPARATOR, _MOST_STEPS)
         for count, step in enumerate(steps):
             outer = self.frame(scope, SEPARATOR.join(steps[:count])) if count else scope
             uris = missing.get(NO_ELEMENT if outer is None else outer, {})

@@ -39,10 +39,13 @@ from sdf_pose_bridge.sdformat.values import value_fault
 from sdf_pose_bridge.sdformat.versions import allows_scoped_names
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import described
-from sdf_pose_bridge.sdformat.xml_tree import is_foreign
 from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+_SCOPED_NAMES = ('//*[contains(@name, "::")]'
+                 '[not(ancestor-or-self::*[self::plugin or contains(name(), ":")])]')
+"""Finds names with ``::`` in what does not belong to others than SDFormat."""
 
 
 def elements_from_tree(
@@ -60,9 +63,10 @@ def elements_from_tree(
     :return: the elements. One with an error is kept if that is possible, so that other errors are
         found and none follows from the first.
     """
-    if may_hold_scoped_names:
-        _check_scoped_names(root, sources, problems)
-    return _Reader(sources, problems).elements(root)
+    with sources.unchanged_trees():
+        if may_hold_scoped_names:
+            _check_scoped_names(root, sources, problems)
+        return _Reader(sources, problems).elements(root)
 
 
 def check_element(
@@ -81,11 +85,10 @@ def check_element(
 
 def _check_scoped_names(root: XmlElement, sources: Sources, problems: Problems) -> None:
     """Report names with ``::`` in files that must not have them, or are included by such files."""
-    xmls: list[XmlElement] = root.xpath('//*[contains(@name, "::")]')
+    xmls: list[XmlElement] = root.xpath(_SCOPED_NAMES)
     for xml in xmls:
-        if is_foreign(xml) or all(
-                allows_scoped_names(sources.versions[path])
-                for path in sources.enclosing_paths_of_name(xml)):
+        if all(allows_scoped_names(sources.versions[path])
+               for path in sources.enclosing_paths_of_name(xml)):
             continue
         msg = f'the name "{xml.get("name")}" holds "{SEPARATOR}", which separates scopes'
         problems.error(ReservedNameError(msg, sources.place_of_name(xml)))
@@ -108,8 +111,7 @@ class _Reader:
         self._read(xml, definition, NO_ELEMENT, NO_ELEMENT, '', 1)
 
     def elements(self, root: XmlElement) -> Elements:
-        with self._sources.unchanged_trees():
-            self._read_file(root)
+        self._read_file(root)
         return self._builder.elements(self._problems)
 
     def _read_file(self, root: XmlElement) -> None:

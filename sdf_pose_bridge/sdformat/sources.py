@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from collections.abc import Mapping
 import contextlib
 import copy
+from itertools import chain
 from itertools import islice
 from typing import NamedTuple
 
@@ -22,7 +23,7 @@ from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-_MOST_PATHS_REMEMBERED = 1000
+_MOST_PLACES_REMEMBERED = 1000
 
 
 class Version(NamedTuple):
@@ -72,8 +73,8 @@ class Sources:
         self._named_by_includes: set[XmlElement] = set()
         self._placed_by_includes: dict[XmlElement, tuple[str, int]] = {}
         self._composed_trees: set[XmlElement] = set()
-        self._element_paths: dict[XmlElement, str] = {}
-        self._remembers_paths = False
+        self._places: dict[XmlElement, Place] = {}
+        self._remembers_places = False
 
     def add_path(self, path: str) -> None:
         """
@@ -171,7 +172,7 @@ class Sources:
         :param xml: the element.
         :return: the path of its file, of the file that includes that one, and so on.
         """
-        for element in (xml, *xml.iterancestors()):
+        for element in chain([xml], xml.iterancestors()):
             if element in self._files:
                 yield self._files[element]
 
@@ -214,34 +215,38 @@ class Sources:
         :return: its file, its line and its path in the tree.
         """
         parent = xml.getparent()
-        path = f'{"" if parent is None else self._element_path(parent)}/{described(xml)}'
-        file = self.path_of_pose(xml, self.path(xml))
+        outer = Place('') if parent is None else self._place_in_tree(parent)
+        path = f'{outer.element}/{described(xml)}'
+        file = self.path_of_pose(xml, self.path_at(xml, outer.file))
         return Place(file, self.line(xml), f'{path}/{part}' if part else path)
 
     @contextlib.contextmanager
     def unchanged_trees(self) -> Iterator[None]:
-        """Remember paths: to copy a very long name for each of many errors in it takes long."""
-        self._remembers_paths = True
+        """Remember places: with very long names, or very deep, each of them takes long to make."""
+        self._remembers_places = True
         try:
             yield
         finally:
-            self._remembers_paths = False
-            self._element_paths.clear()
+            self._remembers_places = False
+            self._places.clear()
 
-    def _element_path(self, xml: XmlElement) -> str:
-        path = ''
+    def _place_in_tree(self, xml: XmlElement) -> Place:
+        """Return the file and the path of an element that holds another."""
+        file, path = '', ''
         steps: list[str] = []
-        for element in (xml, *xml.iterancestors()):
-            if element in self._element_paths:
-                path = self._element_paths[element]
+        for element in chain([xml], xml.iterancestors()):
+            if element in self._places:
+                outer = self._places[element]
+                file, path = file or outer.file, outer.element
                 break
+            file = file or self.path_at(element, '')
             steps.append(described(element))
-        path = '/'.join([path, *reversed(steps)])
-        if self._remembers_paths:
-            if len(self._element_paths) == _MOST_PATHS_REMEMBERED:
-                self._element_paths.clear()
-            self._element_paths[xml] = path
-        return path
+        place = Place(file, element='/'.join([path, *reversed(steps)]))
+        if self._remembers_places:
+            if len(self._places) == _MOST_PLACES_REMEMBERED:
+                self._places.clear()
+            self._places[xml] = place
+        return place
 
     def place_of_name(self, xml: XmlElement) -> Place:
         """

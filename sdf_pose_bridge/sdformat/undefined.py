@@ -76,6 +76,9 @@ class UndefinedReporter:
         if (not isinstance(xml.tag, str) or ':' in tag or parent.takes_any_children
                 or parent_xml is None):
             return
+        if not self._problems.keeps_warnings():
+            self._problems.count_more(errors=0, warnings=1)
+            return
         hint = _ELEMENT_HINTS.get(f'{parent.identifier}/{tag}', '') or _ELEMENT_HINTS.get(tag, '')
         if not hint and tag in parent.attributes:
             hint = f'it is an attribute: {tag}="..."'
@@ -93,6 +96,9 @@ class UndefinedReporter:
         """
         # lxml writes the namespace of a prefix in braces.
         if ':' in name or '{' in name:
+            return
+        if not self._problems.keeps_warnings():
+            self._problems.count_more(errors=0, warnings=1)
             return
         hint = _ATTRIBUTE_HINTS.get((definition.identifier, name), '')
         if not hint and name in definition.children:

@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Small files that would take all memory are refused with the limit that they exceed."""
 
+import contextlib
 import os
+import time
 
 import pytest
 from sdf_texts import errors_of_file
@@ -94,3 +96,25 @@ def test_limits_that_are_just_met_refuse_nothing(tmp_path):
         bytes_read=size, elements=7, included_elements=2, include_depth=2, depth=3,
         name_characters=len('m' + 'm::l')))
     assert names_of(scene) == ['m', 'm::l']
+
+
+CHAIN = ''.join(f'<frame name="f{i}" attached_to="f{i + 1}"/>' for i in range(10_000))
+MISSING = '<include><uri>none.sdf</uri><name>x</name></include>'
+
+
+@pytest.mark.parametrize('text', [
+    world_file(f'{MISSING}{CHAIN}<frame name="f10000" attached_to="x"/>'),
+    world_file(f'{MISSING}<frame name="f" attached_to="{"a::" * 200_000}b"/>'),
+    model_file(f'<link name="l" {" ".join(f"a{i}=''" for i in range(30_000))}/>'),
+    b'<sdf version="1.9">' + b'\xff' * 200_000 + model_file(LINK).encode()[19:],
+    '<' + 'a' * 200_000,
+    f'<sdf version="1.9">{"".join(f"""<model name="m{i}">""" for i in range(240))}{LINK}'
+    + ''.join(f'<frame name="f{i}" attached_to="g"/>' for i in range(9000))
+    + '</model>' * 240 + '</sdf>',
+], ids=['chain to a missing file', 'long path to a missing file', 'attributes', 'not UTF-8',
+        'long tag', 'errors in deep models'])
+def test_time_grows_with_the_size_of_a_file_and_not_faster(text):
+    begin = time.perf_counter()
+    with contextlib.suppress(SdfError):
+        load_text(text)
+    assert time.perf_counter() - begin < 5.0  # 8 to 100 s where it is quadratic
