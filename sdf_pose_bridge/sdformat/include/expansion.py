@@ -149,8 +149,7 @@ class IncludeExpansion:
         """Return a file; the reason why it is not found; or None if it cannot be read."""
         path = self._finder.path_from_uri(uri, self._sources.path(include))
         if path is None:
-            return ('nothing of that name was found beside the file or in the resource paths, to '
-                    'which the variable GZ_SIM_RESOURCE_PATH adds')
+            return self._finder.reason_not_found(uri)
         if os.path.isdir(path):  # noqa: PTH112
             try:
                 path, manifest, warnings = model_file_from_directory(path, self._sources.usage)

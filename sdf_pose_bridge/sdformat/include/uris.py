@@ -103,6 +103,19 @@ class ResourceFinder(NamedTuple):
                f'package:// or model:// URI')
         raise AddressError(msg)
 
+    def reason_not_found(self, uri: str) -> str:
+        """
+        Return why a URI leads to nothing, and what to do about it.
+
+        :param uri: a URI for which :meth:`path_from_uri` has no path.
+        :return: the end of a sentence.
+        """
+        if uri.lower().startswith(('http://', 'https://')):
+            return ('it is not in the cache of Gazebo Fuel; fetch it with: gz fuel download -u '
+                    f'"{uri}"')
+        return ('nothing of that name was found beside the file or in the resource paths, to '
+                'which the variable GZ_SIM_RESOURCE_PATH adds')
+
     def _candidates(self, uri: str, including_file: str) -> Iterator[Path]:
         scheme = _SCHEME.match(uri)
         name = uri[scheme.end():] if scheme else uri

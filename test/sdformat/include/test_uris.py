@@ -120,6 +120,16 @@ def test_file_of_a_fuel_model_is_found_in_the_cache(tmp_path):
     assert found(uri, tmp_path, GZ_FUEL_CACHE_PATH=str(tmp_path / 'cache')) == box
 
 
+def test_reason_for_a_missing_fuel_model_says_how_to_fetch_it():
+    uri = 'https://fuel.gazebosim.org/1.0/Open/models/Box'
+    assert resource_finder((), {}).reason_not_found(uri).endswith(
+        f'fetch it with: gz fuel download -u "{uri}"')
+
+
+def test_reason_for_a_missing_model_names_the_variable_with_paths():
+    assert 'GZ_SIM_RESOURCE_PATH' in resource_finder((), {}).reason_not_found('model://box')
+
+
 # Addresses that users give
 
 @pytest.fixture
