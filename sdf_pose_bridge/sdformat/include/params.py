@@ -156,7 +156,7 @@ class _Changer:
             return
         if not self._is_action(xml, action):
             return
-        if action in ('add', 'replace') and tag not in definition_of(parent_tag).children:
+        if action in ('add', 'replace') and tag not in _definition_alone(parent_tag).children:
             msg = f'SDFormat defines no <{tag}> in a <{parent_tag}>'
             self._error(ElementInvalidError, xml, msg)
             return
@@ -177,7 +177,7 @@ class _Changer:
     def _new_element(self, xml: XmlElement) -> XmlElement:
         element = copy.deepcopy(xml)
         element.tail = None
-        definition = definition_of(written_tag(xml))
+        definition = _definition_of_parameter(xml)
         attributes = element.keys()
         for attribute in attributes:
             if attribute in _OWN_ATTRIBUTES or (
@@ -346,6 +346,20 @@ class _Changer:
     def _place(self, xml: XmlElement) -> Place:
         steps = [_step(each) for each in (xml, *xml.iterancestors())]
         return self._sources.place(xml)._replace(element='/' + '/'.join(reversed(steps)))
+
+
+def _definition_of_parameter(xml: XmlElement) -> Definition:
+    """Return the definition of an element to add, or of a child to add to another element."""
+    tag, parent = written_tag(xml), xml.getparent()
+    if tag in _DEFINED_ALONE or parent is None:
+        return _definition_alone(tag)
+    return _definition_alone(written_tag(parent)).children[tag]
+
+
+def _definition_alone(tag: str) -> Definition:
+    if tag == 'forcetorque':
+        return definition_of('force_torque')
+    return definition_of(tag.removesuffix('_shape'))
 
 
 def _step(xml: XmlElement) -> str:
