@@ -105,10 +105,10 @@ MISSING = '<include><uri>none.sdf</uri><name>x</name></include>'
 @pytest.mark.parametrize('text', [
     world_file(f'{MISSING}{CHAIN}<frame name="f10000" attached_to="x"/>'),
     world_file(f'{MISSING}<frame name="f" attached_to="{"a::" * 200_000}b"/>'),
-    model_file(f'<link name="l" {" ".join(f"a{i}=''" for i in range(30_000))}/>'),
+    model_file('<link name="l" ' + ' '.join(f'a{i}=""' for i in range(30_000)) + '/>'),
     b'<sdf version="1.9">' + b'\xff' * 200_000 + model_file(LINK).encode()[19:],
     '<' + 'a' * 200_000,
-    f'<sdf version="1.9">{"".join(f"""<model name="m{i}">""" for i in range(240))}{LINK}'
+    '<sdf version="1.9">' + ''.join(f'<model name="m{i}">' for i in range(240)) + LINK
     + ''.join(f'<frame name="f{i}" attached_to="g"/>' for i in range(9000))
     + '</model>' * 240 + '</sdf>',
 ], ids=['chain to a missing file', 'long path to a missing file', 'attributes', 'not UTF-8',
