@@ -3,7 +3,7 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test run lint bench differential clean
+.PHONY: help setup demo test run lint bench differential fuzz clean
 
 # Another ROS in the caller's shell would be found before the one that is meant.
 ifneq ($(filter-out jazzy,$(ROS_DISTRO)),)
@@ -26,6 +26,7 @@ help:
 	@echo 'make lint           ruff, mypy and import-linter'
 	@echo 'make bench          benchmarks; ARGS="..." hands arguments to them'
 	@echo 'make differential   random scenes against libsdformat; ARGS="--scenes 100" for fewer'
+	@echo 'make fuzz           hostile files by atheris; MINUTES=60 for longer, findings in fuzz_findings'
 	@echo 'make setup          only the environment in .underlay, which all of these share'
 	@echo 'make clean          remove the environment and everything that was built'
 	@echo ''
@@ -56,6 +57,14 @@ bench: setup
 
 differential: setup
 	@. underlay/setup.bash && PYTHONPATH=test:$$PYTHONPATH exec python -m differential $(ARGS)
+
+# Bytes and scenes by turns. atheris has wheels for few releases of Python, so nothing else needs it.
+fuzz: MINUTES := 10
+fuzz: setup
+	@. underlay/setup.bash && python -m pip install --quiet --only-binary :all: atheris==3.0.0 \
+	  && export PYTHONPATH=test:$$PYTHONPATH \
+	  && python -m fuzzing bytes --seconds $$((30 * $(MINUTES))) \
+	  && exec python -m fuzzing scenes --seconds $$((30 * $(MINUTES)))
 
 clean:
 	@rm -rf .underlay build install log

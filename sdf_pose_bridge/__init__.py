@@ -25,9 +25,11 @@ if TYPE_CHECKING:
     from sdf_pose_bridge.scene.loading import load_text
     from sdf_pose_bridge.scene.scene import Scene
     from sdf_pose_bridge.sdformat.grammar import Kind
+    from sdf_pose_bridge.sdformat.limits import Limits
 
 __all__ = [
     'Kind',
+    'Limits',
     'Place',
     'Pose',
     'Scene',
@@ -40,6 +42,7 @@ __all__ = [
 
 _HOMES = {
     'Kind': 'sdformat.grammar',
+    'Limits': 'sdformat.limits',
     'Place': 'errors',
     'Pose': 'geometry.poses',
     'Scene': 'scene.scene',

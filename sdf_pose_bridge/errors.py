@@ -9,10 +9,10 @@ libsdformat (``sdf::ErrorCode``).
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from collections.abc import Sequence
 from typing import NamedTuple
-from typing import TypeVar
+
+from sdf_pose_bridge.names import shortened_message
 
 
 class Place(NamedTuple):
@@ -46,13 +46,15 @@ class SdfError(Exception):
     """
     An error in an SDFormat file; the base class of all errors of the core.
 
-    :param message: one sentence that names the value and the rule that it breaks.
+    :param message: one sentence that names the value and the rule that it breaks; long values in
+        it are shortened.
     :param place: where the error is.
     """
 
     code: str = 'ERROR'
 
     def __init__(self, message: str, place: Place) -> None:
+        message = shortened_message(message)
         super().__init__(message, place)
         self.message = message
         self.place = place
@@ -119,6 +121,12 @@ class FileReadError(SdfError):
     """A file is missing, cannot be read, is not XML or declares no version."""
 
     code = 'FILE_READ'
+
+
+class LimitError(SdfError):
+    """The file needs more than a load may use."""
+
+    code = 'LIMIT'
 
 
 class ParsingError(SdfError):
@@ -263,80 +271,3 @@ class UnknownFrameError(SdfError, LookupError):
     """A query names a frame that does not exist, or one of several with the same name."""
 
     code = 'POSE_RELATIVE_TO_INVALID'
-
-
-_Problem = TypeVar('_Problem', SdfError, SdfWarning)
-
-
-class Problems:
-    """
-    The errors and warnings of one load.
-
-    :param paths: the files that are read, in the order of reading; it may grow.
-    """
-
-    def __init__(self, paths: Sequence[str]) -> None:
-        self._paths = paths
-        self._errors: list[SdfError] = []
-        self._warnings: list[SdfWarning] = []
-
-    def error(self, error: SdfError) -> None:
-        """
-        Add an error.
-
-        :param error: the error.
-        """
-        self._errors.append(error)
-
-    def warning(self, message: str, place: Place, code: str = 'WARNING') -> None:
-        """
-        Add a warning.
-
-        :param message: one sentence.
-        :param place: where it is.
-        :param code: code of the corresponding error, or ``WARNING``.
-        """
-        self._warnings.append(SdfWarning(code, message, place))
-
-    def extend(self, problems: Iterable[SdfError | SdfWarning]) -> None:
-        """
-        Add errors and warnings.
-
-        :param problems: any number of them.
-        """
-        for problem in problems:
-            if isinstance(problem, SdfError):
-                self._errors.append(problem)
-            else:
-                self._warnings.append(problem)
-
-    @property
-    def errors(self) -> tuple[SdfError, ...]:
-        """All errors by file and line, each once however often its file is included."""
-        return self._in_order(self._errors)
-
-    @property
-    def warnings(self) -> tuple[SdfWarning, ...]:
-        """All warnings, in the order of :attr:`errors`."""
-        return self._in_order(self._warnings)
-
-    def raise_errors(self) -> None:
-        """
-        Raise the errors, if there are any.
-
-        :raises LoadError: with all errors and warnings.
-        """
-        if self._errors:
-            raise LoadError(self.errors, self.warnings)
-
-    def _in_order(self, problems: Sequence[_Problem]) -> tuple[_Problem, ...]:
-        ranks = {path: rank for rank, path in enumerate(self._paths)}
-        unique: dict[tuple[str, str, Place], _Problem] = {}
-        for problem in problems:
-            place = problem.place
-            if ranks.get(place.file, 1):
-                # An element of an included file has another path for each include.
-                place = place._replace(element='')
-            unique.setdefault((problem.code, problem.message, place), problem)
-        return tuple(sorted(unique.values(), key=lambda problem: (
-            ranks.get(problem.place.file, len(ranks)), problem.place.line)))

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from collections.abc import Iterable
+import re
 
 SEPARATOR = '::'
 """Separates the parts of a scoped name: ``robot::arm::hand``."""
@@ -18,6 +19,13 @@ ROOT_FRAME = '__root__'
 
 MODEL_FRAME = '__model__'
 """The name by which references in a model mean the frame of the model."""
+
+_LONGEST_VALUE = 80
+_LONGEST_MESSAGE = 2000
+_QUOTED = re.compile(r'"([^"]*)"')
+
+_LONGEST_COMPARED = 200
+"""How long a name may be that is compared with others."""
 
 _MOST_COMPARED = 400
 """How many names are compared in full with one that was not found."""
@@ -45,6 +53,51 @@ def scoped_name(scope: str, name: str) -> str:
     return f'{scope}{SEPARATOR}{name}' if scope else name
 
 
+def shortened(value: str) -> str:
+    """
+    Return a value from a file for a message.
+
+    :param value: any text.
+    :return: the text, without its middle if it has more than 80 characters.
+    """
+    if len(value) <= _LONGEST_VALUE:
+        return value
+    half = (_LONGEST_VALUE - 3) // 2
+    return f'{value[:half]}...{value[-half:]}'
+
+
+def shortened_message(message: str) -> str:
+    """
+    Return a message without the middles of long values in double quotes.
+
+    :param message: one sentence.
+    :return: the sentence with at most 2000 characters.
+    """
+    if len(message) <= _LONGEST_VALUE:
+        return message
+    if len(message) > _LONGEST_MESSAGE:
+        half = (_LONGEST_MESSAGE - 3) // 2
+        message = f'{message[:half]}...{message[-half:]}'
+    return _QUOTED.sub(lambda match: f'"{shortened(match[1])}"', message)
+
+
+def printable(text: str) -> str:
+    r"""
+    Return text for one line of a log or a terminal.
+
+    A name in a file may hold a line break, which must not forge a line, and characters that
+    control a terminal or the direction of writing.
+
+    :param text: any text.
+    :return: the text with escapes, such as ``\n``, for all characters that are not printable.
+    """
+    if text.isprintable():
+        return text
+    return ''.join(
+        character if character.isprintable() else character.encode('unicode_escape').decode()
+        for character in text)
+
+
 def hint_from_names(wanted: str, names: Iterable[str]) -> str:
     """
     Return the end of a message about a name that was not found.
@@ -65,6 +118,9 @@ def nearest_name(wanted: str, names: Iterable[str]) -> str:
     :param names: the names that exist.
     :return: the nearest of them, or an empty string if none is near.
     """
+    # The comparison takes the product of the lengths.
+    if len(wanted) > _LONGEST_COMPARED:
+        return ''
     # The import takes a millisecond, and most processes do not need it.
     import difflib
     near = difflib.get_close_matches(wanted, _likely_names(wanted, list(names)), n=1, cutoff=0.6)

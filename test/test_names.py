@@ -6,7 +6,10 @@ import pytest
 
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import is_reserved
+from sdf_pose_bridge.names import nearest_name
+from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import scoped_name
+from sdf_pose_bridge.names import shortened
 
 
 @pytest.mark.parametrize('name', ['world', '__model__', '__root__', '____', '__a__', '_____'])
@@ -46,3 +49,27 @@ def test_hint_at_the_nearest_name(wanted, names, hint):
 def test_hint_among_many_similar_names(wanted, hint):
     names = [f'robot_{robot}/link_{link}' for robot in range(1000) for link in range(10)]
     assert hint_from_names(wanted, names) == (hint and f'; did you mean "{hint}"?')
+
+
+@pytest.mark.parametrize('length', [0, 1, 79, 80])
+def test_short_value_stays(length):
+    assert shortened('x' * length) == 'x' * length
+
+
+def test_long_value_keeps_its_ends():
+    text = shortened('a' * 50 + 'b' * 50)
+    assert len(text) <= 80
+    assert text.startswith('aaa')
+    assert text.endswith('bbb')
+
+
+@pytest.mark.parametrize(('text', 'shown'), [
+    ('a\nb', r'a\nb'), ('\x9b', r'\x9b'), ('\u202e', r'\u202e'), ('\ud800', r'\ud800'),
+    ('ö 1', 'ö 1'),
+])
+def test_printable_text_is_one_line_without_control_characters(text, shown):
+    assert printable(text) == shown
+
+
+def test_very_long_name_has_no_hint():
+    assert nearest_name('x' * 10**6, ['x' * (10**6 - 1)]) == ''

@@ -12,9 +12,12 @@ from typing import TextIO
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.scene.loading import load
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 
 _RED, _YELLOW, _BOLD, _PLAIN = '\x1b[31m', '\x1b[33m', '\x1b[1m', '\x1b[0m'
 
@@ -78,7 +81,7 @@ def add_file_arguments(parser: argparse.ArgumentParser) -> None:
 
 def load_file(path: str, options: argparse.Namespace) -> LoadedFile:
     """
-    Load a file.
+    Load a file, or what a pipe such as that of the shell's ``<(command)`` holds.
 
     :param path: path of the file.
     :param options: the parsed arguments.
@@ -86,7 +89,9 @@ def load_file(path: str, options: argparse.Namespace) -> LoadedFile:
     """
     missing = MissingInclude.SKIP if options.skip_missing else MissingInclude.ERROR
     try:
-        scene = load(path, resource_paths=options.resource_paths, on_missing_include=missing)
+        text = bytes_from_file(path, Usage(), allows_pipe=True)
+        scene = load_text(
+            text, path, resource_paths=options.resource_paths, on_missing_include=missing)
     except SdfError as error:
         return LoadedFile(None, error.errors, error.warnings)
     return LoadedFile(scene, (), scene.warnings)
@@ -109,5 +114,5 @@ def print_problems(
         is_error = isinstance(problem, SdfError)
         colour = '' if not is_coloured else _RED if is_error else _YELLOW
         kind = '' if is_error or problem.code == 'WARNING' else 'WARNING: '
-        print(f'{bold}{problem.place}:{plain} {colour}{kind}{problem.code}:{plain} '
-              f'{problem.message}', file=stream)
+        place, message = printable(str(problem.place)), printable(problem.message)
+        print(f'{bold}{place}:{plain} {colour}{kind}{problem.code}:{plain} {message}', file=stream)

@@ -22,6 +22,8 @@ from sdf_pose_bridge.geometry.formats import Format
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import shortened
 
 LINES_AT_A_TIME = 10_000
 """Lines that are converted together: fast, and memory stays bounded for input of any length."""
@@ -125,7 +127,7 @@ def _line_from_text(number: int, text: str, source: Format) -> _Line:
                 raise ValueError  # float() takes 1_000, which other readers of poses do not
             values.append(float(word))
         except ValueError:
-            return _Line(number, [], f'{word!r} is not a number')
+            return _Line(number, [], f'{shortened(word)!r} is not a number')
     if len(values) != source.row_length:
         error = (
             f'{source.name} has {source.row_length} numbers ({source.meaning}), but {len(values)}'
@@ -150,7 +152,7 @@ def _print_converted(
         if errors:
             exit_code = 1
             place = f'line {line.number}: ' if line.number else ''
-            print(f'sdf_pose convert: {place}{errors[0]}', file=sys.stderr)
+            print(f'sdf_pose convert: {place}{printable(errors[0])}', file=sys.stderr)
             if line.number:
                 # A comment keeps the lines of output beside those of input.
                 output.append(f'# line {line.number} is not converted')

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+import io
 import os
 import sys
 
@@ -30,6 +31,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for command in (check, poses, convert):
         command.add_parser(subparsers)
     options = parser.parse_args(arguments)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # A name that the encoding of the terminal does not have must not end the command.
+        sys.stdout.reconfigure(errors='backslashreplace')
     try:
         code: int = options.run(options)
         sys.stdout.flush()

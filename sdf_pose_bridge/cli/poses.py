@@ -17,6 +17,7 @@ from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 
@@ -73,7 +74,7 @@ def run(options: argparse.Namespace) -> int:
                 'errors': [_problem(error) for error in errors],
                 'warnings': [_problem(warning) for warning in loaded.warnings],
                 'elements': elements,
-            }, ensure_ascii=False))
+            }))
             continue
         sys.stdout.flush()
         print_problems(errors, loaded.warnings, sys.stderr)
@@ -126,10 +127,10 @@ def _problem(problem: SdfError | SdfWarning) -> dict[str, Any]:
 
 def _print_table(elements: Sequence[dict[str, Any]], title: str) -> None:
     if title:
-        print(title)
+        print(printable(title))
     has_worlds = len({element['world'] for element in elements}) > 1
     names = [
-        f'{element["world"]}: {element["name"]}' if has_worlds else element['name']
+        printable(f'{element["world"]}: {element["name"]}' if has_worlds else element['name'])
         for element in elements]
     width = max(map(len, names), default=0)
     kind_width = max((len(element['kind']) for element in elements), default=0)

@@ -5,9 +5,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-import re
 
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros.parameters import SettingsError
 
 MOST_WARNINGS = 20
@@ -15,9 +17,6 @@ MOST_WARNINGS = 20
 
 MOST_ERRORS = 20
 """How many errors of a load are logged; a broken generated file may have thousands."""
-
-# C0 and C1 control characters and the two separators that also end a line.
-_CONTROL = re.compile('[\x00-\x1f\x7f-\x9f\u2028\u2029]')
 
 
 def lines_from_error(error: Exception) -> list[str]:
@@ -31,7 +30,7 @@ def lines_from_error(error: Exception) -> list[str]:
         return _first_lines(error.errors, '; "sdf_pose check" shows all of them')
     if isinstance(error, SettingsError):
         return _first_lines(error.sentences, '')
-    return [_line(str(error))]
+    return [printable(str(error))]
 
 
 def lines_from_warnings(warnings: Sequence[object]) -> list[str]:
@@ -41,10 +40,12 @@ def lines_from_warnings(warnings: Sequence[object]) -> list[str]:
     :param warnings: objects that ``str`` makes a text of.
     :return: at most ``MOST_WARNINGS`` lines, and one more if there are more warnings.
     """
-    lines = [_line(str(warning)) for warning in warnings[:MOST_WARNINGS]]
+    lines = [printable(str(warning)) for warning in warnings[:MOST_WARNINGS]]
     rest = len(warnings) - len(lines)
     if rest:
-        lines.append(f'{rest} more {"warning is" if rest == 1 else "warnings are"} not shown')
+        lines.append(
+            f'{_at_least(warnings)}{rest} more {"warning is" if rest == 1 else "warnings are"} '
+            'not shown')
     return lines
 
 
@@ -55,19 +56,20 @@ def names_in_line(names: Sequence[str]) -> str:
     :param names: at least one name.
     :return: at most ``MOST_WARNINGS`` names, and how many more there are.
     """
-    shown = ', '.join(f'"{name}"' for name in names[:MOST_WARNINGS])
+    shown = ', '.join(f'"{shortened(name)}"' for name in names[:MOST_WARNINGS])
     rest = len(names) - MOST_WARNINGS
-    return _line(f'{shown} and {rest} more' if rest > 0 else shown)
+    return printable(f'{shown} and {rest} more' if rest > 0 else shown)
 
 
 def _first_lines(errors: Sequence[object], hint: str) -> list[str]:
-    lines = [_line(str(each)) for each in errors[:MOST_ERRORS]]
+    lines = [printable(str(each)) for each in errors[:MOST_ERRORS]]
     rest = len(errors) - len(lines)
     if rest:
-        lines.append(f'{rest} more {"error is" if rest == 1 else "errors are"} not shown{hint}')
+        lines.append(
+            f'{_at_least(errors)}{rest} more {"error is" if rest == 1 else "errors are"} '
+            f'not shown{hint}')
     return lines
 
 
-def _line(text: str) -> str:
-    # A name in a file may contain a line break, and must not be able to forge log lines.
-    return _CONTROL.sub(lambda match: match[0].encode('unicode_escape').decode(), text)
+def _at_least(problems: Sequence[object]) -> str:
+    return 'at least ' if len(problems) > MOST_PROBLEMS else ''

@@ -50,6 +50,10 @@ _TYPE_NAMES = {
 }
 
 
+_MOST_PATTERNS = 1000
+"""How many patterns a parameter may have."""
+
+
 class SettingsError(ValueError):
     """
     Values that parameters cannot have.
@@ -157,7 +161,11 @@ def _kinds(values: Sequence[str]) -> frozenset[Kind]:
     return frozenset(PUBLISHED_KINDS[value] for value in values)
 
 
-def _strings(values: Sequence[str]) -> tuple[str, ...]:
+def _patterns(values: Sequence[str]) -> tuple[str, ...]:
+    if len(values) > _MOST_PATTERNS:
+        # Each is compared with each frame, while other changes wait.
+        msg = f'has {len(values)} patterns; it must have at most {_MOST_PATTERNS}'
+        raise ValueError(msg)
     return tuple(values)
 
 
@@ -231,8 +239,9 @@ class Settings:
         ['*'],
         'Which frames get a topic ~/poses/<frame> with their pose in root_frame.',
         'glob patterns for frame ids, such as robot/* (which matches robot/arm/tool too); '
-        'none if empty; * alone means none where there are more than 1000 frames, ?* means all',
-        _strings,
+        'none if empty; at most 1000 of them; * alone means none where there are more than 1000 '
+        'frames, ?* means all',
+        _patterns,
         needs_load=False,
     )
     optical_frames = Declaration(

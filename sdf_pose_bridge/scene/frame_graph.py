@@ -18,11 +18,11 @@ from sdf_pose_bridge.errors import AttachedToCycleError
 from sdf_pose_bridge.errors import AttachedToError
 from sdf_pose_bridge.errors import CanonicalLinkError
 from sdf_pose_bridge.errors import ModelWithoutLinkError
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import RelativeToCycleError
 from sdf_pose_bridge.errors import RelativeToError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.joints import JointEnds
 from sdf_pose_bridge.scene.joints import valid_joints
 from sdf_pose_bridge.scene.name_scopes import IS_FRAME_KIND
@@ -35,6 +35,7 @@ from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.elements import ModelDetails
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.limits import Usage
 
 _MOST_NAMES_SHOWN = 5
 _LONGEST_CYCLE_SHOWN = 12
@@ -64,23 +65,27 @@ class FrameGraph(NamedTuple):
     libsdformat loads all the same, and those that refer to an include that was not found."""
 
 
-def frame_graph_from_elements(elements: Elements, problems: Problems) -> FrameGraph:
+def frame_graph_from_elements(
+    elements: Elements, usage: Usage, problems: Problems,
+) -> FrameGraph:
     """
     Look up and check every reference.
 
     :param elements: the elements.
+    :param usage: counts the characters of names.
     :param problems: takes what is wrong with references.
     :return: the graph; a wrong reference in it is replaced by the default of its kind.
+    :raises LimitError: if the absolute names are too long.
     """
-    return _Builder(elements, problems).graph()
+    return _Builder(elements, usage, problems).graph()
 
 
 class _Builder:
 
-    def __init__(self, elements: Elements, problems: Problems) -> None:
+    def __init__(self, elements: Elements, usage: Usage, problems: Problems) -> None:
         self._elements = elements
         self._problems = problems
-        self._scopes = NameScopes(elements)
+        self._scopes = NameScopes(elements, usage)
         self._scope_of: list[int] = elements.scopes.tolist()
         self._reported_cycles: set[frozenset[int]] = set()
         self._unresolved: dict[int, str] = {}
@@ -233,8 +238,8 @@ class _Builder:
         self._unresolved[index] = self._scopes.missing_uri(scope, name)
         if not self._unresolved[index]:
             msg = (f'relative_to="{name}" names no frame in {self._scopes.described(scope)}'
-                   f'{self._scopes.hint(scope, name)}; the {elements.kind(index).label} is left '
-                   'out')
+                   f'{self._scopes.hint(scope, name, self._problems)}; the '
+                   f'{elements.kind(index).label} is left out')
             place = elements.place_of_pose(index)
             self._problems.warning(msg, place, RelativeToError.code)
         return NO_ELEMENT
@@ -265,7 +270,7 @@ class _Builder:
             self._unresolved[index] = uri
             return
         msg = (f'{attribute}="{name}" names no frame in {self._scopes.described(scope)}'
-               f'{self._scopes.hint(scope, name)}')
+               f'{self._scopes.hint(scope, name, self._problems)}')
         self._problems.error(error_class(msg, self._elements.place(index, line, part)))
 
     def _add_dependents(
@@ -275,14 +280,16 @@ class _Builder:
         if not self._unresolved:
             return
         columns = self._elements.parents.tolist(), references.tolist(), attachments.tolist()
-        count = 0
-        while count != len(self._unresolved):
-            count = len(self._unresolved)
-            for index, pointers in enumerate(zip(*columns, strict=True)):
-                needed = [*pointers, joints[index].parent] if index in joints else pointers
-                for other in needed:
-                    if other in self._unresolved:
-                        self._unresolved.setdefault(index, self._unresolved[other])
+        dependents: dict[int, list[int]] = {}
+        for index, pointers in enumerate(zip(*columns, strict=True)):
+            needed = [*pointers, joints[index].parent] if index in joints else pointers
+            for other in needed:
+                dependents.setdefault(other, []).append(index)
+        found = list(self._unresolved)
+        for other in found:
+            new = [index for index in dependents.get(other, ()) if index not in self._unresolved]
+            self._unresolved.update(dict.fromkeys(new, self._unresolved[other]))
+            found += new
         if self._problems.errors:
             return
         for uri in sorted(set(self._unresolved.values()) - {''}):

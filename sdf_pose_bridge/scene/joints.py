@@ -17,9 +17,9 @@ from sdf_pose_bridge.errors import ExpressedInError
 from sdf_pose_bridge.errors import JointChildError
 from sdf_pose_bridge.errors import JointParentError
 from sdf_pose_bridge.errors import JointSameLinkError
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.name_scopes import NameScopes
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import Indices
@@ -112,7 +112,7 @@ class _JointChecks:
     ) -> None:
         scope = self._scope_of[joint]
         msg = (f'{what} "{reference.name}" names no frame in {self._scopes.described(scope)}'
-               f'{self._scopes.hint(scope, reference.name)}')
+               f'{self._scopes.hint(scope, reference.name, self._problems)}')
         report = self._error if error_class is JointChildError else self._report
         report(error_class, msg, joint, reference.line, part or what)
 

@@ -18,8 +18,10 @@ from typing import TypeVar
 
 import numpy as np
 
-from sdf_pose_bridge.errors import Problems
+from sdf_pose_bridge.errors import LimitError
+from sdf_pose_bridge.errors import LoadError
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.frame_graph import frame_graph_from_elements
 from sdf_pose_bridge.scene.frame_graph import FrameGraph
 from sdf_pose_bridge.scene.resolution import root_poses_from_graph
@@ -33,6 +35,8 @@ from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
+from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
+from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.reader import elements_from_tree
 from sdf_pose_bridge.sdformat.sources import Document
 from sdf_pose_bridge.sdformat.sources import Sources
@@ -58,6 +62,7 @@ def load(
     *,
     resource_paths: Iterable[str | os.PathLike[str]] = (),
     on_missing_include: MissingInclude | str = MissingInclude.ERROR,
+    limits: Limits = DEFAULT_LIMITS,
 ) -> Scene:
     """
     Read a file and resolve every pose in it.
@@ -66,12 +71,13 @@ def load(
     :param resource_paths: directories in which included models are searched first; then come
         those of the environment variables ``GZ_SIM_RESOURCE_PATH`` and ``SDF_PATH``.
     :param on_missing_include: ``error``, or ``skip`` to leave out includes that are not found.
+    :param limits: what the load may use; hostile files that need more are refused.
     :return: the scene.
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
     """
-    sources = Sources()
-    problems = Problems(sources.paths)
-    with _without_garbage_collection():
+    sources = Sources(limits)
+    problems = Problems(sources.paths, sources.includes)
+    with _without_garbage_collection(), _limit_error_last(problems):
         document = document_from_file(os.fspath(path), sources, problems)
         return _scene(
             document, sources, problems, resource_paths, MissingInclude(on_missing_include))
@@ -83,6 +89,7 @@ def load_text(
     *,
     resource_paths: Iterable[str | os.PathLike[str]] = (),
     on_missing_include: MissingInclude | str = MissingInclude.ERROR,
+    limits: Limits = DEFAULT_LIMITS,
 ) -> Scene:
     """
     Resolve every pose in SDFormat text, as :func:`load` does for a file.
@@ -91,12 +98,13 @@ def load_text(
     :param name: its name in errors; relative includes are searched beside it.
     :param resource_paths: as for :func:`load`.
     :param on_missing_include: as for :func:`load`.
+    :param limits: as for :func:`load`.
     :return: the scene.
     :raises SdfError: as for :func:`load`.
     """
-    sources = Sources()
-    problems = Problems(sources.paths)
-    with _without_garbage_collection():
+    sources = Sources(limits)
+    problems = Problems(sources.paths, sources.includes)
+    with _without_garbage_collection(), _limit_error_last(problems):
         document = document_from_text(text, name, sources, problems)
         return _scene(
             document, sources, problems, resource_paths, MissingInclude(on_missing_include))
@@ -112,6 +120,15 @@ def _without_garbage_collection() -> Iterator[None]:
     finally:
         if was_enabled:
             gc.enable()
+
+
+@contextlib.contextmanager
+def _limit_error_last(problems: Problems) -> Iterator[None]:
+    """Raise an error about a limit, which ends a load at once, behind the errors found so far."""
+    try:
+        yield
+    except LimitError as error:
+        raise LoadError([*problems.errors, error], problems.warnings) from None
 
 
 def _scene(
@@ -130,7 +147,7 @@ def _scene(
         may_hold_scoped_names |= expansion.may_hold_scoped_names
     elements = elements_from_tree(
         document.root, sources, problems, may_hold_scoped_names=may_hold_scoped_names)
-    graph = frame_graph_from_elements(elements, problems)
+    graph = frame_graph_from_elements(elements, sources.usage, problems)
     problems.raise_errors()
     return _scene_from_graph(document.path, elements, graph, problems)
 
@@ -145,11 +162,11 @@ def _canonical_link(root: XmlElement, sources: Sources, problems: Problems) -> s
     :return: name of the canonical link in the model; empty if it has none; None if there are
         errors.
     """
-    own_problems = Problems(sources.paths)
+    own_problems = Problems(sources.paths, parent=problems)
     elements = elements_from_tree(root, sources, own_problems, may_hold_scoped_names=True)
-    graph = frame_graph_from_elements(elements, own_problems)
+    graph = frame_graph_from_elements(elements, sources.usage, own_problems)
     if own_problems.errors:
-        problems.extend([*own_problems.errors, *own_problems.warnings])
+        own_problems.extend_parent()
         return None
     model = 1  # element 0 is the implicit root
     link = int(graph.canonical_links[model])

@@ -21,12 +21,16 @@ from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.limits import Usage
 
 _OWN_FRAME = SEPARATOR + MODEL_FRAME
 _MOST_NAMES_COMPARED = 2000
+_MOST_STEPS = 300
+"""How many steps of a reference can lead to an include; elements are not nested deeper."""
 
 IS_FRAME_KIND = np.array([kind.is_frame for kind in Kind])
 """For each kind whether references can name elements of it."""
@@ -37,24 +41,27 @@ class NameScopes:
     The absolute names of all elements, and the frames that they name.
 
     :param elements: the elements.
+    :param usage: counts the characters of their absolute names.
+    :raises LimitError: if there are too many.
 
     ``names[i]`` is the absolute name of element i, such as ``robot::arm::hand``, without the name
     of the world. ``roots[i]`` is the index of its world or implicit root; each of these is a name
     space of its own.
     """
 
-    def __init__(self, elements: Elements) -> None:
+    def __init__(self, elements: Elements, usage: Usage) -> None:
         self._elements = elements
-        self.names = _absolute_names(elements)
+        self.names = _absolute_names(elements, usage)
         self.roots = _roots(elements)
         self._is_model: list[bool] = (elements.kinds == Kind.MODEL).tolist()
         self._frames: dict[int, dict[str, int]] = {}
         frames = np.flatnonzero(IS_FRAME_KIND[elements.kinds])
-        roots = np.array(self.roots, dtype=np.intp)
-        for root in np.flatnonzero(elements.parents < 0).tolist():
+        # Elements stand in file order, so those of a root stand before the next root.
+        roots = np.flatnonzero(elements.parents < 0)
+        frames_of_roots = np.split(frames, np.searchsorted(frames, roots))[1:]
+        for root, indices in zip(roots.tolist(), frames_of_roots, strict=True):
             # Of equal names, which are errors, the first one counts.
-            indices = frames[roots[frames] == root][::-1].tolist()
-            self._frames[root] = {self.names[index]: index for index in indices}
+            self._frames[root] = {self.names[index]: index for index in indices[::-1].tolist()}
 
     def frame(self, scope: int, reference: str) -> int | None:
         """
@@ -91,7 +98,7 @@ class NameScopes:
         missing = self._elements.missing_includes
         if not missing:
             return ''
-        steps = reference.split(SEPARATOR)
+        steps = reference.split(SEPARATOR, _MOST_STEPS)
         for count, step in enumerate(steps):
             outer = self.frame(scope, SEPARATOR.join(steps[:count])) if count else scope
             uris = missing.get(NO_ELEMENT if outer is None else outer, {})
@@ -113,15 +120,18 @@ class NameScopes:
         name = self._elements.names[scope] if kind is Kind.WORLD else self.names[scope]
         return f'{kind.label} "{name}"'
 
-    def hint(self, scope: int, reference: str) -> str:
+    def hint(self, scope: int, reference: str, problems: Problems) -> str:
         """
         Return the end of a message about a reference that names no frame.
 
         :param scope: index of the model, world or root in which the reference is written.
         :param reference: the name as written.
+        :param problems: those of the load, which limit the number of hints.
         :return: the likely reason, or the nearest name that exists; else an empty string.
         """
-        first = reference.split(SEPARATOR)[0]
+        if not problems.allows_hint():
+            return ''
+        first = reference.split(SEPARATOR, 1)[0]
         if self._is_model[scope]:
             if first == self._elements.names[scope]:
                 rest = reference[len(first) + len(SEPARATOR):]
@@ -148,17 +158,23 @@ class NameScopes:
                 yield name[len(prefix):]
 
 
-def _absolute_names(elements: Elements) -> list[str]:
+def _absolute_names(elements: Elements, usage: Usage) -> list[str]:
     names: list[str] = []
     scopes: list[str] = []
+    characters, most = 0, usage.left('name_characters')
     for name, parent, kind in zip(
             elements.names, elements.parents.tolist(), elements.kinds.tolist(), strict=True):
         if parent >= 0:
             names.append(scoped_name(scopes[parent], name))
             scopes.append(names[-1])
+            characters += len(names[-1])
+            if characters > most:
+                break
         else:
             names.append(WORLD_FRAME if kind == Kind.WORLD else ROOT_FRAME)
             scopes.append('')
+    if characters:
+        usage.add('name_characters', characters, elements.place(len(names) - 1))
     return names
 
 

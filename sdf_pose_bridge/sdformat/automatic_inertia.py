@@ -14,7 +14,7 @@ import math
 
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import LinkInertiaError
-from sdf_pose_bridge.errors import Problems
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.elements import CollisionMass
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import leading_numbers

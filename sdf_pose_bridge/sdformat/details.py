@@ -11,9 +11,9 @@ from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import JointChildError
 from sdf_pose_bridge.errors import JointParentError
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.elements import FrameDetails
 from sdf_pose_bridge.sdformat.elements import JointDetails
 from sdf_pose_bridge.sdformat.elements import ModelDetails

@@ -8,8 +8,8 @@ from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.sources import Document
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.versions import convert
@@ -30,11 +30,13 @@ def document_from_file(path: str, sources: Sources, problems: Problems) -> Docum
     :param problems: takes what is wrong with the file but does not keep it from being read.
     :return: the file, in the newest version.
     :raises FileReadError: if it is missing, unreadable or not XML, or declares no version.
+    :raises LimitError: if it is too large.
     :raises ParsingError: if its outermost element is not ``sdf``.
     :raises ConversionError: if its version is not supported, or names in it cannot be converted.
     """
     sources.add_path(path)
-    return _document_from_bytes(bytes_from_file(path), path, None, sources, problems)
+    text = bytes_from_file(path, sources.usage)
+    return _document_from_bytes(text, path, None, sources, problems)
 
 
 def document_from_text(
@@ -50,15 +52,17 @@ def document_from_text(
     :return: as for :func:`document_from_file`.
     :raises SdfError: as for :func:`document_from_file`.
     """
+    encoding = None
     if isinstance(text, str):
-        encoded = text.encode(errors='surrogatepass')
-        return _document_from_bytes(encoded, path, 'utf-8', sources, problems)
-    return _document_from_bytes(text, path, None, sources, problems)
+        text, encoding = text.encode(errors='surrogatepass'), 'utf-8'
+    sources.usage.add('bytes_read', len(text), Place(path))
+    return _document_from_bytes(text, path, encoding, sources, problems)
 
 
 def _document_from_bytes(
     text: bytes, path: str, encoding: str | None, sources: Sources, problems: Problems,
 ) -> Document:
+    sources.usage.add_elements_of(text, Place(path))
     root, warnings, lines = xml_from_bytes(text, path, encoding)
     problems.extend(warnings)
     version = version_from_text(_declared_version(root, path), Place(path, root.sourceline or 0))

@@ -15,7 +15,7 @@ import numpy as np
 
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import Problems
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.pose_text import IDENTITY
 from sdf_pose_bridge.sdformat.pose_text import PoseFormat
@@ -24,6 +24,8 @@ from sdf_pose_bridge.sdformat.xml_tree import path_step
 
 NO_ELEMENT = -1
 """Index that means no element."""
+
+_MOST_PATHS_KNOWN = 1000
 
 Indices: TypeAlias = 'np.ndarray[Any, np.dtype[np.int32]]'
 
@@ -124,6 +126,8 @@ class Elements(NamedTuple):
     missing_includes: Mapping[int, Mapping[str, str]]
     """For each element with includes that were not found: names and URIs of what is missing. An
     empty name is that of a merge, which could have had elements of any name."""
+    known_paths: dict[int, str]
+    """Paths of some elements, which :meth:`place` has made."""
 
     def kind(self, index: int) -> Kind:
         """
@@ -153,17 +157,27 @@ class Elements(NamedTuple):
         :param part: path of the part in the element, such as ``pose``.
         :return: file, line and path.
         """
-        steps = [part] if part else []
-        path = self.paths[self.file_indices[index]]
-        line = line or int(self.lines[index])
-        while index >= 0:
-            kind = self.kind(index)
-            if kind is not Kind.ROOT:
-                name = '' if kind is Kind.INERTIAL else self.names[index]
-                steps.append(path_step(kind.label, name))
-            index = int(self.parents[index])
-        return Place(path, line, '/'.join(['/sdf', *reversed(steps)]))
+        path = self._element_path(index)
+        return Place(
+            self.paths[self.file_indices[index]], line or int(self.lines[index]),
+            f'{path}/{part}' if part else path)
 
+    def _element_path(self, index: int) -> str:
+        if index < 0:
+            return '/sdf'
+        parent = int(self.parents[index])
+        # Many errors may be in one element that is nested deep.
+        parent_path = self.known_paths.get(parent)
+        if parent_path is None:
+            parent_path = self._element_path(parent)
+            if len(self.known_paths) == _MOST_PATHS_KNOWN:
+                self.known_paths.clear()
+            self.known_paths[parent] = parent_path
+        kind = self.kind(index)
+        if kind is Kind.ROOT:
+            return parent_path
+        name = '' if kind is Kind.INERTIAL else self.names[index]
+        return f'{parent_path}/{path_step(kind.label, name)}'
 
     def place_of_pose(self, index: int) -> Place:
         """
@@ -258,7 +272,7 @@ class ElementsBuilder:
             pose_lines=_indices(self.pose_lines), poses=poses, relative_to=self.relative_to,
             models=self.models, frames=self.frames, joints=self.joints, sensors=self.sensors,
             automatic_inertials=self.automatic_inertials, paths=self._paths,
-            missing_includes=self.missing_includes)
+            missing_includes=self.missing_includes, known_paths={})
         for index, reason in failures:
             problems.error(ElementInvalidError(reason, table.place_of_pose(index)))
         for index, reason in doubts:

@@ -14,10 +14,10 @@ from sdf_pose_bridge.errors import AttributeMissingError
 from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementIncorrectTypeError
 from sdf_pose_bridge.errors import ElementInvalidError
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.automatic_inertia import collision_masses
 from sdf_pose_bridge.sdformat.details import DetailsReader
 from sdf_pose_bridge.sdformat.details import reference_of
@@ -39,13 +39,13 @@ from sdf_pose_bridge.sdformat.values import value_fault
 from sdf_pose_bridge.sdformat.versions import allows_scoped_names
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import described
-from sdf_pose_bridge.sdformat.xml_tree import is_foreign
 from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-_DEEPEST = 300
-"""How deep elements may be nested. libxml2 allows 256 levels in a file."""
+_SCOPED_NAMES = ('//*[contains(@name, "::")]'
+                 '[not(ancestor-or-self::*[self::plugin or contains(name(), ":")])]')
+"""Finds names with ``::`` in what does not belong to others than SDFormat."""
 
 
 def elements_from_tree(
@@ -63,9 +63,10 @@ def elements_from_tree(
     :return: the elements. One with an error is kept if that is possible, so that other errors are
         found and none follows from the first.
     """
-    if may_hold_scoped_names:
-        _check_scoped_names(root, sources, problems)
-    return _Reader(sources, problems).elements(root)
+    with sources.unchanged_trees():
+        if may_hold_scoped_names:
+            _check_scoped_names(root, sources, problems)
+        return _Reader(sources, problems).elements(root)
 
 
 def check_element(
@@ -84,11 +85,10 @@ def check_element(
 
 def _check_scoped_names(root: XmlElement, sources: Sources, problems: Problems) -> None:
     """Report names with ``::`` in files that must not have them, or are included by such files."""
-    xmls: list[XmlElement] = root.xpath('//*[contains(@name, "::")]')
+    xmls: list[XmlElement] = root.xpath(_SCOPED_NAMES)
     for xml in xmls:
-        if is_foreign(xml) or all(
-                allows_scoped_names(sources.versions[path])
-                for path in sources.enclosing_paths_of_name(xml)):
+        if all(allows_scoped_names(sources.versions[path])
+               for path in sources.enclosing_paths_of_name(xml)):
             continue
         msg = f'the name "{xml.get("name")}" holds "{SEPARATOR}", which separates scopes'
         problems.error(ReservedNameError(msg, sources.place_of_name(xml)))
@@ -99,6 +99,7 @@ class _Reader:
     def __init__(self, sources: Sources, problems: Problems) -> None:
         self._sources = sources
         self._problems = problems
+        self._deepest = sources.usage.limits.depth
         self._builder = ElementsBuilder(sources.paths)
         self._names = SiblingNames(self._builder, sources, problems)
         self._details = DetailsReader(sources, problems)
@@ -186,10 +187,8 @@ class _Reader:
         self, xml: XmlElement, definition: Definition, parent: int, scope: int, path: str,
         depth: int,
     ) -> None:
-        if depth > _DEEPEST:
-            msg = f'elements are nested more than {_DEEPEST} deep'
-            self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
-            self._problems.raise_errors()
+        if depth > self._deepest:
+            self._sources.usage.check('depth', depth, self._sources.place(xml))
         definitions = definition.children
         for child in xml:
             child_definition = definitions.get(child.tag)

@@ -16,10 +16,10 @@ from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import AttributeMissingError
 from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import is_reserved
 from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.sources import Sources

@@ -10,13 +10,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from collections.abc import Mapping
+import contextlib
 import copy
+from itertools import chain
 from itertools import islice
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
+from sdf_pose_bridge.sdformat.limits import Limits
+from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+_MOST_PLACES_REMEMBERED = 1000
 
 
 class Version(NamedTuple):
@@ -47,19 +54,27 @@ class Sources:
     The files of a load, and where each XML element was written.
 
     An element stands in the file that :meth:`set_source` gave to it or to its nearest ancestor.
+
+    :param limits: what the load may use.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, limits: Limits = DEFAULT_LIMITS) -> None:
+        self.usage = Usage(limits)
+        """What the load has used so far."""
         self.paths: list[str] = []
         """All files that were read, in the order of reading."""
         self.versions: dict[str, Version] = {}
         """The version of each SDFormat file by its path."""
+        self.includes: dict[str, Place] = {}
+        """The place of the include that first led to each included file, by its path."""
         self._files: dict[XmlElement, str] = {}
         self._lines: dict[XmlElement, int] = {}
         self._includes: dict[XmlElement, Place] = {}
         self._named_by_includes: set[XmlElement] = set()
         self._placed_by_includes: dict[XmlElement, tuple[str, int]] = {}
         self._composed_trees: set[XmlElement] = set()
+        self._places: dict[XmlElement, Place] = {}
+        self._remembers_places = False
 
     def add_path(self, path: str) -> None:
         """
@@ -157,7 +172,7 @@ class Sources:
         :param xml: the element.
         :return: the path of its file, of the file that includes that one, and so on.
         """
-        for element in (xml, *xml.iterancestors()):
+        for element in chain([xml], xml.iterancestors()):
             if element in self._files:
                 yield self._files[element]
 
@@ -199,10 +214,39 @@ class Sources:
         :param part: path of a missing element in it; empty for the element itself.
         :return: its file, its line and its path in the tree.
         """
-        steps = [described(each) for each in xml.iterancestors()]
-        path = '/'.join(['', *reversed(steps), described(xml)])
-        file = self.path_of_pose(xml, self.path(xml))
+        parent = xml.getparent()
+        outer = Place('') if parent is None else self._place_in_tree(parent)
+        path = f'{outer.element}/{described(xml)}'
+        file = self.path_of_pose(xml, self.path_at(xml, outer.file))
         return Place(file, self.line(xml), f'{path}/{part}' if part else path)
+
+    @contextlib.contextmanager
+    def unchanged_trees(self) -> Iterator[None]:
+        """Remember places: with very long names, or very deep, each of them takes long to make."""
+        self._remembers_places = True
+        try:
+            yield
+        finally:
+            self._remembers_places = False
+            self._places.clear()
+
+    def _place_in_tree(self, xml: XmlElement) -> Place:
+        """Return the file and the path of an element that holds another."""
+        file, path = '', ''
+        steps: list[str] = []
+        for element in chain([xml], xml.iterancestors()):
+            if element in self._places:
+                outer = self._places[element]
+                file, path = file or outer.file, outer.element
+                break
+            file = file or self.path_at(element, '')
+            steps.append(described(element))
+        place = Place(file, element='/'.join([path, *reversed(steps)]))
+        if self._remembers_places:
+            if len(self._places) == _MOST_PLACES_REMEMBERED:
+                self._places.clear()
+            self._places[xml] = place
+        return place
 
     def place_of_name(self, xml: XmlElement) -> Place:
         """

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.names import nearest_name
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
@@ -47,6 +47,7 @@ class UndefinedReporter:
     def __init__(self, sources: Sources, problems: Problems) -> None:
         self._sources = sources
         self._problems = problems
+        self._nearest: dict[tuple[str, str, str], str] = {}
 
     def report_content(self, xml: XmlElement, definition: Definition) -> None:
         """
@@ -75,11 +76,14 @@ class UndefinedReporter:
         if (not isinstance(xml.tag, str) or ':' in tag or parent.takes_any_children
                 or parent_xml is None):
             return
+        if not self._problems.keeps_warnings():
+            self._problems.count_more(errors=0, warnings=1)
+            return
         hint = _ELEMENT_HINTS.get(f'{parent.identifier}/{tag}', '') or _ELEMENT_HINTS.get(tag, '')
         if not hint and tag in parent.attributes:
             hint = f'it is an attribute: {tag}="..."'
         elif not hint:
-            hint = _did_you_mean(tag, map(str, parent.children), '<{}>')
+            hint = self._did_you_mean(tag, parent.identifier, map(str, parent.children), '<{}>')
         self._warn(xml, f'<{tag}> in <{written_tag(parent_xml)}>', hint)
 
     def report_attribute(self, xml: XmlElement, name: str, definition: Definition) -> None:
@@ -93,11 +97,14 @@ class UndefinedReporter:
         # lxml writes the namespace of a prefix in braces.
         if ':' in name or '{' in name:
             return
+        if not self._problems.keeps_warnings():
+            self._problems.count_more(errors=0, warnings=1)
+            return
         hint = _ATTRIBUTE_HINTS.get((definition.identifier, name), '')
         if not hint and name in definition.children:
             hint = f'it is an element: <{name}>'
         elif not hint:
-            hint = _did_you_mean(name, definition.attributes, '{}')
+            hint = self._did_you_mean(name, definition.identifier, definition.attributes, '{}')
         self._warn(xml, f'{name}="{xml.get(name)}" of <{written_tag(xml)}>', hint)
 
     def _warn(self, xml: XmlElement, what: str, hint: str) -> None:
@@ -105,7 +112,10 @@ class UndefinedReporter:
         self._problems.warning(
             f'{what} is not defined in SDFormat{ending}', self._sources.place(xml))
 
-
-def _did_you_mean(name: str, names: Iterable[str], form: str) -> str:
-    nearest = nearest_name(name, names)
-    return f'did you mean {form.format(nearest)}?' if nearest else ''
+    def _did_you_mean(self, name: str, parent: str, names: Iterable[str], form: str) -> str:
+        # Most of what is undefined in a file has one of a few names.
+        key = form, parent, name
+        if key not in self._nearest and self._problems.allows_hint():
+            self._nearest[key] = nearest_name(name, names)
+        nearest = self._nearest.get(key, '')
+        return f'did you mean {form.format(nearest)}?' if nearest else ''

@@ -12,8 +12,9 @@ from collections.abc import Mapping
 import contextlib
 from itertools import chain
 from itertools import islice
-from pathlib import Path
+import os
 import re
+import stat
 from typing import NamedTuple
 from xml.parsers import expat
 
@@ -23,6 +24,7 @@ import numpy as np
 from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_repair import repaired
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
@@ -57,19 +59,38 @@ class XmlFile(NamedTuple):
     """The lines of those elements whose line lxml does not know."""
 
 
-def bytes_from_file(path: str) -> bytes:
+def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> bytes:
     """
     Return the content of a file.
 
     :param path: path of the file.
+    :param usage: counts its bytes.
+    :param allows_pipe: whether it may be a pipe, such as that of the shell's ``<(command)``.
     :return: its bytes.
-    :raises FileReadError: if it is missing or unreadable.
+    :raises FileReadError: if it is missing, unreadable or not a regular file.
+    :raises LimitError: if it is too large.
     """
+    place = Place(path)
     try:
-        return Path(path).read_bytes()
+        # Without O_NONBLOCK, opening a named pipe waits for a writer.
+        with open(path, 'rb', opener=_descriptor_without_waiting) as file:
+            status = os.fstat(file.fileno())
+            is_pipe = allows_pipe and stat.S_ISFIFO(status.st_mode)
+            if not stat.S_ISREG(status.st_mode) and not is_pipe:
+                msg = 'the file cannot be read: it is not a regular file'
+                raise FileReadError(msg, place)
+            os.set_blocking(file.fileno(), True)
+            usage.add('bytes_read', status.st_size, place)
+            text = file.read(usage.left('bytes_read') + 1 if is_pipe else status.st_size)
+            usage.add('bytes_read', len(text) - status.st_size, place)
+            return text
     except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
         msg = f'the file cannot be read: {getattr(error, "strerror", None) or error}'
-        raise FileReadError(msg, Place(path)) from error
+        raise FileReadError(msg, place) from error
+
+
+def _descriptor_without_waiting(path: str, flags: int) -> int:
+    return os.open(path, flags | os.O_NONBLOCK | os.O_NOCTTY)
 
 
 def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFile:

@@ -19,10 +19,12 @@ _ATTRIBUTE = re.compile(rf'(\s*)((?:{_NAME})\s*=\s*)("[^"]*"|\'[^\']*\')')
 _TOKEN = re.compile(
     rf'(?P<comment><!--.*?-->)|(?P<verbatim><!\[CDATA\[.*?\]\]>)|(?P<instruction><\?.*?\?>)'
     rf'|(?P<other><!(?!--|\[CDATA\[)[^>]*>)|(?P<text>[^<]+)'
-    rf'|<(?P<end>/?)(?P<tag>{_NAME})(?P<attributes>(?:{_ATTRIBUTE.pattern})*)'
+    rf'|<(?P<end>/?)(?P<tag>{_NAME})(?![\w:.\-])(?P<attributes>(?:{_ATTRIBUTE.pattern})*)'
     rf'(?P<rest>\s*(?P<empty>/?)>)', re.DOTALL)
 _BARE_AMPERSAND = re.compile(r'&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)')
 _DECLARED_ENCODING = re.compile(rb'\s*<\?xml[^>]*?encoding\s*=\s*["\']([A-Za-z0-9._-]+)["\']')
+_ESCAPED_BYTE = re.compile('[\udc80-\udcff]')
+"""What the error handler ``surrogateescape`` makes of a byte that is not UTF-8."""
 _NOT_NEW_LINE = re.compile(r'[^\n]')
 
 
@@ -153,16 +155,12 @@ class _Repairer:
         except (LookupError, UnicodeDecodeError):
             if encoding.lower() not in ('utf-8', 'utf8'):
                 self._note(f'the text is not in the encoding "{encoding}"; UTF-8 is used')
-        result = ''
-        while True:
-            try:
-                return result + text.decode('utf-8')
-            except UnicodeDecodeError as error:
-                result += text[:error.start].decode('utf-8')
-                self._note('bytes that are not UTF-8, which are read as Latin-1',
-                           1 + result.count('\n'))
-                result += text[error.start:error.end].decode('latin-1')
-                text = text[error.end:]
+        result = text.decode('utf-8', errors='surrogateescape')
+        escaped = _ESCAPED_BYTE.search(result)
+        if escaped is not None:
+            self._note('bytes that are not UTF-8, which are read as Latin-1',
+                       1 + result.count('\n', 0, escaped.start()))
+        return _ESCAPED_BYTE.sub(lambda byte: chr(ord(byte[0]) - 0xdc00), result)
 
     def _note(self, fault: str, line: int = 0) -> None:
         """Note the first line with a fault."""

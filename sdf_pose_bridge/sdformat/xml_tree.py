@@ -15,6 +15,8 @@ from typing import TypeAlias
 
 from lxml import etree
 
+from sdf_pose_bridge.names import shortened
+
 XmlElement: TypeAlias = etree._Element  # noqa: SLF001  # lxml has no public name for it
 
 WHITE_SPACE = ' \t\n\r\f\v'
@@ -138,6 +140,7 @@ def path_step(tag: str, name: str) -> str:
 
     :param tag: the tag.
     :param name: the name; empty for none.
-    :return: such as ``link[@name="l"]``.
+    :return: such as ``link[@name="l"]``; a long name is shortened.
     """
-    return f'{tag}[@name="{name}"]' if name else tag
+    tag = shortened(tag)
+    return f'{tag}[@name="{shortened(name)}"]' if name else tag

@@ -13,7 +13,6 @@ import numpy as np
 from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.geometry.poses import Pose
@@ -21,6 +20,7 @@ from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.poses import relative_poses
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.pointers import ends_from_pointers
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.elements import Indices

@@ -2,6 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """``sdf_pose check``: errors, warnings and the exit code."""
 
+import os
+from pathlib import Path
+import subprocess
+import sys
+
+ROOT = Path(__file__).resolve().parents[2]
+
 
 def test_check_prints_errors_in_the_order_of_the_file(sdf_pose):
     done = sdf_pose('check', 'bad.sdf')
@@ -31,6 +38,34 @@ def test_check_continues_after_an_invalid_file(sdf_pose):
 
 def test_check_prints_no_colours_to_a_pipe(sdf_pose):
     assert '\x1b' not in sdf_pose('check', 'bad.sdf').stdout
+
+
+def test_text_of_a_file_cannot_control_the_terminal(sdf_pose, files):
+    (files / 'evil.sdf').write_text(
+        '<sdf version="1.9"><model name="m"><link name="l"/><frame name="f" attached_to="x&#10;'
+        'b.sdf:1: \x9b\u202e"/></model></sdf>')
+    (line,) = sdf_pose('check', 'evil.sdf').stdout.splitlines()
+    assert r'attached_to="x\nb.sdf:1: \x9b\u202e"' in line
+
+
+def test_message_of_the_parser_cannot_control_the_terminal(sdf_pose, files):
+    (files / 'evil.sdf').write_text('<sdf version="1.9"><a\u202e></b></sdf>')
+    assert '\u202e' not in sdf_pose('check', 'evil.sdf').stdout
+
+
+def test_process_substitution_is_read(sdf_pose, files):
+    reader, writer = os.pipe()
+    os.write(writer, (files / 'good.sdf').read_bytes())
+    os.close(writer)
+    done = subprocess.run(
+        [sys.executable, '-m', 'sdf_pose_bridge', 'check', f'/dev/fd/{reader}'], cwd=files,
+        env={'PYTHONPATH': str(ROOT)}, capture_output=True, check=False, pass_fds=[reader])
+    os.close(reader)
+    assert (done.returncode, done.stdout) == (0, b'')
+
+
+def test_device_is_refused(sdf_pose):
+    assert 'not a regular file' in sdf_pose('check', '/dev/zero').stdout
 
 
 def test_includes_are_searched_in_given_directories(sdf_pose, files):

@@ -4,6 +4,8 @@
 
 import json
 
+import pytest
+
 
 def test_poses_prints_a_table(sdf_pose):
     lines = sdf_pose('poses', 'good.sdf').stdout.splitlines()
@@ -23,6 +25,26 @@ def test_poses_prints_a_json_object_for_each_file(sdf_pose):
     assert (good['ok'], good['errors'], good['warnings']) == (True, [], [])
     assert good['elements'][2] == {
         'kind': 'link', 'name': 'm::l', 'world': 'w', 'pose': [2.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]}
+
+
+@pytest.mark.parametrize(('written', 'shown'), [
+    ('a&#10;link  b', r'a\nlink  b'), ('\x9b31m', r'\x9b31m'), ('\u202egnp', r'\u202egnp'),
+    ('größe', 'größe'),
+])
+def test_name_cannot_forge_a_row_of_the_table(sdf_pose, files, written, shown):
+    (files / 'evil.sdf').write_text(
+        f'<sdf version="1.9"><model name="m"><link name="{written}"/></model></sdf>')
+    lines = sdf_pose('poses', 'evil.sdf').stdout.splitlines()
+    assert len(lines) == 3
+    assert f'm::{shown} ' in lines[2]
+
+
+def test_json_has_ascii_only(sdf_pose, files):
+    (files / 'evil.sdf').write_text(
+        '<sdf version="1.9"><model name="\x9b"><link name="l"/></model></sdf>')
+    done = sdf_pose('poses', '--json', 'evil.sdf')
+    assert done.stdout.isascii()
+    assert json.loads(done.stdout)['elements'][0]['name'] == '\x9b'
 
 
 def test_poses_are_printed_relative_to_a_frame(sdf_pose):

@@ -9,6 +9,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from sdf_pose_bridge.errors import LoadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
 from sdf_pose_bridge.ros.log_lines import MOST_ERRORS
@@ -47,6 +48,12 @@ def test_a_flood_of_sentences_about_settings_ends_with_its_size():
 ])
 def test_a_name_cannot_write_a_line_of_its_own(name, shown):
     assert lines_from_error(ParsingError(name, Place('f'))) == [f'f: PARSING_ERROR: {shown}']
+
+
+def test_a_flood_that_the_load_has_cut_has_no_exact_size():
+    errors = [ParsingError('fact', Place('a.sdf', line)) for line in range(MOST_PROBLEMS + 1)]
+    assert lines_from_error(LoadError(errors))[-1].startswith('at least 81 more errors')
+    assert lines_from_warnings(errors)[-1].startswith('at least 81 more warnings')
 
 
 def test_few_warnings_are_all_written():

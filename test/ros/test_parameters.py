@@ -53,6 +53,13 @@ def test_a_whole_number_for_a_rate_says_how_to_write_it(make_node):
         settings_from_node(make_node('bridge', *FILE, '-p', 'publish_rate:=5'))
 
 
+def test_too_many_patterns_are_refused(make_node):
+    settings = settings_from_node(make_node('bridge', *FILE))
+    too_many = Parameter('pose_topics', value=['x'] * 1001)
+    with pytest.raises(SettingsError, match='pose_topics has 1001 patterns; it must'):
+        changed_settings(settings, [too_many])
+
+
 def test_all_wrong_values_are_named(make_node):
     node = make_node('bridge', '-p', 'kinds:=[rope]', '-p', 'frame_names:=x', '-p', 'watch:=1')
     with pytest.raises(SettingsError) as refusal:

@@ -9,7 +9,7 @@ from sdf_texts import only_error
 from sdf_texts import world_file
 
 from sdf_pose_bridge import Kind
-from sdf_pose_bridge.errors import Problems
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.pose_text import PoseFormat

@@ -10,7 +10,7 @@ from sdf_texts import names_of
 from sdf_texts import TWO_LINKS
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.errors import Problems
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.documents import document_from_text
 from sdf_pose_bridge.sdformat.sources import Sources
 

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parsing XML: broken and hostile files are refused, what libsdformat accepts is accepted."""
 
+from concurrent.futures import ThreadPoolExecutor
+import os
 import socket
 
 import pytest
@@ -15,6 +17,11 @@ from sdf_texts import only_error
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge import SdfError
+from sdf_pose_bridge.errors import FileReadError
+from sdf_pose_bridge.errors import LimitError
+from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
+from sdf_pose_bridge.sdformat.limits import Limits
+from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 
@@ -43,8 +50,50 @@ def names_in(text):
 @pytest.mark.parametrize('path', ['none.sdf', '', 'a\0b', 'x' * 1000])
 def test_unreadable_file_is_refused(tmp_path, path):
     with pytest.raises(SdfError) as caught:
-        bytes_from_file(str(tmp_path / path))
+        bytes_from_file(str(tmp_path / path), Usage())
     assert (caught.value.code, caught.value.file) == ('FILE_READ', str(tmp_path / path))
+
+
+@pytest.mark.parametrize('path', ['/dev/zero', '/dev/null', '/'])
+def test_only_regular_files_are_read(path):
+    with pytest.raises(FileReadError):
+        bytes_from_file(path, Usage())
+
+
+def test_named_pipe_is_refused_at_once(tmp_path):
+    os.mkfifo(tmp_path / 'pipe')
+    with pytest.raises(FileReadError, match='not a regular file'):
+        bytes_from_file(str(tmp_path / 'pipe'), Usage())
+
+
+@pytest.mark.parametrize('size', [0, 1, 100_000])
+def test_pipe_is_read_where_it_is_allowed(size):
+    reader, writer = os.pipe()
+
+    def write():
+        os.write(writer, b'x' * size)
+        os.close(writer)
+
+    with ThreadPoolExecutor() as executor:
+        executor.submit(write)
+        assert bytes_from_file(f'/dev/fd/{reader}', Usage(), allows_pipe=True) == b'x' * size
+    os.close(reader)
+
+
+def test_too_large_file_is_refused_before_it_is_read(tmp_path):
+    with (tmp_path / 'large').open('wb') as file:
+        file.truncate(10**12)
+    with pytest.raises(LimitError, match=f'the limit bytes_read is {DEFAULT_LIMITS.bytes_read}'):
+        bytes_from_file(str(tmp_path / 'large'), Usage())
+
+
+def test_endless_pipe_is_refused():
+    reader, writer = os.pipe()
+    os.write(writer, b'x' * 11)
+    with pytest.raises(LimitError):
+        bytes_from_file(f'/dev/fd/{reader}', Usage(Limits(bytes_read=10)), allows_pipe=True)
+    os.close(reader)
+    os.close(writer)
 
 
 @pytest.mark.parametrize('content', [

@@ -19,12 +19,15 @@ from sdf_pose_bridge.errors import AttributeMissingError
 from sdf_pose_bridge.errors import ElementIncorrectTypeError
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ElementMissingError
+from sdf_pose_bridge.errors import FileReadError
+from sdf_pose_bridge.errors import LimitError
+from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import PlacementFrameError
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import UriLookupError
 from sdf_pose_bridge.names import ROOT_FRAME
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.documents import document_from_file
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.manifest import model_file_from_directory
@@ -44,12 +47,11 @@ from sdf_pose_bridge.sdformat.xml_tree import value_of
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-DEEPEST = 64
-"""How deep files may include one another."""
+_COPIES_OF_MERGED_MODEL = 10
+"""How often the elements of a merged model are counted: it is also read by itself."""
 
 _TOP_TAGS = ('model', 'actor', 'light')
 """What can be included, in the order of preference."""
-
 
 
 class IncludeExpansion:
@@ -102,7 +104,7 @@ class IncludeExpansion:
         uri = self._uri(include)
         if uri is None:
             return
-        found = self._included_file(uri, self._sources.path(include), files)
+        found = self._included_file(include, uri, files)
         if isinstance(found, str):
             self._report_missing(include, uri, found)
             return
@@ -112,6 +114,10 @@ class IncludeExpansion:
         if chosen is None:
             return
         self.may_hold_scoped_names |= found.may_hold_scoped_names
+        copies = _COPIES_OF_MERGED_MODEL if is_merge else 1
+        self._sources.usage.add(
+            'included_elements', copies * int(chosen.xpath('count(descendant-or-self::*)')),
+            self._sources.place(include))
         top = self._sources.copy_of(chosen)
         self._sources.set_include(top, include)
         self._override(include, top)
@@ -138,16 +144,16 @@ class IncludeExpansion:
         return uri
 
     def _included_file(
-        self, uri: str, including_file: str, files: tuple[str, ...],
+        self, include: XmlElement, uri: str, files: tuple[str, ...],
     ) -> Document | str | None:
         """Return a file; the reason why it is not found; or None if it cannot be read."""
-        path = self._finder.path_from_uri(uri, including_file)
+        path = self._finder.path_from_uri(uri, self._sources.path(include))
         if path is None:
             return self._finder.reason_not_found(uri)
         if os.path.isdir(path):  # noqa: PTH112
             try:
-                path, manifest, warnings = model_file_from_directory(path)
-            except SdfError as error:
+                path, manifest, warnings = model_file_from_directory(path, self._sources.usage)
+            except (FileReadError, ParsingError) as error:
                 return f'{error.place}: {error.message}'
             self._sources.add_path(manifest)
             self._problems.extend(warnings)
@@ -156,22 +162,33 @@ class IncludeExpansion:
             cycle = [*files[files.index(real_path):], real_path]
             names = ' -> '.join(Path(file).name for file in cycle)
             return f'the file includes itself: {names}'
-        if len(files) >= DEEPEST:
-            return f'files include one another more than {DEEPEST} levels deep'
+        if len(files) >= self._sources.usage.limits.include_depth:
+            return f'files include one another more than {len(files)} levels deep'
         if real_path not in self._files:
+            self._sources.includes[path] = self._sources.place(include)
             self._files[real_path] = self._read(path, (*files, real_path))
         return self._files[real_path]
 
     def _read(self, path: str, files: tuple[str, ...]) -> Document | None:
         try:
             document = document_from_file(path, self._sources, self._problems)
+        except LimitError:
+            raise
         except SdfError as error:
             self._problems.error(error)
             return None
         if next(document.root.iter('include'), None) is not None:
             self._sources.set_composed(document.root)
             self._expand_in(document.root, files)
+            self._check_depth(document.root)
         return document
+
+    def _check_depth(self, root: XmlElement) -> None:
+        """Check the depth before more is put around a tree; recursion over it is limited."""
+        depth = self._sources.usage.limits.depth
+        too_deep = root.xpath('descendant::*[count(ancestor::*) > $depth][1]', depth=depth)
+        for xml in too_deep:
+            self._sources.usage.check('depth', depth + 1, self._sources.place(xml))
 
     def _report_missing(self, include: XmlElement, uri: str, reason: str) -> None:
         msg = f'"{uri}" cannot be included: {reason}'

@@ -16,6 +16,8 @@ from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.versions import NEWEST
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
@@ -38,14 +40,16 @@ class ModelFile(NamedTuple):
     warnings: tuple[SdfWarning, ...]
 
 
-def model_file_from_directory(directory: str) -> ModelFile:
+def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
     """
     Choose the file of the newest version that is supported.
 
     :param directory: a model directory.
+    :param usage: counts the bytes and elements of its manifest.
     :return: the file, which need not exist.
     :raises FileReadError: if there is no manifest, or it is not XML.
     :raises ParsingError: if the manifest does not name a file.
+    :raises LimitError: if the manifest is too large.
     """
     # Unlike Path.exists, this returns False for a directory that may not be read.
     manifests = [
@@ -59,14 +63,17 @@ def model_file_from_directory(directory: str) -> ModelFile:
     if manifests[0] == _DEPRECATED_NAME:
         msg = f'{_DEPRECATED_NAME} is deprecated; it should be called {_NAME}'
         warnings.append(SdfWarning('WARNING', msg, Place(manifest)))
-    root, xml_warnings, _ = xml_from_bytes(bytes_from_file(manifest), manifest)
+    text = bytes_from_file(manifest, usage)
+    usage.add_elements_of(text, Place(manifest))
+    root, xml_warnings, _ = xml_from_bytes(text, manifest)
     warnings += xml_warnings
     best: tuple[int, ...] = (0, 0)
     chosen = None
     for entry in child_elements(root, 'sdf'):
         version = _version_from_text(entry.get('version', ''))
         if version > NEWEST:
-            msg = f'version {entry.get("version")} of the model is newer than {NEWEST} and skipped'
+            written = shortened(entry.get('version', ''))
+            msg = f'version {written} of the model is newer than {NEWEST} and skipped'
             place = Place(manifest, entry.sourceline or 0, '/model/sdf')
             warnings.append(SdfWarning('WARNING', msg, place))
         elif chosen is None or version > best:

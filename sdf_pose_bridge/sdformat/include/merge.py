@@ -17,10 +17,10 @@ from lxml import etree
 
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import MergeIncludeError
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.details import PLACEMENT_OF_MERGED_MODEL
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.sources import Sources

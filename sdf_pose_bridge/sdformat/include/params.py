@@ -20,9 +20,9 @@ from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import Problems
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.element_ids import element_by_id
@@ -113,7 +113,7 @@ class _Changer:
         target = element_by_id(self._top, element_id, tag)
         if target is None:
             msg = (f'the included model has no <{tag}> "{element_id}"'
-                   f'{hint_for_id(self._top, element_id, tag)}')
+                   f'{self._hint(element_id, tag)}')
             self._error(ElementMissingError, xml, msg)
         elif action is not None:
             self._act(action, xml, tag, target)
@@ -143,11 +143,10 @@ class _Changer:
         parent = element_by_id(self._top, element_id) if element_id else self._top
         if parent is None:
             msg = (f'<{tag}> cannot be added to element_id="{element_id}": the included model has '
-                   f'no such element{hint_for_id(self._top, element_id)}')
+                   f'no such element{self._hint(element_id)}')
             self._error(ElementMissingError, xml, msg)
         elif self._is_defined(xml, tag):
-            around = self._definition(parent)
-            parent.append(self._new_element(xml, around and around.children.get(tag)))
+            parent.append(self._new_element(xml))
 
     def _change_child(self, xml: XmlElement, parent_tag: str, target: XmlElement) -> None:
         tag, action = written_tag(xml), xml.get('action')
@@ -157,8 +156,7 @@ class _Changer:
             return
         if not self._is_action(xml, action):
             return
-        definition = definition_of(parent_tag).children.get(tag)
-        if action in ('add', 'replace') and definition is None:
+        if action in ('add', 'replace') and tag not in _definition_alone(parent_tag).children:
             msg = f'SDFormat defines no <{tag}> in a <{parent_tag}>'
             self._error(ElementInvalidError, xml, msg)
             return
@@ -166,7 +164,7 @@ class _Changer:
             self._warning(xml, 'an <include> that is added by itself includes nothing')
             return
         if action == 'add':
-            target.append(self._new_element(xml, definition))
+            target.append(self._new_element(xml))
             return
         found = self._child(target, xml, takes_first=action == 'modify')
         if found is not None and action == 'replace':
@@ -176,15 +174,15 @@ class _Changer:
 
     # Actions
 
-    def _new_element(self, xml: XmlElement, definition: Definition | None) -> XmlElement:
+    def _new_element(self, xml: XmlElement) -> XmlElement:
         """Copy an element without attributes that are not defined, as libsdformat does."""
         element = copy.deepcopy(xml)
         element.tail = None
+        definition = _definition_of_parameter(xml)
         attributes = element.keys()
         for attribute in attributes:
             if attribute in _OWN_ATTRIBUTES or (
-                    definition is not None and attribute not in definition.attributes
-                    and ':' not in attribute):
+                    attribute not in definition.attributes and ':' not in attribute):
                 del element.attrib[attribute]
         self._sources.set_source(element, self._sources.path(xml), self._sources.line(xml))
         self.added.append(element)
@@ -196,7 +194,7 @@ class _Changer:
             msg = f'<{tag}> is to replace <{tag} name="{target.get("name")}">, so it needs a name'
             self._error(AttributeMissingError, xml, msg)
         elif parent is not None:
-            parent.replace(target, self._new_element(xml, self._definition(target)))
+            parent.replace(target, self._new_element(xml))
 
     def _remove(self, xml: XmlElement, target: XmlElement) -> None:
         if _is_empty(xml):
@@ -327,6 +325,10 @@ class _Changer:
 
     # Errors
 
+    def _hint(self, element_id: str, tag: str = '') -> str:
+        allowed = self._problems.allows_hint()
+        return hint_for_id(self._top, element_id, tag) if allowed else ''
+
     def _is_action(self, xml: XmlElement, action: str) -> bool:
         if action in _ACTIONS:
             return True
@@ -350,6 +352,20 @@ class _Changer:
     def _place(self, xml: XmlElement) -> Place:
         steps = [_step(each) for each in (xml, *xml.iterancestors())]
         return self._sources.place(xml)._replace(element='/' + '/'.join(reversed(steps)))
+
+
+def _definition_of_parameter(xml: XmlElement) -> Definition:
+    """Return the definition of an element to add, or of a child to add to another element."""
+    tag, parent = written_tag(xml), xml.getparent()
+    if tag in _DEFINED_ALONE or parent is None:
+        return _definition_alone(tag)
+    return _definition_alone(written_tag(parent)).children[tag]
+
+
+def _definition_alone(tag: str) -> Definition:
+    if tag == 'forcetorque':
+        return definition_of('force_torque')
+    return definition_of(tag.removesuffix('_shape'))
 
 
 def _step(xml: XmlElement) -> str:

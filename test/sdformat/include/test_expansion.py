@@ -47,6 +47,16 @@ def errors_in(write):
 
 # Wrong includes
 
+def test_first_error_of_an_included_file_names_the_way_there(tmp_path):
+    write_files(
+        tmp_path, main=world_file('<include><uri>outer.sdf</uri></include>'),
+        outer=model_file('<link name="l"/><include><uri>inner.sdf</uri></include>'),
+        inner=model_file('<link name="k"/><frame name="f" attached_to="x"/>'))
+    (error,) = errors_of_file(tmp_path / 'main.sdf')
+    assert error.message.endswith(
+        f'(included from {tmp_path}/outer.sdf:1, included from {tmp_path}/main.sdf:1)')
+
+
 @pytest.mark.parametrize(('wrong', 'code'), [
     ('<include/>', 'ATTRIBUTE_MISSING'),
     ('<include><uri> </uri></include>', 'ELEMENT_INVALID'),

@@ -2,18 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which file of a model directory is read."""
 
+import os
 from pathlib import Path
 
 import pytest
 
 from sdf_pose_bridge import SdfError
 from sdf_pose_bridge.sdformat.include.manifest import model_file_from_directory
+from sdf_pose_bridge.sdformat.limits import Usage
 
 
 def model_file(tmp_path, content, name='model.config'):
     """Write a manifest; return the file that it names."""
     (tmp_path / name).write_text(content)
-    return model_file_from_directory(str(tmp_path))
+    return model_file_from_directory(str(tmp_path), Usage())
 
 
 @pytest.mark.parametrize(('content', 'code'), [
@@ -32,9 +34,15 @@ def test_manifest_that_names_no_file_is_refused(tmp_path, content, code):
     assert refusal.value.file == str(tmp_path / 'model.config')
 
 
+def test_manifest_that_is_a_pipe_is_refused(tmp_path):
+    os.mkfifo(tmp_path / 'model.config')
+    with pytest.raises(SdfError, match='not a regular file'):
+        model_file_from_directory(str(tmp_path), Usage())
+
+
 def test_directory_without_a_manifest_is_refused(tmp_path):
     with pytest.raises(SdfError, match=r'has no model\.config'):
-        model_file_from_directory(str(tmp_path))
+        model_file_from_directory(str(tmp_path), Usage())
 
 
 @pytest.mark.parametrize(('entries', 'chosen'), [

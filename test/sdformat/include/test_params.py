@@ -253,3 +253,15 @@ def test_changed_numbers_are_in_the_unit_that_is_given_with_them(load):
     scene = load('<link element_id="base"><pose action="modify" degrees="true">0 0 0 0 0 180'
                  '</pose></link>')
     assert_at(scene, 'arm::base', (0, 0, 0, 0, 0, 1, 0))
+
+
+@pytest.mark.parametrize('tag', [
+    'box_shape', 'forcetorque', 'heightmap_shape', 'image_shape', 'sphere_shape', 'gui', 'state'])
+def test_element_that_is_defined_for_itself_can_be_added(load, tag):
+    load(f'<{tag} element_id="base" name="x" action="add"/>')
+
+
+@pytest.mark.parametrize('action', ['add', 'replace', 'modify'])
+def test_value_in_an_element_is_changed(load, action):
+    load('<visual element_id="base::shape"><transparency action="add">0.5</transparency>'
+         f'<transparency action="{action}">0.4</transparency></visual>')

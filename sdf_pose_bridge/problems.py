@@ -1,0 +1,195 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Gather the errors and warnings of a load."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from collections.abc import Hashable
+from collections.abc import Iterable
+from collections.abc import Mapping
+from collections.abc import Sequence
+from typing import Generic
+from typing import TypeVar
+
+from sdf_pose_bridge.errors import LoadError
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.names import shortened_message
+
+MOST_PROBLEMS = 100
+"""How many errors and how many warnings of a load are kept."""
+
+MOST_HINTS = 100
+"""How many messages of a load may say which name was probably meant."""
+
+_LONGEST_CHAIN = 10
+"""How many includes that lead to a file are named."""
+
+_Problem = TypeVar('_Problem', SdfError, SdfWarning)
+
+
+class Problems:
+    """
+    The errors and warnings of one load.
+
+    Everything that reports them is bounded here, whatever a file holds: the first hundred of each
+    are kept, each once however often its file is included, and the rest is counted. Messages are
+    shortened where they are made.
+
+    :param paths: the files that are read, in the order of reading; it may grow.
+    :param includes: the place of the include that first led to each included file; it may grow.
+    :param parent: the problems of the whole load, if these are those of a part.
+    """
+
+    def __init__(
+        self, paths: Sequence[str], includes: Mapping[str, Place] | None = None,
+        parent: Problems | None = None,
+    ) -> None:
+        self._paths = paths
+        self._includes = {} if includes is None else includes
+        self._parent = parent
+        self._errors = _First[SdfError]()
+        self._warnings = _First[SdfWarning]()
+        self._hints = 0
+
+    def error(self, error: SdfError) -> None:
+        """
+        Add an error.
+
+        :param error: the error.
+        """
+        self._errors.add(error, self._key(error))
+
+    def warning(self, message: str, place: Place, code: str = 'WARNING') -> None:
+        """
+        Add a warning.
+
+        :param message: one sentence.
+        :param place: where it is.
+        :param code: code of the corresponding error, or ``WARNING``.
+        """
+        warning = SdfWarning(code, shortened_message(message), place)
+        self._warnings.add(warning, self._key(warning))
+
+    def extend(self, problems: Iterable[SdfError | SdfWarning]) -> None:
+        """
+        Add errors and warnings.
+
+        :param problems: any number of them.
+        """
+        for problem in problems:
+            if isinstance(problem, SdfError):
+                self.error(problem)
+            else:
+                self.warning(problem.message, problem.place, problem.code)
+
+    def extend_parent(self) -> None:
+        """Add these errors and warnings to those of the whole load."""
+        assert self._parent is not None
+        self._parent.extend([*self._errors.problems, *self._warnings.problems])
+        self._parent.count_more(self._errors.more, self._warnings.more)
+
+    def count_more(self, errors: int, warnings: int) -> None:
+        """
+        Count problems without keeping them.
+
+        :param errors: how many errors.
+        :param warnings: how many warnings.
+        """
+        self._errors.more += errors
+        self._warnings.more += warnings
+
+    def keeps_warnings(self) -> bool:
+        """
+        Return whether another warning would be kept, and not only counted.
+
+        :return: False if it need not be made, but only counted.
+        """
+        return len(self._warnings.problems) < MOST_PROBLEMS
+
+    def allows_hint(self) -> bool:
+        """
+        Return whether a message may end in a hint that takes long to find, and count it.
+
+        :return: True for the first hundred times of a load.
+        """
+        if self._parent is not None:
+            return self._parent.allows_hint()
+        self._hints += 1
+        return self._hints <= MOST_HINTS
+
+    @property
+    def errors(self) -> tuple[SdfError, ...]:
+        """
+        The errors by file and line; a last one says how many more there are.
+
+        The first error of an included file says which includes led there.
+        """
+        errors = self._in_order(self._errors.problems)
+        seen = set()
+        for index, error in enumerate(errors):
+            if error.file not in seen and error.file in self._includes:
+                errors[index] = type(error)(
+                    f'{error.message}{self._included_from(error.file)}', error.place)
+            seen.add(error.file)
+        if self._errors.more:
+            errors.append(SdfError(
+                f'and {self._errors.more} more errors', Place(self._paths[0])))
+        return tuple(errors)
+
+    @property
+    def warnings(self) -> tuple[SdfWarning, ...]:
+        """The warnings by file and line; a last one says how many more there are."""
+        warnings = self._in_order(self._warnings.problems)
+        if self._warnings.more:
+            warnings.append(SdfWarning(
+                'WARNING', f'and {self._warnings.more} more warnings', Place(self._paths[0])))
+        return tuple(warnings)
+
+    def raise_errors(self) -> None:
+        """
+        Raise the errors, if there are any.
+
+        :raises LoadError: with the errors and warnings.
+        """
+        if self._errors.problems:
+            raise LoadError(self.errors, self.warnings)
+
+    def _key(self, problem: SdfError | SdfWarning) -> Hashable:
+        place = problem.place
+        if not self._paths or place.file != self._paths[0]:
+            # An element of an included file has another path for each include.
+            place = place._replace(element='')
+        return problem.code, problem.message, place
+
+    def _in_order(self, problems: Iterable[_Problem]) -> list[_Problem]:
+        ranks = {path: rank for rank, path in enumerate(self._paths)}
+        return sorted(problems, key=lambda problem: (
+            ranks.get(problem.place.file, len(ranks)), problem.place.line))
+
+    def _included_from(self, file: str) -> str:
+        steps: list[str] = []
+        while file in self._includes and len(steps) < _LONGEST_CHAIN:
+            steps.append(f'included from {self._includes[file]}')
+            file = self._includes[file].file
+        return f' ({", ".join(steps)})'
+
+
+class _First(Generic[_Problem]):
+    """The first problems of a kind, each once, and the number of the others."""
+
+    def __init__(self) -> None:
+        self.more = 0
+        self._problems: dict[Hashable, _Problem] = {}
+
+    @property
+    def problems(self) -> Collection[_Problem]:
+        return self._problems.values()
+
+    def add(self, problem: _Problem, key: Hashable) -> None:
+        if len(self._problems) < MOST_PROBLEMS:
+            self._problems.setdefault(key, problem)
+        elif key not in self._problems:
+            self.more += 1

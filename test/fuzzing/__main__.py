@@ -1,0 +1,77 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Search for inputs that end a load with anything but a scene or an SdfError.
+
+A finding is an exception, a load of more than ten seconds or more than 1 GB of memory. It ends the
+run, and its input is kept in the folder of findings.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+import contextlib
+from pathlib import Path
+import sys
+import tempfile
+
+import atheris
+
+with atheris.instrument_imports(include=['sdf_pose_bridge']):
+    from sdf_pose_bridge import load
+    from sdf_pose_bridge import load_text
+    from sdf_pose_bridge import SdfError
+    import sdf_pose_bridge.sdformat.include.expansion  # noqa: F401  # else imported at first use
+
+from differential.scene_strategy import scenes
+from hypothesis import given
+from hypothesis import HealthCheck
+from hypothesis import settings
+
+ROOT = Path(__file__).resolve().parents[2]
+LIMITS = ('-timeout=10', '-rss_limit_mb=1024', '-max_len=20000')
+
+
+def load_bytes(data: bytes) -> None:
+    """Load bytes as the content of a file."""
+    with contextlib.suppress(SdfError):
+        load_text(data, str(ROOT / 'examples' / 'fuzzed.sdf'))
+
+
+@settings(database=None, deadline=None, suppress_health_check=list(HealthCheck))
+@given(scenes())
+def load_scene(scene):
+    """Load a scene of one or several files, some of which are wrong."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in scene.files.items():
+            path = Path(folder, name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding='utf-8')
+        with contextlib.suppress(SdfError):
+            load(Path(folder, 'scene.sdf'), resource_paths=[folder])
+
+
+TARGETS: dict[str, Callable[[bytes], object]] = {
+    'bytes': load_bytes, 'scenes': load_scene.hypothesis.fuzz_one_input}
+
+
+def main() -> None:
+    """Fuzz one target for some minutes."""
+    parser = argparse.ArgumentParser(prog='fuzzing', description=__doc__)
+    parser.add_argument('target', choices=TARGETS)
+    parser.add_argument('--seconds', type=int, default=60)
+    parser.add_argument('--findings', type=Path, default=ROOT / 'fuzz_findings')
+    options = parser.parse_args()
+    options.findings.mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory() as corpus:
+        for number, path in enumerate([*ROOT.glob('examples/*.sdf'), *ROOT.glob('test/**/*.sdf')]):
+            Path(corpus, str(number)).write_bytes(path.read_bytes())
+        atheris.Setup([
+            sys.argv[0], *LIMITS, f'-max_total_time={options.seconds}',
+            f'-artifact_prefix={options.findings}/', corpus], TARGETS[options.target])
+        atheris.Fuzz()
+
+
+if __name__ == '__main__':
+    main()

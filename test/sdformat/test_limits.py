@@ -1,0 +1,120 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Small files that would take all memory are refused with the limit that they exceed."""
+
+import contextlib
+import os
+import time
+
+import pytest
+from sdf_texts import errors_of_file
+from sdf_texts import LINK
+from sdf_texts import model_file
+from sdf_texts import names_of
+from sdf_texts import world_file
+from sdf_texts import write_files
+
+from sdf_pose_bridge import Limits
+from sdf_pose_bridge import load
+from sdf_pose_bridge import load_text
+from sdf_pose_bridge import SdfError
+from sdf_pose_bridge.problems import MOST_PROBLEMS
+
+FILES = 30
+TWICE = ('<include><name>a</name><uri>{0}.sdf</uri></include>'
+         '<include><name>b</name><uri>{0}.sdf</uri></include>')
+ADDED = (
+    '<link name="l"/><include><name>i</name><uri>empty.sdf</uri><experimental:params>'
+    f'<model element_id="n" name="m" action="add">{TWICE}</model></experimental:params></include>')
+MERGED = ''.join(
+    f'<model name="{name}"><include merge="true"><uri>{{0}}.sdf</uri></include></model>'
+    for name in 'ab')
+
+
+def exceeded_limit(path):
+    """Load a file that exceeds a limit; return the name of the limit."""
+    (error,) = errors_of_file(path)
+    assert error.code == 'LIMIT'
+    return error.message.split()[-3]
+
+
+@pytest.mark.parametrize('content', [TWICE, ADDED, MERGED], ids=['include', 'params', 'merge'])
+def test_includes_that_double_thirty_times_are_refused(tmp_path, content):
+    write_files(tmp_path, empty=model_file(f'<model name="n">{LINK}</model>'), **{
+        str(number): model_file(content.format(number + 1) if number < FILES - 1 else LINK)
+        for number in range(FILES)})
+    assert exceeded_limit(tmp_path / '0.sdf') == 'included_elements'
+
+
+def test_long_name_of_many_elements_is_refused(tmp_path):
+    links = ''.join(f'<link name="{number}"/>' for number in range(15_000))
+    write_files(tmp_path, long=model_file(links).replace('"m"', f'"{"m" * 350_000}"'))
+    assert exceeded_limit(tmp_path / 'long.sdf') == 'name_characters'
+
+
+def test_too_many_elements_are_refused_before_they_are_parsed(tmp_path):
+    write_files(tmp_path, flat=model_file('<a/>' * 10_000_000))
+    assert exceeded_limit(tmp_path / 'flat.sdf') == 'elements'
+
+
+def test_errors_in_a_long_name_take_no_long_time_and_are_short(tmp_path):
+    links = '<link name="l"/>' * 20_000
+    write_files(tmp_path, long=model_file(links).replace('"m"', f'"{"m" * 350_000}"'))
+    text = '<sdf version="1.9">' + ''.join(
+        f'<world name="{"w" * 200}{number}"/>' * 2 for number in range(2000)) + '</sdf>'
+    (tmp_path / 'many.sdf').write_text(text)
+    assert len(str(errors_of_file(tmp_path / 'long.sdf')[0])) < 1000
+    assert len(errors_of_file(tmp_path / 'many.sdf')) == MOST_PROBLEMS + 1
+
+
+def test_included_pipe_is_refused(tmp_path):
+    os.mkfifo(tmp_path / 'pipe.sdf')
+    write_files(tmp_path, main=world_file('<include><uri>pipe.sdf</uri></include>'))
+    (error,) = errors_of_file(tmp_path / 'main.sdf')
+    assert (error.code, error.file) == ('FILE_READ', str(tmp_path / 'pipe.sdf'))
+
+
+def test_error_about_a_limit_follows_the_other_errors(tmp_path):
+    write_files(tmp_path, main=world_file(
+        '<include/><include><uri>leaf.sdf</uri></include>'), leaf=model_file(LINK))
+    errors = errors_of_file(tmp_path / 'main.sdf', limits=Limits(included_elements=1))
+    assert [error.code for error in errors] == ['ATTRIBUTE_MISSING', 'LIMIT']
+
+
+@pytest.mark.parametrize('limit', ['elements', 'bytes_read', 'name_characters', 'depth'])
+def test_limits_can_be_set(limit):
+    text = model_file(LINK)
+    with pytest.raises(SdfError, match=f'the limit {limit} is 1'):
+        load_text(text, limits=Limits()._replace(**{limit: 1}))
+
+
+def test_limits_that_are_just_met_refuse_nothing(tmp_path):
+    write_files(tmp_path, main=world_file('<include><uri>leaf.sdf</uri></include>'),
+                leaf=model_file(LINK))
+    size = sum(path.stat().st_size for path in tmp_path.iterdir())
+    scene = load(tmp_path / 'main.sdf', limits=Limits(
+        bytes_read=size, elements=7, included_elements=2, include_depth=2, depth=3,
+        name_characters=len('m' + 'm::l')))
+    assert names_of(scene) == ['m', 'm::l']
+
+
+CHAIN = ''.join(f'<frame name="f{i}" attached_to="f{i + 1}"/>' for i in range(10_000))
+MISSING = '<include><uri>none.sdf</uri><name>x</name></include>'
+
+
+@pytest.mark.parametrize('text', [
+    world_file(f'{MISSING}{CHAIN}<frame name="f10000" attached_to="x"/>'),
+    world_file(f'{MISSING}<frame name="f" attached_to="{"a::" * 200_000}b"/>'),
+    model_file('<link name="l" ' + ' '.join(f'a{i}=""' for i in range(30_000)) + '/>'),
+    b'<sdf version="1.9">' + b'\xff' * 200_000 + model_file(LINK).encode()[19:],
+    '<' + 'a' * 200_000,
+    '<sdf version="1.9">' + ''.join(f'<model name="m{i}">' for i in range(240)) + LINK
+    + ''.join(f'<frame name="f{i}" attached_to="g"/>' for i in range(9000))
+    + '</model>' * 240 + '</sdf>',
+], ids=['chain to a missing file', 'long path to a missing file', 'attributes', 'not UTF-8',
+        'long tag', 'errors in deep models'])
+def test_time_grows_with_the_size_of_a_file_and_not_faster(text):
+    begin = time.perf_counter()
+    with contextlib.suppress(SdfError):
+        load_text(text)
+    assert time.perf_counter() - begin < 5.0  # 8 to 100 s where it is quadratic
