@@ -18,7 +18,7 @@ from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.automatic_inertia import collision_masses
+from sdf_pose_bridge.sdformat.details import collision_masses
 from sdf_pose_bridge.sdformat.details import DetailsReader
 from sdf_pose_bridge.sdformat.details import reference_of
 from sdf_pose_bridge.sdformat.elements import Elements
@@ -27,14 +27,14 @@ from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.pose_text import pose_from_text
-from sdf_pose_bridge.sdformat.pose_text import PoseFormat
-from sdf_pose_bridge.sdformat.pose_text import PoseTextError
 from sdf_pose_bridge.sdformat.sibling_names import SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.values import is_of_type
+from sdf_pose_bridge.sdformat.values import pose_from_text
+from sdf_pose_bridge.sdformat.values import PoseFormat
+from sdf_pose_bridge.sdformat.values import PoseTextError
 from sdf_pose_bridge.sdformat.values import value_fault
 from sdf_pose_bridge.sdformat.versions import allows_scoped_names
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
