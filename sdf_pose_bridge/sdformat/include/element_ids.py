@@ -21,7 +21,6 @@ from sdf_pose_bridge.sdformat.xml_tree import child_elements
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-
 _MOST_IDS_COMPARED = 2000
 
 
