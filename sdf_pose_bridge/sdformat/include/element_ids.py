@@ -11,6 +11,7 @@ whose name is the longest beginning of the id, and goes on inside that one alone
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
 
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import scoped_name
@@ -19,6 +20,8 @@ from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+_MOST_IDS_COMPARED = 2000
 
 
 def element_by_id(top: XmlElement, element_id: str, tag: str = '') -> XmlElement | None:
@@ -63,7 +66,7 @@ def hint_for_id(top: XmlElement, element_id: str, tag: str = '') -> str:
     :param tag: tag of the element that was looked for; empty for any.
     :return: a likely reason, or the nearest id that exists; else an empty string.
     """
-    ids = list(_ids(top, ''))
+    ids = list(islice(_ids(top, ''), _MOST_IDS_COMPARED))
     tags = [found_tag for found_id, found_tag in ids if found_id == element_id]
     if tag in tags and len(element_id.split(SEPARATOR)[0]) == 1:
         return '; libsdformat does not find names of one letter at the top of a model'
