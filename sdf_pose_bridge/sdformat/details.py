@@ -29,6 +29,7 @@ from sdf_pose_bridge.sdformat.elements import JointDetails
 from sdf_pose_bridge.sdformat.elements import ModelDetails
 from sdf_pose_bridge.sdformat.elements import Reference
 from sdf_pose_bridge.sdformat.elements import SensorDetails
+from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.values import leading_numbers
@@ -42,24 +43,37 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 CAMERA_TYPES = frozenset({
     'boundingbox', 'boundingbox_camera', 'camera', 'depth', 'depth_camera', 'multicamera', 'rgbd',
     'rgbd_camera', 'segmentation', 'segmentation_camera', 'thermal', 'thermal_camera',
-    'wideanglecamera',
+    'wide_angle_camera', 'wideanglecamera',
 })
 """Types of sensors that take images."""
 
-JOINT_TYPES = frozenset({
-    'ball', 'continuous', 'fixed', 'gearbox', 'prismatic', 'revolute', 'revolute2', 'screw',
-    'universal',
-})
-"""Types of joints."""
+TYPES = {
+    Kind.JOINT: frozenset({
+        'ball', 'continuous', 'fixed', 'gearbox', 'prismatic', 'revolute', 'revolute2', 'screw',
+        'universal'}),
+    Kind.LIGHT: frozenset({'directional', 'point', 'spot'}),
+    Kind.PARTICLE_EMITTER: frozenset({'box', 'cylinder', 'ellipsoid', 'point'}),
+    Kind.SENSOR: CAMERA_TYPES | {
+        'air_pressure', 'air_speed', 'altimeter', 'contact', 'custom', 'force_torque', 'gps',
+        'gpu_lidar', 'gpu_ray', 'imu', 'lidar', 'logical_camera', 'magnetometer', 'navsat', 'ray',
+        'rfid', 'rfidtag', 'sonar', 'wireless_receiver', 'wireless_transmitter'},
+}
+"""The types that elements of a kind can have."""
 
 PLACEMENT_OF_MERGED_MODEL = '{sdf_pose_bridge}placement_frame'
 """Attribute of the frame that replaces a merged model's frame: the model's placement frame."""
 
-_TYPES = {
+_OTHER_TYPES = {
     'atmosphere': ('adiabatic',),
     'shader': ('normal_map_object_space', 'normal_map_tangent_space', 'pixel', 'vertex'),
 }
-"""The types of elements without a frame."""
+"""The types that elements without a frame can have."""
+
+_VALUES = {
+    'surface_model': ('EARTH_WGS84', 'MOON_SCS', 'CUSTOM_SURFACE'),
+    'world_frame_orientation': ('ENU',),
+}
+"""The values of elements in ``<spherical_coordinates>``."""
 
 
 def reference_of(xml: XmlElement, attribute: str) -> str:
@@ -86,6 +100,21 @@ class DetailsReader:
     def __init__(self, sources: Sources, problems: Problems) -> None:
         self._sources = sources
         self._problems = problems
+
+    def check_type(self, xml: XmlElement, kind: Kind) -> None:
+        """
+        Check the type of an element.
+
+        :param xml: the element.
+        :param kind: its kind, a key of :data:`TYPES`.
+        """
+        written_type = attribute_of(xml, 'type')
+        # Only for joints libsdformat does not mind the case.
+        known_type = written_type.lower() if kind is Kind.JOINT else written_type
+        if known_type and known_type not in TYPES[kind]:
+            msg = (f'type="{written_type}" of <{kind.label}> must be one of '
+                   f'{", ".join(sorted(TYPES[kind]))}')
+            self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
 
     def model(self, xml: XmlElement) -> ModelDetails:
         """
@@ -117,10 +146,6 @@ class DetailsReader:
         :return: its details. References are empty where they are missing or reserved.
         """
         joint_type = attribute_of(xml, 'type').lower()
-        if joint_type and joint_type not in JOINT_TYPES:
-            known = ', '.join(sorted(JOINT_TYPES))
-            msg = f'"{xml.get("type")}" is not a type of joints; known are {known}'
-            self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
         axes = (first_child(xml, tag) for tag in ('axis', 'axis2'))
         xyzs = (first_child(axis, 'xyz') for axis in axes if axis is not None)
         expressed_in = (
@@ -192,11 +217,17 @@ class DetailsReader:
                 if value == '__default__' or (tag == 'uri' and not value):
                     msg = f'the <script> of a material has no <{tag}>, or an empty one'
                     self._problems.error(error(msg, self._sources.place(xml)))
-        elif identifier in _TYPES:
+        elif identifier == 'spherical_coordinates':
+            for tag, values in _VALUES.items():
+                element = first_child(xml, tag)
+                if element is not None and value_of(element) not in ('', *values):
+                    msg = f'"{value_of(element)}" of <{tag}> must be one of {", ".join(values)}'
+                    self._problems.error(ElementInvalidError(msg, self._sources.place(element)))
+        elif identifier in _OTHER_TYPES:
             written_type = attribute_of(xml, 'type')
-            if written_type and written_type not in _TYPES[identifier]:
+            if written_type and written_type not in _OTHER_TYPES[identifier]:
                 msg = (f'type="{written_type}" of <{identifier}> must be one of '
-                       f'{", ".join(_TYPES[identifier])}')
+                       f'{", ".join(_OTHER_TYPES[identifier])}')
                 self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
             elif written_type.startswith('normal_map') and first_child(xml, 'normal_map') is None:
                 msg = f'a shader of type="{written_type}" needs a <normal_map>'

@@ -239,7 +239,7 @@ class Definition:
         if not item['type']:
             for identifier in (item['identifier'], f'{self.identifier}/{tag}', tag):
                 if identifier in ELEMENTS or (identifier and item['identifier']):
-                    return definition_of(identifier)
+                    return definition_of(identifier, is_required=item['required'] == '!')
         return Definition(
             tag, '', value_type=ValueType(item['type'] or 'string'),
             minimum=float(item['minimum'] or -math.inf),
@@ -247,14 +247,17 @@ class Definition:
 
 
 @cache
-def definition_of(identifier: str, *, has_frames: bool = False) -> Definition:
+def definition_of(
+    identifier: str, *, has_frames: bool = False, is_required: bool = False,
+) -> Definition:
     """
     Return the definition of an element.
 
     :param identifier: label of a kind, or a key of :data:`ELEMENTS`.
     :param has_frames: whether kinds of elements are frames here.
+    :param is_required: whether its value may not be blank.
     :return: the definition.
     """
     kind = _KINDS.get(identifier)
     content = ELEMENTS[identifier] if kind is None else kind.content
-    return Definition(identifier, content, has_frames=has_frames)
+    return Definition(identifier, content, has_frames=has_frames, is_required=is_required)

@@ -21,6 +21,7 @@ from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.details import collision_masses
 from sdf_pose_bridge.sdformat.details import DetailsReader
 from sdf_pose_bridge.sdformat.details import reference_of
+from sdf_pose_bridge.sdformat.details import TYPES
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
@@ -220,6 +221,8 @@ class _Reader:
                     self._undefined.report_element(grandchild, child_definition)
 
     def _read_details(self, xml: XmlElement, kind: Kind, index: int) -> None:
+        if kind in TYPES:
+            self._details.check_type(xml, kind)
         if kind is Kind.MODEL:
             self._builder.models[index] = self._details.model(xml)
         elif kind is Kind.FRAME:

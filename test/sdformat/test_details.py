@@ -285,3 +285,24 @@ def test_inertial_that_is_not_automatic_has_its_pose():
     assert center_of(
         '<inertial auto="false"><pose>3 0 0 0 0 0</pose></inertial>'
         + collision('c', 1, UNIT_BOX)).x == 3.0
+
+
+# Types
+
+@pytest.mark.parametrize('text', [
+    link_with('<sensor name="s" type="eye"/>'),
+    link_with('<sensor name="s" type="Camera"/>'),
+    link_with('<light name="s" type="bulb"/>'),
+    link_with('<particle_emitter name="s" type="sphere"/>'),
+])
+def test_unknown_type_is_refused(text):
+    assert codes_of(text) == ['ATTRIBUTE_INVALID']
+
+
+@pytest.mark.parametrize('content', [
+    '<surface_model>MARS</surface_model>',
+    '<world_frame_orientation>NED</world_frame_orientation>',
+])
+def test_unknown_spherical_coordinates_are_refused(content):
+    text = world_file(f'<spherical_coordinates>{content}</spherical_coordinates>')
+    assert codes_of(text) == ['ELEMENT_INVALID']
