@@ -43,11 +43,12 @@ usage: ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=cell.sdf [-p name
 "ros2 param describe /sdf_pose_bridge <name>" explains each parameter of the running node."""
 
 
-def run(args: Sequence[str]) -> int:
+def run(args: Sequence[str], sentence_about_profile: str) -> int:
     """
     Run the node until a signal ends it.
 
     :param args: the command line with the program's name first.
+    :param sentence_about_profile: logged at debug level.
     :return: exit code: 0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
     # From now on a signal waits until it is unblocked or asked for, and a second one is ignored.
@@ -62,6 +63,7 @@ def run(args: Sequence[str]) -> int:
     except RuntimeError as error:
         _complain(_sentence_from_ros_error(error))
         return 1
+    node.get_logger().debug(sentence_about_profile)
     try:
         exit_code = _exit_code_from_node(node)
     except KeyboardInterrupt:

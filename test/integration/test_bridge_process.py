@@ -93,6 +93,23 @@ def test_the_first_line_tells_what_is_published(start_bridge, write_file):
     assert f'2 frames of {path} with 2 transforms, root frame "world"' in line
 
 
+@pytest.mark.parametrize(('value', 'text'), [
+    (None, 'config/fastdds_profile.xml is used'),
+    ('', 'is not used: FASTDDS_DEFAULT_PROFILES_FILE is set'),
+])
+def test_the_profile_of_the_middleware_is_logged_for_debugging(
+        start_bridge, write_file, monkeypatch, tmp_path, value, text):
+    monkeypatch.chdir(tmp_path)
+    if value is not None:
+        monkeypatch.setenv('FASTDDS_DEFAULT_PROFILES_FILE', value)
+    bridge = start_bridge(
+        '--ros-args', '-p', f'sdf_file:={write_file(GOOD)}',
+        '--log-level', 'sdf_pose_bridge:=debug')
+    assert text in bridge.wait_for_line('Fast DDS profile')
+    bridge.wait_until_started()
+    assert not [line for line in bridge.lines if 'XMLPARSER' in line]
+
+
 @STOP_SIGNALS
 def test_a_signal_ends_it_well(start_bridge, write_file, number):
     bridge = start_bridge('--ros-args', '-p', f'sdf_file:={write_file(GOOD)}')
