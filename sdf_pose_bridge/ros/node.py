@@ -125,11 +125,18 @@ class SdfPoseBridge:
         self._diagnostics.update(loaded)
 
     async def _publish_topics(self) -> None:
-        vanished = await self._publishers.publish_topics(await self._pose_topics())
+        frame_ids = set(self._loaded.tree.frame_ids)
+        changed = await self._publishers.publish_topics(await self._pose_topics())
+        vanished = [frame_id for frame_id in changed if frame_id not in frame_ids]
         if vanished:
             self._logger.warning(
                 f'{_count(len(vanished), "frame")} no longer published, which TF listeners keep '
                 f'until they are restarted: {names_in_line(vanished)}')
+        detached = [frame_id for frame_id in changed if frame_id in frame_ids]
+        if detached:
+            self._logger.warning(
+                f'{_count(len(detached), "frame")} without a parent now; TF listeners keep the '
+                f'last transform until they are restarted: {names_in_line(detached)}')
 
     async def _pose_topics(self) -> Mapping[str, str]:
         """Return the names of the pose topics by frame id."""

@@ -18,6 +18,7 @@ import sys
 import threading
 
 import rclpy
+from rclpy.exceptions import InvalidParameterTypeException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
@@ -28,6 +29,7 @@ from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.parameters import settings_from_node
 from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.ros.parameters import warnings_about_unknown_parameters
 from sdf_pose_bridge.ros.publishers import FramePublishers
 from sdf_pose_bridge.sdformat.include.uris import AddressError
 import sdf_pose_bridge_interfaces  # noqa: F401 - if it is missing, say so before anything else
@@ -60,6 +62,10 @@ def run(args: Sequence[str], sentence_about_profile: str) -> int:
         if words:
             return _exit_code_from_words(words)
         node = Node(NODE_NAME, start_parameter_services=False)
+    except InvalidParameterTypeException as error:
+        # Of one that rclpy itself declares, such as use_sim_time.
+        _complain(str(error))
+        return 1
     except RuntimeError as error:
         _complain(_sentence_from_ros_error(error))
         return 1
@@ -82,6 +88,7 @@ def _exit_code_from_words(words: Sequence[str]) -> int:
 
 
 def _exit_code_from_node(node: Node) -> int:
+    _log_warnings(node, warnings_about_unknown_parameters(node))
     try:
         settings = settings_from_node(node)
         with _interrupted_by_signals():
@@ -131,11 +138,16 @@ def _spin_until_signal(executor: SingleThreadedExecutor) -> None:
         executor.spin_once()
 
 
+def _log_warnings(node: Node, warnings: Sequence[object]) -> None:
+    if warnings:
+        from sdf_pose_bridge.ros.log_lines import lines_from_warnings
+        for line in lines_from_warnings(warnings):
+            node.get_logger().warning(line)
+
+
 def _log_failure(node: Node, error: Exception) -> None:
     from sdf_pose_bridge.ros.log_lines import lines_from_error
-    from sdf_pose_bridge.ros.log_lines import lines_from_warnings
-    for line in lines_from_warnings(error.warnings if isinstance(error, SdfError) else ()):
-        node.get_logger().warning(line)
+    _log_warnings(node, error.warnings if isinstance(error, SdfError) else ())
     for line in lines_from_error(error):
         node.get_logger().fatal(line)
 
