@@ -16,6 +16,7 @@ import gc
 import signal
 import sys
 import threading
+import traceback
 
 import rclpy
 from rclpy.exceptions import InvalidParameterTypeException
@@ -23,6 +24,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
+from rclpy.task import Task
 from rclpy.utilities import remove_ros_args
 
 from sdf_pose_bridge.errors import SdfError
@@ -104,8 +106,8 @@ def _exit_code_from_node(node: Node) -> int:
     gc.enable()
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    executor.create_task(bridge.start)
-    _spin_until_signal(executor)
+    start = executor.create_task(bridge.start)
+    _spin_until_signal(executor, node, start)
     executor.shutdown()
     return 0
 
@@ -126,7 +128,7 @@ def _interrupted_by_signals() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_BLOCK, STOP_SIGNALS)
 
 
-def _spin_until_signal(executor: SingleThreadedExecutor) -> None:
+def _spin_until_signal(executor: SingleThreadedExecutor, node: Node, start: Task) -> None:
     has_to_stop = threading.Event()
 
     def wait_for_signal() -> None:
@@ -135,7 +137,15 @@ def _spin_until_signal(executor: SingleThreadedExecutor) -> None:
 
     threading.Thread(target=wait_for_signal, name='signals', daemon=True).start()
     while not has_to_stop.is_set():
-        executor.spin_once()
+        try:
+            executor.spin_once()
+        except Exception as error:
+            if start.exception() is not None:
+                raise
+            # A defect, or a message that rclpy itself refuses: a negative time on /clock.
+            node.get_logger().error(
+                f'internal error in a callback: {error}\n{traceback.format_exc()}',
+                throttle_duration_sec=60.0)
 
 
 def _log_warnings(node: Node, warnings: Sequence[object]) -> None:

@@ -9,7 +9,10 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from builtin_interfaces.msg import Time
 from changes import Monitor
+from changes import reload
+from rosgraph_msgs.msg import Clock
 
 GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
 BAD = """\
@@ -154,6 +157,18 @@ def test_a_signal_ends_it_before_anything_else_happens(start_bridge, start_liste
     assert_ended_well(bridge)
     listener.spin_once()
     assert monitor.count == count
+
+
+def test_a_negative_time_on_the_clock_does_not_end_it(start_bridge, start_listener, write_file):
+    bridge = start_bridge(
+        '--ros-args', '-p', f'sdf_file:={write_file(GOOD)}', '-p', 'use_sim_time:=true')
+    bridge.wait_until_started()
+    listener = start_listener()
+    clock = listener.node.create_publisher(Clock, '/clock', 1)
+    listener.wait(clock.get_subscription_count, lambda: 'the subscription to /clock')
+    clock.publish(Clock(clock=Time(sec=-1)))
+    bridge.wait_for_line('internal error in a callback: ')
+    assert reload(listener).success
 
 
 @STOP_SIGNALS
