@@ -193,7 +193,8 @@ def test_setup_bash_puts_the_environment_first_from_any_folder(built):
 
 def test_setup_bash_puts_the_command_line_in_the_path(built):
     result = shell(f'cd /; {built}; sdf_pose convert --from rpy --to quaternion 0 0 0')
-    assert (result.returncode, result.stdout.split()) == (0, ['0.0', '0.0', '0.0', '1.0']), result.stderr
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.split() == ['0.0', '0.0', '0.0', '1.0']
 
 
 def test_the_node_is_started_with_words_for_a_second_shell(built, tmp_path):

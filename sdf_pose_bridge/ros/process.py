@@ -65,8 +65,8 @@ def run(args: Sequence[str], sentence_about_profile: str) -> int:
             return _exit_code_from_words(words)
         node = Node(NODE_NAME, start_parameter_services=False)
     except InvalidParameterTypeException as error:
-        # Of one that rclpy itself declares, such as use_sim_time.
-        _complain(str(error))
+        # Of one that rclpy itself declares, such as use_sim_time. Its name comes last again.
+        _complain(str(error).rpartition(': ')[0])
         return 1
     except RuntimeError as error:
         _complain(_sentence_from_ros_error(error))

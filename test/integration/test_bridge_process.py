@@ -93,7 +93,8 @@ def test_a_wrong_value_of_a_parameter_of_rclpy_is_one_line(start_bridge, write_f
         '--ros-args', '-p', f'sdf_file:={write_file(GOOD)}', '-p', 'use_sim_time:=5')
     assert bridge.wait_for_end() == 1
     (line,) = bridge.lines
-    assert "'use_sim_time' to '5' of type 'INTEGER', expecting type 'BOOL'" in line
+    assert line == ("sdf_pose_bridge: Trying to set parameter 'use_sim_time' to '5' of type "
+                    "'INTEGER', expecting type 'BOOL'")
 
 
 @pytest.mark.parametrize(('arguments', 'text'), [
