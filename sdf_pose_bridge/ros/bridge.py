@@ -36,6 +36,8 @@ def main(args: Sequence[str] | None = None) -> int:
     for number in (signal.SIGINT, signal.SIGTERM):
         # Not an exception, which the import that it interrupts could catch or report.
         signal.signal(number, lambda _number, _frame: os._exit(0))
+    # The installed executable has blocked them in its first line.
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT, signal.SIGTERM])
     # Collecting garbage would take a tenth of the start, and there is none.
     gc.disable()
     # Threads of numpy for large matrices, which the node does not have, would spin at first.

@@ -182,6 +182,15 @@ def test_signals_in_a_row_end_it_well(start_bridge, write_file, number):
 
 
 @STOP_SIGNALS
+def test_a_signal_ends_it_well_before_anything_is_imported(start_bridge, write_file, number):
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={write_file(GOOD)}')
+    # The first line of the executable does that; Python itself starts before.
+    bridge.wait_until_blocking(number)
+    bridge.send(number)
+    assert_ended_well(bridge)
+
+
+@STOP_SIGNALS
 def test_a_signal_ends_it_well_before_anything_is_loaded(start_bridge, write_file, number):
     bridge = start_bridge('--ros-args', '-p', f'sdf_file:={write_file(GOOD)}')
     # Python itself handles SIGINT; with SIGTERM the bridge has taken over both.
