@@ -66,3 +66,8 @@ def test_the_profile_is_the_default_of_participants():
     profiles = ET.parse(ROOT / PROFILE).getroot()
     (participant,) = profiles
     assert participant.get('is_default_profile') == 'true'
+
+
+def test_the_thread_of_the_throughput_controller_sleeps_long():
+    (period,) = ET.parse(ROOT / PROFILE).getroot().findall('.//{*}periodMillisecs')
+    assert int(period.text) >= 1000  # with 1 ms an idle node takes 4 % of a core
