@@ -14,6 +14,9 @@ PACKAGE = 'sdf_pose_bridge'
 SHARE = f'share/{PACKAGE}'
 SHARED_FOLDERS = ('launch', 'config', 'examples')
 NOT_INSTALLED = ('__pycache__', '.pytest_cache', '.mypy_cache', '.ruff_cache')
+BLOCK_SIGNALS = (
+    'import signal',
+    'signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM])')
 
 
 def data_files_of(folder: str) -> list[tuple[str, list[str]]]:
@@ -37,7 +40,8 @@ class InstallScripts(install_scripts):
     Writes executables that import what they call.
 
     Those of setuptools look their entry point up first, which takes longer than to read a file and
-    publish it.
+    publish it. In that of the node signals wait, before anything is imported, until the function
+    that it calls handles them.
     """
 
     def write_script(self, script_name: str, contents: str, *args: Any, **kwargs: Any) -> None:
@@ -48,8 +52,8 @@ class InstallScripts(install_scripts):
         module, function = entry.split(' = ')[1].split(':')
         first_line = contents.partition('\n')[0]
         lines = [
-            first_line, 'import sys', f'from {module} import {function}',
-            f'sys.exit({function}())', '']
+            first_line, *(BLOCK_SIGNALS if script_name == 'bridge' else ()), 'import sys',
+            f'from {module} import {function}', f'sys.exit({function}())', '']
         super().write_script(script_name, '\n'.join(lines), *args, **kwargs)
 
 

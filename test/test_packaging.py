@@ -150,6 +150,10 @@ def test_scripts_import_what_they_call(name, tmp_path):
     run_setup('egg_info', '--egg-base', tmp_path, 'install_scripts', '--install-dir', tmp_path)
     first, *lines = (tmp_path / name).read_text().splitlines()
     assert first.startswith('#!')
+    if name == 'bridge':  # signals come first
+        import_signal, block, *lines = lines
+        assert import_signal == 'import signal'
+        assert block.startswith('signal.pthread_sigmask(signal.SIG_BLOCK, ')
     assert [line.split()[0] for line in lines] == ['import', 'from', 'sys.exit(main())']
 
 

@@ -191,6 +191,19 @@ def test_setup_bash_puts_the_environment_first_from_any_folder(built):
     assert result.stdout.strip() == str(ROOT / '.underlay/bin/python')
 
 
+def test_setup_bash_puts_the_command_line_in_the_path(built):
+    result = shell(f'cd /; {built}; sdf_pose convert --from rpy --to quaternion 0 0 0')
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.split() == ['0.0', '0.0', '0.0', '1.0']
+
+
+def test_the_node_is_started_with_words_for_a_second_shell(built, tmp_path):
+    result = shell(f'{built}; python {ROOT}/underlay/run.py {tmp_path} missing.sdf')
+    assert result.returncode == 1
+    assert f'\n  . {ROOT}/underlay/setup.bash\n' in result.stderr
+    assert 'ask_bridge.py topics' in result.stderr or 'ros2 topic list' in result.stderr
+
+
 def test_setup_bash_refuses_a_shell_with_another_ros(built):
     result = shell(built, ROS_DISTRO='humble')
     assert result.returncode == 1

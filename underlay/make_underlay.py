@@ -38,6 +38,7 @@ UNDERLAY = ROOT / '.underlay'
 LOG = UNDERLAY / 'make_underlay.log'
 TF_MESSAGE_HASH = 'RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087'
 BRIDGE = 'sdf_pose_bridge'
+COMMAND_LINE = 'sdf_pose'
 INTERFACES = 'sdf_pose_bridge_interfaces'
 BRIDGE_SOURCES = (
     'package.xml', 'setup.py', 'setup.cfg', 'resource', BRIDGE, 'launch', 'config', 'examples')
@@ -259,6 +260,11 @@ class Underlay:
             _remove(ROOT / 'build' / BRIDGE)
             _remove(ROOT / 'install' / BRIDGE)
         self._colcon('build', '--packages-select', BRIDGE)
+        # The command line in the PATH of setup.bash; the folder it is in has the node's too, whose
+        # name is that of a command of the system.
+        link = UNDERLAY / 'bin' / COMMAND_LINE
+        link.unlink(missing_ok=True)
+        link.symlink_to(ROOT / 'install' / BRIDGE / 'lib' / BRIDGE / COMMAND_LINE)
 
     def _colcon(self, *arguments: str) -> None:
         cmake = [

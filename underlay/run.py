@@ -11,6 +11,7 @@ import argparse
 import os
 from pathlib import Path
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -21,6 +22,7 @@ from ament_index_python.packages import PackageNotFoundError
 
 PACKAGE = 'sdf_pose_bridge'
 EXECUTABLE = 'bridge'
+ROOT = Path(__file__).resolve().parents[1]
 
 
 def path_from_caller(file: str, caller: str) -> str:
@@ -35,6 +37,18 @@ def path_from_caller(file: str, caller: str) -> str:
         return file
     choices = [Path(folder, Path(file).expanduser()) for folder in (caller, Path.cwd())]
     return str(next((choice for choice in choices if choice.exists()), choices[0]))
+
+
+def hint_for_second_shell() -> str:
+    """
+    Tell how to look at the running node.
+
+    :return: what to type in another shell; with the ros2 command line where it is installed.
+    """
+    look = 'ros2 topic list' if shutil.which('ros2') else (
+        f'python {ROOT}/examples/ask_bridge.py topics   # or: pose, lookup, rotation, convert, '
+        'reload')
+    return f'To look at the node, type in another shell:\n  . {ROOT}/underlay/setup.bash\n  {look}'
 
 
 def run_in_terminal(arguments: 'list[str]') -> int:
@@ -79,6 +93,7 @@ def main() -> int:
         return 1
     file = path_from_caller(arguments.file, arguments.caller)
     command = [str(executable), '--ros-args', '-p', f'sdf_file:={file}', *rest]
+    print(hint_for_second_shell(), file=sys.stderr, flush=True)
     if not sys.stdin.isatty():
         os.execv(command[0], command)
     return run_in_terminal(command)

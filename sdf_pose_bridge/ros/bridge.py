@@ -36,6 +36,8 @@ def main(args: Sequence[str] | None = None) -> int:
     for number in (signal.SIGINT, signal.SIGTERM):
         # Not an exception, which the import that it interrupts could catch or report.
         signal.signal(number, lambda _number, _frame: os._exit(0))
+    # The installed executable has blocked them in its first line.
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT, signal.SIGTERM])
     # Collecting garbage would take a tenth of the start, and there is none.
     gc.disable()
     # Threads of numpy for large matrices, which the node does not have, would spin at first.
@@ -43,8 +45,10 @@ def main(args: Sequence[str] | None = None) -> int:
     # Look up the functions of ROS's libraries when they are called, as programs in C++ do.
     sys.setdlopenflags(os.RTLD_LAZY)
     try:
+        from sdf_pose_bridge.ros.middleware import use_profile
+        sentence_about_profile = use_profile(os.environ)
         from sdf_pose_bridge.ros.process import run
-        return run(list(sys.argv if args is None else args))
+        return run(list(sys.argv if args is None else args), sentence_about_profile)
     except ImportError as error:
         print(f'sdf_pose_bridge: {sentence_from_import_error(error)}', file=sys.stderr)
         return 1

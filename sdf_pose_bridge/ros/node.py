@@ -4,8 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable
-from collections.abc import Callable
 from collections.abc import Mapping
 from collections.abc import Sequence
 import contextlib
@@ -91,7 +89,7 @@ class SdfPoseBridge:
             self._node, self._changes, self._set_parameters)
         self._node.create_timer(PERIOD_S, self._diagnostics.publish, clock=self._steady_clock)
         guard_condition = self._node.create_guard_condition(
-            self._logging_errors(self._check_files), callback_group=self._changes)
+            self._check_files, callback_group=self._changes)
 
         def trigger() -> None:
             # The node may have been destroyed.
@@ -125,11 +123,18 @@ class SdfPoseBridge:
         self._diagnostics.update(loaded)
 
     async def _publish_topics(self) -> None:
-        vanished = await self._publishers.publish_topics(await self._pose_topics())
+        frame_ids = set(self._loaded.tree.frame_ids)
+        changed = await self._publishers.publish_topics(await self._pose_topics())
+        vanished = [frame_id for frame_id in changed if frame_id not in frame_ids]
         if vanished:
             self._logger.warning(
                 f'{_count(len(vanished), "frame")} no longer published, which TF listeners keep '
                 f'until they are restarted: {names_in_line(vanished)}')
+        detached = [frame_id for frame_id in changed if frame_id in frame_ids]
+        if detached:
+            self._logger.warning(
+                f'{_count(len(detached), "frame")} without a parent now; TF listeners keep the '
+                f'last transform until they are restarted: {names_in_line(detached)}')
 
     async def _pose_topics(self) -> Mapping[str, str]:
         """Return the names of the pose topics by frame id."""
@@ -250,8 +255,8 @@ class SdfPoseBridge:
             self._again_timer = None
         if rate:
             self._again_timer = self._node.create_timer(
-                1.0 / rate, self._logging_errors(self._publish_again),
-                callback_group=self._changes, clock=self._steady_clock)
+                1.0 / rate, self._publish_again, callback_group=self._changes,
+                clock=self._steady_clock)
 
     async def _publish_again(self) -> None:
         begin = time.perf_counter()
@@ -261,18 +266,6 @@ class SdfPoseBridge:
             self._logger.warning(
                 f'publish_rate {self._settings.publish_rate} Hz is not reached: to publish '
                 f'everything takes {1e3 * seconds:.0f} ms', throttle_duration_sec=60.0)
-
-    def _logging_errors(
-        self, callback: Callable[[], Awaitable[None]],
-    ) -> Callable[[], Awaitable[None]]:
-        """Log the exceptions of a callback, which would end the node."""
-        async def logging_callback() -> None:
-            try:
-                await callback()
-            except Exception:  # noqa: BLE001 - a defect
-                self._logger.error(
-                    f'internal error:\n{traceback.format_exc()}', throttle_duration_sec=60.0)
-        return logging_callback
 
 
 def _count(number: int, what: str) -> str:

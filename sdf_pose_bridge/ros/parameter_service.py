@@ -24,6 +24,7 @@ from rclpy.parameter import Parameter
 from rclpy.parameter_service import ParameterService
 
 from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.ros.parameter_types import parameter_with_type
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
 
 
@@ -77,8 +78,4 @@ class AtomicParameterService(ParameterService):
 def _parameter_from_message(message: ParameterMessage) -> Parameter:
     parameter = Parameter.from_parameter_msg(message)
     declaration = DECLARATIONS.get(message.name)
-    # An empty list can arrive as a list of any type.
-    if (declaration is not None and declaration.type_ is Parameter.Type.STRING_ARRAY
-            and parameter.type_.name.endswith('ARRAY') and not len(parameter.value)):
-        return Parameter(message.name, Parameter.Type.STRING_ARRAY, [])
-    return parameter
+    return parameter_with_type(parameter, declaration.type_) if declaration else parameter

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import array
 from collections.abc import Callable
 from collections.abc import Iterable
 from collections.abc import Mapping
@@ -22,6 +21,13 @@ from rclpy.exceptions import InvalidParameterValueException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.ros.parameter_types import hint_about_command_line
+from sdf_pose_bridge.ros.parameter_types import parameter_of_any_type
+from sdf_pose_bridge.ros.parameter_types import parameter_with_type
+from sdf_pose_bridge.ros.parameter_types import TYPES
+from sdf_pose_bridge.ros.parameter_types import words_about_wrong_type
 from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import FrameNames
@@ -37,17 +43,8 @@ PUBLISHED_KINDS = {
     kind.label: kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD, Kind.ACTOR)}
 """The kinds of element that can become frames, by their names."""
 
-_TYPES = {
-    str: Parameter.Type.STRING, bool: Parameter.Type.BOOL, float: Parameter.Type.DOUBLE,
-    list: Parameter.Type.STRING_ARRAY}
-_TYPE_NAMES = {
-    Parameter.Type.STRING: 'a string', Parameter.Type.BOOL: 'true or false',
-    Parameter.Type.INTEGER: 'an integer', Parameter.Type.DOUBLE: 'a number with a decimal point',
-    Parameter.Type.STRING_ARRAY: 'a list of strings',
-    Parameter.Type.BOOL_ARRAY: 'a list of booleans',
-    Parameter.Type.INTEGER_ARRAY: 'a list of integers',
-    Parameter.Type.DOUBLE_ARRAY: 'a list of numbers', Parameter.Type.BYTE_ARRAY: 'a list of bytes',
-}
+LOWEST_RATE, HIGHEST_RATE = 0.001, 100.0
+"""The limits of ``publish_rate`` in Hz."""
 
 
 _MOST_PATTERNS = 1000
@@ -76,7 +73,7 @@ class Declaration(Generic[Setting]):
     :param convert: makes the setting of a value. If the value is not allowed, it raises ValueError
         with the words that follow "parameter <name>" in a sentence.
     :param needs_load: whether a new setting takes effect only when the file is read again.
-    :param maximum: largest value of a number; the smallest one is 0.
+    :param maximum: largest value of a number; the smallest one is 0.0.
     """
 
     name: str
@@ -87,7 +84,7 @@ class Declaration(Generic[Setting]):
         maximum: float | None = None,
     ) -> None:
         self.default = default
-        self.type_ = _TYPES[type(default)]
+        self.type_ = TYPES[type(default)]
         self.description = description
         self.constraint = constraint
         self.convert = convert
@@ -103,16 +100,14 @@ class Declaration(Generic[Setting]):
 
 
 def _refusal(value: object, rule: str) -> ValueError:
-    if isinstance(value, str):
-        value = value if value.isprintable() else value.encode('unicode_escape').decode()
-        value = f'"{value}"'
-    return ValueError(f'is {value}; it must be {rule}')
+    shown = f'"{printable(value)}"' if isinstance(value, str) else value
+    return ValueError(f'is {shown}; it must be {rule}')
 
 
 def _sdf_file(value: str) -> str:
     if not value:
-        msg = ('is not set; name the SDFormat file to publish, for example with: --ros-args -p '
-               'sdf_file:=cell.sdf')
+        msg = ('is not set; name the SDFormat file to publish: --ros-args -p sdf_file:=cell.sdf '
+               'after "ros2 run ...", sdf_file:=cell.sdf after "ros2 launch ..."')
         raise ValueError(msg)
     return value
 
@@ -131,9 +126,14 @@ def _frame_prefix(value: str) -> str:
 
 def _frame_separator(value: str) -> str:
     if not value:
-        raise _refusal(
-            value, 'at least one character, or the names of different frames run together')
+        raise _refusal(value, 'at least one character, or names run together')
     return _printable(value)
+
+
+def _publish_rate(value: float) -> float:
+    if value and not LOWEST_RATE <= value <= HIGHEST_RATE:
+        raise _refusal(value, f'0.0 for never, or from {LOWEST_RATE} to {HIGHEST_RATE}')
+    return value
 
 
 def _printable(value: str) -> str:
@@ -219,7 +219,8 @@ class Settings:
     )
     frame_separator = Declaration(
         '/',
-        'Replaces "::" in frame ids. ros_gz_bridge uses "/".',
+        'Replaces "::" in frame ids. ros_gz_bridge uses "/". To keep "::", quote it twice on the '
+        'command line: -p "frame_separator:=\'::\'".',
         'not empty',
         _frame_separator,
     )
@@ -262,10 +263,10 @@ class Settings:
         0.0,
         'How often everything is published again, in Hz, for listeners that cannot be latched; '
         '0.0 for once, which is enough for all others.',
-        '0.0 for never, else up to 100.0',
-        float,
+        f'0.0 for never, or from {LOWEST_RATE} to {HIGHEST_RATE}',
+        _publish_rate,
         needs_load=False,
-        maximum=100.0,
+        maximum=HIGHEST_RATE,
     )
     watch = Declaration(
         True,
@@ -346,6 +347,20 @@ def changed_settings(settings: Settings, parameters: Iterable[Parameter]) -> Set
     return Settings(values)
 
 
+def warnings_about_unknown_parameters(node: Node) -> list[str]:
+    """
+    Find parameters that were given when the node was started, but that it does not have.
+
+    :param node: the node.
+    :return: one sentence for each of them.
+    """
+    # rclpy shows this in no public way but to declare all of it, with any type and unexplained.
+    given = node._parameter_overrides  # noqa: SLF001
+    return [
+        f'there is no parameter "{name}", so it has no effect{hint_from_names(name, DECLARATIONS)}'
+        for name in given if name not in DECLARATIONS and not node.has_parameter(name)]
+
+
 def _declared_value(node: Node, declaration: Declaration[Any]) -> Any:
     name, type_, default = declaration.name, declaration.type_, declaration.default
     descriptor = ParameterDescriptor(
@@ -355,12 +370,17 @@ def _declared_value(node: Node, declaration: Declaration[Any]) -> Any:
         descriptor.floating_point_range = [
             FloatingPointRange(from_value=0.0, to_value=declaration.maximum)]
     try:
-        # rclpy cannot tell the type of an empty list.
-        value = node.declare_parameter(name, type_ if default == [] else default, descriptor).value
-    except InvalidParameterTypeException:
-        given = node.declare_parameter(name, None, ParameterDescriptor(dynamic_typing=True))
-        msg = f'{_type_sentence(given, type_)}{_type_hint(given, type_)}'
-        raise ValueError(msg) from None
+        try:
+            # rclpy cannot tell the type of an empty list.
+            value = node.declare_parameter(
+                name, type_ if default == [] else default, descriptor).value
+        except InvalidParameterTypeException:
+            given = parameter_with_type(parameter_of_any_type(node, name), type_)
+            if given.type_ is not type_:
+                msg = words_about_wrong_type(given, type_) + hint_about_command_line(given, type_)
+                raise ValueError(msg) from None
+            value = node.declare_parameter(
+                name, given.value, descriptor, ignore_override=True).value
     except InvalidParameterValueException as error:
         msg = f'must be {declaration.constraint}: {error}'
         raise ValueError(msg) from None
@@ -372,29 +392,10 @@ def _declared_value(node: Node, declaration: Declaration[Any]) -> Any:
 
 
 def _converted(given: Parameter, declaration: Declaration[Any]) -> Any:
+    given = parameter_with_type(given, declaration.type_)
     if given.type_ is Parameter.Type.NOT_SET:
         msg = 'cannot be without a value'
         raise ValueError(msg)
     if given.type_ is not declaration.type_:
-        raise ValueError(_type_sentence(given, declaration.type_))
+        raise ValueError(words_about_wrong_type(given, declaration.type_))
     return declaration.convert(given.value)
-
-
-def _type_sentence(given: Parameter, wanted: Parameter.Type) -> str:
-    return (f'is {_shown_value(given)}, which is {_TYPE_NAMES[given.type_]}; it must be '
-            f'{_TYPE_NAMES[wanted]}')
-
-
-def _type_hint(given: Parameter, wanted: Parameter.Type) -> str:
-    """Return the end of a sentence that shows how to write a value on the command line."""
-    if wanted is Parameter.Type.STRING:
-        return f', so quote it twice: -p "{given.name}:=\'{_shown_value(given)}\'"'
-    if given.type_ is Parameter.Type.STRING and wanted is Parameter.Type.STRING_ARRAY:
-        return f': -p "{given.name}:=[\'{given.value}\']"'
-    if given.type_ is Parameter.Type.INTEGER and wanted is Parameter.Type.DOUBLE:
-        return f', such as: -p {given.name}:={given.value}.0'
-    return ''
-
-
-def _shown_value(given: Parameter) -> object:
-    return list(given.value) if isinstance(given.value, array.array) else given.value

@@ -16,18 +16,22 @@ import gc
 import signal
 import sys
 import threading
+import traceback
 
 import rclpy
+from rclpy.exceptions import InvalidParameterTypeException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
+from rclpy.task import Task
 from rclpy.utilities import remove_ros_args
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.parameters import settings_from_node
 from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.ros.parameters import warnings_about_unknown_parameters
 from sdf_pose_bridge.ros.publishers import FramePublishers
 from sdf_pose_bridge.sdformat.include.uris import AddressError
 import sdf_pose_bridge_interfaces  # noqa: F401 - if it is missing, say so before anything else
@@ -43,11 +47,12 @@ usage: ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=cell.sdf [-p name
 "ros2 param describe /sdf_pose_bridge <name>" explains each parameter of the running node."""
 
 
-def run(args: Sequence[str]) -> int:
+def run(args: Sequence[str], sentence_about_profile: str) -> int:
     """
     Run the node until a signal ends it.
 
     :param args: the command line with the program's name first.
+    :param sentence_about_profile: logged at debug level.
     :return: exit code: 0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
     # From now on a signal waits until it is unblocked or asked for, and a second one is ignored.
@@ -59,9 +64,14 @@ def run(args: Sequence[str]) -> int:
         if words:
             return _exit_code_from_words(words)
         node = Node(NODE_NAME, start_parameter_services=False)
+    except InvalidParameterTypeException as error:
+        # Of one that rclpy itself declares, such as use_sim_time. Its name comes last again.
+        _complain(str(error).rpartition(': ')[0])
+        return 1
     except RuntimeError as error:
         _complain(_sentence_from_ros_error(error))
         return 1
+    node.get_logger().debug(sentence_about_profile)
     try:
         exit_code = _exit_code_from_node(node)
     except KeyboardInterrupt:
@@ -80,6 +90,7 @@ def _exit_code_from_words(words: Sequence[str]) -> int:
 
 
 def _exit_code_from_node(node: Node) -> int:
+    _log_warnings(node, warnings_about_unknown_parameters(node))
     try:
         settings = settings_from_node(node)
         with _interrupted_by_signals():
@@ -95,8 +106,8 @@ def _exit_code_from_node(node: Node) -> int:
     gc.enable()
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    executor.create_task(bridge.start)
-    _spin_until_signal(executor)
+    start = executor.create_task(bridge.start)
+    _spin_until_signal(executor, node, start)
     executor.shutdown()
     return 0
 
@@ -117,7 +128,7 @@ def _interrupted_by_signals() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_BLOCK, STOP_SIGNALS)
 
 
-def _spin_until_signal(executor: SingleThreadedExecutor) -> None:
+def _spin_until_signal(executor: SingleThreadedExecutor, node: Node, start: Task) -> None:
     has_to_stop = threading.Event()
 
     def wait_for_signal() -> None:
@@ -126,14 +137,27 @@ def _spin_until_signal(executor: SingleThreadedExecutor) -> None:
 
     threading.Thread(target=wait_for_signal, name='signals', daemon=True).start()
     while not has_to_stop.is_set():
-        executor.spin_once()
+        try:
+            executor.spin_once()
+        except Exception as error:
+            if start.exception() is not None:
+                raise
+            # A defect, or a message that rclpy itself refuses: a negative time on /clock.
+            node.get_logger().error(
+                f'internal error in a callback: {error}\n{traceback.format_exc()}',
+                throttle_duration_sec=60.0)
+
+
+def _log_warnings(node: Node, warnings: Sequence[object]) -> None:
+    if warnings:
+        from sdf_pose_bridge.ros.log_lines import lines_from_warnings
+        for line in lines_from_warnings(warnings):
+            node.get_logger().warning(line)
 
 
 def _log_failure(node: Node, error: Exception) -> None:
     from sdf_pose_bridge.ros.log_lines import lines_from_error
-    from sdf_pose_bridge.ros.log_lines import lines_from_warnings
-    for line in lines_from_warnings(error.warnings if isinstance(error, SdfError) else ()):
-        node.get_logger().warning(line)
+    _log_warnings(node, error.warnings if isinstance(error, SdfError) else ())
     for line in lines_from_error(error):
         node.get_logger().fatal(line)
 

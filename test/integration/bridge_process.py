@@ -64,6 +64,12 @@ class LoggedProcess:
             lambda status: int(status['SigCgt'], 16) >> (number - 1) & 1,
             f'a handler of signal {number}')
 
+    def wait_until_blocking(self, number):
+        """Wait until a signal to the process waits until it is handled."""
+        self._wait_for_status(
+            lambda status: int(status['SigBlk'], 16) >> (number - 1) & 1,
+            f'signal {number} to be blocked')
+
     def wait_until_sleeping(self):
         """Wait until the process waits for something itself."""
         self._wait_for_status(lambda status: status['State'] == 'S', 'sleep')

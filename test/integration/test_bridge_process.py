@@ -9,7 +9,10 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from builtin_interfaces.msg import Time
 from changes import Monitor
+from changes import reload
+from rosgraph_msgs.msg import Clock
 
 GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
 BAD = """\
@@ -68,6 +71,32 @@ def test_what_prevents_the_start_is_one_line(start_bridge, arguments, text):
     assert text in line
 
 
+def test_an_unknown_parameter_is_a_warning(start_bridge, write_file):
+    bridge = start_bridge(
+        '--ros-args', '-p', f'sdf_file:={write_file(GOOD)}', '-p', 'frame_prefx:=r1/')
+    line = bridge.wait_for_line('there is no parameter "frame_prefx"')
+    assert line.startswith('[WARN]')
+    assert line.endswith('did you mean "frame_prefix"?')
+    bridge.wait_until_started()
+
+
+def test_a_misspelt_file_parameter_is_named_before_the_missing_one(start_bridge):
+    bridge = start_bridge('--ros-args', '-p', 'sdf_fil:=a.sdf')
+    assert bridge.wait_for_end() == 1
+    first, second = bridge.lines
+    assert 'did you mean "sdf_file"?' in first
+    assert 'parameter sdf_file is not set' in second
+
+
+def test_a_wrong_value_of_a_parameter_of_rclpy_is_one_line(start_bridge, write_file):
+    bridge = start_bridge(
+        '--ros-args', '-p', f'sdf_file:={write_file(GOOD)}', '-p', 'use_sim_time:=5')
+    assert bridge.wait_for_end() == 1
+    (line,) = bridge.lines
+    assert line == ("sdf_pose_bridge: Trying to set parameter 'use_sim_time' to '5' of type "
+                    "'INTEGER', expecting type 'BOOL'")
+
+
 @pytest.mark.parametrize(('arguments', 'text'), [
     (['cell.sdf'], 'the argument "cell.sdf" is not understood'),
     (['--ros-args', '--no-such-flag'], '--no-such-flag'),
@@ -93,6 +122,23 @@ def test_the_first_line_tells_what_is_published(start_bridge, write_file):
     assert f'2 frames of {path} with 2 transforms, root frame "world"' in line
 
 
+@pytest.mark.parametrize(('value', 'text'), [
+    (None, 'config/fastdds_profile.xml is used'),
+    ('', 'is not used: FASTDDS_DEFAULT_PROFILES_FILE is set'),
+])
+def test_the_profile_of_the_middleware_is_logged_for_debugging(
+        start_bridge, write_file, monkeypatch, tmp_path, value, text):
+    monkeypatch.chdir(tmp_path)
+    if value is not None:
+        monkeypatch.setenv('FASTDDS_DEFAULT_PROFILES_FILE', value)
+    bridge = start_bridge(
+        '--ros-args', '-p', f'sdf_file:={write_file(GOOD)}',
+        '--log-level', 'sdf_pose_bridge:=debug')
+    assert text in bridge.wait_for_line('Fast DDS profile')
+    bridge.wait_until_started()
+    assert not [line for line in bridge.lines if 'XMLPARSER' in line]
+
+
 @STOP_SIGNALS
 def test_a_signal_ends_it_well(start_bridge, write_file, number):
     bridge = start_bridge('--ros-args', '-p', f'sdf_file:={write_file(GOOD)}')
@@ -114,12 +160,33 @@ def test_a_signal_ends_it_before_anything_else_happens(start_bridge, start_liste
     assert monitor.count == count
 
 
+def test_a_negative_time_on_the_clock_does_not_end_it(start_bridge, start_listener, write_file):
+    bridge = start_bridge(
+        '--ros-args', '-p', f'sdf_file:={write_file(GOOD)}', '-p', 'use_sim_time:=true')
+    bridge.wait_until_started()
+    listener = start_listener()
+    clock = listener.node.create_publisher(Clock, '/clock', 1)
+    listener.wait(clock.get_subscription_count, lambda: 'the subscription to /clock')
+    clock.publish(Clock(clock=Time(sec=-1)))
+    bridge.wait_for_line('internal error in a callback: ')
+    assert reload(listener).success
+
+
 @STOP_SIGNALS
 def test_signals_in_a_row_end_it_well(start_bridge, write_file, number):
     bridge = start_bridge('--ros-args', '-p', f'sdf_file:={write_file(GOOD)}')
     bridge.wait_until_started()
     for _ in range(3):
         bridge.send(number)
+    assert_ended_well(bridge)
+
+
+@STOP_SIGNALS
+def test_a_signal_ends_it_well_before_anything_is_imported(start_bridge, write_file, number):
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={write_file(GOOD)}')
+    # The first line of the executable does that; Python itself starts before.
+    bridge.wait_until_blocking(number)
+    bridge.send(number)
     assert_ended_well(bridge)
 
 

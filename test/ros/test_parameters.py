@@ -3,6 +3,7 @@
 """Parameters on a real node: wrong values, right values, and what people can read."""
 
 from pathlib import Path
+import shlex
 
 import pytest
 
@@ -14,6 +15,7 @@ from sdf_pose_bridge.ros.parameters import changed_settings
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.ros.parameters import settings_from_node
 from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.ros.parameters import warnings_about_unknown_parameters
 from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import FrameNames
@@ -35,8 +37,11 @@ def default_settings(make_node):
     ('kinds', 'link', 'is link, which is a string; it must be a list of strings: -p "kinds:=['),
     ('pose_topics', '[1, 2]', 'is [1, 2], which is a list of integers; it must be a list of '),
     ('resource_paths', '[0.5]', 'is [0.5], which is a list of numbers; it must be a list of '),
-    ('publish_rate', '5', 'is 5, which is an integer; it must be a number with a decimal point'),
-    ('publish_rate', '500.0', 'must be 0.0 for never, else up to 100.0'),
+    ('publish_rate', 'fast', 'is fast, which is a string; it must be a number'),
+    ('publish_rate', '500.0', 'must be 0.0 for never, or from 0.001 to 100.0'),
+    ('publish_rate', '500', 'must be 0.0 for never, or from 0.001 to 100.0'),
+    ('publish_rate', '1e-12', 'is 1e-12; it must be 0.0 for never, or from 0.001 to 100.0'),
+    ('publish_rate', '.nan', 'must be 0.0 for never, or from 0.001 to 100.0'),
     ('anchor_models', 'some', 'is "some"; it must be one of all, static, none'),
     ('kinds', '[]', 'is []; it must be at least one of'),
 ])
@@ -48,9 +53,35 @@ def test_a_wrong_value_on_the_command_line_is_named_once(make_node, name, value,
     assert found.startswith(f'parameter {name} {sentence}')
 
 
-def test_a_whole_number_for_a_rate_says_how_to_write_it(make_node):
-    with pytest.raises(SettingsError, match=r'such as: -p publish_rate:=5\.0'):
-        settings_from_node(make_node('bridge', *FILE, '-p', 'publish_rate:=5'))
+def test_a_whole_number_is_a_number(make_node):
+    node = make_node('bridge', *FILE, '-p', 'publish_rate:=10')
+    assert settings_from_node(node).publish_rate == 10.0
+    assert node.get_parameter('publish_rate').type_ is Parameter.Type.DOUBLE
+
+
+def test_a_whole_number_in_a_params_file_is_a_number(make_node, tmp_path):
+    file = tmp_path / 'params.yaml'
+    file.write_text('/**: {ros__parameters: {sdf_file: a.sdf, publish_rate: 10}}')
+    node = make_node('bridge', '--params-file', str(file))
+    assert settings_from_node(node).publish_rate == 10.0
+
+
+def test_the_separator_of_sdf_can_be_kept_as_its_description_says(make_node):
+    words = """-p "frame_separator:='::'\""""
+    assert words in DECLARATIONS['frame_separator'].description
+    settings = settings_from_node(make_node('bridge', *FILE, *shlex.split(words)))
+    assert settings.frame_separator == '::'
+
+
+def test_unknown_parameters_are_named_with_the_nearest_one(make_node):
+    node = make_node(
+        'bridge', *FILE, '-p', 'frame_prefx:=r1/', '-p', 'colour:=3', '-p', 'use_sim_time:=true')
+    sentences = [
+        'there is no parameter "frame_prefx", so it has no effect; did you mean "frame_prefix"?',
+        'there is no parameter "colour", so it has no effect']
+    assert warnings_about_unknown_parameters(node) == sentences
+    settings_from_node(node)
+    assert warnings_about_unknown_parameters(node) == sentences
 
 
 def test_too_many_patterns_are_refused(make_node):
@@ -69,8 +100,10 @@ def test_all_wrong_values_are_named(make_node):
 
 
 def test_without_a_file_the_sentence_says_how_to_name_one(make_node):
-    with pytest.raises(SettingsError, match=r'-p sdf_file:=cell\.sdf'):
+    with pytest.raises(SettingsError) as refusal:
         settings_from_node(make_node('bridge'))
+    assert '-p sdf_file:=cell.sdf after "ros2 run' in str(refusal.value)
+    assert 'sdf_file:=cell.sdf after "ros2 launch' in str(refusal.value)
 
 
 @pytest.mark.parametrize(('name', 'value', 'sentence'), [
@@ -84,6 +117,11 @@ def test_without_a_file_the_sentence_says_how_to_name_one(make_node):
     ('frame_names', 'Auto', 'is "Auto"; it must be one of auto, scoped, relative'),
     ('frame_separator', '', 'is ""; it must be at least one'),
     ('frame_prefix', '/robot/', 'is "/robot/"; it must be without a'),
+    ('publish_rate', 1e-12, 'is 1e-12; it must be 0.0 for never, or from 0.001 to 100.0'),
+    ('publish_rate', 101, 'is 101.0; it must be 0.0 for never, or from 0.001 to 100.0'),
+    ('publish_rate', float('inf'), 'is inf; it must be 0.0 for never, or'),
+    ('publish_rate', float('nan'), 'is nan; it must be 0.0 for never, or'),
+    ('publish_rate', 'fast', 'is fast, which is a string; it must be a number'),
     ('kinds', ['link', 'world'], 'is "world"; it must be made of model, link'),
 ])
 def test_a_wrong_new_value_is_named_with_its_rule(settings, name, value, sentence):

@@ -1,0 +1,101 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the README shows is what is printed, as far as that is the same on every machine."""
+
+from pathlib import Path
+import re
+import subprocess
+import sys
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from sdf_pose_bridge.cli.main import main
+from sdf_pose_bridge_interfaces.srv import ConvertRotation
+
+ROOT = Path(__file__).resolve().parents[2]
+README = (ROOT / 'README.md').read_text(encoding='utf-8')
+BROKEN = """\
+<sdf version="1.10">
+  <model name="gripper">
+    <link name="base"/>
+    <frame name="finger_mount"/>
+    <frame name="tip">
+      <pose relative_to="finger_mout">0 0 0.1 0 0 0</pose>
+    </frame>
+  </model>
+</sdf>
+"""
+
+
+def shown_after(command):
+    """Return the lines of the README's sample that a line begins, without the indent."""
+    (sample,) = re.findall(rf'^    {re.escape(command)}.*\n((?:(?:    .*)?\n)*)', README, re.M)
+    return [line.removeprefix('    ') for line in sample.splitlines()]
+
+
+@pytest.fixture(name='bridge')
+def bridge_of_work_cell(start_bridge, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    bridge = start_bridge('--ros-args', '-p', 'sdf_file:=examples/work_cell.sdf')
+    return bridge.wait_until_started()
+
+
+def test_the_demonstration():
+    done = subprocess.run(
+        [sys.executable, ROOT / 'examples/demo.py'], capture_output=True, text=True, timeout=60,
+        check=True)
+    first = '49 transforms on /tf_static'
+    shown = [f'    {first}', *shown_after(first)]
+    printed = iter(line.strip() for line in done.stdout.splitlines())
+    for line in shown:
+        if line.strip() not in ('', '...', first):
+            assert any(each == line.strip() for each in printed), line
+
+
+def test_the_first_line_of_the_node(bridge):
+    shown = shown_after('$ ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=examples/')[0]
+    same = re.compile(r'publishing .* frames|with .* transforms, root frame "world"')
+    assert same.findall(shown) == same.findall(bridge.lines[0])
+
+
+def test_a_pose(bridge, start_listener):
+    topic = '/sdf_pose_bridge/poses/robot/tool0'
+    listener = start_listener()
+    listener.listen_to_poses([topic])
+    listener.wait_for_keys(listener.poses, [topic])
+    pose = listener.poses[topic].pose
+    shown = [line.split(': ') for line in shown_after(f'$ ros2 topic echo --once {topic}')
+             if re.match(r' +[xyzw]: ', line)]
+    assert [name.strip() for name, _ in shown] == list('xyzxyzw')
+    # The last digits depend on the mathematical functions of the machine.
+    assert [float(number) for _, number in shown] == pytest.approx([
+        *(getattr(pose.position, name) for name in 'xyz'),
+        *(getattr(pose.orientation, name) for name in 'xyzw')], rel=0, abs=1e-14)
+
+
+def test_a_service(bridge, start_listener):
+    request = ConvertRotation.Request()
+    request.rpy.z = 1.5708
+    response = start_listener().call(
+        ConvertRotation, '/sdf_pose_bridge/convert_rotation', request)
+    shown = shown_after('$ ros2 service call /sdf_pose_bridge/convert_rotation')
+    assert f'requester: making request: {request!r}' in shown
+    assert repr(response) in shown
+
+
+def test_errors(start_bridge, tmp_path, monkeypatch, capsys):
+    (tmp_path / 'broken.sdf').write_text(BROKEN)
+    monkeypatch.chdir(tmp_path)
+    main(['check', 'broken.sdf'])
+    (line,) = capsys.readouterr().out.splitlines()
+    assert shown_after('$ sdf_pose check')[0] == line
+    bridge = start_bridge('--ros-args', '-p', 'sdf_file:=broken.sdf')
+    assert bridge.wait_for_end() == 1
+    assert bridge.lines[0].endswith(f'/{line}')
+    (fatal, _) = shown_after(
+        '$ ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=broken.sdf')[:2]
+    assert fatal.startswith('[FATAL]')
+    assert fatal.endswith(f': /home/me/ws/{line}')
+    assert shown_after('$ ros2 param set')[0].endswith(f': /home/me/ws/{line}')
