@@ -1,9 +1,16 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Fixtures of tests with ROS."""
+"""Fixtures of tests with ROS, and settings of property tests."""
 
+from hypothesis import HealthCheck
+from hypothesis import settings
 import pytest
 from ros_domain import claimed_domain
+
+# A machine that has other work to do may take long for an example.
+settings.register_profile(
+    'untimed', deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile('untimed')
 
 
 @pytest.fixture

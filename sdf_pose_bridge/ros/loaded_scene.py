@@ -17,7 +17,7 @@ from sdf_pose_bridge.scene.loading import load
 from sdf_pose_bridge.sdformat.include.uris import AddressError
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.tf.lookup import PoseLookup
+from sdf_pose_bridge.tf.tree import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfTree
 
@@ -94,6 +94,6 @@ def _file_from_settings(
     if not os.path.isdir(path):  # noqa: PTH112
         return path, (), ()
     # Imported here because most often it is a file.
-    from sdf_pose_bridge.sdformat.include.manifest import model_file_from_directory
+    from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
     chosen = model_file_from_directory(str(path), Usage())
     return Path(chosen.path), (chosen.manifest,), chosen.warnings

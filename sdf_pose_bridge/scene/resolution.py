@@ -18,7 +18,7 @@ from sdf_pose_bridge.scene.frame_graph import FrameGraph
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.pose_text import IDENTITY
+from sdf_pose_bridge.sdformat.values import IDENTITY
 
 if TYPE_CHECKING:
     import numpy.typing as npt

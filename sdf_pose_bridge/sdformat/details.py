@@ -1,50 +1,79 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Read what only models, frames, joints, sensors and visuals have besides a name and a pose."""
+"""
+Read what only some elements have besides a name and a pose.
+
+An automatic inertial (``<inertial auto="true">``) is the centre of mass of the collisions of its
+link: ``Link::ResolveAutoInertials``, ``Collision::CalculateInertial`` and
+``Geometry::CalculateInertial`` of libsdformat 14.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import chain
+import math
 
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import JointChildError
 from sdf_pose_bridge.errors import JointParentError
+from sdf_pose_bridge.errors import LinkInertiaError
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.sdformat.elements import CollisionMass
 from sdf_pose_bridge.sdformat.elements import FrameDetails
 from sdf_pose_bridge.sdformat.elements import JointDetails
 from sdf_pose_bridge.sdformat.elements import ModelDetails
 from sdf_pose_bridge.sdformat.elements import Reference
 from sdf_pose_bridge.sdformat.elements import SensorDetails
+from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import boolean_from_text
+from sdf_pose_bridge.sdformat.values import leading_numbers
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
 from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import value_of
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 CAMERA_TYPES = frozenset({
     'boundingbox', 'boundingbox_camera', 'camera', 'depth', 'depth_camera', 'multicamera', 'rgbd',
     'rgbd_camera', 'segmentation', 'segmentation_camera', 'thermal', 'thermal_camera',
-    'wideanglecamera',
+    'wide_angle_camera', 'wideanglecamera',
 })
 """Types of sensors that take images."""
 
-JOINT_TYPES = frozenset({
-    'ball', 'continuous', 'fixed', 'gearbox', 'prismatic', 'revolute', 'revolute2', 'screw',
-    'universal',
-})
-"""Types of joints."""
+TYPES = {
+    Kind.JOINT: frozenset({
+        'ball', 'continuous', 'fixed', 'gearbox', 'prismatic', 'revolute', 'revolute2', 'screw',
+        'universal'}),
+    Kind.LIGHT: frozenset({'directional', 'point', 'spot'}),
+    Kind.PARTICLE_EMITTER: frozenset({'box', 'cylinder', 'ellipsoid', 'point'}),
+    Kind.SENSOR: CAMERA_TYPES | {
+        'air_pressure', 'air_speed', 'altimeter', 'contact', 'custom', 'force_torque', 'gps',
+        'gpu_lidar', 'gpu_ray', 'imu', 'lidar', 'logical_camera', 'magnetometer', 'navsat', 'ray',
+        'rfid', 'rfidtag', 'sonar', 'wireless_receiver', 'wireless_transmitter'},
+}
+"""The types that elements of a kind can have."""
 
 PLACEMENT_OF_MERGED_MODEL = '{sdf_pose_bridge}placement_frame'
 """Attribute of the frame that replaces a merged model's frame: the model's placement frame."""
 
-_SHADER_TYPES = (
-    'normal_map_object_space', 'normal_map_tangent_space', 'pixel', 'vertex')
+_OTHER_TYPES = {
+    'atmosphere': ('adiabatic',),
+    'shader': ('normal_map_object_space', 'normal_map_tangent_space', 'pixel', 'vertex'),
+}
+"""The types that elements without a frame can have."""
+
+_VALUES = {
+    'surface_model': ('EARTH_WGS84', 'MOON_SCS', 'CUSTOM_SURFACE'),
+    'world_frame_orientation': ('ENU',),
+}
+"""The values of elements in ``<spherical_coordinates>``."""
 
 
 def reference_of(xml: XmlElement, attribute: str) -> str:
@@ -71,6 +100,21 @@ class DetailsReader:
     def __init__(self, sources: Sources, problems: Problems) -> None:
         self._sources = sources
         self._problems = problems
+
+    def check_type(self, xml: XmlElement, kind: Kind) -> None:
+        """
+        Check the type of an element.
+
+        :param xml: the element.
+        :param kind: its kind, a key of :data:`TYPES`.
+        """
+        written_type = attribute_of(xml, 'type')
+        # Only for joints libsdformat does not mind the case.
+        known_type = written_type.lower() if kind is Kind.JOINT else written_type
+        if known_type and known_type not in TYPES[kind]:
+            msg = (f'type="{written_type}" of <{kind.label}> must be one of '
+                   f'{", ".join(sorted(TYPES[kind]))}')
+            self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
 
     def model(self, xml: XmlElement) -> ModelDetails:
         """
@@ -102,10 +146,6 @@ class DetailsReader:
         :return: its details. References are empty where they are missing or reserved.
         """
         joint_type = attribute_of(xml, 'type').lower()
-        if joint_type and joint_type not in JOINT_TYPES:
-            known = ', '.join(sorted(JOINT_TYPES))
-            msg = f'"{xml.get("type")}" is not a type of joints; known are {known}'
-            self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
         axes = (first_child(xml, tag) for tag in ('axis', 'axis2'))
         xyzs = (first_child(axis, 'xyz') for axis in axes if axis is not None)
         expressed_in = (
@@ -125,10 +165,7 @@ class DetailsReader:
             self._problems.error(error(msg, self._sources.place(xml)))
             return Reference('')
         name = value_of(element)
-        if not name:
-            msg = f'<{tag}> is empty; it must name a frame'
-            self._problems.error(ElementInvalidError(msg, self._sources.place(element)))
-        elif name == ROOT_FRAME:
+        if name == ROOT_FRAME:
             msg = f'"{name}" is reserved; it cannot be the {tag} of a joint'
             self._problems.error(ReservedNameError(msg, self._sources.place(element)))
             name = ''
@@ -176,17 +213,24 @@ class DetailsReader:
         if identifier == 'material/script':
             for tag, error in (('uri', ElementInvalidError), ('name', ElementMissingError)):
                 element = first_child(xml, tag)
-                if element is None or value_of(element) in ('', '__default__'):
+                value = '__default__' if element is None else value_of(element)
+                if value == '__default__' or (tag == 'uri' and not value):
                     msg = f'the <script> of a material has no <{tag}>, or an empty one'
                     self._problems.error(error(msg, self._sources.place(xml)))
-        elif identifier == 'shader':
-            shader_type = attribute_of(xml, 'type')
-            if shader_type not in _SHADER_TYPES:
-                msg = (f'type="{shader_type}" of a shader must be one of '
-                       f'{", ".join(_SHADER_TYPES)}')
+        elif identifier == 'spherical_coordinates':
+            for tag, values in _VALUES.items():
+                element = first_child(xml, tag)
+                if element is not None and value_of(element) not in ('', *values):
+                    msg = f'"{value_of(element)}" of <{tag}> must be one of {", ".join(values)}'
+                    self._problems.error(ElementInvalidError(msg, self._sources.place(element)))
+        elif identifier in _OTHER_TYPES:
+            written_type = attribute_of(xml, 'type')
+            if written_type and written_type not in _OTHER_TYPES[identifier]:
+                msg = (f'type="{written_type}" of <{identifier}> must be one of '
+                       f'{", ".join(_OTHER_TYPES[identifier])}')
                 self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
-            elif shader_type.startswith('normal_map') and first_child(xml, 'normal_map') is None:
-                msg = f'a shader of type="{shader_type}" needs a <normal_map>'
+            elif written_type.startswith('normal_map') and first_child(xml, 'normal_map') is None:
+                msg = f'a shader of type="{written_type}" needs a <normal_map>'
                 self._problems.error(ElementMissingError(msg, self._sources.place(xml)))
 
 
@@ -196,3 +240,109 @@ def _name_from_uri(uri: str) -> str:
     if len(steps) > 1 and steps[-1].endswith(('.sdf', '.world', '.urdf')):
         steps.pop()
     return steps[-1] if steps else ''
+
+
+DEFAULT_DENSITY_KG_M3 = 1000.0
+"""Density of a collision where neither it nor the inertial has one: that of water."""
+
+_DEFAULT_DIMENSIONS: Mapping[str, Mapping[str, tuple[float, ...]]] = {
+    'box': {'size': (1.0, 1.0, 1.0)},
+    'capsule': {'radius': (0.5,), 'length': (1.0,)},
+    'cone': {'radius': (1.0,), 'length': (1.0,)},
+    'cylinder': {'radius': (1.0,), 'length': (1.0,)},
+    'ellipsoid': {'radii': (1.0, 1.0, 1.0)},
+    'plane': {},
+    'sphere': {'radius': (1.0,)},
+    'mesh': {},
+}
+"""The shapes in the order in which the first one counts, and the defaults of their dimensions."""
+
+
+def collision_masses(
+    inertial: XmlElement, sources: Sources, problems: Problems,
+) -> tuple[CollisionMass, ...]:
+    """
+    Return the masses of the collisions of a link.
+
+    :param inertial: an ``<inertial auto="true">`` in its link.
+    :param sources: where elements were written.
+    :param problems: takes collisions whose mass cannot be computed.
+    :return: the mass of each collision in file order; empty if one cannot be computed.
+    """
+    link = inertial.getparent()
+    collisions = [] if link is None else list(child_elements(link, 'collision'))
+    if not collisions:
+        msg = 'the inertial is automatic, but its link has no <collision>'
+        problems.error(ElementMissingError(msg, sources.place(inertial)))
+    pose = first_child(inertial, 'pose')
+    if pose is not None:
+        msg = 'the pose of an automatic inertial is ignored; the collisions give it'
+        problems.warning(msg, sources.place(pose))
+    default_density = _number(inertial, 'density', DEFAULT_DENSITY_KG_M3)
+    masses = []
+    for collision in collisions:
+        shape = _shape(collision)
+        if shape is not None and shape.tag == 'mesh':
+            name = '' if link is None else attribute_of(link, 'name')
+            msg = (f'the automatic inertial of link "{name}" has its pose as written, as the mass '
+                   'of a mesh is not computed')
+            problems.warning(msg, sources.place(collision))
+            return ()
+        mass = None if shape is None else _mass(
+            shape, _number(collision, 'density', default_density))
+        if mass is None:
+            msg = ('an automatic inertial needs collisions that are boxes, capsules, cones, '
+                   'cylinders, ellipsoids or spheres, with positive dimensions and density')
+            problems.error(LinkInertiaError(msg, sources.place(collision)))
+        else:
+            masses.append(mass)
+    return tuple(masses)
+
+
+def _shape(collision: XmlElement) -> XmlElement | None:
+    geometry = first_child(collision, 'geometry')
+    if geometry is None:
+        return None
+    shapes = (first_child(geometry, tag) for tag in _DEFAULT_DIMENSIONS)
+    return next((shape for shape in shapes if shape is not None), None)
+
+
+def _mass(shape: XmlElement, density_kg_m3: float) -> CollisionMass | None:
+    """Return the mass of a shape and its centre; None if a number is not positive."""
+    sizes_m = [
+        number for tag, default in _DEFAULT_DIMENSIONS[str(shape.tag)].items()
+        for number in _numbers(shape, tag, default)]
+    # A capsule without its cylinder is a sphere.
+    required = sizes_m[:1] if shape.tag == 'capsule' else sizes_m
+    if not sizes_m or min([density_kg_m3, *required]) <= 0.0:
+        return None
+    volume_m3, center_z_m = _volume(str(shape.tag), sizes_m)
+    return CollisionMass(density_kg_m3 * volume_m3, center_z_m)
+
+
+def _volume(tag: str, sizes_m: list[float]) -> tuple[float, float]:
+    """Return the volume of a shape, and the z of its centre of mass in the shape's frame."""
+    if tag == 'box':
+        return math.prod(sizes_m), 0.0
+    if tag == 'ellipsoid':
+        return 4.0 / 3.0 * math.pi * math.prod(sizes_m), 0.0
+    radius, length = (*sizes_m, 0.0)[:2]
+    disc = math.pi * radius ** 2
+    if tag == 'sphere':
+        return 4.0 / 3.0 * disc * radius, 0.0
+    if tag == 'capsule':
+        return disc * (max(length, 0.0) + 4.0 / 3.0 * radius), 0.0
+    if tag == 'cone':
+        return disc * length / 3.0, -0.25 * length
+    return disc * length, 0.0
+
+
+def _number(parent: XmlElement, tag: str, default: float) -> float:
+    return _numbers(parent, tag, (default,))[0]
+
+
+def _numbers(parent: XmlElement, tag: str, default: tuple[float, ...]) -> tuple[float, ...]:
+    """Return the numbers of a child; the default if there is none, or if it is not valid."""
+    child = first_child(parent, tag)
+    numbers = () if child is None else tuple(leading_numbers(text_of(child), len(default)))
+    return numbers if len(numbers) == len(default) else default

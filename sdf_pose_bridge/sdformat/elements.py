@@ -17,9 +17,9 @@ from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.pose_text import IDENTITY
-from sdf_pose_bridge.sdformat.pose_text import PoseFormat
-from sdf_pose_bridge.sdformat.pose_text import poses_from_texts
+from sdf_pose_bridge.sdformat.values import IDENTITY
+from sdf_pose_bridge.sdformat.values import PoseFormat
+from sdf_pose_bridge.sdformat.values import poses_from_texts
 from sdf_pose_bridge.sdformat.xml_tree import path_step
 
 NO_ELEMENT = -1

@@ -15,7 +15,8 @@ separated by blanks:
 * ``*``: any children, which are not read.
 
 ``!`` after a tag or a name: the element or attribute is required. Where a required child element
-is missing, libsdformat adds it with its default value, except in joints.
+is missing, libsdformat adds it with its default value, except in joints. ``+`` is the same for an
+element that may be repeated; its value may be blank, which a required value may not be otherwise.
 """
 
 from __future__ import annotations
@@ -91,7 +92,7 @@ class Kind(enum.IntEnum):
     """The implicit root of a model file, in which its poses are resolved. No file writes it."""
     WORLD = 'sdf', (
         '@name! audio wind include gravity!:vector3 magnetic_field!:vector3 atmosphere! gui '
-        'physics! scene! plugin road spherical_coordinates state population')
+        'physics+ scene! plugin road spherical_coordinates state population')
     MODEL = 'sdf world model', (
         '@name! @canonical_link:frame @placement_frame:frame pose static:bool self_collide:bool '
         'allow_auto_disable:bool enable_wind:bool plugin gripper include'), True
@@ -135,7 +136,7 @@ class Kind(enum.IntEnum):
 
 
 _ITEM = re.compile(
-    r'(?P<attribute>@?)(?P<name>[\w*]*)(?P<required>!?)(?:=(?P<identifier>\w+(?:/\w+)?))?'
+    r'(?P<attribute>@?)(?P<name>[\w*]*)(?P<required>[!+]?)(?:=(?P<identifier>\w+(?:/\w+)?))?'
     r'(?::(?P<type>\w+))?(?:\[(?P<minimum>[^,]*),(?P<maximum>.*)\])?')
 _KINDS = {kind.label: kind for kind in Kind}
 
@@ -157,14 +158,16 @@ class Definition:
     :param value_type: type of the value, if the content does not tell.
     :param minimum: the smallest value that the element may have.
     :param maximum: the largest value that the element may have.
+    :param is_required: whether the value may not be blank.
     """
 
     def __init__(
         self, identifier: str, content: str, *, has_frames: bool = False,
         value_type: ValueType | None = None, minimum: float = -math.inf,
-        maximum: float = math.inf,
+        maximum: float = math.inf, is_required: bool = False,
     ) -> None:
         self.identifier = identifier
+        self.is_required = is_required
         self.minimum = minimum
         self.maximum = maximum
         self.kind = _KINDS.get(identifier) if has_frames else None
@@ -236,22 +239,25 @@ class Definition:
         if not item['type']:
             for identifier in (item['identifier'], f'{self.identifier}/{tag}', tag):
                 if identifier in ELEMENTS or (identifier and item['identifier']):
-                    return definition_of(identifier)
+                    return definition_of(identifier, is_required=item['required'] == '!')
         return Definition(
             tag, '', value_type=ValueType(item['type'] or 'string'),
             minimum=float(item['minimum'] or -math.inf),
-            maximum=float(item['maximum'] or math.inf))
+            maximum=float(item['maximum'] or math.inf), is_required=item['required'] == '!')
 
 
 @cache
-def definition_of(identifier: str, *, has_frames: bool = False) -> Definition:
+def definition_of(
+    identifier: str, *, has_frames: bool = False, is_required: bool = False,
+) -> Definition:
     """
     Return the definition of an element.
 
     :param identifier: label of a kind, or a key of :data:`ELEMENTS`.
     :param has_frames: whether kinds of elements are frames here.
+    :param is_required: whether its value may not be blank.
     :return: the definition.
     """
     kind = _KINDS.get(identifier)
     content = ELEMENTS[identifier] if kind is None else kind.content
-    return Definition(identifier, content, has_frames=has_frames)
+    return Definition(identifier, content, has_frames=has_frames, is_required=is_required)

@@ -18,23 +18,24 @@ from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.automatic_inertia import collision_masses
+from sdf_pose_bridge.sdformat.details import collision_masses
 from sdf_pose_bridge.sdformat.details import DetailsReader
 from sdf_pose_bridge.sdformat.details import reference_of
+from sdf_pose_bridge.sdformat.details import TYPES
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.pose_text import pose_from_text
-from sdf_pose_bridge.sdformat.pose_text import PoseFormat
-from sdf_pose_bridge.sdformat.pose_text import PoseTextError
 from sdf_pose_bridge.sdformat.sibling_names import SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.values import is_of_type
+from sdf_pose_bridge.sdformat.values import pose_from_text
+from sdf_pose_bridge.sdformat.values import PoseFormat
+from sdf_pose_bridge.sdformat.values import PoseTextError
 from sdf_pose_bridge.sdformat.values import value_fault
 from sdf_pose_bridge.sdformat.versions import allows_scoped_names
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
@@ -211,7 +212,7 @@ class _Reader:
                     self._problems.warning(msg, self._sources.place(child))
                 else:
                     self._read_pose(child, child_definition, parent)
-            elif not child_definition.is_text:
+            elif child_definition.is_required or not child_definition.is_text:
                 fault = value_fault(text_of(child), child_definition)
                 if fault:
                     self._problems.error(ElementInvalidError(fault, self._sources.place(child)))
@@ -220,6 +221,8 @@ class _Reader:
                     self._undefined.report_element(grandchild, child_definition)
 
     def _read_details(self, xml: XmlElement, kind: Kind, index: int) -> None:
+        if kind in TYPES:
+            self._details.check_type(xml, kind)
         if kind is Kind.MODEL:
             self._builder.models[index] = self._details.model(xml)
         elif kind is Kind.FRAME:
@@ -254,23 +257,27 @@ class _Reader:
                 self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
 
     def _read_pose(self, xml: XmlElement, definition: Definition, index: int) -> None:
-        pose_format = PoseFormat()
-        text = text_of(xml)
+        pose_format: PoseFormat | None = PoseFormat()
         if xml.keys():
             self._read_relative_to(xml, definition, index)
-            rotation_format = attribute_of(xml, 'rotation_format')
-            pose_format = PoseFormat(
-                rotation_format == 'quat_xyzw',
-                boolean_from_text(xml.get('degrees', '')) is True)
-            fault = ''
-            if rotation_format not in ('', 'euler_rpy', 'quat_xyzw'):
-                fault = f'rotation_format="{rotation_format}" must be euler_rpy or quat_xyzw'
-            elif pose_format.is_quaternion and pose_format.is_degrees:
-                fault = 'degrees="true" cannot be combined with rotation_format="quat_xyzw"'
-            if fault:
-                self._problems.error(ElementInvalidError(fault, self._sources.place(xml)))
-                text, pose_format = '', PoseFormat()
-        self._builder.set_pose(index, text, pose_format, self._sources.line(xml))
+            pose_format = self._pose_format(xml)
+        text = '' if pose_format is None else text_of(xml)
+        self._builder.set_pose(
+            index, text, pose_format or PoseFormat(), self._sources.line(xml))
+
+    def _pose_format(self, xml: XmlElement) -> PoseFormat | None:
+        """Read the attributes about the format of a pose; report them if they are not valid."""
+        rotation_format = attribute_of(xml, 'rotation_format')
+        pose_format = PoseFormat(
+            rotation_format == 'quat_xyzw', boolean_from_text(xml.get('degrees', '')) is True)
+        if rotation_format not in ('', 'euler_rpy', 'quat_xyzw'):
+            fault = f'rotation_format="{rotation_format}" must be euler_rpy or quat_xyzw'
+        elif pose_format.is_quaternion and pose_format.is_degrees:
+            fault = 'degrees="true" cannot be combined with rotation_format="quat_xyzw"'
+        else:
+            return pose_format
+        self._problems.error(ElementInvalidError(fault, self._sources.place(xml)))
+        return None
 
     def _read_relative_to(self, xml: XmlElement, definition: Definition, index: int) -> None:
         builder = self._builder
@@ -291,8 +298,9 @@ class _Reader:
 
     def _check_pose(self, xml: XmlElement) -> None:
         """Check a pose that is not that of a frame."""
-        is_quaternion = attribute_of(xml, 'rotation_format') == 'quat_xyzw'
+        pose_format = self._pose_format(xml)
         try:
-            pose_from_text(text_of(xml), PoseFormat(is_quaternion))
+            pose_from_text(
+                '' if pose_format is None else text_of(xml), pose_format or PoseFormat())
         except PoseTextError as error:
             self._problems.error(ElementInvalidError(str(error), self._sources.place(xml)))

@@ -19,7 +19,7 @@ ELEMENTS = {
     'audio': 'device!',
     'audio_sink': '',
     'audio_source': 'uri! pitch:double gain:double contact loop:bool pose',
-    'audio_source/contact': 'collision!:string',
+    'audio_source/contact': 'collision+:string',
     'auto_inertia_params': '*',
     'axis': 'xyz! dynamics limit! mimic',
     'axis/limit': (
@@ -57,7 +57,7 @@ ELEMENTS = {
     'cylinder': 'radius!:double length!:double',
     'dart': 'solver! collision_detector',
     'dart/solver': 'solver_type!',
-    'deletions': 'name!',
+    'deletions': 'name+',
     'depth_camera': 'output! clip',
     'depth_camera/clip': 'near:double[0,] far:double[0.1,]',
     'distortion': 'k1:double k2:double k3:double p1:double p2:double center:vector2',
@@ -81,7 +81,7 @@ ELEMENTS = {
     'gps': 'position_sensing velocity_sensing',
     'grasp_check': 'detach_steps:int attach_steps:int min_contact_count:int',
     'grav_dir_x': ':vector3 @parent_frame',
-    'gripper': '@name! grasp_check gripper_link! palm_link!',
+    'gripper': '@name! grasp_check gripper_link+ palm_link!',
     'gui': '@fullscreen:bool plugin camera=gui_camera',
     'gui_camera': '@name! view_controller projection_type track_visual pose',
     'heightmap': (
@@ -94,7 +94,7 @@ ELEMENTS = {
     'include': '@merge:bool uri! pose plugin name static:bool placement_frame',
     'inertia': 'ixx!:double ixy!:double ixz!:double iyy!:double iyz!:double izz!:double',
     'inertial/pose': ':pose @rotation_format @degrees:bool',
-    'insertions': 'model!=model light!=light',
+    'insertions': 'model+=model light+=light',
     'intrinsics': 'fx!:double fy!:double cx!:double cy!:double s!:double',
     'joint/physics': 'simbody=joint_simbody ode=joint_ode provide_feedback:bool',
     'joint_ode': (
@@ -116,7 +116,7 @@ ELEMENTS = {
     'material': (
         'script shader render_order:double lighting:bool ambient:color diffuse:color '
         'specular:color shininess:double emissive:color double_sided:bool pbr'),
-    'material/script': 'uri! name!',
+    'material/script': 'uri+ name!',
     'mesh': '@optimization convex_decomposition uri! submesh scale:vector3',
     'meta': 'layer:int',
     'metal': (
@@ -126,7 +126,7 @@ ELEMENTS = {
     'model_state': (
         '@name! joint=joint_state model=model_state frame=frame pose scale:vector3 '
         'link=link_state'),
-    'joint_state': '@name! angle!',
+    'joint_state': '@name! angle+',
     'joint_state/angle': ':double @axis!:int',
     'navsat': 'position_sensing velocity_sensing',
     'noise': (
@@ -147,7 +147,7 @@ ELEMENTS = {
         'real_time_update_rate!:double max_contacts:int dart simbody bullet ode'),
     'plane': 'normal!:vector3 size!:vector2',
     'plugin': '@name @filename! *',
-    'polyline': 'point!:vector2 height!:double',
+    'polyline': 'point+:vector2 height!:double',
     'population': '@name! box cylinder model_count!:int distribution! pose model!=model',
     'distribution': 'type! rows:int cols:int step:vector3',
     'pose': ':pose @relative_to:frame @rotation_format @degrees:bool',
@@ -161,7 +161,7 @@ ELEMENTS = {
     'ray': 'scan! range! noise=camera/noise visibility_mask:int',
     'rfid': '',
     'rfidtag': '',
-    'road': '@name! width!:double point!:vector3 material',
+    'road': '@name! width!:double point+:vector3 material',
     'save': '@enabled!:bool path!',
     'scan': 'horizontal! vertical',
     'scene': (

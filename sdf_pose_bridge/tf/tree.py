@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The TF tree of a scene: frame ids, parents and transforms."""
+"""The TF tree of a scene: frame ids, parents and transforms; and look-ups of poses by name."""
 
 from __future__ import annotations
 
@@ -16,21 +16,23 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import pose_inverse
+from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.poses import relative_poses
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.scene.pointers import ends_from_pointers
+from sdf_pose_bridge.scene.frame_graph import ends_from_pointers
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
+from sdf_pose_bridge.tf.frame_ids import optical_frames_of_cameras
+from sdf_pose_bridge.tf.frame_ids import with_ids_of_sensors
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 from sdf_pose_bridge.tf.parents import TfParents
-from sdf_pose_bridge.tf.sensor_frames import optical_frames_of_cameras
-from sdf_pose_bridge.tf.sensor_frames import with_ids_of_sensors
 
 DEFAULT_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.FRAME, Kind.SENSOR})
 """The kinds of element that become frames unless the options say otherwise."""
@@ -266,3 +268,68 @@ def _is_anchored(
     while scene.parents[model] != scene.roots[model]:
         model = int(scene.parents[model])
     return element not in tf_parents.free_bodies or model in scene.static_models
+
+
+class FoundPose(NamedTuple):
+    """The result of a lookup."""
+
+    pose: Pose
+    """Pose of the frame in the reference frame; unit quaternion with w >= 0."""
+    frame_id: str
+    """The reference frame, by its TF name if it has one."""
+
+
+class PoseLookup:
+    """
+    Looks up poses in a scene and its TF tree.
+
+    Names are absolute names of SDF (``robot::arm::tool``) of any kind of element, or frame ids
+    (``robot/arm/tool``), including those of optical frames. A name that is both is taken as a name
+    of SDF.
+
+    :param scene: the scene.
+    :param tree: the TF tree of the scene.
+    """
+
+    def __init__(self, scene: Scene, tree: TfTree) -> None:
+        self._scene = scene
+        self._tree = tree
+        self._indices = {frame_id: index for index, frame_id in enumerate(tree.frame_ids)}
+        self._frame_ids = dict(zip(tree.elements.tolist(), tree.frame_ids, strict=True))
+
+    def pose(self, frame: str, relative_to: str = '') -> FoundPose:
+        """
+        Look up the pose of a frame in another one.
+
+        :param frame: a name of SDF or of TF.
+        :param relative_to: the reference frame, likewise; empty for the root frame.
+        :return: the pose.
+        :raises UnknownFrameError: if a name is unknown or ambiguous.
+        """
+        pose, _ = self._pose_in_root(frame)
+        if not relative_to:
+            return FoundPose(pose, self._tree.root_frame)
+        reference, frame_id = self._pose_in_root(relative_to)
+        relative = pose_product(pose_inverse(reference), pose)
+        # Adding zero leaves no negative zeros.
+        x, y, z = (value + 0.0 for value in relative[:3])
+        return FoundPose(Pose(x, y, z, *canonical_quaternion(relative[3:])), frame_id)
+
+    def _pose_in_root(self, name: str) -> tuple[Pose, str]:
+        """Return the pose of a frame in the root frame, and its frame id or else its name."""
+        scene, tree = self._scene, self._tree
+        if name == tree.root_frame:
+            return Pose(), name
+        if not scene.has(name):
+            if name not in self._indices:
+                hint = hint_from_names(name, [*self._indices, *scene.names])
+                msg = f'"{name}" is the name of nothing{hint}'
+                raise UnknownFrameError(msg, Place(scene.path))
+            return Pose(*tree.poses[self._indices[name]].tolist()), name
+        element = scene.index(name, world=tree.world)
+        if scene.roots[element]:
+            msg = f'"{name}" is in world "{scene.world_of(element)}", which is not published'
+            raise UnknownFrameError(msg, Place(scene.path))
+        if element == 0:
+            return Pose(), tree.root_frame
+        return scene.pose_of(element), self._frame_ids.get(element, name)

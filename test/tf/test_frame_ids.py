@@ -2,13 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frame ids made of scoped names."""
 
+from matrices import assert_same_pose
+from matrices import matrix_from_pose
+from matrices import matrix_from_rpy
 import numpy as np
 import pytest
 from sdf_texts import element
 from sdf_texts import fixed_joint
 from sdf_texts import model_file
+from sdf_texts import posed
 from sdf_texts import TWO_LINKS
 from sdf_texts import world_file
+from tf_checks import model
+from tf_checks import only_tree_error
+from tf_checks import parents_of
+from tf_checks import pose_of
+from tf_checks import tree_of
 
 import sdf_pose_bridge
 from sdf_pose_bridge.tf.frame_ids import FrameNames
@@ -108,3 +117,152 @@ def test_what_leaves_nothing_has_no_id_with_a_prefix_either():
 
 def test_a_leading_slash_goes_before_a_prefix_comes():
     assert FrameNaming(prefix='r/').frame_id_from_name('/a') == 'r/a'
+
+
+OPTICAL = matrix_from_rpy(0, 0, 0, -np.pi / 2, 0, -np.pi / 2)
+
+
+def camera(name='cam', children='', inside='', pose='1 0 0 0 0 0'):
+    return (f'<sensor name="{name}" type="camera"><pose>{pose}</pose>{children}'
+            f'<camera>{inside}</camera></sensor>')
+
+
+def lidar(name, frame_id='', pose='1 0 0 0 0 0'):
+    frame_id = f'<gz_frame_id>{frame_id}</gz_frame_id>' if frame_id else ''
+    return f'<sensor name="{name}" type="gpu_lidar"><pose>{pose}</pose>{frame_id}</sensor>'
+
+
+# Sensors with a frame id of their own
+
+def test_a_frame_id_that_nothing_has_becomes_a_frame_at_the_sensor():
+    text = model_file(f'<link name="l">{lidar("s", "laser")}</link>')
+    tree = tree_of(text)
+    assert dict(zip(tree.frame_ids, tree.parent_ids, strict=True)) == {
+        'm': 'l', 'l': 'world', 'laser': 'l'}
+    assert pose_of(tree, 'laser')[:3] == [1, 0, 0]
+
+
+@pytest.mark.parametrize('children', [
+    '<link name="l">{}</link><link name="laser"/>', '<link name="laser"/><link name="l">{}</link>',
+    '<link name="l">{}</link><frame name="laser"/>'])
+def test_a_frame_id_of_another_frame_makes_no_frame(children):
+    tree = tree_of(model_file(children.format(lidar('s', 'laser'))))
+    assert sorted(tree.frame_ids) == ['l', 'laser', 'm']
+    assert pose_of(tree, 'laser')[:3] == [0, 0, 0]
+
+
+def test_the_frame_id_of_the_root_makes_no_frame():
+    tree = tree_of(world_file(model('m', f'<link name="l">{lidar("s", "world")}</link>')))
+    assert sorted(tree.frame_ids) == ['m', 'm/l']
+
+
+def test_a_frame_id_may_be_spelled_as_in_sdf():
+    text = world_file(model('m', f'<link name="l">{lidar("s", "m::laser")}</link>'))
+    assert 'm/laser' in tree_of(text).frame_ids
+
+
+def test_a_frame_id_gets_the_prefix():
+    text = model_file(f'<link name="l">{lidar("s", "laser")}</link>')
+    assert parents_of(text, frame_prefix='r1/')['r1/laser'] == 'r1/l'
+
+
+def test_the_old_spelling():
+    text = model_file(f'<link name="l">{lidar("s", "laser")}</link>')
+    assert 'laser' in tree_of(text.replace('gz_frame_id', 'ignition_frame_id')).frame_ids
+
+
+def test_two_sensors_elsewhere_share_a_frame_id():
+    text = model_file(
+        f'<link name="l">{lidar("s", "laser")}{lidar("t", "laser", "2 0 0 0 0 0")}</link>')
+    error = only_tree_error(text)
+    assert error.code == 'DUPLICATE_NAME'
+    assert '"m::l::s"' in error.message
+    assert '"m::l::t"' in error.message
+
+
+def test_two_sensors_in_one_place_share_a_frame_id():
+    text = model_file(f'<link name="l">{lidar("s", "laser")}{lidar("t", "laser")}</link>')
+    assert tree_of(text).frame_ids == ('m', 'l', 'laser')
+
+
+# Cameras
+
+def test_a_camera_has_an_optical_frame():
+    tree = tree_of(model_file(f'<link name="l">{camera()}</link>'))
+    parents = dict(zip(tree.frame_ids, tree.parent_ids, strict=True))
+    assert parents['l/cam_optical'] == 'l/cam'
+    assert_same_pose(
+        tree.transforms[tree.frame_ids.index('l/cam_optical')].tolist(), OPTICAL, 1e-12)
+
+
+def test_z_of_an_optical_frame_is_ahead_and_y_down():
+    tree = tree_of(model_file(f'<link name="l">{camera()}</link>'))
+    matrix = matrix_from_pose(pose_of(tree, 'l/cam_optical'))
+    np.testing.assert_allclose(matrix[:3, 2], (1, 0, 0), atol=1e-15)
+    np.testing.assert_allclose(matrix[:3, 1], (0, 0, -1), atol=1e-15)
+
+
+@pytest.mark.parametrize('kind', [
+    'camera', 'depth_camera', 'rgbd_camera', 'thermal_camera', 'segmentation_camera',
+    'boundingbox_camera', 'wideanglecamera', 'multicamera'])
+def test_every_type_of_camera(kind):
+    text = model_file(f'<link name="l">{camera()}</link>').replace('"camera"', f'"{kind}"')
+    assert 'l/cam_optical' in tree_of(text).frame_ids
+
+
+def test_what_is_no_camera_has_no_optical_frame():
+    assert tree_of(model_file(f'<link name="l">{lidar("s")}</link>')).frame_ids == (
+        'm', 'l', 'l/s')
+
+
+def test_optical_frames_can_be_left_out():
+    text = model_file(f'<link name="l">{camera()}</link>')
+    assert tree_of(text, optical_frames=False).frame_ids == ('m', 'l', 'l/cam')
+
+
+def test_a_camera_names_its_optical_frame():
+    text = model_file('<link name="l">' + camera(
+        inside='<optical_frame_id>eye</optical_frame_id>') + '</link>')
+    assert parents_of(text) == {'m': 'l', 'l': 'world', 'l/cam': 'l', 'eye': 'l/cam'}
+
+
+def test_the_optical_frame_of_a_camera_with_a_frame_id():
+    text = model_file(f'<link name="l">{camera(children="<gz_frame_id>eye</gz_frame_id>")}</link>')
+    assert parents_of(text) == {'m': 'l', 'l': 'world', 'eye': 'l', 'eye_optical': 'eye'}
+
+
+def test_the_optical_frame_of_a_camera_with_the_frame_id_of_a_link():
+    tree = tree_of(model_file(
+        f'<link name="l">{camera(children="<gz_frame_id>l</gz_frame_id>")}</link>'))
+    assert tree.frame_ids == ('m', 'l', 'l_optical')
+    assert pose_of(tree, 'l_optical')[:3] == [1, 0, 0]
+
+
+def test_an_optical_frame_that_the_file_has_is_left_alone():
+    text = model_file(
+        '<link name="l">' + camera(inside='<optical_frame_id>eye</optical_frame_id>')
+        + '</link>' + posed('frame', 'eye', '0 0 5 0 0 0'))
+    tree = tree_of(text)
+    assert sorted(tree.frame_ids) == ['eye', 'l', 'l/cam', 'm']
+    assert pose_of(tree, 'eye')[:3] == [0, 0, 5]
+
+
+def test_two_cameras_elsewhere_name_one_optical_frame():
+    inside = '<optical_frame_id>eye</optical_frame_id>'
+    text = model_file(
+        f'<link name="l">{camera("c", "", inside)}{camera("d", "", inside, "2 0 0 0 0 0")}</link>')
+    error = only_tree_error(text)
+    assert error.code == 'DUPLICATE_NAME'
+    assert '"eye"' in error.message
+
+
+def test_an_optical_frame_would_take_the_id_of_a_link():
+    text = model_file(f'<link name="l">{camera()}</link><link name="l/cam_optical"/>')
+    assert only_tree_error(text).code == 'DUPLICATE_NAME'
+
+
+@pytest.mark.parametrize('sensor_type', ['camera', 'depth_camera', 'rgbd_camera', 'thermal'])
+def test_every_type_of_camera_has_an_optical_frame(sensor_type):
+    tree = tree_of(model_file(
+        f'<link name="l"><sensor name="s" type="{sensor_type}"/></link>'))
+    assert 'l/s_optical' in tree.frame_ids

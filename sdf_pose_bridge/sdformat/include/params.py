@@ -175,6 +175,7 @@ class _Changer:
     # Actions
 
     def _new_element(self, xml: XmlElement) -> XmlElement:
+        """Copy an element without attributes that are not defined, as libsdformat does."""
         element = copy.deepcopy(xml)
         element.tail = None
         definition = _definition_of_parameter(xml)
@@ -229,6 +230,11 @@ class _Changer:
             self._modify(xml, found)
         elif self._holds_value(found):
             is_end = written_tag(target) == 'joint' and found.tag in ('parent', 'child')
+            definition = self._definition(found)
+            if definition is not None and definition.is_required and not is_end:
+                # Without the element its default applies.
+                _take_out(found)
+                return
             self._set_text(_DEFAULT_JOINT_END if is_end else '', xml, found)
             self._change_attributes(xml, found, is_read_before=False)
         else:
