@@ -15,6 +15,7 @@ from sdf_texts import model_file
 from sdf_texts import only_error
 from sdf_texts import posed
 from sdf_texts import TWO_LINKS
+from sdf_texts import world_file
 
 from sdf_pose_bridge import load_text
 
