@@ -46,7 +46,6 @@ PUBLISHED_KINDS = {
 LOWEST_RATE, HIGHEST_RATE = 0.001, 100.0
 """The limits of ``publish_rate`` in Hz."""
 
-
 _MOST_PATTERNS = 1000
 """How many patterns a parameter may have."""
 

@@ -90,7 +90,11 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
 
 
 def _descriptor_without_waiting(path: str, flags: int) -> int:
-    return os.open(path, flags | os.O_NONBLOCK | os.O_NOCTTY)
+    try:
+        return os.open(path, flags | os.O_NONBLOCK | os.O_NOCTTY)
+    except BlockingIOError:
+        # Another process, such as a file server, has a lease on a regular file.
+        return os.open(path, flags | os.O_NOCTTY)
 
 
 def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFile:

@@ -1,9 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""A bridge that reads a file which takes long, here a pipe that nobody has written to yet."""
-
-import os
-import threading
+"""A bridge that reads a file which takes long."""
 
 import pytest
 
@@ -25,17 +22,16 @@ from rcl_interfaces.srv import GetParameters
 from rcl_interfaces.srv import SetParameters
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.parameter import Parameter
+from slow_file import SlowFile
 from std_srvs.srv import Trigger
 
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
 from sdf_pose_bridge_interfaces.srv import LookupPose
 
 
-@pytest.fixture(name='pipe')
-def make_pipe(tmp_path):
-    path = tmp_path / 'slow.sdf'
-    os.mkfifo(path)
-    return path
+@pytest.fixture(name='slow')
+def make_slow_file(tmp_path):
+    return SlowFile(tmp_path / 'slow.sdf')
 
 
 @pytest.fixture(name='file')
@@ -50,14 +46,13 @@ def bridge_on_file(start_bridge, file):
     return start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
 
 
-@pytest.fixture(name='bridge_on_pipe')
-def start_on_pipe(start_bridge, pipe):
-    writer = threading.Thread(target=pipe.write_text, args=[world(1)], daemon=True)
-    writer.start()
-    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={pipe}', '-p', 'watch:=false')
+@pytest.fixture(name='slow_again')
+def start_on_slow_file(start_bridge, tmp_path):
+    slow = SlowFile(tmp_path / 'slow.sdf', world(1))
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={slow.path}', '-p', 'watch:=false')
     bridge.wait_until_started()
-    writer.join()
-    return bridge
+    slow.hold()
+    return slow
 
 
 @pytest.fixture(name='listener')
@@ -98,10 +93,9 @@ def assert_services_answer(listener):
     assert value.string_value == 'world'
 
 
-def test_services_answer_while_a_parameter_has_a_file_read(bridge, pipe, listener):
-    setting = asked_for_file(listener, pipe)
-    # Opens when the other side has, which is reading from then on.
-    with pipe.open('w', encoding='utf-8') as slow:
+def test_services_answer_while_a_parameter_has_a_file_read(bridge, slow, listener):
+    setting = asked_for_file(listener, slow.path)
+    with slow.opened():
         assert_services_answer(listener)
         assert not setting.done()
         assert last_x(listener) == 1.0
@@ -111,34 +105,34 @@ def test_services_answer_while_a_parameter_has_a_file_read(bridge, pipe, listene
     wait_for_x(listener, 2.0)
 
 
-def test_services_answer_while_a_file_is_read_again(bridge_on_pipe, pipe, listener):
+def test_services_answer_while_a_file_is_read_again(slow_again, listener):
     reloading = asked(listener, Trigger, 'reload', Trigger.Request())
-    with pipe.open('w', encoding='utf-8') as slow:
+    with slow_again.opened():
         assert_services_answer(listener)
         assert not reloading.done()
-        slow.write(world(2))
+        slow_again.write(world(2))
     answer = answer_to(listener, reloading)
     assert answer.success, answer.message
     wait_for_x(listener, 2.0)
 
 
-def test_services_answer_while_a_changed_file_is_read(bridge, file, pipe, listener):
-    pipe.replace(file)
-    with file.open('w', encoding='utf-8') as slow:
+def test_services_answer_while_a_changed_file_is_read(bridge, file, slow, listener):
+    slow.path.replace(file)
+    with slow.opened():
         assert_services_answer(listener)
         slow.write(world(2))
     wait_for_x(listener, 2.0)
 
 
 def test_what_is_asked_for_during_a_reload_comes_after_it(
-        bridge_on_pipe, pipe, file, listener):
+        slow_again, file, listener):
     replace(file, world(5))
     reloading = asked(listener, Trigger, 'reload', Trigger.Request())
-    with pipe.open('w', encoding='utf-8') as slow:
+    with slow_again.opened():
         setting = asked_for_file(listener, file)
         assert_services_answer(listener)
         assert not setting.done()
-        slow.write(world(2))
+        slow_again.write(world(2))
     assert answer_to(listener, reloading).success
     assert answer_to(listener, setting).results[0].successful
     wait_for_x(listener, 5.0)
@@ -149,21 +143,21 @@ def test_what_is_asked_for_during_a_reload_comes_after_it(
         for each in message.transforms}
 
 
-def test_what_arrives_bad_after_a_while_is_refused(bridge, pipe, listener):
-    setting = asked_for_file(listener, pipe)
-    with pipe.open('w', encoding='utf-8') as slow:
+def test_what_arrives_bad_after_a_while_is_refused(bridge, slow, listener):
+    setting = asked_for_file(listener, slow.path)
+    with slow.opened():
         slow.write('not XML')
     (result,) = answer_to(listener, setting).results
     assert not result.successful
-    assert f'{pipe}:1: FILE_READ' in result.reason
+    assert f'{slow.path}:1: FILE_READ' in result.reason
     assert reload(listener).success
     assert last_x(listener) == 1.0
 
 
-def test_diagnostics_go_on_while_a_file_is_read(bridge, pipe, listener):
+def test_diagnostics_go_on_while_a_file_is_read(bridge, slow, listener):
     monitor = Monitor(listener)
-    setting = asked_for_file(listener, pipe)
-    with pipe.open('w', encoding='utf-8') as slow:
+    setting = asked_for_file(listener, slow.path)
+    with slow.opened():
         assert monitor.wait_for_more().level == DiagnosticStatus.OK
         slow.write(world(2))
     assert answer_to(listener, setting).results[0].successful

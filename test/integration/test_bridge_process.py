@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """How the process starts, fails and ends, seen from outside."""
 
-import os
 import signal
 
 import pytest
@@ -13,6 +12,7 @@ from builtin_interfaces.msg import Time
 from changes import Monitor
 from changes import reload
 from rosgraph_msgs.msg import Clock
+from slow_file import SlowFile
 
 GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
 BAD = """\
@@ -201,11 +201,9 @@ def test_a_signal_ends_it_well_before_anything_is_loaded(start_bridge, write_fil
 
 @STOP_SIGNALS
 def test_a_signal_ends_it_well_while_it_reads(start_bridge, tmp_path, number):
-    pipe = tmp_path / 'endless.sdf'
-    os.mkfifo(pipe)
-    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={pipe}')
-    # Opens when the other side has; that one then reads, and nothing ever comes.
-    with pipe.open('wb'):
+    slow = SlowFile(tmp_path / 'slow.sdf')
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={slow.path}')
+    with slow.opened():
         bridge.wait_until_sleeping()
         bridge.send(number)
         assert_ended_well(bridge)

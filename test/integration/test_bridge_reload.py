@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a running bridge notices, what it replaces, and what it keeps when something is wrong."""
 
-import os
 import signal
 
 import pytest
@@ -27,6 +26,7 @@ from rcl_interfaces.msg import ParameterType
 from rcl_interfaces.msg import ParameterValue
 from rcl_interfaces.srv import SetParameters
 from rcl_interfaces.srv import SetParametersAtomically
+from slow_file import SlowFile
 
 INCLUDING = """<sdf version="1.10"><world name="w">
   <include><uri>model://box</uri></include>
@@ -328,16 +328,14 @@ def test_a_value_that_is_none_is_answered_and_the_node_lives_on(listener, servic
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_it_well_while_it_reads_another_file(bridge, listener, tmp_path, number):
-    pipe = tmp_path / 'endless.sdf'
-    os.mkfifo(pipe)
+    slow = SlowFile(tmp_path / 'slow.sdf')
     request = SetParameters.Request(parameters=[Parameter(
         name='sdf_file', value=ParameterValue(
-            type=ParameterType.PARAMETER_STRING, string_value=str(pipe)))])
+            type=ParameterType.PARAMETER_STRING, string_value=str(slow.path)))])
     client = listener.node.create_client(SetParameters, f'{BRIDGE}/set_parameters')
     listener.wait(client.service_is_ready, lambda: 'the service')
     client.call_async(request)
-    # Opens when the other side has; that one then reads, and nothing ever comes.
-    with pipe.open('wb'):
+    with slow.opened():
         bridge.send(number)
         assert bridge.wait_for_end() == 0, '\n'.join(bridge.lines)
     assert not [line for line in bridge.lines if 'Traceback' in line or 'rror' in line]
