@@ -27,6 +27,17 @@ BROKEN = """\
   </model>
 </sdf>
 """
+MISSPELT = """\
+<sdf version="1.10">
+  <model name="cell">
+    <link name="table"/>
+    <lnk name="shelf"/>
+    <frame name="camera_mount" attached_to="table">
+      <pose relativ_to="table">0 0 1 0 0 90</pose>
+    </frame>
+  </model>
+</sdf>
+"""
 
 
 def shown_after(command):
@@ -90,7 +101,7 @@ def test_errors(start_bridge, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     main(['check', 'broken.sdf'])
     (line,) = capsys.readouterr().out.splitlines()
-    assert shown_after('$ sdf_pose check')[0] == line
+    assert shown_after('$ sdf_pose check broken.sdf')[0] == line
     bridge = start_bridge('--ros-args', '-p', 'sdf_file:=broken.sdf')
     assert bridge.wait_for_end() == 1
     assert bridge.lines[0].endswith(f'/{line}')
@@ -99,3 +110,11 @@ def test_errors(start_bridge, tmp_path, monkeypatch, capsys):
     assert fatal.startswith('[FATAL]')
     assert fatal.endswith(f': /home/me/ws/{line}')
     assert shown_after('$ ros2 param set')[0].endswith(f': /home/me/ws/{line}')
+
+
+def test_warnings(tmp_path, monkeypatch, capsys):
+    (tmp_path / 'cell.sdf').write_text(MISSPELT)
+    monkeypatch.chdir(tmp_path)
+    assert main(['check', '--strict', 'cell.sdf']) == 1
+    printed = capsys.readouterr().out.splitlines()
+    assert shown_after('$ sdf_pose check --strict cell.sdf')[:len(printed)] == printed
