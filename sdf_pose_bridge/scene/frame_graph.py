@@ -86,6 +86,8 @@ class _Builder:
         self._scopes = NameScopes(elements, usage)
         self._scope_of: list[int] = elements.scopes.tolist()
         self._reported_cycles: set[frozenset[int]] = set()
+        self._links_with_automatic_inertial = {
+            int(elements.parents[inertial]) for inertial in elements.automatic_inertials}
         self._unresolved: dict[int, str] = {}
         """Unresolved elements, and for each the URI of the missing include that causes it."""
 
@@ -228,7 +230,9 @@ class _Builder:
         """Report an unknown ``relative_to``; return the reference to use instead."""
         elements = self._elements
         scope = self._scope_of[index]
-        if IS_FRAME_KIND[elements.kinds[index]] or elements.has_automatic_mass(index):
+        if IS_FRAME_KIND[elements.kinds[index]] or (
+                elements.kinds[index] == Kind.COLLISION
+                and int(elements.parents[index]) in self._links_with_automatic_inertial):
             self._report_unknown(
                 RelativeToError, index, 'relative_to', name, scope,
                 int(elements.pose_lines[index]), 'pose')

@@ -138,16 +138,6 @@ class Elements(NamedTuple):
         """
         return Kind(int(self.kinds[index]))
 
-    def has_automatic_mass(self, index: int) -> bool:
-        """
-        Return whether an automatic inertial depends on an element.
-
-        :param index: index of the element.
-        :return: True for a collision in a link with such an inertial.
-        """
-        return self.kind(index) is Kind.COLLISION and any(
-            self.parents[inertial] == self.parents[index] for inertial in self.automatic_inertials)
-
     def place(self, index: int, line: int = 0, part: str = '') -> Place:
         """
         Return the place of an element, or of a part of it.
