@@ -48,6 +48,8 @@ _SCOPED_NAMES = ('//*[contains(@name, "::")]'
                  '[not(ancestor-or-self::*[self::plugin or contains(name(), ":")])]')
 """Finds names with ``::`` in what does not belong to others than SDFormat."""
 
+_DEFAULT_FORMAT = PoseFormat()
+
 
 def elements_from_tree(
     root: XmlElement, sources: Sources, problems: Problems, *, may_hold_scoped_names: bool,
@@ -216,7 +218,7 @@ class _Reader:
                 fault = value_fault(text_of(child), child_definition)
                 if fault:
                     self._problems.error(ElementInvalidError(fault, self._sources.place(child)))
-            if child_definition.value_type is not None:
+            if len(child) and child_definition.value_type is not None:
                 for grandchild in child:
                     self._undefined.report_element(grandchild, child_definition)
 
@@ -257,13 +259,13 @@ class _Reader:
                 self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
 
     def _read_pose(self, xml: XmlElement, definition: Definition, index: int) -> None:
-        pose_format: PoseFormat | None = PoseFormat()
+        pose_format: PoseFormat | None = _DEFAULT_FORMAT
         if xml.keys():
             self._read_relative_to(xml, definition, index)
             pose_format = self._pose_format(xml)
         text = '' if pose_format is None else text_of(xml)
         self._builder.set_pose(
-            index, text, pose_format or PoseFormat(), self._sources.line(xml))
+            index, text, pose_format or _DEFAULT_FORMAT, self._sources.line(xml))
 
     def _pose_format(self, xml: XmlElement) -> PoseFormat | None:
         """Read the attributes about the format of a pose; report them if they are not valid."""
@@ -301,6 +303,6 @@ class _Reader:
         pose_format = self._pose_format(xml)
         try:
             pose_from_text(
-                '' if pose_format is None else text_of(xml), pose_format or PoseFormat())
+                '' if pose_format is None else text_of(xml), pose_format or _DEFAULT_FORMAT)
         except PoseTextError as error:
             self._problems.error(ElementInvalidError(str(error), self._sources.place(xml)))

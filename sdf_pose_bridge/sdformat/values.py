@@ -42,8 +42,8 @@ _LEADING_INTEGER_OR_BOOLEAN = re.compile(r'[+-]?[0-9]|true|false', re.IGNORECASE
 _LEADING_BOOLEAN = re.compile(r'true|false', re.IGNORECASE)
 _DIGITS = frozenset('0123456789')
 _SHORTEST_AXIS = 1e-6
-_SHORTEST_OVERFLOW = len('1e308')
-"""A number that is written with fewer characters is in the range of a double."""
+_LONGEST_PLAIN = 200
+"""A number with fewer characters, and without an exponent, is in the range of a double."""
 _NOT_ZERO = re.compile(r'[^eE]*[1-9]')
 _FEWEST_COLOR_NUMBERS = 3
 # Python takes longer to look up a member of an Enum than a global variable.
@@ -74,7 +74,8 @@ def value_fault(text: str, definition: Definition) -> str:
     :param definition: the definition of the element; not that of a pose.
     :return: the value and the rule that it breaks; empty if it is right.
     """
-    if definition.takes_any_number and text[:1] in _DIGITS and len(text) < _SHORTEST_OVERFLOW:
+    if (definition.takes_any_number and text[:1] in _DIGITS and len(text) < _LONGEST_PLAIN
+            and 'e' not in text and 'E' not in text):
         return ''
     value_type = definition.value_type
     stripped = text.strip(WHITE_SPACE)
@@ -177,8 +178,6 @@ _IDENTITY_TEXTS = {6: '0 0 0 0 0 0', 7: '0 0 0 0 0 0 1'}
 _DECIMAL_NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?')
 _NUMBER_CHARACTERS = b'0123456789+-.eE \t\n\r'
 _THREE_DIGIT_EXPONENT = re.compile(r'[eE]-0*[1-9][0-9][0-9]')
-_LONGEST_PLAIN = 200
-"""A text without such an exponent and with fewer characters has no number that becomes zero."""
 
 
 class PoseFormat(NamedTuple):
