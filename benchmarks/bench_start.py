@@ -217,7 +217,7 @@ def prepared_starter() -> Iterator[tuple[Starter, list[str], list[str]]]:
 
 @benchmark(
     'start to /tf_static of the work cell published',
-    counterpart='a minimal node that publishes an empty message', goal=AtMostTimes(1.1))
+    counterpart='a minimal node that publishes an empty message', goal=AtMostTimes(1.08))
 def start_and_minimal_node() -> Iterator[tuple[Function, Function | None]]:
     with prepared_starter() as (starter, ours, theirs):
         yield lambda: starter.until_published(ours), lambda: starter.until_published(theirs)
