@@ -170,7 +170,6 @@ def robot_and_parse():
     yield lambda: load(path), lambda: etree.parse(path)
 
 
-# It takes half a minute for the larger world: its time grows faster than the file.
 # libsdformat 12 takes half a minute for the larger world: its time grows faster than the file.
 @benchmark('file to Scene, wide world of 5,500 poses', counterpart='libsdformat 12',
            goal=TimesAsFast(20.0))
