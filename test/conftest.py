@@ -9,7 +9,7 @@ from ros_domain import claimed_domain
 
 # A machine that has other work to do may take long for an example.
 settings.register_profile(
-    'untimed', deadline=None, suppress_health_check=[HealthCheck.too_slow])
+    'untimed', settings(), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile('untimed')
 
 
