@@ -15,7 +15,7 @@ from sdf_pose_bridge.errors import Place
 
 
 class Limits(NamedTuple):
-    """What a load may use. The defaults are more than twice what the largest real files need."""
+    """What a load may use. The defaults leave room for a file of a million poses."""
 
     bytes_read: int = 512 * 1024 * 1024
     """Size of all files together, included files and manifests among them."""

@@ -76,8 +76,7 @@ class UndefinedReporter:
         if (not isinstance(xml.tag, str) or ':' in tag or parent.takes_any_children
                 or parent_xml is None):
             return
-        if not self._problems.keeps_warnings():
-            self._problems.count_more(errors=0, warnings=1)
+        if self._is_only_counted():
             return
         hint = _ELEMENT_HINTS.get(f'{parent.identifier}/{tag}', '') or _ELEMENT_HINTS.get(tag, '')
         if not hint and tag in parent.attributes:
@@ -97,8 +96,7 @@ class UndefinedReporter:
         # lxml writes the namespace of a prefix in braces.
         if ':' in name or '{' in name:
             return
-        if not self._problems.keeps_warnings():
-            self._problems.count_more(errors=0, warnings=1)
+        if self._is_only_counted():
             return
         hint = _ATTRIBUTE_HINTS.get((definition.identifier, name), '')
         if not hint and name in definition.children:
@@ -106,6 +104,13 @@ class UndefinedReporter:
         elif not hint:
             hint = self._did_you_mean(name, definition.identifier, definition.attributes, '{}')
         self._warn(xml, f'{name}="{xml.get(name)}" of <{written_tag(xml)}>', hint)
+
+    def _is_only_counted(self) -> bool:
+        """Count a warning that is one too many to be kept, so that it need not be made."""
+        is_kept = self._problems.keeps_warnings()
+        if not is_kept:
+            self._problems.count_more(errors=0, warnings=1)
+        return not is_kept
 
     def _warn(self, xml: XmlElement, what: str, hint: str) -> None:
         ending = f'; {hint}' if hint else ''

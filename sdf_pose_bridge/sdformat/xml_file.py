@@ -44,7 +44,6 @@ _START_TAG = re.compile(
     rb'|!--.*?-->|!\[CDATA\[.*?\]\]>|![A-Z](?:[^"\'>]|"[^"]*"|\'[^\']*\')*>|\?.*?\?>)', re.DOTALL)
 """A start tag, or what may hold something that looks like one."""
 
-
 _INTERNAL_SUBSET = re.compile(rb'<!DOCTYPE(?:[^"\'\[>]|"[^"]*"|\'[^\']*\')*\[')
 
 

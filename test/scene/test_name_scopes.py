@@ -124,7 +124,10 @@ def test_message_has_the_nearest_name_of_a_nested_model():
 
 
 def test_message_has_the_name_with_the_separator_of_sdformat():
-    assert 'did you mean "n::n2::deep"?' in only_error(in_model('n/n2/deep')).message
+    text = model_file(
+        '<model name="n"><link name="l"/></model><frame name="n_l"/>'
+        + posed('frame', 'f', '', 'n/l'))
+    assert 'did you mean "n::l"?' in only_error(text).message
 
 
 def test_message_has_no_name_if_none_is_similar():

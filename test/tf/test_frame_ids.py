@@ -204,9 +204,9 @@ def test_z_of_an_optical_frame_is_ahead_and_y_down():
 
 @pytest.mark.parametrize('kind', [
     'camera', 'depth_camera', 'rgbd_camera', 'thermal_camera', 'segmentation_camera',
-    'boundingbox_camera', 'wideanglecamera', 'multicamera'])
+    'boundingbox_camera', 'wide_angle_camera', 'wideanglecamera', 'multicamera'])
 def test_every_type_of_camera(kind):
-    text = model_file(f'<link name="l">{camera()}</link>').replace('"camera"', f'"{kind}"')
+    text = model_file(f'<link name="l"><sensor name="cam" type="{kind}"/></link>')
     assert 'l/cam_optical' in tree_of(text).frame_ids
 
 

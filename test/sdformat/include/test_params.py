@@ -178,6 +178,22 @@ def test_parameter_removes_an_element(load, params, gone):
     assert before.count(gone) - after.count(gone) == 1
 
 
+def test_attribute_of_an_added_element_that_is_not_defined_is_left_out(load):
+    scene = load('<frame element_id="" name="f" action="add" colour="red"/>')
+    assert 'arm::f' in names_of(scene)
+    assert scene.warnings == ()
+
+
+def test_required_value_that_a_parameter_empties_has_its_default(load):
+    arm = ARM.replace('<link name="base">', (
+        '<link name="base"><collision name="c"><geometry><box><size>2 2 2</size></box></geometry>'
+        '</collision>'))
+    assert arm != ARM
+    scene = load('<collision element_id="base::c"><geometry action="modify"><box><size/></box>'
+                 '</geometry></collision>', arm=arm)
+    assert 'arm::base::c' in names_of(scene)
+
+
 def test_include_in_an_added_model_is_replaced(load):
     params = ('<model element_id="" name="second" action="add"><include><uri>tool.sdf</uri>'
               '</include></model>')
