@@ -249,6 +249,12 @@ class ExpressedInError(SdfError):
     code = 'JOINT_AXIS_EXPRESSED_IN_INVALID'
 
 
+class MimicError(SdfError):
+    """The joint or the axis that a joint's axis mimics does not exist, or is that axis itself."""
+
+    code = 'JOINT_AXIS_MIMIC_INVALID'
+
+
 class UriLookupError(SdfError):
     """The URI of an include was not found."""
 

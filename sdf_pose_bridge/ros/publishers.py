@@ -26,7 +26,7 @@ from sdf_pose_bridge.ros.cdr import pose_stamped_messages
 from sdf_pose_bridge.ros.cdr import StampedMessages
 from sdf_pose_bridge.ros.cdr import tf_message
 from sdf_pose_bridge.ros.cdr import transform_stamped_messages
-from sdf_pose_bridge.tf.tree import NO_PARENT
+from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
 # How many can be published, or made, in the milliseconds that other callbacks can wait.

@@ -1,11 +1,11 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Check that every joint joins two bodies.
+Check that every joint joins two bodies, and that its axes refer to frames and joints.
 
-Source: ``checkJointParentChildNames`` and ``checkJointAxisExpressedInValues`` of libsdformat. They
-skip joints of models in models, except for unknown children and one name at both ends; here the
-rest are warnings.
+Source: ``checkJointParentChildNames``, ``checkJointAxisExpressedInValues`` and
+``checkJointAxisMimicValues`` of libsdformat. They skip joints of models in models, except for
+unknown children and one name at both ends; here the rest are warnings.
 """
 
 from __future__ import annotations
@@ -17,13 +17,27 @@ from sdf_pose_bridge.errors import ExpressedInError
 from sdf_pose_bridge.errors import JointChildError
 from sdf_pose_bridge.errors import JointParentError
 from sdf_pose_bridge.errors import JointSameLinkError
+from sdf_pose_bridge.errors import MimicError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.name_scopes import NameScopes
+from sdf_pose_bridge.sdformat.elements import AxisDetails
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import Indices
+from sdf_pose_bridge.sdformat.elements import MimicDetails
+from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.elements import Reference
+from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
+
+
+class AxisReferences(NamedTuple):
+    """The elements that an axis of a joint refers to, by index."""
+
+    expressed_in: int
+    """The frame that its vector is expressed in."""
+    leader: int
+    """The joint that it mimics; -1 for none."""
 
 
 class JointEnds(NamedTuple):
@@ -32,6 +46,8 @@ class JointEnds(NamedTuple):
     joint: int
     parent: int
     child: int
+    axes: tuple[AxisReferences, ...] = ()
+    """Those of both axes, also where they are not given; empty before the joint is checked."""
 
 
 def valid_joints(
@@ -46,10 +62,10 @@ def valid_joints(
     :param joints: the joints to check.
     :param bodies: for each frame the link, static model or root that it is attached to.
     :param problems: takes what is wrong.
-    :return: the joints that join two bodies.
+    :return: the joints that join two bodies, with the references of their axes.
     """
     checks = _JointChecks(elements, scopes, bodies.tolist(), problems)
-    return [ends for ends in joints if checks.is_valid(ends)]
+    return [checked for ends in joints if (checked := checks.checked(ends)) is not None]
 
 
 class _JointChecks:
@@ -63,15 +79,45 @@ class _JointChecks:
         self._bodies = bodies
         self._problems = problems
 
-    def is_valid(self, ends: JointEnds) -> bool:
-        for reference in self._elements.joints[ends.joint].expressed_in:
-            if self._scopes.frame(self._scope_of[ends.joint], reference.name) is None:
-                self._report_unknown(
-                    ExpressedInError, ends.joint, reference, 'expressed_in', 'axis')
-        return self._are_ends_valid(ends) and self._are_bodies_valid(ends)
+    def checked(self, ends: JointEnds) -> JointEnds | None:
+        axes = tuple(
+            AxisReferences(
+                self._expressed_in(ends.joint, axis), self._leader(ends.joint, index, axis.mimic))
+            if axis is not None else AxisReferences(ends.joint, NO_ELEMENT)
+            for index, axis in enumerate(self._elements.joints[ends.joint].axes))
+        is_valid = self._are_ends_valid(ends) and self._are_bodies_valid(ends)
+        return ends._replace(axes=axes) if is_valid else None
+
+    def _expressed_in(self, joint: int, axis: AxisDetails) -> int:
+        reference = axis.expressed_in
+        if not reference.name:
+            return joint
+        found = self._scopes.frame(self._scope_of[joint], reference.name)
+        if found is None:
+            self._report_unknown(ExpressedInError, joint, reference, 'expressed_in', 'axis')
+            return joint
+        return found
+
+    def _leader(self, joint: int, axis: int, mimic: MimicDetails | None) -> int:
+        if mimic is None:
+            return NO_ELEMENT
+        name = mimic.joint.name
+        leader = self._scopes.frame(self._scope_of[joint], name) if name else None
+        if leader is None or leader not in self._elements.joints:
+            msg = f'mimic joint="{name}" names no joint'
+        elif mimic.axis not in AXIS_TAGS:
+            msg = f'mimic axis="{mimic.axis}" must be one of {", ".join(AXIS_TAGS)}'
+        elif (leader, AXIS_TAGS.index(mimic.axis)) == (joint, axis):
+            msg = 'an axis cannot mimic itself'
+        elif self._elements.joints[leader].axes[AXIS_TAGS.index(mimic.axis)] is None:
+            msg = f'mimic: joint "{name}" has no <{mimic.axis}>'
+        else:
+            return leader
+        self._report(MimicError, msg, joint, mimic.joint.line, AXIS_TAGS[axis])
+        return NO_ELEMENT
 
     def _are_ends_valid(self, ends: JointEnds) -> bool:
-        joint, parent_index, child_index = ends
+        joint, parent_index, child_index = ends.joint, ends.parent, ends.child
         details = self._elements.joints[joint]
         parent, child = details.parent, details.child
         if child.name == WORLD_FRAME:

@@ -20,21 +20,29 @@ import numpy as np
 
 from sdf_pose_bridge.errors import LimitError
 from sdf_pose_bridge.errors import LoadError
+from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.frame_graph import frame_graph_from_elements
 from sdf_pose_bridge.scene.frame_graph import FrameGraph
+from sdf_pose_bridge.scene.joints import AxisReferences
+from sdf_pose_bridge.scene.joints import JointEnds
+from sdf_pose_bridge.scene.resolution import axis_in_joint
 from sdf_pose_bridge.scene.resolution import root_poses_from_graph
 from sdf_pose_bridge.scene.resolution import set_automatic_inertials
 from sdf_pose_bridge.scene.scene import Joint
+from sdf_pose_bridge.scene.scene import JointAxis
+from sdf_pose_bridge.scene.scene import Mimic
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.documents import document_from_file
 from sdf_pose_bridge.sdformat.documents import document_from_text
+from sdf_pose_bridge.sdformat.elements import AxisDetails
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
+from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
 from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.reader import elements_from_tree
@@ -206,9 +214,8 @@ def _scene_from_graph(
             new_index_of[index] for index, details in elements.models.items()
             if details.is_static and is_kept[index]),
         joints=tuple(
-            Joint(new_index_of[joint], elements.joints[joint].type, new_index_of[parent],
-                  new_index_of[child])
-            for joint, parent, child in graph.joints if is_kept[joint]),
+            _joint(ends, elements, poses, new_index_of)
+            for ends in graph.joints if is_kept[ends.joint]),
         sensors=MappingProxyType({
             new_index_of[index]: details for index, details in elements.sensors.items()
             if is_kept[index]}),
@@ -219,6 +226,33 @@ def _scene_from_graph(
             for index in np.flatnonzero(is_kept & (elements.kinds == Kind.WORLD)).tolist()}),
         warnings=problems.warnings,
     )
+
+
+def _joint(
+    ends: JointEnds, elements: Elements, poses: PoseArray, new_index_of: Sequence[int],
+) -> Joint:
+    details = elements.joints[ends.joint]
+    axis, axis2 = (
+        _joint_axis(axis, references, ends.joint, poses, new_index_of)
+        for axis, references in zip(details.axes, ends.axes, strict=True))
+    return Joint(
+        new_index_of[ends.joint], details.type, new_index_of[ends.parent],
+        new_index_of[ends.child], (axis, axis2), details.screw_pitch_m)
+
+
+def _joint_axis(
+    axis: AxisDetails | None, references: AxisReferences, joint: int, poses: PoseArray,
+    new_index_of: Sequence[int],
+) -> JointAxis:
+    if axis is None:
+        return JointAxis((0.0, 0.0, 1.0))
+    mimic = axis.mimic
+    leader = new_index_of[references.leader]
+    return JointAxis(
+        axis_in_joint(axis.xyz, references.expressed_in, joint, poses), axis.lower, axis.upper,
+        None if mimic is None or leader == NO_ELEMENT else Mimic(
+            leader, AXIS_TAGS.index(mimic.axis), mimic.multiplier, mimic.offset,
+            mimic.reference))
 
 
 def _frozen(array: npt.NDArray[_Scalar]) -> npt.NDArray[_Scalar]:

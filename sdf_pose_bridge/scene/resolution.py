@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +14,7 @@ from sdf_pose_bridge.geometry.poses import pose_inverse
 from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.scene.frame_graph import FrameGraph
 from sdf_pose_bridge.sdformat.elements import Elements
@@ -38,7 +40,7 @@ def root_poses_from_graph(poses: PoseArray, graph: FrameGraph) -> PoseArray:
     references = graph.references
     is_reference = np.zeros(len(references), dtype=bool)
     is_reference[references[references >= 0]] = True
-    resolved = _poses_along_chains(edges, references, np.flatnonzero(is_reference))
+    resolved = poses_along_chains(edges, references, np.flatnonzero(is_reference))
     others = np.flatnonzero(~is_reference & (references >= 0))
     resolved[others] = pose_products(resolved[references[others]], edges[others])
     resolved[:, 3:] = canonical_quaternion(resolved[:, 3:])
@@ -67,7 +69,29 @@ def set_automatic_inertials(root_poses: PoseArray, elements: Elements) -> None:
         root_poses[index, 3:] = root_poses[link, 3:]
 
 
-def _poses_along_chains(
+def axis_in_joint(
+    xyz: tuple[float, float, float], expressed_in: int, joint: int, root_poses: PoseArray,
+) -> tuple[float, float, float]:
+    """
+    Return the direction of an axis of a joint (``JointAxis::ResolveXyz``).
+
+    :param xyz: the axis as written; not zero.
+    :param expressed_in: the frame that it is expressed in.
+    :param joint: the joint.
+    :param root_poses: shape (n, 7), pose of each element in its root.
+    :return: unit vector in the frame of the joint.
+    """
+    length = math.hypot(*xyz)
+    x, y, z = (component / length for component in xyz)
+    if expressed_in == joint:
+        return x, y, z
+    rotations = (
+        Pose(0.0, 0.0, 0.0, *root_poses[index, 3:].tolist()) for index in (joint, expressed_in))
+    direction = pose_product(relative_pose(*rotations), Pose(x, y, z))
+    return direction.x, direction.y, direction.z
+
+
+def poses_along_chains(
     edges: PoseArray, references: Indices, indices: npt.NDArray[np.intp],
 ) -> PoseArray:
     """

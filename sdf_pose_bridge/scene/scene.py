@@ -4,6 +4,7 @@
 
 from collections.abc import Mapping
 from functools import cached_property
+import math
 from typing import NamedTuple
 from typing import TYPE_CHECKING
 
@@ -24,6 +25,34 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
 
+class Mimic(NamedTuple):
+    """
+    The joint axis that an axis follows.
+
+    Its position is ``multiplier * (position of the leader - reference) + offset``.
+    """
+
+    joint: int
+    """The joint of the leader, as an index into the scene."""
+    axis: int
+    """Which axis of that joint: 0 for ``<axis>``, 1 for ``<axis2>``."""
+    multiplier: float
+    offset: float
+    reference: float
+
+
+class JointAxis(NamedTuple):
+    """An axis of a joint."""
+
+    xyz: tuple[float, float, float]
+    """Unit vector in the frame of the joint."""
+    lower: float = -math.inf
+    """Lower limit of the position, in radians or metres."""
+    upper: float = math.inf
+    """Upper limit of the position, in radians or metres."""
+    mimic: Mimic | None = None
+
+
 class Joint(NamedTuple):
     """A joint with its ends, all as indices into the scene."""
 
@@ -34,6 +63,11 @@ class Joint(NamedTuple):
     """The parent frame; a world or implicit root for ``world``."""
     child: int
     """The child frame."""
+    axes: tuple[JointAxis, JointAxis]
+    """``<axis>`` and ``<axis2>``; along z where the file has none."""
+    screw_pitch_m: float
+    """How far a screw joint moves along its axis in one turn; positive for a right-handed
+    thread."""
 
 
 class Scene:

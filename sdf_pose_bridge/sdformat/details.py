@@ -17,26 +17,20 @@ import math
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ElementMissingError
-from sdf_pose_bridge.errors import JointChildError
-from sdf_pose_bridge.errors import JointParentError
 from sdf_pose_bridge.errors import LinkInertiaError
-from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.elements import CollisionMass
 from sdf_pose_bridge.sdformat.elements import FrameDetails
-from sdf_pose_bridge.sdformat.elements import JointDetails
 from sdf_pose_bridge.sdformat.elements import ModelDetails
-from sdf_pose_bridge.sdformat.elements import Reference
 from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import boolean_from_text
-from sdf_pose_bridge.sdformat.values import leading_numbers
+from sdf_pose_bridge.sdformat.values import numbers_of_child
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
 from sdf_pose_bridge.sdformat.xml_tree import first_child
-from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import value_of
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
@@ -137,39 +131,6 @@ class DetailsReader:
         """
         return FrameDetails(
             reference_of(xml, 'attached_to'), xml.get(PLACEMENT_OF_MERGED_MODEL, ''))
-
-    def joint(self, xml: XmlElement) -> JointDetails:
-        """
-        Read a joint.
-
-        :param xml: a ``<joint>``.
-        :return: its details. References are empty where they are missing or reserved.
-        """
-        joint_type = attribute_of(xml, 'type').lower()
-        axes = (first_child(xml, tag) for tag in ('axis', 'axis2'))
-        xyzs = (first_child(axis, 'xyz') for axis in axes if axis is not None)
-        expressed_in = (
-            Reference(attribute_of(xyz, 'expressed_in'), self._sources.line(xyz))
-            for xyz in xyzs if xyz is not None)
-        return JointDetails(
-            joint_type, self._joint_end(xml, 'parent', joint_type),
-            self._joint_end(xml, 'child', joint_type),
-            tuple(reference for reference in expressed_in if reference.name))
-
-    def _joint_end(self, xml: XmlElement, tag: str, joint_type: str) -> Reference:
-        element = first_child(xml, tag)
-        if element is None:
-            error = ElementMissingError if joint_type != 'ball' else (
-                JointParentError if tag == 'parent' else JointChildError)
-            msg = f'the joint has no <{tag}>; it must name a frame'
-            self._problems.error(error(msg, self._sources.place(xml)))
-            return Reference('')
-        name = value_of(element)
-        if name == ROOT_FRAME:
-            msg = f'"{name}" is reserved; it cannot be the {tag} of a joint'
-            self._problems.error(ReservedNameError(msg, self._sources.place(element)))
-            name = ''
-        return Reference(name, self._sources.line(element))
 
     def sensor(self, xml: XmlElement) -> SensorDetails:
         """
@@ -278,7 +239,7 @@ def collision_masses(
     if pose is not None:
         msg = 'the pose of an automatic inertial is ignored; the collisions give it'
         problems.warning(msg, sources.place(pose))
-    default_density = _number(inertial, 'density', DEFAULT_DENSITY_KG_M3)
+    default_density = numbers_of_child(inertial, 'density', (DEFAULT_DENSITY_KG_M3,))
     masses = []
     for collision in collisions:
         shape = _shape(collision)
@@ -289,7 +250,7 @@ def collision_masses(
             problems.warning(msg, sources.place(collision))
             return ()
         mass = None if shape is None else _mass(
-            shape, _number(collision, 'density', default_density))
+            shape, *numbers_of_child(collision, 'density', default_density))
         if mass is None:
             msg = ('an automatic inertial needs collisions that are boxes, capsules, cones, '
                    'cylinders, ellipsoids or spheres, with positive dimensions and density')
@@ -311,7 +272,7 @@ def _mass(shape: XmlElement, density_kg_m3: float) -> CollisionMass | None:
     """Return the mass of a shape and its centre; None if a number is not positive."""
     sizes_m = [
         number for tag, default in _DEFAULT_DIMENSIONS[str(shape.tag)].items()
-        for number in _numbers(shape, tag, default)]
+        for number in numbers_of_child(shape, tag, default)]
     # A capsule without its cylinder is a sphere.
     required = sizes_m[:1] if shape.tag == 'capsule' else sizes_m
     if not sizes_m or min([density_kg_m3, *required]) <= 0.0:
@@ -335,14 +296,3 @@ def _volume(tag: str, sizes_m: list[float]) -> tuple[float, float]:
     if tag == 'cone':
         return disc * length / 3.0, -0.25 * length
     return disc * length, 0.0
-
-
-def _number(parent: XmlElement, tag: str, default: float) -> float:
-    return _numbers(parent, tag, (default,))[0]
-
-
-def _numbers(parent: XmlElement, tag: str, default: tuple[float, ...]) -> tuple[float, ...]:
-    """Return the numbers of a child; the default if there is none, or if it is not valid."""
-    child = first_child(parent, tag)
-    numbers = () if child is None else tuple(leading_numbers(text_of(child), len(default)))
-    return numbers if len(numbers) == len(default) else default

@@ -58,15 +58,44 @@ class FrameDetails(NamedTuple):
     one."""
 
 
+class MimicDetails(NamedTuple):
+    """The joint axis that an axis follows: ``multiplier * (leader - reference) + offset``."""
+
+    joint: Reference
+    """The joint of the leader."""
+    axis: str
+    """Which axis of it: ``axis`` or ``axis2``."""
+    multiplier: float
+    offset: float
+    reference: float
+
+
+class AxisDetails(NamedTuple):
+    """An axis of a joint."""
+
+    xyz: tuple[float, float, float]
+    """As written; not zero."""
+    expressed_in: Reference
+    """The frame that ``xyz`` is expressed in; empty for the frame of the joint."""
+    lower: float
+    """Lower limit of the position, in radians or metres."""
+    upper: float
+    """Upper limit of the position, in radians or metres."""
+    mimic: MimicDetails | None
+
+
 class JointDetails(NamedTuple):
     """What only a joint has."""
 
     type: str
-    """As written: ``revolute``, ``fixed``, ..."""
+    """As SDFormat spells it: ``revolute``, ``fixed``, ..."""
     parent: Reference
     child: Reference
-    expressed_in: tuple[Reference, ...]
-    """The frames that the axes are expressed in, where they are given."""
+    axes: tuple[AxisDetails | None, AxisDetails | None]
+    """``<axis>`` and ``<axis2>``, where they are given."""
+    screw_pitch_m: float
+    """How far a screw joint moves along its axis in one turn; positive for a right-handed
+    thread."""
 
 
 class CollisionMass(NamedTuple):

@@ -28,6 +28,7 @@ from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.joints import joint_details_from_element
 from sdf_pose_bridge.sdformat.sibling_names import SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
@@ -230,7 +231,8 @@ class _Reader:
         elif kind is Kind.FRAME:
             self._builder.frames[index] = self._details.frame(xml)
         elif kind is Kind.JOINT:
-            self._builder.joints[index] = self._details.joint(xml)
+            self._builder.joints[index] = joint_details_from_element(
+                xml, self._sources, self._problems)
         elif kind is Kind.SENSOR:
             self._builder.sensors[index] = self._details.sensor(xml)
         elif kind is Kind.INERTIAL and boolean_from_text(xml.get('auto', '')):

@@ -28,7 +28,10 @@ from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import ValueType
+from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -155,6 +158,22 @@ def leading_numbers(text: str, count: int) -> Sequence[float]:
             pass
     matches = map(_LEADING_NUMBER.match, words)
     return [float(number[0]) for number in matches if number]
+
+
+def numbers_of_child(
+    parent: XmlElement, tag: str, default: tuple[float, ...],
+) -> tuple[float, ...]:
+    """
+    Return the numbers in a child element.
+
+    :param parent: an element.
+    :param tag: tag of the child.
+    :param default: the numbers if there is no child, or if it has fewer numbers than these.
+    :return: as many numbers as there are in the default.
+    """
+    child = first_child(parent, tag)
+    numbers = () if child is None else tuple(leading_numbers(text_of(child), len(default)))
+    return numbers if len(numbers) == len(default) else default
 
 
 # Poses

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Container
 from collections.abc import Iterable
+from collections.abc import Mapping
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -23,12 +24,25 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.grammar import Kind
 
+ROOT_IS_PARENT = -1
+"""Parent of a frame whose parent is the root frame."""
+NO_PARENT = -2
+"""Parent of a frame that has no transform."""
+
 # Plain integers: numpy is slow at comparing an array with an Enum.
 _MODEL = int(Kind.MODEL)
 _LINK = int(Kind.LINK)
 _JOINT = int(Kind.JOINT)
 _FRAME = int(Kind.FRAME)
 _SENSOR = int(Kind.SENSOR)
+
+
+class JointStep(NamedTuple):
+    """A step along a joint, away from the root."""
+
+    joint: Joint
+    is_reversed: bool
+    """Whether the step goes from the child of the joint to its parent."""
 
 
 class TfParents(NamedTuple):
@@ -38,6 +52,8 @@ class TfParents(NamedTuple):
     """Index of the parent of each element; -1 for worlds and implicit roots."""
     free_bodies: frozenset[int]
     """Links and models whose parent is the root, although no joint connects them to it."""
+    joints: Mapping[int, JointStep]
+    """For each body that a joint connects to its parent: the step that leads to it."""
     loop_joints: tuple[Joint, ...]
     """Joints that close a loop, which a tree cannot have; in file order."""
 
@@ -66,20 +82,24 @@ def tf_parents_from_scene(scene: Scene) -> TfParents:
     ends = [
         (bodies_of_frames[joint.parent], bodies_of_frames[joint.child]) for joint in scene.joints]
     starts = representatives[_elements_by_rank(scene, [child for _, child in ends])].tolist()
+    steps = _steps_along_joints(ends, starts)
     loop_joints: list[int] = []
-    joint_parents = _parents_along_joints(ends, starts)
     # Without loops every joint leads to another body.
-    if len(joint_parents) < len(ends):
+    if len(steps) < len(ends):
         loop_joints = _joints_that_close_loops(ends)
-        left_out = set(loop_joints)
-        joint_parents = _parents_along_joints(
-            [pair for joint, pair in enumerate(ends) if joint not in left_out], starts)
+        steps = _steps_along_joints(ends, starts, left_out=set(loop_joints))
+    joint_parents = {
+        body: ends[joint][is_reversed] for body, (joint, is_reversed) in steps.items()}
     free_parents = _parents_of_free_bodies(scene, joint_parents)
     for chosen in (joint_parents, free_parents):
         parents[list(chosen)] = list(chosen.values())
     free_bodies = frozenset(
         body for body, parent in free_parents.items() if scene.parents[parent] < 0)
-    return TfParents(parents, free_bodies, tuple(scene.joints[joint] for joint in loop_joints))
+    joints = {
+        body: JointStep(scene.joints[joint], is_reversed)
+        for body, (joint, is_reversed) in steps.items()}
+    return TfParents(
+        parents, free_bodies, joints, tuple(scene.joints[joint] for joint in loop_joints))
 
 
 def _elements_by_rank(scene: Scene, children: Sequence[int]) -> Indices:
@@ -106,33 +126,37 @@ def _elements_by_rank(scene: Scene, children: Sequence[int]) -> Indices:
     return elements[np.argsort(ranks[elements], kind='stable')]
 
 
-def _parents_along_joints(
-    ends: Iterable[tuple[int, int]], starts: Sequence[int],
-) -> dict[int, int]:
+def _steps_along_joints(
+    ends: Sequence[tuple[int, int]], starts: Sequence[int], left_out: Container[int] = (),
+) -> dict[int, tuple[int, bool]]:
     """
     Walk along joints, in both directions, from one start after the other.
 
-    :param ends: the two bodies that each joint connects.
+    :param ends: the two bodies that each joint connects, parent and child.
     :param starts: bodies.
-    :return: for each body that a joint led to, the body that it led from.
+    :param left_out: joints not to walk along.
+    :return: for each body that a joint led to: that joint, and whether it led from its child.
     """
-    neighbours = defaultdict[int, list[int]](list)
-    for first, second in ends:
-        neighbours[first].append(second)
-        neighbours[second].append(first)
-    parents: dict[int, int] = {}
+    joints_of_bodies = defaultdict[int, list[int]](list)
+    for joint, (parent, child) in enumerate(ends):
+        if joint not in left_out:
+            joints_of_bodies[parent].append(joint)
+            joints_of_bodies[child].append(joint)
+    steps: dict[int, tuple[int, bool]] = {}
     reached: set[int] = set()
     for start in starts:
-        waiting = [] if start in reached or start not in neighbours else [start]
+        waiting = [] if start in reached or start not in joints_of_bodies else [start]
         reached.add(start)
         while waiting:
             body = waiting.pop()
-            for neighbour in neighbours[body]:
+            for joint in joints_of_bodies[body]:
+                parent, child = ends[joint]
+                neighbour = parent if body == child else child
                 if neighbour not in reached:
                     reached.add(neighbour)
-                    parents[neighbour] = body
+                    steps[neighbour] = joint, neighbour == parent
                     waiting.append(neighbour)
-    return parents
+    return steps
 
 
 def _joints_that_close_loops(ends: Iterable[tuple[int, int]]) -> list[int]:

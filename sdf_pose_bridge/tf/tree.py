@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 import enum
 from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -31,16 +32,18 @@ from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.frame_ids import optical_frames_of_cameras
 from sdf_pose_bridge.tf.frame_ids import with_ids_of_sensors
+from sdf_pose_bridge.tf.parents import NO_PARENT
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 from sdf_pose_bridge.tf.parents import TfParents
 
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sdf_pose_bridge.tf.moving_frames import MovingFrames
+
 DEFAULT_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.FRAME, Kind.SENSOR})
 """The kinds of element that become frames unless the options say otherwise."""
-
-ROOT_IS_PARENT = -1
-"""Parent of a frame whose parent is the root frame."""
-NO_PARENT = -2
-"""Parent of a frame that has no transform."""
 
 
 class AnchorModels(enum.Enum):
@@ -70,6 +73,8 @@ class TfOptions(NamedTuple):
     """The kinds of element that become frames."""
     optical_frames: bool = True
     """Whether each camera gets an optical frame besides its own."""
+    use_joint_states: bool = False
+    """Whether movable joints follow ``joint_states``."""
 
 
 class TfTree(NamedTuple):
@@ -90,6 +95,8 @@ class TfTree(NamedTuple):
     """Shape (n, 7): pose of each frame in its parent; the identity if it has none."""
     elements: Indices
     """The element of the scene that each frame belongs to; -1 for an optical frame."""
+    moving: MovingFrames | None
+    """The frames that joints move; None if joints do not follow ``joint_states``."""
     world: str
     """The name of the world that the frames belong to; empty for a model file."""
     warnings: tuple[SdfWarning, ...]
@@ -148,6 +155,13 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     transforms[parents == NO_PARENT] = Pose()
     transforms[:, 3:] = canonical_quaternion(transforms[:, 3:])
     transforms += 0.0  # no negative zeros
+    moving = None
+    if options.use_joint_states:
+        # Imported here because most trees stand still.
+        from sdf_pose_bridge.tf.joint_motion import JointMotion
+        from sdf_pose_bridge.tf.moving_frames import MovingFrames
+        motion = JointMotion(scene, tf_parents)
+        moving = MovingFrames(motion, poses[:-2], parents, np.array(owners, np.int32))
     tree = TfTree(
         root_frame=options.root_frame,
         frame_ids=tuple(frame_ids),
@@ -155,6 +169,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         parents=parents,
         transforms=transforms,
         elements=np.concatenate([elements, np.full(len(optical_frames), -1, np.int32)]),
+        moving=moving,
         world=scene.world_names.get(0, ''),
         warnings=problems.warnings,
     )
@@ -297,25 +312,31 @@ class PoseLookup:
         self._indices = {frame_id: index for index, frame_id in enumerate(tree.frame_ids)}
         self._frame_ids = dict(zip(tree.elements.tolist(), tree.frame_ids, strict=True))
 
-    def pose(self, frame: str, relative_to: str = '') -> FoundPose:
+    def pose(
+        self, frame: str, relative_to: str = '', positions: NDArray[np.float64] | None = None,
+    ) -> FoundPose:
         """
         Look up the pose of a frame in another one.
 
         :param frame: a name of SDF or of TF.
         :param relative_to: the reference frame, likewise; empty for the root frame.
+        :param positions: the position of each degree of freedom of the tree's joints, in radians
+            or metres; None for all joints where the file puts them.
         :return: the pose.
         :raises UnknownFrameError: if a name is unknown or ambiguous.
         """
-        pose, _ = self._pose_in_root(frame)
+        pose, _ = self._pose_in_root(frame, positions)
         if not relative_to:
             return FoundPose(pose, self._tree.root_frame)
-        reference, frame_id = self._pose_in_root(relative_to)
+        reference, frame_id = self._pose_in_root(relative_to, positions)
         relative = pose_product(pose_inverse(reference), pose)
         # Adding zero leaves no negative zeros.
         x, y, z = (value + 0.0 for value in relative[:3])
         return FoundPose(Pose(x, y, z, *canonical_quaternion(relative[3:])), frame_id)
 
-    def _pose_in_root(self, name: str) -> tuple[Pose, str]:
+    def _pose_in_root(
+        self, name: str, positions: NDArray[np.float64] | None,
+    ) -> tuple[Pose, str]:
         """Return the pose of a frame in the root frame, and its frame id or else its name."""
         scene, tree = self._scene, self._tree
         if name == tree.root_frame:
@@ -325,11 +346,17 @@ class PoseLookup:
                 hint = hint_from_names(name, [*self._indices, *scene.names])
                 msg = f'"{name}" is the name of nothing{hint}'
                 raise UnknownFrameError(msg, Place(scene.path))
-            return Pose(*tree.poses[self._indices[name]].tolist()), name
+            index = self._indices[name]
+            if positions is not None and tree.moving is not None:
+                return tree.moving.pose_of_frame(index, positions), name
+            return Pose(*tree.poses[index].tolist()), name
         element = scene.index(name, world=tree.world)
         if scene.roots[element]:
             msg = f'"{name}" is in world "{scene.world_of(element)}", which is not published'
             raise UnknownFrameError(msg, Place(scene.path))
         if element == 0:
             return Pose(), tree.root_frame
-        return scene.pose_of(element), self._frame_ids.get(element, name)
+        pose = scene.pose_of(element)
+        if positions is not None and tree.moving is not None:
+            pose = tree.moving.pose_of_element(element, pose, positions)
+        return pose, self._frame_ids.get(element, name)

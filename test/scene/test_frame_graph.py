@@ -100,7 +100,7 @@ def test_indices_are_right_where_elements_are_left_out():
     assert name_at(scene, scene.parents, 'm::b') == 'm'
     assert name_at(scene, scene.canonical_links, 'm') == 'm::a'
     assert name_at(scene, scene.bodies, 'm::j') == 'm::b'
-    assert [scene.names[i] for i in (*scene.joints[0][:1], *scene.joints[0][2:])] == [
+    assert [scene.names[i] for i in (*scene.joints[0][:1], *scene.joints[0][2:4])] == [
         'm::j', 'm::a', 'm::b']
 
 

@@ -106,7 +106,7 @@ def test_joint_without_both_ends_has_two_errors():
 def test_ends_of_a_joint_are_stripped():
     content = '<parent>\n a </parent><child><!-- c --> b</child>'
     scene = load_text(model_file(TWO_LINKS + joint(content)))
-    assert [scene.names[index] for index in scene.joints[0][2:]] == ['m::a', 'm::b']
+    assert [scene.names[index] for index in scene.joints[0][2:4]] == ['m::a', 'm::b']
 
 
 # Sensors

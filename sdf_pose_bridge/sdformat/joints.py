@@ -1,0 +1,116 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Read what only joints have.
+
+Source: ``Joint::Load`` and ``JointAxis::Load`` of libsdformat 14.
+"""
+
+from __future__ import annotations
+
+import math
+
+from sdf_pose_bridge.errors import ElementMissingError
+from sdf_pose_bridge.errors import JointChildError
+from sdf_pose_bridge.errors import JointParentError
+from sdf_pose_bridge.errors import ReservedNameError
+from sdf_pose_bridge.names import ROOT_FRAME
+from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.sdformat.elements import AxisDetails
+from sdf_pose_bridge.sdformat.elements import JointDetails
+from sdf_pose_bridge.sdformat.elements import MimicDetails
+from sdf_pose_bridge.sdformat.elements import Reference
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.values import numbers_of_child
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of
+from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import value_of
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+AXIS_TAGS = ('axis', 'axis2')
+"""The tags of the axes of a joint."""
+
+_NO_REFERENCE = Reference('')
+
+
+def joint_details_from_element(
+    xml: XmlElement, sources: Sources, problems: Problems,
+) -> JointDetails:
+    """
+    Read a joint.
+
+    :param xml: a ``<joint>``.
+    :param sources: where elements were written.
+    :param problems: takes what is wrong.
+    :return: its details. References are empty where they are missing or reserved.
+    """
+    joint_type = attribute_of(xml, 'type').lower()
+    axis, axis2 = (_axis(xml, tag, sources) for tag in AXIS_TAGS)
+    return JointDetails(
+        joint_type,
+        _end(xml, 'parent', joint_type, sources, problems),
+        _end(xml, 'child', joint_type, sources, problems),
+        (axis, axis2),
+        _screw_pitch_m(xml) if joint_type == 'screw' else 0.0)
+
+
+def _end(
+    xml: XmlElement, tag: str, joint_type: str, sources: Sources, problems: Problems,
+) -> Reference:
+    element = first_child(xml, tag)
+    if element is None:
+        error = ElementMissingError if joint_type != 'ball' else (
+            JointParentError if tag == 'parent' else JointChildError)
+        msg = f'the joint has no <{tag}>; it must name a frame'
+        problems.error(error(msg, sources.place(xml)))
+        return _NO_REFERENCE
+    name = value_of(element)
+    if name == ROOT_FRAME:
+        msg = f'"{name}" is reserved; it cannot be the {tag} of a joint'
+        problems.error(ReservedNameError(msg, sources.place(element)))
+        name = ''
+    return Reference(name, sources.line(element))
+
+
+def _axis(joint: XmlElement, tag: str, sources: Sources) -> AxisDetails | None:
+    axis = first_child(joint, tag)
+    if axis is None:
+        return None
+    expressed_in = _NO_REFERENCE
+    xyz = first_child(axis, 'xyz')
+    if xyz is not None and xyz.attrib:
+        expressed_in = Reference(attribute_of(xyz, 'expressed_in'), sources.line(xyz))
+    x, y, z = numbers_of_child(axis, 'xyz', (0.0, 0.0, 1.0))
+    lower, upper = -math.inf, math.inf
+    limit = first_child(axis, 'limit')
+    if limit is not None:
+        (lower,) = numbers_of_child(limit, 'lower', (lower,))
+        (upper,) = numbers_of_child(limit, 'upper', (upper,))
+    mimic = first_child(axis, 'mimic')
+    return AxisDetails(
+        (x, y, z), expressed_in, lower, upper, None if mimic is None else _mimic(mimic, sources))
+
+
+def _mimic(xml: XmlElement, sources: Sources) -> MimicDetails:
+    (multiplier,) = numbers_of_child(xml, 'multiplier', (1.0,))
+    (offset,) = numbers_of_child(xml, 'offset', (0.0,))
+    (reference,) = numbers_of_child(xml, 'reference', (0.0,))
+    return MimicDetails(
+        Reference(attribute_of(xml, 'joint'), sources.line(xml)),
+        attribute_of(xml, 'axis') or AXIS_TAGS[0], multiplier, offset, reference)
+
+
+def _screw_pitch_m(joint: XmlElement) -> float:
+    """
+    Return how far a screw joint moves in one turn.
+
+    ``<thread_pitch>``, which older files have, is in radians per metre and positive for a
+    left-handed thread.
+    """
+    if first_child(joint, 'screw_thread_pitch') is not None:
+        (pitch_m,) = numbers_of_child(joint, 'screw_thread_pitch', (1.0,))
+        return pitch_m
+    if first_child(joint, 'thread_pitch') is None:
+        return 1.0
+    (rad_per_m,) = numbers_of_child(joint, 'thread_pitch', (1.0,))
+    return -2.0 * math.pi / rad_per_m if rad_per_m else 0.0

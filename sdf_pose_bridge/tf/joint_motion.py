@@ -1,0 +1,170 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Move the elements of a scene by the positions of its joints.
+
+Poses in the root are products of exponentials: each degree of freedom between the root and an
+element displaces it by a rotation about, and a translation along, the axis where the file puts it.
+Source: Lynch and Park, Modern Robotics, chapter 4. That axis is fixed in the parent of its joint,
+or for the second axis of a joint in the body between both axes.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sdf_pose_bridge.geometry.poses import pose_products
+from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion
+from sdf_pose_bridge.geometry.screws import ScrewMotions
+from sdf_pose_bridge.scene.frame_graph import ends_from_pointers
+from sdf_pose_bridge.scene.resolution import poses_along_chains
+from sdf_pose_bridge.scene.scene import Joint
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.elements import Indices
+from sdf_pose_bridge.sdformat.values import IDENTITY
+from sdf_pose_bridge.tf.parents import TfParents
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    Floats = NDArray[np.float64]
+
+NO_FREEDOM = -1
+"""Index that means no degree of freedom."""
+
+_TURN_RAD = 2.0 * math.pi
+
+
+class DegreeOfFreedom(NamedTuple):
+    """One of the ways in which a joint can move."""
+
+    joint: Joint
+    axis: int | None
+    """Which axis of the joint it is, 0 or 1; None for a ball joint."""
+    suffix: str
+    """What its name in ``joint_states`` has after that of the joint."""
+    direction: tuple[float, float, float]
+    """Unit vector of the axis in the frame of the joint."""
+    rad_per_unit: float
+    """How far it turns about the axis for a position of 1."""
+    m_per_unit: float
+    """How far it moves along the axis for a position of 1."""
+
+
+def degrees_of_freedom_from_joint(joint: Joint) -> list[DegreeOfFreedom]:
+    """
+    List the ways in which a joint can move.
+
+    :param joint: the joint.
+    :return: its degrees of freedom from its parent to its child; none for a fixed joint. A ball
+        joint has yaw, pitch and roll of its child in its parent.
+    """
+    axis, axis2 = (each.xyz for each in joint.axes)
+    if joint.type == 'fixed':
+        return []
+    if joint.type == 'ball':
+        return [
+            DegreeOfFreedom(joint, None, '_yaw', (0.0, 0.0, 1.0), 1.0, 0.0),
+            DegreeOfFreedom(joint, None, '_pitch', (0.0, 1.0, 0.0), 1.0, 0.0),
+            DegreeOfFreedom(joint, None, '_roll', (1.0, 0.0, 0.0), 1.0, 0.0)]
+    if joint.type == 'prismatic':
+        return [DegreeOfFreedom(joint, 0, '', axis, 0.0, 1.0)]
+    first = DegreeOfFreedom(joint, 0, '', axis, 1.0, joint.screw_pitch_m / _TURN_RAD)
+    if joint.type in ('revolute2', 'universal'):
+        return [first, DegreeOfFreedom(joint, 1, '_axis2', axis2, 1.0, 0.0)]
+    return [first]
+
+
+class JointMotion:
+    """
+    The degrees of freedom of a scene, and the elements that they move.
+
+    Joints that close a loop move nothing, and nothing moves a link of a static model.
+
+    :param scene: the scene.
+    :param tf_parents: the TF parents of its elements.
+    """
+
+    def __init__(self, scene: Scene, tf_parents: TfParents) -> None:
+        freedoms: list[DegreeOfFreedom] = []
+        signs: list[float] = []
+        ranges: dict[int, range] = {}
+        for body, step in tf_parents.joints.items():
+            if not _is_in_static_model(scene, body):
+                path = degrees_of_freedom_from_joint(step.joint)
+                freedoms += reversed(path) if step.is_reversed else path
+                signs += [-1.0 if step.is_reversed else 1.0] * len(path)
+                if path:
+                    ranges[body] = range(len(signs) - len(path), len(signs))
+        self.freedoms = tuple(freedoms)
+        """All degrees of freedom; those of a joint stand together."""
+        bodies = list(ranges)
+        is_moved = np.zeros(len(scene.kinds), np.bool_)
+        is_moved[bodies] = True
+        last_of_bodies = np.full(len(scene.kinds), NO_FREEDOM, np.int32)
+        last_of_bodies[bodies] = [each[-1] for each in ranges.values()]
+        self.last_freedoms: Indices = last_of_bodies[
+            ends_from_pointers(np.where(is_moved, -1, tf_parents.parents))]
+        """For each element the last degree of freedom between the root and it; -1 for none."""
+        self.previous: Indices = np.arange(-1, len(freedoms) - 1, dtype=np.int32)
+        """For each degree of freedom the one before it on the way from the root; -1 for none."""
+        self.previous[[each[0] for each in ranges.values()]] = self.last_freedoms[
+            tf_parents.parents[bodies]]
+        self._axes, self._points = self._axes_in_root(scene)
+        self._rad_per_unit = np.array([each.rad_per_unit for each in freedoms]) * signs
+        self._m_per_unit = np.array([each.m_per_unit for each in freedoms]) * signs
+        identities = np.tile(IDENTITY, (len(freedoms), 1))
+        self._displacements = self.screw_motions(
+            identities, np.arange(len(freedoms)), identities)
+
+    def _axes_in_root(self, scene: Scene) -> tuple[Floats, Floats]:
+        poses = scene.poses[[freedom.joint.element for freedom in self.freedoms]]
+        directions = np.tile(IDENTITY, (len(poses), 1))
+        directions[:, :3] = np.reshape([each.direction for each in self.freedoms], (-1, 3))
+        return pose_products(poses, directions)[:, :3] - poses[:, :3], poses[:, :3]
+
+    def screw_motions(
+        self, before: PoseArray, freedoms: NDArray[np.intp], after: PoseArray,
+    ) -> ScrewMotions:
+        """
+        Prepare products of a pose, the displacement by a degree of freedom, and a pose.
+
+        :param before: shape (n, 7), poses of the root in frames.
+        :param freedoms: shape (n,), indices of degrees of freedom.
+        :param after: shape (n, 7), poses of frames in the root.
+        :return: the products, which take the positions of these degrees of freedom.
+        """
+        return ScrewMotions(
+            before, self._axes[freedoms], self._points[freedoms], self._rad_per_unit[freedoms],
+            self._m_per_unit[freedoms], after)
+
+    def moved_poses(self, poses: PoseArray, elements: Indices, positions: Floats) -> PoseArray:
+        """
+        Return poses at given positions of the joints.
+
+        :param poses: shape (k, 7), poses in the root where the file puts them.
+        :param elements: shape (k,), the element that each moves with.
+        :param positions: shape (n,), the position of each degree of freedom, in radians or metres.
+        :return: shape (k, 7), poses in the root; unit quaternions with w >= 0.
+        """
+        last = self.last_freedoms[elements]
+        rows = np.flatnonzero(last != NO_FREEDOM)
+        moved: PoseArray = poses.copy()
+        if len(rows):
+            displacements = poses_along_chains(
+                self._displacements.poses(positions), self.previous, np.arange(len(positions)))
+            moved[rows] = pose_products(displacements[last[rows]], poses[rows])
+            moved[rows, 3:] = canonical_quaternion(moved[rows, 3:])
+        return moved
+
+
+def _is_in_static_model(scene: Scene, element: int) -> bool:
+    while element >= 0:
+        if element in scene.static_models:
+            return True
+        element = int(scene.parents[element])
+    return False

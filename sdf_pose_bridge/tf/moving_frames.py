@@ -1,0 +1,137 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The frames of TF that joints move, and their transforms at given positions of the joints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import pose_products
+from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.geometry.poses import relative_poses
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion
+from sdf_pose_bridge.sdformat.elements import Indices
+from sdf_pose_bridge.sdformat.values import IDENTITY
+from sdf_pose_bridge.tf.joint_motion import JointMotion
+from sdf_pose_bridge.tf.joint_motion import NO_FREEDOM
+from sdf_pose_bridge.tf.parents import NO_PARENT
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+class MovingFrames:
+    """
+    The frames whose transforms depend on the positions of joints.
+
+    The way from the parent of a frame to the frame crosses degrees of freedom: most often one,
+    more for joints with several, and where frames between both are not published.
+
+    :param motion: the motion of the scene.
+    :param poses: shape (n, 7): pose of each frame in the root.
+    :param parents: index of the parent of each frame, or one of the two constants.
+    :param elements: the element that each frame moves with.
+    """
+
+    def __init__(
+        self, motion: JointMotion, poses: PoseArray, parents: Indices, elements: Indices,
+    ) -> None:
+        self._motion = motion
+        self.freedoms = motion.freedoms
+        """The degrees of freedom, in the order of positions."""
+        last = motion.last_freedoms[elements]
+        last_of_parents = np.where(parents < 0, NO_FREEDOM, last[parents])
+        self.indices = np.flatnonzero((last != last_of_parents) & (parents != NO_PARENT))
+        """Shape (m,), the frames that move in their parents."""
+        self.posed_indices = np.flatnonzero(last != NO_FREEDOM)
+        """The frames that move in the root frame."""
+        self._poses, self._elements = poses, elements
+        self._crossed = [
+            _freedoms_between(motion.previous, *ends) for ends in zip(
+                last_of_parents[self.indices].tolist(), last[self.indices].tolist(), strict=True)]
+        identities = np.tile(IDENTITY, (len(self.indices), 1))
+        parents = parents[self.indices]
+        poses_of_parents = np.where((parents < 0)[:, np.newaxis], identities, poses[parents])
+        before = relative_poses(poses_of_parents, identities)
+        after = poses[self.indices]
+        # The first part has all frames, the second those that cross two degrees of freedom, ...
+        self._parts = []
+        for number in range(max(map(len, self._crossed), default=0)):
+            rows = [row for row, freedoms in enumerate(self._crossed) if len(freedoms) > number]
+            freedoms = np.array([self._crossed[row][number] for row in rows])
+            is_last = np.array([[len(self._crossed[row]) == number + 1] for row in rows])
+            self._parts.append((rows, freedoms, motion.screw_motions(
+                identities[rows] if number else before,
+                freedoms, np.where(is_last, after[rows], identities[rows]))))
+
+    def transforms(self, positions: NDArray[np.float64]) -> PoseArray:
+        """
+        Return the transforms of the frames that move in their parents.
+
+        :param positions: the position of each degree of freedom, in radians or metres.
+        :return: shape (m, 7), pose of each frame in its parent; unit quaternions with w >= 0.
+        """
+        transforms = np.empty((len(self.indices), 7))
+        for number, (rows, freedoms, motions) in enumerate(self._parts):
+            poses = motions.poses(positions[freedoms])
+            transforms[rows] = pose_products(transforms[rows], poses) if number else poses
+        transforms[:, 3:] = canonical_quaternion(transforms[:, 3:])
+        return transforms
+
+    def poses(self, positions: NDArray[np.float64]) -> PoseArray:
+        """
+        Return the poses of the frames that move in the root frame.
+
+        :param positions: the position of each degree of freedom, in radians or metres.
+        :return: pose of each of them in the root; unit quaternions with w >= 0.
+        """
+        return self._motion.moved_poses(
+            self._poses[self.posed_indices], self._elements[self.posed_indices], positions)
+
+    def pose_of_frame(self, index: int, positions: NDArray[np.float64]) -> Pose:
+        """
+        Return the pose of one frame.
+
+        :param index: index of the frame.
+        :param positions: the position of each degree of freedom, in radians or metres.
+        :return: its pose in the root.
+        """
+        (pose,) = self._motion.moved_poses(
+            self._poses[[index]], self._elements[[index]], positions)
+        return Pose(*pose.tolist())
+
+    def pose_of_element(self, element: int, pose: Pose, positions: NDArray[np.float64]) -> Pose:
+        """
+        Return the pose of an element, which need not have a frame.
+
+        :param element: index of the element in the scene.
+        :param pose: its pose in the root where the file puts it.
+        :param positions: the position of each degree of freedom, in radians or metres.
+        :return: its pose in the root.
+        """
+        (moved,) = self._motion.moved_poses(
+            np.array([pose]), np.array([element], np.int32), positions)
+        return Pose(*moved.tolist())
+
+    def rows_moved_by(self, freedoms: Sequence[int]) -> NDArray[np.intp]:
+        """
+        Find the transforms that depend on some degrees of freedom.
+
+        :param freedoms: indices of degrees of freedom.
+        :return: their rows in :meth:`transforms`.
+        """
+        chosen = set(freedoms)
+        return np.flatnonzero([not chosen.isdisjoint(each) for each in self._crossed])
+
+
+def _freedoms_between(previous: Indices, begin: int, end: int) -> list[int]:
+    """Return the degrees of freedom behind one, up to another one that follows it."""
+    found = []
+    while end != begin:
+        found.append(end)
+        end = int(previous[end])
+    return found[::-1]
