@@ -38,15 +38,17 @@ class StampedMessages:
 
     :param buffer: the buffer, with room for the stamps; its size is a multiple of 8.
     :param stamps: offset of each stamp in the buffer.
+    :param numbers: offset of the seven numbers behind each stamp.
     :param bounds: offsets of the first byte of each message, and of the one behind its last.
     """
 
     def __init__(
         self, buffer: npt.NDArray[np.uint8], stamps: npt.NDArray[np.int64],
-        bounds: Sequence[tuple[int, int]],
+        numbers: npt.NDArray[np.int64], bounds: Sequence[tuple[int, int]],
     ) -> None:
         self._buffer = buffer
         self._stamps = stamps
+        self._numbers = numbers
         self._bounds = bounds
 
     def __len__(self) -> int:
@@ -65,6 +67,15 @@ class StampedMessages:
         words[self._stamps // 4 + 1] = nanosec
         data = self._buffer.tobytes()
         return [data[begin:end] for begin, end in self._bounds]
+
+    def set_poses(self, poses: PoseArray) -> None:
+        """
+        Replace the poses or transforms in the messages.
+
+        :param poses: shape (n, 7), in the order of the messages, in metres, quaternion x y z w.
+        """
+        words = self._buffer.view('<f8')
+        words[(self._numbers // 8)[:, np.newaxis] + np.arange(7)] = poses
 
 
 def tf_message(
@@ -87,7 +98,8 @@ def tf_message(
     records.buffer.view('<i4')[_HEADER // 4] = len(transforms)
     records.buffer[_HEADER - 3] = 1
     end = int(records.ends[-1]) if len(transforms) else _HEADER + _LENGTH
-    return StampedMessages(records.buffer, records.stamps, [(_HEADER - 4, end)])
+    return StampedMessages(
+        records.buffer, records.stamps, records.numbers, [(_HEADER - 4, end)])
 
 
 def transform_stamped_messages(
@@ -124,13 +136,15 @@ def _messages(columns: Sequence[Sequence[str]], numbers: PoseArray) -> StampedMe
     begins = records.stamps - 4
     records.buffer[begins + 1] = 1
     bounds = list(zip(begins.tolist(), records.ends.tolist(), strict=True))
-    return StampedMessages(records.buffer, records.stamps, bounds)
+    return StampedMessages(records.buffer, records.stamps, records.numbers, bounds)
 
 
 class _Records(NamedTuple):
     buffer: npt.NDArray[np.uint8]
     stamps: npt.NDArray[np.int64]
     """Offset of each stamp in the buffer."""
+    numbers: npt.NDArray[np.int64]
+    """Offset of the numbers of each record in the buffer."""
     ends: npt.NDArray[np.int64]
     """Offset behind the last byte of each record in the buffer."""
 
@@ -170,8 +184,9 @@ def _records(
         # Each byte moves as far as the first one of its string.
         moves = begins + place + _LENGTH - (np.cumsum(lengths) - lengths)
         buffer[np.arange(len(data)) + np.repeat(moves, lengths)] = data
-    buffer.view('<f8')[((begins + offsets) // 8)[:, np.newaxis] + np.arange(7)] = numbers
-    return _Records(buffer, begins + room, ends)
+    records = _Records(buffer, begins + room, begins + offsets, ends)
+    StampedMessages(*records[:3], ()).set_poses(numbers)
+    return records
 
 
 def _aligned(offsets: npt.NDArray[np.int64], size: int) -> npt.NDArray[np.int64]:

@@ -8,6 +8,7 @@ import os
 from pathlib import Path
 import time
 from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
@@ -21,6 +22,10 @@ from sdf_pose_bridge.tf.tree import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfTree
 
+if TYPE_CHECKING:
+    from sdf_pose_bridge.scene.scene import Scene
+    from sdf_pose_bridge.tf.joint_positions import JointPositions
+
 
 class LoadedScene(NamedTuple):
     """A file that was read."""
@@ -28,6 +33,8 @@ class LoadedScene(NamedTuple):
     path: Path
     tree: TfTree
     lookup: PoseLookup
+    joint_positions: JointPositions | None
+    """The positions of its joints; None if joints do not follow ``joint_states``."""
     warnings: tuple[SdfWarning, ...]
     files: tuple[str, ...]
     """All files that were read."""
@@ -53,15 +60,27 @@ def loaded_scene_from_settings(settings: Settings) -> LoadedScene:
         path, resource_paths=settings.resource_paths,
         on_missing_include=settings.on_missing_include)
     tree = tf_tree_from_scene(scene, settings.tf_options)
+    joint_positions = _joint_positions(scene, tree, settings)
     return LoadedScene(
         path=path,
         tree=tree,
-        lookup=PoseLookup(scene, tree),
+        lookup=PoseLookup(
+            scene, tree, None if joint_positions is None else joint_positions.values),
+        joint_positions=joint_positions,
         warnings=(*warnings, *scene.warnings, *tree.warnings),
         files=(*manifests, *scene.files),
         read_since_ns=read_since_ns,
         seconds=time.perf_counter() - begin,
     )
+
+
+def _joint_positions(scene: Scene, tree: TfTree, settings: Settings) -> JointPositions | None:
+    if tree.moving is None:
+        return None
+    # Imported here because most often joints do not move.
+    from sdf_pose_bridge.tf.joint_positions import JointPositions
+    return JointPositions(
+        scene, tree.moving.freedoms, settings.frame_names, settings.model)
 
 
 def files_behind_error(error: Exception, settings: Settings) -> list[str]:

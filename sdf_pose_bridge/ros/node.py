@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import contextlib
 import time
 import traceback
+from typing import TYPE_CHECKING
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
@@ -48,6 +49,9 @@ from sdf_pose_bridge.ros.topic_names import Topics
 from sdf_pose_bridge.ros.topic_names import topics_from_patterns
 from sdf_pose_bridge.sdformat.include.uris import AddressError
 
+if TYPE_CHECKING:
+    from sdf_pose_bridge.ros.joint_states import JointStates
+
 
 class SdfPoseBridge:
     """
@@ -77,9 +81,11 @@ class SdfPoseBridge:
         # Simulated time may stand still.
         self._steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._again_timer: Timer | None = None
+        self._joint_states: JointStates | None = None
 
     async def start(self) -> None:
         """Publish the scene on all other topics, and offer services."""
+        self._follow_joints(self._loaded)
         await self._serve(self._loaded)
         self._publish_again_at(self._settings.publish_rate)
         add_services(self._node, lambda: self._loaded.lookup)
@@ -106,6 +112,7 @@ class SdfPoseBridge:
     async def _replace(self, loaded: LoadedScene) -> None:
         """Publish another scene; nothing has changed before this call."""
         self._publishers.publish_tf_static(loaded.tree)
+        self._follow_joints(loaded)
         await self._serve(loaded)
 
     async def _serve(self, loaded: LoadedScene) -> None:
@@ -122,9 +129,29 @@ class SdfPoseBridge:
             f'"{loaded.tree.root_frame}" (read in {1e3 * loaded.seconds:.0f} ms)')
         self._diagnostics.update(loaded)
 
+    def _follow_joints(self, loaded: LoadedScene) -> None:
+        """Publish what joints move on ``/tf``, if they follow ``joint_states``."""
+        tree, positions = loaded.tree, loaded.joint_positions
+        if tree.moving is None or positions is None:
+            if self._joint_states is not None:
+                self._joint_states.destroy()
+                self._joint_states = None
+        elif self._joint_states is not None:
+            self._joint_states.replace(tree, tree.moving, positions)
+        else:
+            # Imported here because most often joints do not move.
+            from sdf_pose_bridge.ros.joint_states import JointStates
+            self._joint_states = JointStates(self._node, tree, tree.moving, positions)
+            self._joint_states.is_published_later = self._settings.publish_rate > 0.0
+
     async def _publish_topics(self) -> None:
         frame_ids = set(self._loaded.tree.frame_ids)
-        changed = await self._publishers.publish_topics(await self._pose_topics())
+        topics = await self._pose_topics()
+        if self._joint_states is not None:
+            self._joint_states.set_pose_publishers(None)
+        changed = await self._publishers.publish_topics(topics)
+        if self._joint_states is not None:
+            self._joint_states.set_pose_publishers(self._publishers)
         vanished = [frame_id for frame_id in changed if frame_id not in frame_ids]
         if vanished:
             self._logger.warning(
@@ -246,6 +273,8 @@ class SdfPoseBridge:
             await self._publish_topics()
         if settings.publish_rate != before.publish_rate:
             self._publish_again_at(settings.publish_rate)
+            if self._joint_states is not None:
+                self._joint_states.is_published_later = settings.publish_rate > 0.0
 
     # Publishing again
 
@@ -261,6 +290,8 @@ class SdfPoseBridge:
     async def _publish_again(self) -> None:
         begin = time.perf_counter()
         await self._publishers.publish_again()
+        if self._joint_states is not None:
+            self._joint_states.publish_waiting()
         seconds = time.perf_counter() - begin
         if seconds * self._settings.publish_rate > 1.0:
             self._logger.warning(

@@ -8,8 +8,6 @@ from collections.abc import Callable
 from collections.abc import Iterable
 from collections.abc import Mapping
 from collections.abc import Sequence
-import enum
-from pathlib import Path
 from typing import Any
 from typing import Generic
 from typing import TypeVar
@@ -22,14 +20,24 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from sdf_pose_bridge.names import hint_from_names
-from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.ros.parameter_rules import choice_setting
+from sdf_pose_bridge.ros.parameter_rules import directories_setting
+from sdf_pose_bridge.ros.parameter_rules import file_setting
+from sdf_pose_bridge.ros.parameter_rules import HIGHEST_RATE
+from sdf_pose_bridge.ros.parameter_rules import kinds_setting
+from sdf_pose_bridge.ros.parameter_rules import LOWEST_RATE
+from sdf_pose_bridge.ros.parameter_rules import patterns_setting
+from sdf_pose_bridge.ros.parameter_rules import prefix_setting
+from sdf_pose_bridge.ros.parameter_rules import PUBLISHED_KINDS
+from sdf_pose_bridge.ros.parameter_rules import rate_setting
+from sdf_pose_bridge.ros.parameter_rules import root_frame_setting
+from sdf_pose_bridge.ros.parameter_rules import separator_setting
 from sdf_pose_bridge.ros.parameter_types import hint_about_command_line
 from sdf_pose_bridge.ros.parameter_types import parameter_of_any_type
 from sdf_pose_bridge.ros.parameter_types import parameter_with_type
 from sdf_pose_bridge.ros.parameter_types import TYPES
 from sdf_pose_bridge.ros.parameter_types import words_about_wrong_type
 from sdf_pose_bridge.scene.loading import MissingInclude
-from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.tree import AnchorModels
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
@@ -37,17 +45,6 @@ from sdf_pose_bridge.tf.tree import TfOptions
 
 Value = str | bool | float | list[str]
 Setting = TypeVar('Setting')
-Choice = TypeVar('Choice', bound=enum.Enum)
-
-PUBLISHED_KINDS = {
-    kind.label: kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD, Kind.ACTOR)}
-"""The kinds of element that can become frames, by their names."""
-
-LOWEST_RATE, HIGHEST_RATE = 0.001, 100.0
-"""The limits of ``publish_rate`` in Hz."""
-
-_MOST_PATTERNS = 1000
-"""How many patterns a parameter may have."""
 
 
 class SettingsError(ValueError):
@@ -98,80 +95,6 @@ class Declaration(Generic[Setting]):
         return setting
 
 
-def _refusal(value: object, rule: str) -> ValueError:
-    shown = f'"{printable(value)}"' if isinstance(value, str) else value
-    return ValueError(f'is {shown}; it must be {rule}')
-
-
-def _sdf_file(value: str) -> str:
-    if not value:
-        msg = ('is not set; name the SDFormat file to publish: --ros-args -p sdf_file:=cell.sdf '
-               'after "ros2 run ...", sdf_file:=cell.sdf after "ros2 launch ..."')
-        raise ValueError(msg)
-    return value
-
-
-def _root_frame(value: str) -> str:
-    if not value:
-        raise _refusal(value, 'a frame id, which is not empty')
-    return _frame_prefix(value)
-
-
-def _frame_prefix(value: str) -> str:
-    if value.startswith('/'):
-        raise _refusal(value, 'without a leading slash, which TF does not allow')
-    return _printable(value)
-
-
-def _frame_separator(value: str) -> str:
-    if not value:
-        raise _refusal(value, 'at least one character, or names run together')
-    return _printable(value)
-
-
-def _publish_rate(value: float) -> float:
-    if value and not LOWEST_RATE <= value <= HIGHEST_RATE:
-        raise _refusal(value, f'0.0 for never, or from {LOWEST_RATE} to {HIGHEST_RATE}')
-    return value
-
-
-def _printable(value: str) -> str:
-    if not value.isprintable():
-        raise _refusal(value, 'without control characters')
-    return value
-
-
-def _one_of(choices: type[Choice]) -> Callable[[str], Choice]:
-    def convert(value: str) -> Choice:
-        known = [choice.value for choice in choices]
-        if value not in known:
-            raise _refusal(value, f'one of {", ".join(known)}')
-        return choices(value)
-    return convert
-
-
-def _kinds(values: Sequence[str]) -> frozenset[Kind]:
-    known = ', '.join(PUBLISHED_KINDS)
-    if not values:
-        raise _refusal([], f'at least one of {known}')
-    for value in values:
-        if value not in PUBLISHED_KINDS:
-            raise _refusal(value, f'made of {known}')
-    return frozenset(PUBLISHED_KINDS[value] for value in values)
-
-
-def _patterns(values: Sequence[str]) -> tuple[str, ...]:
-    if len(values) > _MOST_PATTERNS:
-        # Each is compared with each frame, while other changes wait.
-        msg = f'has {len(values)} patterns; it must have at most {_MOST_PATTERNS}'
-        raise ValueError(msg)
-    return tuple(values)
-
-
-def _directories(values: Sequence[str]) -> tuple[Path, ...]:
-    return tuple(Path(value).expanduser() for value in values if value)
-
-
 class Settings:
     """
     The settings of the node.
@@ -187,20 +110,20 @@ class Settings:
         'The SDFormat file to publish.',
         'required: the path of a file or of a model directory, or a file://, package:// or '
         'model:// URI, such as package://name/worlds/cell.sdf',
-        _sdf_file,
+        file_setting,
     )
     root_frame = Declaration(
         'world',
         'The TF frame of the SDF world, or of the implicit root of a model file.',
         'not empty, no leading slash',
-        _root_frame,
+        root_frame_setting,
     )
     anchor_models = Declaration(
         'all',
         'Which top-level models get a transform from root_frame. "none" leaves that to others, '
         'such as odometry or a localization node.',
         'one of all, static, none',
-        _one_of(AnchorModels),
+        choice_setting(AnchorModels),
     )
     model = Declaration(
         '',
@@ -214,26 +137,26 @@ class Settings:
         '"relative" leaves out that of the top-level model (arm/tool), "auto" is relative for a '
         'model file and scoped for a world.',
         'one of auto, scoped, relative',
-        _one_of(FrameNames),
+        choice_setting(FrameNames),
     )
     frame_separator = Declaration(
         '/',
         'Replaces "::" in frame ids. ros_gz_bridge uses "/". To keep "::", quote it twice on the '
         'command line: -p "frame_separator:=\'::\'".',
         'not empty',
-        _frame_separator,
+        separator_setting,
     )
     frame_prefix = Declaration(
         '',
         'Precedes every frame id but that of root_frame, with nothing in between.',
         'no leading slash',
-        _frame_prefix,
+        prefix_setting,
     )
     kinds = Declaration(
         [name for name, kind in PUBLISHED_KINDS.items() if kind in DEFAULT_KINDS],
         'Which kinds of element become frames.',
         f'some of {", ".join(PUBLISHED_KINDS)}',
-        _kinds,
+        kinds_setting,
     )
     pose_topics = Declaration(
         ['*'],
@@ -241,7 +164,7 @@ class Settings:
         'glob patterns for frame ids, such as robot/* (which matches robot/arm/tool too); '
         'none if empty; at most 1000 of them; * alone means none where there are more than 1000 '
         'frames, ?* means all',
-        _patterns,
+        patterns_setting,
         needs_load=False,
     )
     optical_frames = Declaration(
@@ -251,19 +174,26 @@ class Settings:
         'true or false',
         bool,
     )
+    use_joint_states = Declaration(
+        False,
+        'Makes movable joints follow the topic joint_states: their transforms are on /tf instead '
+        'of /tf_static.',
+        'true or false',
+        bool,
+    )
     resource_paths = Declaration(
         [],
         'Directories searched for model:// and relative URIs before those of '
         'GZ_SIM_RESOURCE_PATH and SDF_PATH.',
         'paths of directories; empty ones are ignored',
-        _directories,
+        directories_setting,
     )
     publish_rate = Declaration(
         0.0,
         'How often everything is published again, in Hz, for listeners that cannot be latched; '
-        '0.0 for once, which is enough for all others.',
+        '0.0 for once, which is enough for all others. Also the highest rate of /tf.',
         f'0.0 for never, or from {LOWEST_RATE} to {HIGHEST_RATE}',
-        _publish_rate,
+        rate_setting,
         needs_load=False,
         maximum=HIGHEST_RATE,
     )
@@ -279,7 +209,7 @@ class Settings:
         'What to do about an include that cannot be found: "error" refuses the file, "skip" '
         'leaves the include out with a warning.',
         'one of error, skip',
-        _one_of(MissingInclude),
+        choice_setting(MissingInclude),
     )
 
     @property

@@ -20,7 +20,6 @@ from rclpy.qos import QoSProfile
 from rclpy.qos import ReliabilityPolicy
 from tf2_msgs.msg import TFMessage
 
-from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.ros.background import run_other_callbacks
 from sdf_pose_bridge.ros.cdr import pose_stamped_messages
 from sdf_pose_bridge.ros.cdr import StampedMessages
@@ -43,10 +42,11 @@ class FramePublishers:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self._tf_static = _latched_publisher(node, TFMessage, '/tf_static', depth=1)
+        self._tf_static = latched_publisher(node, TFMessage, '/tf_static', depth=1)
         self._transforms: Publisher | None = None
         self._depth = 0
         self._poses: dict[str, Publisher] = {}
+        self._topics: Mapping[str, str] = {}
         self._children: frozenset[str] = frozenset()
         self._published: list[tuple[Sequence[Publisher], StampedMessages]] = []
 
@@ -57,31 +57,50 @@ class FramePublishers:
         :param tree: the tree.
         """
         self._tree = tree
-        self._tf_message = tf_message(*_transforms(tree))
+        self._tf_message = tf_message(
+            *tree.ids_of_transforms(tree.fixed_indices), tree.transforms[tree.fixed_indices])
         self.publish_tf_static_again()
 
     async def publish_topics(self, topics: Mapping[str, str]) -> list[str]:
         """
         Publish the tree on all other topics, with the stamp that it has on ``/tf_static``.
 
+        Frames that joints move get publishers here, and messages by others.
+
         :param topics: names of pose topics by frame id.
         :return: the frames that had a transform before and have none now, sorted.
         """
         tree, self._published = self._tree, []
-        parent_ids, child_ids, transforms = _transforms(tree)
-        publisher = self._transforms_publisher(len(child_ids))
+        indices = tree.fixed_indices
+        publisher = self._transforms_publisher(len(indices))
         self._published.append((
-            [publisher] * len(child_ids),
-            transform_stamped_messages(parent_ids, child_ids, transforms)))
+            [publisher] * len(indices),
+            transform_stamped_messages(
+                *tree.ids_of_transforms(indices), tree.transforms[indices])))
         await self._send(*self._published[-1])
         await self._replace_pose_publishers(topics)
-        indices = [index for index, frame_id in enumerate(tree.frame_ids) if frame_id in topics]
+        self._topics = topics
+        moving = set() if tree.moving is None else set(tree.moving.posed_indices.tolist())
+        posed = [
+            (index, self._poses[topics[frame_id]]) for index, frame_id in enumerate(tree.frame_ids)
+            if frame_id in topics and index not in moving]
+        poses = tree.poses[[index for index, _ in posed]]
         self._published.append((
-            [self._poses[topics[tree.frame_ids[index]]] for index in indices],
-            pose_stamped_messages([tree.root_frame] * len(indices), tree.poses[indices])))
+            [publisher for _, publisher in posed],
+            pose_stamped_messages([tree.root_frame] * len(posed), poses)))
         await self._send(*self._published[-1])
-        before, self._children = self._children, frozenset(child_ids)
+        before = self._children
+        self._children = frozenset(compress(tree.frame_ids, (tree.parents != NO_PARENT).tolist()))
         return sorted(before - self._children)
+
+    def pose_publisher(self, frame_id: str) -> Publisher | None:
+        """
+        Return the publisher of the pose of a frame.
+
+        :param frame_id: a frame of the tree.
+        :return: the publisher; None if the frame has no topic.
+        """
+        return self._poses.get(self._topics.get(frame_id, ''))
 
     def publish_tf_static_again(self) -> None:
         """Publish the tree on ``/tf_static`` with a new stamp."""
@@ -109,7 +128,7 @@ class FramePublishers:
         if self._transforms is None or count != self._depth:
             if self._transforms is not None:
                 self._node.destroy_publisher(self._transforms)
-            self._transforms = _latched_publisher(
+            self._transforms = latched_publisher(
                 self._node, TransformStamped, '~/transforms', depth=max(1, count))
             self._depth = count
         return self._transforms
@@ -126,22 +145,13 @@ class FramePublishers:
             if name not in self._poses:
                 if len(self._poses) % PUBLISHERS_AT_ONCE == 0:
                     await run_other_callbacks(self._node)
-                self._poses[name] = _latched_publisher(
+                self._poses[name] = latched_publisher(
                     self._node, PoseStamped, f'~/poses/{name}', depth=1)
             if is_debugged:
                 logger.debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
 
 
-def _transforms(tree: TfTree) -> tuple[list[str], list[str], PoseArray]:
-    """Return the parent id and the child id of each transform, and the transforms."""
-    has_transform = tree.parents != NO_PARENT
-    selectors = has_transform.tolist()
-    return (
-        list(compress(tree.parent_ids, selectors)), list(compress(tree.frame_ids, selectors)),
-        tree.transforms[has_transform])
-
-
-def _latched_publisher(node: Node, message_type: type, name: str, *, depth: int) -> Publisher:
+def latched_publisher(node: Node, message_type: type, name: str, *, depth: int) -> Publisher:
     """
     Make a publisher whose last messages also reach listeners that come later.
 

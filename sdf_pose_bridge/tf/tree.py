@@ -109,6 +109,25 @@ class TfTree(NamedTuple):
         return tuple(map(ids.__getitem__, self.parents.tolist()))
 
     @property
+    def fixed_indices(self) -> NDArray[np.intp]:
+        """The frames with a transform that no joint changes."""
+        is_fixed = self.parents != NO_PARENT
+        if self.moving is not None:
+            is_fixed[self.moving.indices] = False
+        return np.flatnonzero(is_fixed)
+
+    def ids_of_transforms(self, indices: NDArray[np.intp]) -> tuple[list[str], list[str]]:
+        """
+        Return the frame ids of transforms.
+
+        :param indices: frames.
+        :return: the frame id of the parent of each, and its own.
+        """
+        parent_ids = self.parent_ids
+        rows = indices.tolist()
+        return [parent_ids[row] for row in rows], [self.frame_ids[row] for row in rows]
+
+    @property
     def transform_count(self) -> int:
         """How many frames have a transform."""
         return int(np.count_nonzero(self.parents != NO_PARENT))
@@ -304,41 +323,40 @@ class PoseLookup:
 
     :param scene: the scene.
     :param tree: the TF tree of the scene.
+    :param positions: the current position of each degree of freedom of the joints, in radians or
+        metres; not copied. None for all joints where the file puts them.
     """
 
-    def __init__(self, scene: Scene, tree: TfTree) -> None:
+    def __init__(
+        self, scene: Scene, tree: TfTree, positions: NDArray[np.float64] | None = None,
+    ) -> None:
         self._scene = scene
         self._tree = tree
+        self._positions = positions
         self._indices = {frame_id: index for index, frame_id in enumerate(tree.frame_ids)}
         self._frame_ids = dict(zip(tree.elements.tolist(), tree.frame_ids, strict=True))
 
-    def pose(
-        self, frame: str, relative_to: str = '', positions: NDArray[np.float64] | None = None,
-    ) -> FoundPose:
+    def pose(self, frame: str, relative_to: str = '') -> FoundPose:
         """
         Look up the pose of a frame in another one.
 
         :param frame: a name of SDF or of TF.
         :param relative_to: the reference frame, likewise; empty for the root frame.
-        :param positions: the position of each degree of freedom of the tree's joints, in radians
-            or metres; None for all joints where the file puts them.
         :return: the pose.
         :raises UnknownFrameError: if a name is unknown or ambiguous.
         """
-        pose, _ = self._pose_in_root(frame, positions)
+        pose, _ = self._pose_in_root(frame)
         if not relative_to:
             return FoundPose(pose, self._tree.root_frame)
-        reference, frame_id = self._pose_in_root(relative_to, positions)
+        reference, frame_id = self._pose_in_root(relative_to)
         relative = pose_product(pose_inverse(reference), pose)
         # Adding zero leaves no negative zeros.
         x, y, z = (value + 0.0 for value in relative[:3])
         return FoundPose(Pose(x, y, z, *canonical_quaternion(relative[3:])), frame_id)
 
-    def _pose_in_root(
-        self, name: str, positions: NDArray[np.float64] | None,
-    ) -> tuple[Pose, str]:
+    def _pose_in_root(self, name: str) -> tuple[Pose, str]:
         """Return the pose of a frame in the root frame, and its frame id or else its name."""
-        scene, tree = self._scene, self._tree
+        scene, tree, positions = self._scene, self._tree, self._positions
         if name == tree.root_frame:
             return Pose(), name
         if not scene.has(name):

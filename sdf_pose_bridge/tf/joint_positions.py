@@ -1,0 +1,193 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The current positions of joints, by the names that ``joint_states`` uses.
+
+A name is that of the joint as frame ids are made (``arm/elbow``), or as in SDF (``arm::elbow``).
+The names of models around it can be left out where no other joint is meant. A second axis is
+called ``<joint>_axis2``; a ball joint has ``<joint>_roll``, ``<joint>_pitch`` and ``<joint>_yaw``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from collections.abc import Mapping
+from collections.abc import Sequence
+from typing import NamedTuple
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.scene.scene import Mimic
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.tf.frame_ids import FrameNames
+from sdf_pose_bridge.tf.frame_ids import FrameNaming
+from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+LARGEST_POSITION = 1e9
+"""The largest position, in radians or metres, that counts as one."""
+
+
+class Follower(NamedTuple):
+    """A degree of freedom whose position follows from that of another one."""
+
+    freedom: int
+    leader: int
+    mimic: Mimic
+
+
+class Selection(NamedTuple):
+    """The degrees of freedom that a list of names means."""
+
+    rows: NDArray[np.intp]
+    """The entries of the list that name degrees of freedom."""
+    freedoms: NDArray[np.intp]
+    """What each of these entries names."""
+    followers: tuple[Follower, ...]
+    """Those that follow from these, and are not named themselves; each after its leader."""
+    unknown: tuple[str, ...]
+    """The names that mean nothing, or several things."""
+
+    @property
+    def changed(self) -> set[int]:
+        """All degrees of freedom that get a position."""
+        return {*self.freedoms.tolist(), *(follower.freedom for follower in self.followers)}
+
+
+class JointPositions:
+    """
+    The positions of the degrees of freedom of a scene; all are zero at first.
+
+    :param scene: the scene.
+    :param freedoms: its degrees of freedom.
+    :param frame_names: how much of a scoped name goes into the name of a joint.
+    :param model: the scoped name of the only model whose joints have names; empty for all.
+    """
+
+    def __init__(
+        self, scene: Scene, freedoms: Sequence[DegreeOfFreedom],
+        frame_names: FrameNames = FrameNames.AUTO, model: str = '',
+    ) -> None:
+        self.values = np.zeros(len(freedoms))
+        """The position of each degree of freedom, in radians or metres."""
+        self.is_known = np.zeros(len(freedoms), np.bool_)
+        """Whether each has been given a position, or follows from one that has."""
+        self.freedoms = tuple(freedoms)
+        joints = np.array([each.joint.element for each in freedoms], np.int32)
+        is_named = [
+            scene.roots[joint] == 0
+            and (not model or scene.names[joint].startswith(model + SEPARATOR))
+            for joint in joints.tolist()]
+        names = FrameNaming(frame_names).frame_ids_from_scene(scene, joints)
+        self.names = tuple(
+            name + each.suffix for name, each in zip(names, freedoms, strict=True))
+        """The name of each degree of freedom."""
+        self._indices = _indices_from_names(
+            self.names, [scene.names[joint] for joint in joints.tolist()],
+            [each.suffix for each in freedoms], is_named)
+        self._followers = _followers(freedoms)
+
+    def selection(self, names: Sequence[str]) -> Selection:
+        """
+        Look up names.
+
+        :param names: names of degrees of freedom.
+        :return: what they mean.
+        """
+        found = [self._indices.get(name) for name in names]
+        rows = [row for row, freedom in enumerate(found) if freedom is not None]
+        freedoms = [freedom for freedom in found if freedom is not None]
+        reached = dict.fromkeys(freedoms)
+        followers: list[Follower] = []
+        for leader in (waiting := list(reached)):
+            for follower in self._followers.get(leader, ()):
+                if follower.freedom not in reached:
+                    reached[follower.freedom] = None
+                    followers.append(follower)
+                    waiting.append(follower.freedom)
+        return Selection(
+            np.array(rows, np.intp), np.array(freedoms, np.intp), tuple(followers),
+            tuple(name for name, freedom in zip(names, found, strict=True) if freedom is None))
+
+    def hint(self, name: str) -> str:
+        """
+        Return the end of a message about a name that means nothing, or several things.
+
+        :param name: the name.
+        :return: the nearest name that exists, or those that can be meant; else an empty string.
+        """
+        return hint_from_names(name, self._indices)
+
+    def update(self, selection: Selection, values: NDArray[np.float64]) -> list[str]:
+        """
+        Set positions.
+
+        :param selection: what the values are for.
+        :param values: a value for each name that was looked up, in radians or metres.
+        :return: the names whose values are not finite or too large; their positions stay.
+        """
+        freedoms, new = selection.freedoms, values[selection.rows]
+        is_valid = np.abs(new) <= LARGEST_POSITION
+        invalid: list[str] = []
+        if not is_valid.all():
+            invalid = [self.names[freedom] for freedom in freedoms[~is_valid].tolist()]
+            freedoms, new = freedoms[is_valid], new[is_valid]
+        self.values[freedoms] = new
+        self.is_known[freedoms] = True
+        for freedom, leader, mimic in selection.followers:
+            value = mimic.multiplier * (self.values[leader] - mimic.reference) + mimic.offset
+            if self.is_known[leader] and abs(value) <= LARGEST_POSITION:
+                self.values[freedom] = value
+                self.is_known[freedom] = True
+        return invalid
+
+    def take_over(self, before: JointPositions) -> None:
+        """
+        Continue with the positions of joints that have the same names.
+
+        :param before: the positions in the scene that this one's scene replaces.
+        """
+        rows = {name: row for row, name in enumerate(before.names)}
+        for freedom, name in enumerate(self.names):
+            if name in rows:
+                self.values[freedom] = before.values[rows[name]]
+                self.is_known[freedom] = before.is_known[rows[name]]
+
+
+def _indices_from_names(
+    names: Iterable[str], scoped_names: Iterable[str], suffixes: Iterable[str],
+    is_named: Iterable[bool],
+) -> dict[str, int]:
+    """Return all names by which a degree of freedom can be meant."""
+    own: dict[str, int] = {}
+    shorter: dict[str, set[int]] = {}
+    for index, (name, scoped, suffix, is_visible) in enumerate(
+            zip(names, scoped_names, suffixes, is_named, strict=True)):
+        if not is_visible:
+            continue
+        own.setdefault(name, index)
+        steps = scoped.split(SEPARATOR)
+        for count in range(len(steps)):
+            for separator in (SEPARATOR, '/'):
+                alias = separator.join(steps[count:]) + suffix
+                shorter.setdefault(alias, set()).add(index)
+    return {name: min(found) for name, found in shorter.items() if len(found) == 1} | own
+
+
+def _followers(freedoms: Sequence[DegreeOfFreedom]) -> Mapping[int, list[Follower]]:
+    """Return the degrees of freedom that mimic each one."""
+    indices = {
+        (each.joint.element, each.axis): index for index, each in enumerate(freedoms)
+        if each.axis is not None}
+    followers: dict[int, list[Follower]] = {}
+    for index, freedom in enumerate(freedoms):
+        mimic = None if freedom.axis is None else freedom.joint.axes[freedom.axis].mimic
+        leader = None if mimic is None else indices.get((mimic.joint, mimic.axis))
+        if mimic is not None and leader is not None:
+            followers.setdefault(leader, []).append(Follower(index, leader, mimic))
+    return followers
