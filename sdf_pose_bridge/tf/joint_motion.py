@@ -155,8 +155,10 @@ class JointMotion:
         rows = np.flatnonzero(last != NO_FREEDOM)
         moved: PoseArray = poses.copy()
         if len(rows):
-            displacements = poses_along_chains(
-                self._displacements.poses(positions), self.previous, np.arange(len(positions)))
+            # The root comes last, where the index -1 finds it.
+            edges = np.concatenate([self._displacements.poses(positions), [IDENTITY]])
+            ends = np.append(self.previous % len(edges), NO_FREEDOM)
+            displacements = poses_along_chains(edges, ends, np.arange(len(edges)))
             moved[rows] = pose_products(displacements[last[rows]], poses[rows])
             moved[rows, 3:] = canonical_quaternion(moved[rows, 3:])
         return moved

@@ -1,0 +1,190 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Poses of elements at positions of joints, against matrix exponentials and against drake."""
+
+import dataclasses
+
+from hypothesis import given
+from hypothesis import settings
+from hypothesis import strategies as st
+from joint_trees import link_matrices
+from joint_trees import model_text
+from joint_trees import POSES
+from joint_trees import POSITIONS
+from joint_trees import pose_text
+from joint_trees import random_joints
+from matrices import assert_same_pose
+from matrices import matrix_from_degrees
+from matrices import matrix_from_pose
+import numpy as np
+import pytest
+from sdf_texts import model_file
+from sdf_texts import world_file
+
+from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.tf.joint_motion import JointMotion
+from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.parents import tf_parents_from_scene
+
+DRAKE_TYPES = ('revolute', 'continuous', 'prismatic', 'screw', 'universal', 'ball', 'fixed')
+
+
+def motion_of(text):
+    scene = load_text(text)
+    return scene, JointMotion(scene, tf_parents_from_scene(scene))
+
+
+def poses_at(text, positions):
+    """Return the pose of each element, by its name, at positions of joints by their names."""
+    scene, motion = motion_of(text)
+    state = JointPositions(scene, motion.freedoms)
+    selection = state.selection(list(positions))
+    assert not selection.unknown
+    state.update(selection, np.array(list(positions.values()), float))
+    elements = np.arange(len(scene.names), dtype=np.int32)
+    return dict(zip(scene.names, motion.moved_poses(scene.poses, elements, state.values)))
+
+
+def two_links(joint_type, content='', joint_pose=''):
+    return model_file(
+        '<link name="a"/><link name="b"><pose>1 0 0 0 0 0</pose></link>'
+        f'<joint name="j" type="{joint_type}">{joint_pose}<parent>a</parent><child>b</child>'
+        f'{content}</joint>', version='1.11')
+
+
+@pytest.mark.parametrize(('joint_type', 'content', 'positions', 'pose'), [
+    ('revolute', '', {'j': 90.0}, (1, 0, 0, 0, 0, 90)),
+    ('continuous', '<axis><xyz>0 -2 0</xyz></axis>', {'j': 90.0}, (1, 0, 0, 0, -90, 0)),
+    ('gearbox', '<axis><xyz>1 0 0</xyz></axis>', {'j': 90.0}, (1, 0, 0, 90, 0, 0)),
+    ('universal', '<axis><xyz>0 0 1</xyz></axis><axis2><xyz>1 0 0</xyz></axis2>',
+     {'j': 90.0, 'j_axis2': 90.0}, (1, 0, 0, 90, 0, 90)),
+    ('ball', '', {'j_roll': 90.0, 'j_pitch': 0.0, 'j_yaw': 90.0}, (1, 0, 0, 90, 0, 90)),
+])
+def test_types_of_joints_that_rotate(joint_type, content, positions, pose):
+    radians = {name: np.radians(value) for name, value in positions.items()}
+    poses = poses_at(two_links(joint_type, content), radians)
+    assert_same_pose(poses['m::b'], matrix_from_degrees(*pose))
+
+
+@pytest.mark.parametrize(('joint_type', 'content', 'pose'), [
+    ('prismatic', '<axis><xyz>0 3 0</xyz></axis>', (1, 2, 0)),
+    ('screw', '<screw_thread_pitch>0.5</screw_thread_pitch>', (1, 0, 0.25, 0, 0, 180)),
+    ('screw', '<screw_thread_pitch>0.5</screw_thread_pitch><thread_pitch>9</thread_pitch>',
+     (1, 0, 0.25, 0, 0, 180)),
+    ('screw', f'<thread_pitch>{4.0 * np.pi}</thread_pitch>', (1, 0, -0.25, 0, 0, 180)),
+    ('screw', '', (1, 0, 0.5, 0, 0, 180)),
+])
+def test_types_of_joints_that_slide(joint_type, content, pose):
+    position = 2.0 if joint_type == 'prismatic' else np.pi
+    poses = poses_at(two_links(joint_type, content), {'j': position})
+    assert_same_pose(poses['m::b'], matrix_from_degrees(*pose))
+
+
+def test_a_fixed_joint_has_no_degree_of_freedom():
+    assert not motion_of(two_links('fixed'))[1].freedoms
+
+
+def test_a_static_model_does_not_move():
+    text = two_links('revolute').replace('<link', '<static>true</static><link', 1)
+    assert not motion_of(text)[1].freedoms
+
+
+def test_a_joint_of_the_world_moves_a_model():
+    text = world_file(
+        '<model name="m"><link name="l"/></model><joint name="j" type="prismatic">'
+        '<parent>world</parent><child>m</child><axis><xyz>1 0 0</xyz></axis></joint>')
+    assert_same_pose(poses_at(text, {'j': 2.0})['m'], matrix_from_degrees(2, 0, 0))
+
+
+def test_the_last_joint_of_a_loop_moves_nothing():
+    joints = ''.join(
+        f'<joint name="{name}" type="revolute"><parent>{parent}</parent><child>{child}</child>'
+        '</joint>' for name, parent, child in ('xab', 'ybc', 'zac'))
+    links = ''.join(f'<link name="{name}"/>' for name in 'abc')
+    scene, motion = motion_of(model_file(links + joints))
+    assert [scene.names[each.joint.element] for each in motion.freedoms] == ['m::x', 'm::y']
+
+
+@given(st.data())
+@settings(max_examples=60)
+def test_what_is_attached_to_a_moved_link_moves_with_it(data):
+    joints = data.draw(random_joints(2, types=('revolute', 'screw')))
+    link_poses = [data.draw(POSES) for _ in range(2)]
+    pose = data.draw(POSES)
+    position = data.draw(POSITIONS)
+    extra = (
+        f'<frame name="f" attached_to="l1">{pose_text(pose)}</frame>'
+        f'<frame name="g" attached_to="j1">{pose_text(pose)}</frame>'
+        '<frame name="h" attached_to="f"><pose relative_to="l0">1 2 3 0 0 1</pose></frame>')
+    text = model_text(link_poses, joints, extra)
+    poses = poses_at(text, {'j1': position})
+    before = {name: load_text(text).pose(f'm::{name}') for name in 'fgh'}
+    link = matrix_from_degrees(*link_poses[1])
+    motion = link_matrices(link_poses, joints, {'j1': position})[1] @ np.linalg.inv(link)
+    is_child = not joints[0].is_reversed
+    for name in 'fgh':
+        moves = name != 'g' or is_child
+        expected = matrix_from_pose(before[name])
+        assert_same_pose(poses[f'm::{name}'], motion @ expected if moves else expected, name=name)
+
+
+@given(st.data(), st.integers(2, 7))
+def test_random_trees_move_as_products_of_matrix_exponentials(data, count):
+    joints = data.draw(random_joints(count))
+    link_poses = [data.draw(POSES) for _ in range(count)]
+    positions = {
+        name: data.draw(POSITIONS) for joint in joints for name in joint.position_names}
+    poses = poses_at(model_text(link_poses, joints), positions)
+    expected = link_matrices(link_poses, joints, positions)
+    for number, matrix in enumerate(expected):
+        assert_same_pose(poses[f'm::l{number}'], matrix, name=f'l{number}')
+
+
+@given(st.data(), st.integers(2, 7))
+def test_joints_at_zero_leave_every_pose_as_it_is(data, count):
+    joints = data.draw(random_joints(count))
+    scene, motion = motion_of(model_text([data.draw(POSES) for _ in range(count)], joints))
+    elements = np.arange(len(scene.names), dtype=np.int32)
+    moved = motion.moved_poses(scene.poses, elements, np.zeros(len(motion.freedoms)))
+    np.testing.assert_allclose(moved, scene.poses, rtol=0.0, atol=1e-14)
+
+
+ORTHOGONAL_AXES = st.sampled_from([
+    ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)), ((0.0, 0.0, 2.0), (1.0, 0.0, 0.0)),
+    ((1.0, 1.0, 0.0), (1.0, -1.0, 0.0)), ((0.0, 2.0, 1.0), (0.0, -1.0, 2.0))])
+
+
+@given(st.data(), st.integers(2, 7))
+@settings(max_examples=200)
+def test_random_trees_move_as_in_drake(data, count):
+    parsing = pytest.importorskip(
+        'pydrake.multibody.parsing', reason='drake, which compares poses, is not installed')
+    from pydrake.multibody.plant import MultibodyPlant
+    # Drake cannot go from the child of these joints to the parent.
+    joints = [
+        dataclasses.replace(joint, is_reversed=False)
+        if joint.type in ('screw', 'universal', 'ball') else joint
+        for joint in data.draw(random_joints(count, DRAKE_TYPES, ORTHOGONAL_AXES))]
+    text = model_text(
+        [data.draw(POSES) for _ in range(count)], joints,
+        '<joint name="w" type="fixed"><parent>world</parent><child>l0</child></joint>')
+    plant = MultibodyPlant(0.0)
+    parsing.Parser(plant).AddModelsFromString(text, 'sdf')
+    plant.Finalize()
+    context = plant.CreateDefaultContext()
+    for _ in range(5):
+        positions = {
+            name: data.draw(POSITIONS) for joint in joints for name in joint.position_names}
+        in_drake = plant.GetPositions(context).copy()
+        for joint in joints:
+            start = plant.GetJointByName(joint.name).position_start()
+            values = [positions[name] for name in joint.position_names]
+            # The positions of a ball joint are roll, pitch and yaw there.
+            in_drake[start:start + len(values)] = (
+                values[::-1] if joint.type == 'ball' else values)
+        plant.SetPositions(context, in_drake)
+        poses = poses_at(text, positions)
+        for number in range(count):
+            matrix = plant.EvalBodyPoseInWorld(
+                context, plant.GetBodyByName(f'l{number}')).GetAsMatrix4()
+            assert_same_pose(poses[f'm::l{number}'], matrix, name=f'l{number}')

@@ -1,0 +1,148 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Names and positions of joints."""
+
+import numpy as np
+import pytest
+from sdf_texts import joint
+from sdf_texts import model_file
+from sdf_texts import world_file
+
+from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.tf.frame_ids import FrameNames
+from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
+
+ENDS = '<parent>a</parent><child>b</child>'
+LINKS = '<link name="a"/><link name="b"/><link name="c"/>'
+MIMIC = (
+    '<axis><xyz>0 0 1</xyz><mimic joint="{leader}" axis="{axis}"><multiplier>2</multiplier>'
+    '<offset>1</offset><reference>0.5</reference></mimic></axis>')
+
+
+def model(name, content=''):
+    return f'<model name="{name}">{LINKS}{joint(ENDS, "j", "revolute")}{content}</model>'
+
+
+def positions_of(text, frame_names=FrameNames.AUTO, model=''):
+    scene = load_text(text)
+    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
+    return JointPositions(scene, tree.moving.freedoms, frame_names, model)
+
+
+def update(positions, **values):
+    selection = positions.selection(list(values))
+    return positions.update(selection, np.array(list(values.values()), float))
+
+
+def following(leader='j', axis='axis', name='k'):
+    """Write a joint from b to c that follows another one."""
+    return joint(
+        '<parent>b</parent><child>c</child>' + MIMIC.format(leader=leader, axis=axis),
+        name, 'revolute')
+
+
+# Names
+
+@pytest.mark.parametrize('name', ['', 'zz', 'm/zz', 'zz::j', 'J', 'j_axis2', '/j'])
+def test_unknown_names(name):
+    assert positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute'))).selection(
+        [name]).unknown == (name,)
+
+
+@pytest.mark.parametrize('name', ['j', 'm/j', 'm::j'])
+def test_names_of_a_joint_of_a_model_file(name):
+    positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
+    assert positions.names == ('j',)
+    assert positions.selection([name]).freedoms.tolist() == [0]
+
+
+def test_names_of_joints_in_a_world_are_scoped():
+    positions = positions_of(world_file(model('x') + model('y')))
+    assert positions.names == ('x/j', 'y/j')
+    assert positions.selection(['y::j', 'y/j']).freedoms.tolist() == [1, 1]
+    assert positions.selection(['j']).unknown == ('j',)
+
+
+def test_names_of_models_can_be_left_out_where_one_joint_is_meant():
+    text = world_file(model('x') + '<model name="y"><static>1</static><link name="l"/></model>')
+    assert positions_of(text).selection(['j']).freedoms.tolist() == [0]
+
+
+def test_the_name_of_a_joint_itself_comes_first():
+    text = model_file(LINKS + joint(ENDS, 'j', 'revolute') + model('n'))
+    positions = positions_of(text)
+    assert positions.selection(['j', 'n/j']).freedoms.tolist() == [
+        positions.names.index('j'), positions.names.index('n/j')]
+
+
+def test_of_several_models_one_can_have_all_names():
+    positions = positions_of(world_file(model('x') + model('y')), model='y')
+    assert positions.selection(['j']).freedoms.tolist() == [1]
+    assert positions.selection(['x/j']).unknown == ('x/j',)
+
+
+def test_names_of_a_second_axis_and_of_a_ball_joint():
+    axes = '<axis><xyz>1 0 0</xyz></axis><axis2><xyz>0 1 0</xyz></axis2>'
+    text = model_file(
+        LINKS + joint(ENDS + axes, 'u', 'universal')
+        + joint('<parent>b</parent><child>c</child>', 'o', 'ball'))
+    assert set(positions_of(text).names) == {'u', 'u_axis2', 'o_roll', 'o_pitch', 'o_yaw'}
+
+
+def test_a_hint_names_the_nearest_joint():
+    positions = positions_of(model_file(LINKS + joint(ENDS, 'shoulder', 'revolute')))
+    assert positions.hint('sholder') == '; did you mean "shoulder"?'
+
+
+# Positions
+
+@pytest.mark.parametrize('value', [np.nan, np.inf, -np.inf, 1.1e9, -1e300])
+def test_positions_that_are_no_positions_are_not_taken(value):
+    positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
+    update(positions, j=0.5)
+    assert update(positions, j=value) == ['j']
+    assert positions.values.tolist() == [0.5]
+
+
+def test_a_wrong_position_leaves_the_others():
+    positions = positions_of(world_file(model('x') + model('y')))
+    selection = positions.selection(['x/j', 'y/j'])
+    assert positions.update(selection, np.array([np.nan, 2.0])) == ['x/j']
+    assert positions.values.tolist() == [0.0, 2.0]
+    assert positions.is_known.tolist() == [False, True]
+
+
+def test_a_follower_moves_with_its_leader():
+    positions = positions_of(model_file(LINKS + joint(
+        ENDS + '<axis><xyz>0 0 1</xyz></axis>', 'j', 'revolute') + following(), version='1.11'))
+    assert positions.values.tolist() == [0.0, 0.0]
+    update(positions, j=2.0)
+    assert dict(zip(positions.names, positions.values)) == {'j': 2.0, 'k': 4.0}
+
+
+def test_the_position_of_a_follower_can_be_given():
+    positions = positions_of(model_file(LINKS + joint(
+        ENDS + '<axis><xyz>0 0 1</xyz></axis>', 'j', 'revolute') + following(), version='1.11'))
+    update(positions, k=7.0, j=2.0)
+    assert dict(zip(positions.names, positions.values)) == {'j': 2.0, 'k': 7.0}
+
+
+def test_joints_that_follow_one_another_stop():
+    positions = positions_of(model_file(
+        LINKS + joint(ENDS + MIMIC.format(leader='k', axis='axis'), 'j', 'revolute')
+        + following(), version='1.11'))
+    update(positions, j=2.0)
+    assert dict(zip(positions.names, positions.values)) == {'j': 2.0, 'k': 4.0}
+
+
+def test_joints_of_the_same_name_continue_in_another_scene():
+    before = positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
+    update(before, j=2.0)
+    after = positions_of(model_file(
+        LINKS + joint(ENDS, 'i', 'revolute')
+        + joint('<parent>b</parent><child>c</child>', 'j', 'revolute')))
+    after.take_over(before)
+    assert dict(zip(after.names, after.values)) == {'i': 0.0, 'j': 2.0}
+    assert dict(zip(after.names, after.is_known)) == {'i': False, 'j': True}

@@ -1,0 +1,110 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The frames of a tree that joints move, and their transforms."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+from joint_trees import model_text
+from joint_trees import POSES
+from joint_trees import POSITIONS
+from joint_trees import random_joints
+import numpy as np
+from sdf_texts import fixed_joint
+from sdf_texts import joint
+from sdf_texts import model_file
+
+from sdf_pose_bridge import Kind
+from sdf_pose_bridge.geometry.poses import pose_products
+from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.tf.parents import NO_PARENT
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
+from sdf_pose_bridge.tf.tree import AnchorModels
+from sdf_pose_bridge.tf.tree import PoseLookup
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
+
+CAMERA = '<sensor name="s" type="camera"><pose>1 0 0 0 0 0</pose></sensor>'
+ARM = (
+    f'<link name="a"/><link name="b">{CAMERA}</link><link name="c"><pose>0 1 0 0 0 0</pose></link>'
+    + joint('<parent>a</parent><child>b</child>', 'j', 'revolute')
+    + joint('<parent>b</parent><child>c</child>', 'k', 'revolute'))
+
+
+def moving_tree(text, **options):
+    return tf_tree_from_scene(load_text(text), TfOptions(use_joint_states=True, **options))
+
+
+def moving_ids(tree):
+    return [tree.frame_ids[index] for index in tree.moving.indices]
+
+
+def test_nothing_moves_unless_it_is_asked_for():
+    assert tf_tree_from_scene(load_text(model_file(ARM))).moving is None
+
+
+def test_only_links_behind_joints_move_in_their_parents():
+    tree = moving_tree(model_file(ARM))
+    assert moving_ids(tree) == ['b', 'c']
+    assert [tree.frame_ids[index] for index in tree.moving.posed_indices] == [
+        'b', 'b/s', 'c', 'b/s_optical']
+
+
+def test_a_frame_moves_by_all_joints_up_to_the_next_published_frame():
+    tree = moving_tree(model_file(ARM), kinds=frozenset({Kind.MODEL, Kind.SENSOR}))
+    assert moving_ids(tree) == ['b/s']
+    text = model_file(ARM.replace(CAMERA, '') + '<frame name="f" attached_to="c"/>')
+    tree = moving_tree(text, kinds=frozenset({Kind.FRAME}))
+    transform, = tree.moving.transforms(np.array([np.pi / 2, np.pi / 2]))
+    np.testing.assert_allclose(transform, [-1, 0, 0, 0, 0, 1, 0], atol=1e-15)
+
+
+def test_a_model_that_is_not_anchored_has_no_transform_to_move():
+    text = model_file('<link name="a"/>' + joint(
+        '<parent>world</parent><child>a</child>', 'j', 'revolute'))
+    assert moving_ids(moving_tree(text)) == ['a']
+    assert not moving_ids(moving_tree(text, anchor_models=AnchorModels.NONE))
+
+
+def test_fixed_joints_move_nothing():
+    links = '<link name="a"/><link name="b"/>'
+    assert not moving_ids(moving_tree(model_file(links + fixed_joint('j', 'a', 'b'))))
+
+
+def test_rows_moved_by_a_degree_of_freedom():
+    moving = moving_tree(model_file(ARM)).moving
+    assert [moving.rows_moved_by([freedom]).tolist() for freedom in (0, 1)] == [[0], [1]]
+    assert moving.rows_moved_by([0, 1]).tolist() == [0, 1]
+    assert not moving.rows_moved_by([]).size
+
+
+def test_a_lookup_follows_the_positions():
+    scene = load_text(model_file(ARM + '<frame name="f" attached_to="b"/>'))
+    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
+    positions = np.zeros(2)
+    lookup = PoseLookup(scene, tree, positions)
+    assert lookup.pose('m::b::s').pose[:3] == (1.0, 0.0, 0.0)
+    positions[0] = np.pi / 2
+    for name in ('m::b::s', 'b/s', 'b/s_optical'):
+        np.testing.assert_allclose(lookup.pose(name).pose[:3], [0.0, 1.0, 0.0], atol=1e-15)
+    np.testing.assert_allclose(lookup.pose('b/s', 'f').pose[:3], [1.0, 0.0, 0.0], atol=1e-15)
+
+
+@given(st.data(), st.integers(2, 7))
+def test_transforms_along_the_tree_give_the_poses(data, count):
+    joints = data.draw(random_joints(count))
+    text = model_text([data.draw(POSES) for _ in range(count)], joints)
+    kinds = data.draw(st.sampled_from([
+        {Kind.LINK}, {Kind.JOINT}, {Kind.MODEL, Kind.LINK, Kind.JOINT}]))
+    tree = moving_tree(text, kinds=frozenset(kinds))
+    positions = np.array([data.draw(POSITIONS) for _ in tree.moving.freedoms])
+    transforms = tree.transforms.copy()
+    transforms[tree.moving.indices] = tree.moving.transforms(positions)
+    poses = tree.poses.copy()
+    poses[tree.moving.posed_indices] = tree.moving.poses(positions)
+    for pose, parent, transform in zip(poses, tree.parents.tolist(), transforms, strict=True):
+        assert parent != NO_PARENT
+        if parent != ROOT_IS_PARENT:
+            transform = pose_products(poses[[parent]], transform[np.newaxis])[0]
+        sign = 1.0 if transform[3:] @ pose[3:] > 0.0 else -1.0
+        np.testing.assert_allclose(
+            [*transform[:3], *sign * transform[3:]], pose, rtol=0.0, atol=1e-12)
