@@ -273,6 +273,12 @@ class MergeIncludeError(SdfError):
     code = 'MERGE_INCLUDE_UNSUPPORTED'
 
 
+class JointPositionError(SdfError, ValueError):
+    """A query gives a position to a joint that does not exist, or a value that is none."""
+
+    code = 'ELEMENT_INVALID'
+
+
 class UnknownFrameError(SdfError, LookupError):
     """A query names a frame that does not exist, or one of several with the same name."""
 

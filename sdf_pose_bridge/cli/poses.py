@@ -12,7 +12,9 @@ from typing import Any
 
 from sdf_pose_bridge.cli.check import add_file_arguments
 from sdf_pose_bridge.cli.check import load_file
+from sdf_pose_bridge.cli.check import LoadedFile
 from sdf_pose_bridge.cli.check import print_problems
+from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UnknownFrameError
@@ -44,6 +46,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         '--relative-to', metavar='FRAME', default='',
         help='print poses relative to this frame, such as robot::arm::hand')
     parser.add_argument(
+        '--joint', metavar='NAME=VALUE', type=_position_from_text, action='append', default=[],
+        dest='positions',
+        help='put a joint there, in radians or metres; all others stay at zero. May be repeated. '
+             'Names are those of joint_states: elbow, arm/elbow, wrist_axis2, ball_roll')
+    parser.add_argument(
         '--kinds', metavar='KIND[,KIND...]', type=_kinds_from_text, default=_SHOWN_KINDS,
         help=f'print only these kinds: {_KIND_NAMES}')
     parser.set_defaults(run=run)
@@ -58,7 +65,7 @@ def run(options: argparse.Namespace) -> int:
     """
     are_valid = True
     for path in options.files:
-        loaded = load_file(path, options)
+        loaded = _load_at_positions(path, options)
         errors = loaded.errors
         elements: list[dict[str, Any]] = []
         if loaded.scene is not None:
@@ -83,6 +90,15 @@ def run(options: argparse.Namespace) -> int:
     return 0 if are_valid else 1
 
 
+def _position_from_text(text: str) -> tuple[str, float]:
+    name, _, value = text.rpartition('=')
+    try:
+        return name, float(value)
+    except ValueError:
+        msg = f'"{text}" is not NAME=VALUE with a number, such as elbow=1.57'
+        raise argparse.ArgumentTypeError(msg) from None
+
+
 def _kinds_from_text(text: str) -> tuple[Kind, ...]:
     kinds = []
     for name in text.split(','):
@@ -91,6 +107,19 @@ def _kinds_from_text(text: str) -> tuple[Kind, ...]:
             raise argparse.ArgumentTypeError(msg)
         kinds.append(_SHOWN_BY_NAME[name])
     return tuple(kinds)
+
+
+def _load_at_positions(path: str, options: argparse.Namespace) -> LoadedFile:
+    loaded = load_file(path, options)
+    if loaded.scene is None or not options.positions:
+        return loaded
+    # Imported here because most often joints stay where they are.
+    from sdf_pose_bridge.tf.joint_positions import scene_at_positions
+    try:
+        scene = scene_at_positions(loaded.scene, dict(options.positions))
+    except JointPositionError as error:
+        return LoadedFile(None, error.errors, loaded.warnings)
+    return LoadedFile(scene, (), scene.warnings)
 
 
 def _elements(scene: Scene, options: argparse.Namespace) -> list[dict[str, Any]]:

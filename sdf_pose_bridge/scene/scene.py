@@ -193,6 +193,17 @@ class Scene:
         """
         return self.world_names.get(self._root_of[index], '')
 
+    def with_poses(self, poses: PoseArray, warnings: tuple[SdfWarning, ...]) -> 'Scene':
+        """
+        Return a scene with the same elements at other poses.
+
+        :param poses: as :attr:`poses`.
+        :param warnings: as :attr:`warnings`.
+        :return: the scene.
+        """
+        values = {name: value for name, value in vars(self).items() if not name.startswith('_')}
+        return Scene(**values | {'poses': poses, 'warnings': warnings})
+
     def has(self, name: str) -> bool:
         """
         Return whether an element exists, in any world.

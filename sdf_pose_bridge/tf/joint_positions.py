@@ -18,6 +18,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sdf_pose_bridge.errors import JointPositionError
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene.scene import Mimic
@@ -25,6 +28,8 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom
+from sdf_pose_bridge.tf.joint_motion import JointMotion
+from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -157,6 +162,42 @@ class JointPositions:
             if name in rows:
                 self.values[freedom] = before.values[rows[name]]
                 self.is_known[freedom] = before.is_known[rows[name]]
+
+
+def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
+    """
+    Return a scene with its joints at other positions.
+
+    :param scene: the scene, as it was loaded.
+    :param positions: positions by the names of joints, in radians or metres. All other joints stay
+        at zero, but for those that mimic one of these.
+    :return: a scene with other poses and, where a position is beyond the limits of its joint, more
+        warnings.
+    :raises JointPositionError: if a name is not that of one movable joint, or a position is not
+        finite or too large.
+    """
+    motion = JointMotion(scene, tf_parents_from_scene(scene))
+    state = JointPositions(scene, motion.freedoms)
+    selection = state.selection(list(positions))
+    invalid = state.update(selection, np.array(list(positions.values()), float))
+    for name in selection.unknown:
+        msg = f'"{name}" is not the name of one movable joint{state.hint(name)}'
+        raise JointPositionError(msg, Place(scene.path))
+    for name in invalid:
+        msg = f'the position of "{name}" must be finite and at most {LARGEST_POSITION:g}'
+        raise JointPositionError(msg, Place(scene.path))
+    elements = np.arange(len(scene.names), dtype=np.int32)
+    poses = motion.moved_poses(scene.poses, elements, state.values)
+    poses.setflags(write=False)
+    warnings = []
+    for name, freedom, value in zip(
+            state.names, motion.freedoms, state.values.tolist(), strict=True):
+        axis = None if freedom.axis is None else freedom.joint.axes[freedom.axis]
+        if axis is not None and not axis.lower <= value <= axis.upper:
+            msg = (f'the position {value:g} of "{name}" is beyond its limits, {axis.lower:g} to '
+                   f'{axis.upper:g}')
+            warnings.append(SdfWarning('WARNING', msg, scene.place(freedom.joint.element)))
+    return scene.with_poses(poses, (*scene.warnings, *warnings))
 
 
 def _indices_from_names(

@@ -42,7 +42,8 @@ def poses_at(text, positions):
     assert not selection.unknown
     state.update(selection, np.array(list(positions.values()), float))
     elements = np.arange(len(scene.names), dtype=np.int32)
-    return dict(zip(scene.names, motion.moved_poses(scene.poses, elements, state.values)))
+    moved = motion.moved_poses(scene.poses, elements, state.values)
+    return dict(zip(scene.names, moved, strict=True))
 
 
 def two_links(joint_type, content='', joint_pose=''):
