@@ -74,9 +74,10 @@ class RunningBridge:
 
     :param stack: ends it.
     :param file: the file.
+    :param parameters: more of them, as ``name:=value``.
     """
 
-    def __init__(self, stack: contextlib.ExitStack, file: Path) -> None:
+    def __init__(self, stack: contextlib.ExitStack, file: Path, *parameters: str) -> None:
         from ament_index_python.packages import get_package_prefix
         self.domain = random.randint(1, 100)
         os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
@@ -89,6 +90,7 @@ class RunningBridge:
             raise Unavailable(msg) from None
         self.process = self.start(
             stack, prefix / 'lib/sdf_pose_bridge/bridge', '--ros-args', '-p', f'sdf_file:={file}',
+            *itertools.chain.from_iterable(('-p', each) for each in parameters),
             stderr=subprocess.DEVNULL)
         self.client = Client(self.domain)
         stack.callback(self.client.close)

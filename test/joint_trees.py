@@ -24,6 +24,7 @@ LENGTHS = st.integers(-16, 16).map(lambda value: value / 8)
 ANGLES = st.integers(-12, 12).map(lambda value: value * 15)
 POSES = st.tuples(*[LENGTHS] * 3, *[ANGLES] * 3)
 AXES = st.tuples(*[st.integers(-2, 2).map(float)] * 3).filter(any)
+PAIRS_OF_AXES = st.tuples(AXES, AXES)
 PITCHES = st.sampled_from([-0.5, 0.01, 0.25, 2.0])
 POSITIONS = st.floats(-4.0, 4.0).map(lambda value: round(value, 3))
 
@@ -58,7 +59,8 @@ class RandomJoint:
         parent, child = ends[::-1] if self.is_reversed else ends
         axes = ''.join(
             f'<{tag}><xyz expressed_in="{frame}">{" ".join(map(str, axis))}</xyz></{tag}>'
-            for tag, axis, frame in zip(('axis', 'axis2'), self.axes, self.expressed_in)
+            for tag, axis, frame in zip(
+                ('axis', 'axis2'), self.axes, self.expressed_in, strict=True)
             if tag == 'axis' or self.type in ('universal', 'revolute2'))
         pitch = (
             f'<thread_pitch>{-2.0 * np.pi / self.pitch_m!r}</thread_pitch>' if self.has_old_pitch
@@ -71,7 +73,7 @@ class RandomJoint:
 
 
 @st.composite
-def random_joints(draw, count, types=TYPES, axes=st.tuples(AXES, AXES)):
+def random_joints(draw, count, types=TYPES, axes=PAIRS_OF_AXES):
     """Draw the joints of a tree of ``count`` links."""
     frames = ['', *(f'l{number}' for number in range(count)), '__model__']
     return [

@@ -94,7 +94,7 @@ class JointStates:
             TOPICS_PERIOD_S, self._publish_topics, clock=steady_clock)
         self._use(tree, moving, positions)
         self._subscription = node.create_subscription(
-            JointState, 'joint_states', self._take, qos_profile_sensor_data)
+            JointState, 'joint_states', self.take, qos_profile_sensor_data)
 
     def destroy(self) -> None:
         """Stop following, and destroy what was created for it."""
@@ -141,7 +141,12 @@ class JointStates:
 
     # Messages
 
-    def _take(self, message: JointState) -> None:
+    def take(self, message: JointState) -> None:
+        """
+        Take positions of joints, and publish what they move.
+
+        :param message: a message of ``joint_states``.
+        """
         names, values = message.name, np.asarray(message.position)
         if len(values) != len(names):
             self._logger.warning(

@@ -9,9 +9,9 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from joint_trees import link_matrices
 from joint_trees import model_text
+from joint_trees import pose_text
 from joint_trees import POSES
 from joint_trees import POSITIONS
-from joint_trees import pose_text
 from joint_trees import random_joints
 from matrices import assert_same_pose
 from matrices import matrix_from_degrees

@@ -1,0 +1,188 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Joints that move, compared with a node that makes an object for each transform."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+import contextlib
+import itertools
+from pathlib import Path
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from benchmarks.bench_idle import processor_time_ns
+from benchmarks.bench_publication import node
+from benchmarks.bench_reload import RunningBridge
+from benchmarks.harness import benchmark
+from benchmarks.harness import Function
+from benchmarks.harness import TimesAsFast
+from benchmarks.harness import Took
+import sdf_pose_bridge
+from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from sensor_msgs.msg import JointState
+
+RATE_HZ = 500.0
+WINDOW_S = 4.0
+
+COUNTERPART = """
+import sys
+import rclpy
+from benchmarks.bench_joints import JointBroadcaster
+rclpy.init()
+node = rclpy.create_node('counterpart')
+broadcaster = JointBroadcaster(node, int(sys.argv[1]), '/tf_of_counterpart')
+try:
+    rclpy.spin(node)
+except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+    pass
+"""
+
+
+def chain_text(joints: int) -> str:
+    """Write a model of links that revolute joints connect, one after the other."""
+    parts = ''.join(
+        f'<link name="link_{number}"><pose relative_to="link_{number - 1}">0 0 0.1 0 0.1 0'
+        f'</pose></link><joint name="joint_{number}" type="revolute">'
+        f'<parent>link_{number - 1}</parent><child>link_{number}</child>'
+        '<axis><xyz>0 0 1</xyz></axis></joint>' for number in range(1, joints + 1))
+    return f'<sdf version="1.10"><model name="chain"><link name="link_0"/>{parts}</model></sdf>'
+
+
+def joint_states(joints: int) -> Iterator[JointState]:
+    """Make messages with other stamps and positions again and again."""
+    from sensor_msgs.msg import JointState
+    names = [f'joint_{number}' for number in range(1, joints + 1)]
+    for count in itertools.count(1):
+        message = JointState(name=names, position=np.full(joints, count % 1000 * 1e-3))
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(count, 10**9)
+        yield message
+
+
+class JointBroadcaster:
+    """
+    Publishes the transforms of joints as programs with tf2_ros do: an object for each.
+
+    All joints turn about z at the same place, which is the least that can be calculated.
+
+    :param node: the node.
+    :param joints: how many joints there are.
+    :param topic: where the transforms are published.
+    """
+
+    def __init__(self, node: Node, joints: int, topic: str) -> None:
+        from rclpy.qos import qos_profile_sensor_data
+        from sensor_msgs.msg import JointState
+        from tf2_msgs.msg import TFMessage
+        self._frames = {
+            f'joint_{number}': (f'link_{number - 1}', f'link_{number}')
+            for number in range(1, joints + 1)}
+        self._message_type = TFMessage
+        self._publisher = node.create_publisher(TFMessage, topic, 100)
+        node.create_subscription(JointState, 'joint_states', self.take, qos_profile_sensor_data)
+
+    def take(self, message: JointState) -> None:
+        """Publish the transforms of a message."""
+        import math
+
+        from geometry_msgs.msg import TransformStamped
+        transforms = []
+        for name, position in zip(message.name, message.position, strict=True):
+            transform = TransformStamped()
+            transform.header.stamp = message.header.stamp
+            transform.header.frame_id, transform.child_frame_id = self._frames[name]
+            transform.transform.translation.z = 0.1
+            transform.transform.rotation.z = math.sin(0.5 * position)
+            transform.transform.rotation.w = math.cos(0.5 * position)
+            transforms.append(transform)
+        self._publisher.publish(self._message_type(transforms=transforms))
+
+
+@benchmark(
+    'JointState of 100 joints to sent TFMessage', counterpart='an object for each, and sent',
+    goal=TimesAsFast(5.0))
+def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
+    from sdf_pose_bridge.ros.joint_states import JointStates
+    with node() as ros:
+        scene = sdf_pose_bridge.load_text(chain_text(100))
+        tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
+        assert tree.moving is not None
+        positions = JointPositions(scene, tree.moving.freedoms)
+        follower = JointStates(ros, tree, tree.moving, positions)
+        broadcaster = JointBroadcaster(ros, 100, '/tf_of_counterpart')
+        messages = joint_states(100)
+        yield lambda: follower.take(next(messages)), lambda: broadcaster.take(next(messages))
+
+
+@contextlib.contextmanager
+def shares_of_processors(joints: int) -> Iterator[tuple[Function, Function]]:
+    """Measure what the bridge and the counterpart take while they follow the same messages."""
+    import rclpy
+    from rclpy.context import Context
+    from sensor_msgs.msg import JointState
+    with contextlib.ExitStack() as stack:
+        file = Path(stack.enter_context(tempfile.TemporaryDirectory()), 'chain.sdf')
+        file.write_text(chain_text(joints), encoding='utf-8')
+        bridge = RunningBridge(
+            stack, file, 'use_joint_states:=true', 'watch:=false', 'pose_topics:=[]')
+        processes = [bridge.process, bridge.start(
+            stack, sys.executable, '-c', COUNTERPART, str(joints), stderr=subprocess.DEVNULL)]
+        context = Context()
+        rclpy.init(args=[], context=context, domain_id=bridge.domain)
+        stack.callback(context.shutdown)
+        publisher = rclpy.create_node('joints', context=context).create_publisher(
+            JointState, 'joint_states', 10)
+        while publisher.get_subscription_count() < len(processes):
+            time.sleep(0.1)
+        has_ended = threading.Event()
+        stack.callback(has_ended.set)
+
+        def publish() -> None:
+            due = time.perf_counter()
+            for message in joint_states(joints):
+                if has_ended.is_set():
+                    return
+                publisher.publish(message)
+                due += 1.0 / RATE_HZ
+                time.sleep(max(0.0, due - time.perf_counter()))
+
+        threading.Thread(target=publish, daemon=True).start()
+        last: list[float] = []
+
+        def ours() -> Took:
+            before = [processor_time_ns(process) for process in processes]
+            begin = time.perf_counter_ns()
+            time.sleep(WINDOW_S)
+            window = time.perf_counter_ns() - begin
+            last[:] = [
+                (processor_time_ns(process) - first) / window
+                for process, first in zip(processes, before, strict=True)]
+            return Took(last[0])
+        yield ours, lambda: Took(last[1])
+
+
+@benchmark(
+    '30 joints at 500 Hz, processor time in each second',
+    counterpart='a node that makes an object for each', goal=TimesAsFast())
+def share_of_30_joints() -> Iterator[tuple[Function, Function | None]]:
+    with shares_of_processors(30) as pair:
+        yield pair
+
+
+@benchmark(
+    '100 joints at 500 Hz, processor time in each second',
+    counterpart='a node that makes an object for each', goal=TimesAsFast())
+def share_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
+    with shares_of_processors(100) as pair:
+        yield pair

@@ -1,0 +1,57 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Publish on ``joint_states``, in a process of its own, what lines of standard input say."""
+
+import json
+import subprocess
+import sys
+
+
+class JointPublisher:
+    """A process that publishes positions of joints."""
+
+    def __init__(self):
+        self._process = subprocess.Popen(
+            [sys.executable, __file__], stdin=subprocess.PIPE, text=True)
+        self._sec = 1000
+
+    def send(self, positions, *, sec=None, names=None):
+        """
+        Publish one message.
+
+        :param positions: by the names of joints.
+        :param sec: the stamp; the last one and 1 if there is none.
+        :param names: other names than those of the positions.
+        :return: the stamp.
+        """
+        self._sec = self._sec + 1 if sec is None else sec
+        self._process.stdin.write(json.dumps(
+            [names or list(positions), list(positions.values()), self._sec]) + '\n')
+        self._process.stdin.flush()
+        return self._sec
+
+    def end(self):
+        self._process.stdin.close()
+        self._process.wait(30.0)
+
+
+def main():
+    import rclpy
+    from sensor_msgs.msg import JointState
+    rclpy.init()
+    node = rclpy.create_node('joints')
+    publisher = node.create_publisher(JointState, 'joint_states', 10)
+    for line in sys.stdin:
+        # Until the bridge is there, nobody would get the message.
+        while not publisher.get_subscription_count():
+            rclpy.spin_once(node, timeout_sec=0.1)
+        names, positions, sec = json.loads(line)
+        message = JointState(name=names, position=list(map(float, positions)))
+        message.header.stamp.sec = sec
+        publisher.publish(message)
+    node.destroy_node()
+    rclpy.shutdown()
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,219 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""A bridge that follows joint states: publisher, bridge and listener are three processes."""
+
+from math import isclose
+from math import nan
+from math import pi
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from changes import BRIDGE
+from changes import listen_to_tf
+from changes import reload
+from changes import replace
+from changes import set_parameters
+from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import TransformStamped
+from joint_publisher import JointPublisher
+from listener import latched
+from slow_file import SlowFile
+from std_srvs.srv import Trigger
+from tf2_msgs.msg import TFMessage
+
+from sdf_pose_bridge_interfaces.srv import LookupPose
+
+ARM = """<sdf version="1.11"><model name="arm">
+<link name="base"/><link name="upper"><pose>0 0 1 0 0 0</pose></link>
+<link name="slide"><pose>0 0 2 0 0 0</pose></link><link name="finger"/>
+<frame name="tool" attached_to="slide"><pose>{tool} 0 0 0 0 0</pose></frame>
+<joint name="turn" type="revolute"><parent>base</parent><child>upper</child>
+  <axis><xyz>0 0 1</xyz></axis></joint>
+<joint name="lift" type="prismatic"><parent>upper</parent><child>slide</child>
+  <axis><xyz>0 0 1</xyz></axis></joint>
+<joint name="grip" type="prismatic"><parent>base</parent><child>finger</child>
+  <axis><xyz>1 0 0</xyz><mimic joint="lift"><multiplier>2</multiplier><offset>0</offset>
+  <reference>0</reference></mimic></axis></joint>
+</model></sdf>"""
+MOVED = {'upper', 'slide', 'finger'}
+
+
+@pytest.fixture(name='file')
+def write_file(tmp_path):
+    path = tmp_path / 'arm.sdf'
+    path.write_text(ARM.format(tool=1), encoding='utf-8')
+    return path
+
+
+@pytest.fixture(name='start')
+def make_start(start_bridge):
+    def start(file, *parameters):
+        arguments = [f'sdf_file:={file}', 'use_joint_states:=true', *parameters]
+        return start_bridge('--ros-args', *(
+            word for each in arguments for word in ('-p', each))).wait_until_started()
+    return start
+
+
+@pytest.fixture(name='joints')
+def joint_publisher(ros_domain):
+    publisher = JointPublisher()
+    yield publisher
+    publisher.end()
+
+
+class TfListener:
+    """Keeps the last message about each frame on /tf."""
+
+    def __init__(self, listener):
+        self.listener = listener
+        self.last = {}
+        self.count = 0
+        listener.node.create_subscription(TFMessage, '/tf', self._take, 100)
+
+    def _take(self, message):
+        self.count += 1
+        self.last.update({each.child_frame_id: each for each in message.transforms})
+
+    def wait_for(self, frame, sec):
+        """Wait for a transform with a stamp; return its translation and rotation."""
+        self.listener.wait(
+            lambda: frame in self.last and self.last[frame].header.stamp.sec == sec,
+            lambda: f'{frame} at {sec}, last were {self.last}')
+        return self.last[frame].transform
+
+
+@pytest.fixture(name='tf')
+def listen_to_moving_frames(start_listener):
+    return TfListener(start_listener())
+
+
+def pose_of(tf, frame):
+    answer = tf.listener.call(LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(frame=frame))
+    assert answer.success, answer.message
+    return answer.pose.pose.position
+
+
+def test_before_the_first_message_all_joints_are_at_zero(start, file, tf):
+    start(file)
+    tf.listener.wait(lambda: tf.last.keys() >= MOVED, lambda: 'all moving frames')
+    assert tf.last['slide'].transform.translation.z == 1.0
+    listen_to_tf(tf.listener)
+    tf.listener.wait(lambda: tf.listener.tf_messages, lambda: '/tf_static')
+    fixed = {each.child_frame_id for each in tf.listener.tf_messages[0].transforms}
+    assert fixed == {'arm', 'base', 'tool'}
+
+
+def test_frames_follow_a_message(start, file, joints, tf):
+    start(file)
+    sec = joints.send({'turn': pi / 2, 'lift': 0.25})
+    assert isclose(tf.wait_for('upper', sec).rotation.z, 0.5 ** 0.5)
+    assert tf.wait_for('slide', sec).translation.z == 1.25
+    assert tf.wait_for('finger', sec).translation.x == 0.5
+    tool = pose_of(tf, 'arm::tool')
+    assert (round(tool.x, 9), round(tool.y, 9), tool.z) == (0.0, 1.0, 2.25)
+
+
+def test_a_message_moves_the_joints_that_it_names(start, file, joints, tf):
+    start(file)
+    first = joints.send({'turn': 1.0, 'lift': 0.25})
+    tf.wait_for('slide', first)
+    second = joints.send({'arm::turn': 0.0})
+    assert tf.wait_for('upper', second).rotation.z == 0.0
+    assert tf.last['slide'].header.stamp.sec == first
+    assert pose_of(tf, 'slide').z == 2.25
+
+
+@pytest.mark.parametrize(('positions', 'names', 'line'), [
+    ({'turn': nan}, None, 'not finite'),
+    ({'turn': 1e12}, None, 'beyond 1e+09'),
+    ({'turn': 1.0}, ['turn', 'lift'], 'has 2 names and 1 positions'),
+    ({'turns': 1.0}, None, '"turns", not the name of one movable joint; did you mean "turn"?'),
+])
+def test_a_wrong_message_is_reported_and_the_next_one_taken(
+    start, file, joints, tf, positions, names, line,
+):
+    bridge = start(file)
+    joints.send(positions, names=names)
+    bridge.wait_for_line(line)
+    sec = joints.send({'lift': 0.5})
+    assert tf.wait_for('slide', sec).translation.z == 1.5
+
+
+def test_time_that_goes_back_is_followed(start, file, joints, tf):
+    start(file)
+    tf.wait_for('slide', joints.send({'lift': 0.5}, sec=500))
+    assert tf.wait_for('slide', joints.send({'lift': 0.1}, sec=3)).translation.z == 1.1
+
+
+def test_later_listeners_get_the_last_positions(start, file, joints, tf):
+    start(file)
+    sec = joints.send({'turn': 0.0, 'lift': 0.5})
+    tf.wait_for('slide', sec)
+    transforms, poses = {}, []
+    tf.listener.node.create_subscription(
+        TransformStamped, f'{BRIDGE}/transforms',
+        lambda message: transforms.update({message.child_frame_id: message}), latched(100))
+    tf.listener.node.create_subscription(
+        PoseStamped, f'{BRIDGE}/poses/tool', poses.append, latched(1))
+
+    def has_last_positions():
+        return (
+            len(transforms) == 6 and transforms['slide'].header.stamp.sec == sec
+            and poses and poses[-1].header.stamp.sec == sec)
+    tf.listener.wait(has_last_positions, lambda: f'{sec}: {transforms}, {poses}')
+    assert transforms['slide'].transform.translation.z == 1.5
+    assert poses[-1].pose.position.z == 2.5
+
+
+def test_joints_move_while_the_file_is_read_again(start, tmp_path, joints, tf):
+    slow = SlowFile(tmp_path / 'slow.sdf', ARM.format(tool=1))
+    start(slow.path, 'watch:=false')
+    tf.wait_for('slide', joints.send({'lift': 0.1}))
+    client = tf.listener.node.create_client(Trigger, f'{BRIDGE}/reload')
+    tf.listener.wait(client.service_is_ready, lambda: 'reload')
+    slow.hold()
+    reloading = client.call_async(Trigger.Request())
+    with slow.opened():
+        sec = joints.send({'lift': 0.25})
+        assert tf.wait_for('slide', sec).translation.z == 1.25
+        assert pose_of(tf, 'tool').x == 1.0
+        slow.write(ARM.format(tool=3))
+    tf.listener.wait(reloading.done, lambda: 'the answer')
+    assert reloading.result().success
+    assert (pose_of(tf, 'tool').x, pose_of(tf, 'tool').z) == (3.0, 2.25)
+    assert tf.wait_for('slide', joints.send({'lift': 0.5})).translation.z == 1.5
+
+
+def test_a_broken_file_leaves_the_joints_moving(start, file, joints, tf):
+    start(file, 'watch:=false')
+    tf.wait_for('slide', joints.send({'lift': 0.1}))
+    replace(file, '<sdf')
+    assert not reload(tf.listener).success
+    assert tf.wait_for('slide', joints.send({'lift': 0.5})).translation.z == 1.5
+
+
+def test_tf_is_published_at_most_at_the_publish_rate(start, file, joints, tf):
+    start(file, 'publish_rate:=2.0')
+    tf.wait_for('slide', joints.send({'lift': 0.1}))
+    before = tf.count
+    for number in range(50):
+        last = joints.send({'lift': number / 100})
+    assert tf.wait_for('slide', last).translation.z == 1.49
+    assert tf.count < before + 25
+
+
+def test_following_can_be_switched_off_and_on(start, file, joints, tf):
+    start(file)
+    tf.wait_for('slide', joints.send({'lift': 0.1}))
+    listen_to_tf(tf.listener)
+    result, = set_parameters(tf.listener, use_joint_states=False)
+    assert result.successful, result.reason
+    tf.listener.wait(
+        lambda: tf.listener.tf_messages and {
+            each.child_frame_id for each in tf.listener.tf_messages[-1].transforms} >= MOVED,
+        lambda: 'all frames on /tf_static')
+    result, = set_parameters(tf.listener, use_joint_states=True)
+    assert result.successful, result.reason
+    assert tf.wait_for('slide', joints.send({'lift': 0.7})).translation.z == 1.7
