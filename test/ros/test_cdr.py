@@ -192,3 +192,11 @@ def test_a_message_of_100000_transforms_ends_with_the_last_number():
     (data,) = tf_message(['world'] * count, names, numbers).with_stamp(1, 2)
     assert struct.unpack_from('<I', data, 4) == (count,)
     assert struct.unpack('<7d', data[-56:]) == tuple(numbers[-1])
+
+
+@given(ROWS)
+def test_poses_can_be_replaced(rows):
+    parents, children, numbers = columns(rows)
+    messages = tf_message(parents, children, np.zeros_like(numbers))
+    messages.set_poses(numbers)
+    assert messages.with_stamp(1, 2) == tf_message(parents, children, numbers).with_stamp(1, 2)

@@ -113,6 +113,34 @@ def test_axis_moves_no_frame():
     assert scene.pose('m::j') == (0, 0, 0, 0, 0, 0, 1)
 
 
+def following(joint, axis='axis', name='k'):
+    """Write a joint that mimics another one."""
+    mimic = f'<axis><xyz>1 0 0</xyz><mimic joint="{joint}" axis="{axis}"/></axis>'
+    return fixed_joint(name, 'b', 'n', mimic)
+
+
+@where_libsdformat_checks
+@pytest.mark.parametrize(('joint', 'axis', 'words'), [
+    ('zzz', 'axis', 'names no joint'), ('', 'axis', 'names no joint'),
+    ('a', 'axis', 'names no joint'), ('k', 'axis', 'cannot mimic itself'),
+    ('j', 'axis2', 'has no <axis2>'), ('j', 'axis3', 'must be one of axis, axis2'),
+])
+def test_axis_that_mimics_nothing_is_refused(file_with, joint, axis, words):
+    leader = fixed_joint('j', 'a', 'b', '<axis><xyz>1 0 0</xyz></axis>')
+    error = errors_of(file_with(leader + following(joint, axis)))[-1]
+    assert error.code == 'JOINT_AXIS_MIMIC_INVALID'
+    assert words in error.message
+
+
+@where_libsdformat_checks
+def test_axis_can_mimic_another_one(file_with):
+    leader = fixed_joint('j', 'a', 'b', '<axis><xyz>1 0 0</xyz></axis>')
+    text = file_with(leader + following('j')).replace('version="1.9"', 'version="1.11"')
+    scene = sdf_pose_bridge.load_text(text.replace('version="1.10"', 'version="1.11"'))
+    leading, follower = scene.joints
+    assert follower.axes[0].mimic == (leading.element, 0, 1.0, 0.0, 0.0)
+
+
 @at_every_depth
 @pytest.mark.parametrize('ends', [
     ('a', 'b'), ('world', 'a'), ('on_a', 'b'), ('b', 'also_on_a'), ('a', 'n'), ('n::k', 'b'),
@@ -157,6 +185,8 @@ def test_static_model_can_be_the_child():
     (fixed_joint('j', 'a', 'on_a'), 'JOINT_PARENT_SAME_AS_CHILD'),
     (fixed_joint('j', 'a', 'b', '<axis><xyz expressed_in="zzz">1 0 0</xyz></axis>'),
      'JOINT_AXIS_EXPRESSED_IN_INVALID'),
+    (fixed_joint('j', 'a', 'b', '<axis><xyz>1 0 0</xyz><mimic joint="zzz"/></axis>'),
+     'JOINT_AXIS_MIMIC_INVALID'),
 ])
 def test_wrong_joint_of_a_model_in_a_model_gives_a_warning(joint, code):
     scene = sdf_pose_bridge.load_text(in_nested_model(joint))

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""What only models, frames, joints, sensors and materials have."""
+"""What only models, frames, sensors and materials have."""
 
 import math
 
@@ -8,13 +8,11 @@ import pytest
 from sdf_texts import codes_of
 from sdf_texts import errors_of
 from sdf_texts import fixed_joint
-from sdf_texts import joint
 from sdf_texts import LINK
 from sdf_texts import link_with
 from sdf_texts import model_file
 from sdf_texts import only_error
 from sdf_texts import posed
-from sdf_texts import TWO_LINKS
 from sdf_texts import world_file
 
 from sdf_pose_bridge import load_text
@@ -59,54 +57,6 @@ def test_model_is_not_static_by_default():
 def test_nested_model_of_a_static_model_is_not_static():
     scene = load_text(model_file('<static>true</static><model name="n"><link name="l"/></model>'))
     assert scene.static_models == {scene.index('m')}
-
-
-# Joints
-
-def joint_of_type(joint_type):
-    content = '<parent>a</parent><child>b</child>'
-    return model_file(TWO_LINKS + joint(content, joint_type=joint_type))
-
-
-def test_joint_without_a_type_is_refused():
-    text = model_file(TWO_LINKS + '<joint name="j"><parent>a</parent><child>b</child></joint>')
-    assert codes_of(text) == ['ATTRIBUTE_MISSING']
-
-
-@pytest.mark.parametrize('joint_type', ['', ' ', 'glue', 'hinge', 'fix ed'])
-def test_joint_of_an_unknown_type_is_refused(joint_type):
-    assert codes_of(joint_of_type(joint_type)) == ['ATTRIBUTE_INVALID']
-
-
-@pytest.mark.parametrize('joint_type', [
-    'ball', 'continuous', 'fixed', 'gearbox', 'prismatic', 'revolute', 'revolute2', 'screw',
-    'universal', 'FIXED', ' fixed ',
-])
-def test_joint_has_a_type(joint_type):
-    joint_of_scene, = load_text(joint_of_type(joint_type)).joints
-    assert joint_of_scene.type == joint_type.strip().lower()
-
-
-@pytest.mark.parametrize(('content', 'joint_type', 'code'), [
-    ('<parent>a</parent>', 'fixed', 'ELEMENT_MISSING'),
-    ('<child>a</child>', 'revolute', 'ELEMENT_MISSING'),
-    ('<parent>a</parent>', 'ball', 'JOINT_CHILD_LINK_INVALID'),
-    ('<child>a</child>', 'ball', 'JOINT_PARENT_LINK_INVALID'),
-    ('<parent/><child>a</child>', 'fixed', 'ELEMENT_INVALID'),
-    ('<parent>a</parent><child> </child>', 'fixed', 'ELEMENT_INVALID'),
-])
-def test_joint_without_an_end_is_refused(content, joint_type, code):
-    assert codes_of(model_file(TWO_LINKS + joint(content, joint_type=joint_type))) == [code]
-
-
-def test_joint_without_both_ends_has_two_errors():
-    assert codes_of(model_file(TWO_LINKS + joint(''))) == ['ELEMENT_MISSING'] * 2
-
-
-def test_ends_of_a_joint_are_stripped():
-    content = '<parent>\n a </parent><child><!-- c --> b</child>'
-    scene = load_text(model_file(TWO_LINKS + joint(content)))
-    assert [scene.names[index] for index in scene.joints[0][2:4]] == ['m::a', 'm::b']
 
 
 # Sensors

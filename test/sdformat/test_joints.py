@@ -1,0 +1,118 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What only joints have: type, ends, axes and pitch."""
+
+import math
+
+import pytest
+from sdf_texts import codes_of
+from sdf_texts import joint
+from sdf_texts import model_file
+from sdf_texts import TWO_LINKS
+
+from sdf_pose_bridge import load_text
+
+
+def joint_of_type(joint_type):
+    content = '<parent>a</parent><child>b</child>'
+    return model_file(TWO_LINKS + joint(content, joint_type=joint_type))
+
+
+def test_joint_without_a_type_is_refused():
+    text = model_file(TWO_LINKS + '<joint name="j"><parent>a</parent><child>b</child></joint>')
+    assert codes_of(text) == ['ATTRIBUTE_MISSING']
+
+
+@pytest.mark.parametrize('joint_type', ['', ' ', 'glue', 'hinge', 'fix ed'])
+def test_joint_of_an_unknown_type_is_refused(joint_type):
+    assert codes_of(joint_of_type(joint_type)) == ['ATTRIBUTE_INVALID']
+
+
+@pytest.mark.parametrize('joint_type', [
+    'ball', 'continuous', 'fixed', 'gearbox', 'prismatic', 'revolute', 'revolute2', 'screw',
+    'universal', 'FIXED', ' fixed ',
+])
+def test_joint_has_a_type(joint_type):
+    joint_of_scene, = load_text(joint_of_type(joint_type)).joints
+    assert joint_of_scene.type == joint_type.strip().lower()
+
+
+@pytest.mark.parametrize(('content', 'joint_type', 'code'), [
+    ('<parent>a</parent>', 'fixed', 'ELEMENT_MISSING'),
+    ('<child>a</child>', 'revolute', 'ELEMENT_MISSING'),
+    ('<parent>a</parent>', 'ball', 'JOINT_CHILD_LINK_INVALID'),
+    ('<child>a</child>', 'ball', 'JOINT_PARENT_LINK_INVALID'),
+    ('<parent/><child>a</child>', 'fixed', 'ELEMENT_INVALID'),
+    ('<parent>a</parent><child> </child>', 'fixed', 'ELEMENT_INVALID'),
+])
+def test_joint_without_an_end_is_refused(content, joint_type, code):
+    assert codes_of(model_file(TWO_LINKS + joint(content, joint_type=joint_type))) == [code]
+
+
+def test_joint_without_both_ends_has_two_errors():
+    assert codes_of(model_file(TWO_LINKS + joint(''))) == ['ELEMENT_MISSING'] * 2
+
+
+def test_ends_of_a_joint_are_stripped():
+    content = '<parent>\n a </parent><child><!-- c --> b</child>'
+    scene = load_text(model_file(TWO_LINKS + joint(content)))
+    assert [scene.names[index] for index in scene.joints[0][2:4]] == ['m::a', 'm::b']
+
+
+# Axes
+
+def axes_of(content, frame='', version='1.11'):
+    """Load a joint with these axes in a frame that is rotated."""
+    ends = '<pose degrees="true">0 0 0 90 0 0</pose><parent>a</parent><child>b</child>'
+    loaded, = load_text(model_file(
+        TWO_LINKS + frame + joint(ends + content, joint_type='universal'), version=version)).joints
+    return loaded.axes
+
+
+@pytest.mark.parametrize('xyz', ['0 0 0', '', '1 0', 'a b c'])
+def test_wrong_axis_is_refused(xyz):
+    content = f'<parent>a</parent><child>b</child><axis><xyz>{xyz}</xyz></axis>'
+    assert codes_of(model_file(TWO_LINKS + joint(content))) == ['ELEMENT_INVALID']
+
+
+@pytest.mark.parametrize(('content', 'xyz'), [
+    ('', (0, 0, 1)), ('<axis><xyz>0 -2 0</xyz></axis>', (0, -1, 0)),
+    ('<axis><xyz expressed_in="j">0 0 3</xyz></axis>', (0, 0, 1)),
+    ('<axis><xyz expressed_in="__model__">0 0 3</xyz></axis>', (0, 1, 0)),
+    ('<axis><xyz expressed_in="f">1 0 0</xyz></axis>', (0, 0, -1)),
+])
+def test_axis_is_a_unit_vector_in_the_joint(content, xyz):
+    frame = '<frame name="f"><pose degrees="true">0 0 0 0 0 90</pose></frame>'
+    assert axes_of(content, frame)[0].xyz == pytest.approx(xyz, abs=1e-15)
+
+
+def test_axis_of_an_old_file_can_be_in_the_model_frame():
+    content = '<axis><xyz>0 0 1</xyz><use_parent_model_frame>1</use_parent_model_frame></axis>'
+    assert axes_of(content, version='1.6')[0].xyz == pytest.approx((0, 1, 0), abs=1e-15)
+
+
+def test_axes_have_limits_of_their_own():
+    limit = '<limit><lower>-1</lower><upper>{}</upper></limit>'
+    axes = axes_of(
+        f'<axis><xyz>1 0 0</xyz>{limit.format(2)}</axis>'
+        f'<axis2><xyz>0 1 0</xyz>{limit.format("inf")}</axis2>')
+    assert [(axis.lower, axis.upper) for axis in axes] == [(-1.0, 2.0), (-1.0, math.inf)]
+
+
+def test_axis_without_limits():
+    axis, _ = axes_of('<axis><xyz>1 0 0</xyz><limit/></axis>')
+    assert (axis.lower, axis.upper, axis.mimic) == (-math.inf, math.inf, None)
+
+
+@pytest.mark.parametrize(('content', 'pitch_m'), [
+    ('', 1.0),
+    ('<screw_thread_pitch>0.5</screw_thread_pitch>', 0.5),
+    ('<thread_pitch>-3.141592653589793</thread_pitch>', 2.0),
+    ('<thread_pitch>1</thread_pitch><screw_thread_pitch>0.5</screw_thread_pitch>', 0.5),
+    ('<thread_pitch>0</thread_pitch>', 0.0),
+])
+def test_pitch_of_a_screw_joint(content, pitch_m):
+    ends = '<parent>a</parent><child>b</child>'
+    loaded, = load_text(model_file(
+        TWO_LINKS + joint(ends + content, joint_type='screw'))).joints
+    assert loaded.screw_pitch_m == pytest.approx(pitch_m)
