@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from sdf_pose_bridge.scene.scene import Scene
     from sdf_pose_bridge.sdformat.grammar import Kind
     from sdf_pose_bridge.sdformat.limits import Limits
+    from sdf_pose_bridge.tf.joint_positions import scene_at_positions
 
 __all__ = [
     'Kind',
@@ -38,6 +39,7 @@ __all__ = [
     'UnknownFrameError',
     'load',
     'load_text',
+    'scene_at_positions',
 ]
 
 _HOMES = {
@@ -51,6 +53,7 @@ _HOMES = {
     'UnknownFrameError': 'errors',
     'load': 'scene.loading',
     'load_text': 'scene.loading',
+    'scene_at_positions': 'tf.joint_positions',
 }
 
 

@@ -64,3 +64,25 @@ def test_an_unknown_kind_is_an_error_that_lists_the_known_ones(sdf_pose):
     done = sdf_pose('poses', '--kinds', 'link,lnik', 'good.sdf')
     assert done.returncode == 2
     assert '"lnik" is not a kind of element; known are model, link' in done.stderr
+
+
+ARM = ('<sdf version="1.9"><model name="m"><link name="a"/><link name="b"/>'
+       '<joint name="j" type="prismatic"><parent>a</parent><child>b</child></joint></model></sdf>')
+
+
+@pytest.mark.parametrize(('argument', 'words'), [
+    ('j', 'is not NAME=VALUE'), ('j=x', 'is not NAME=VALUE'), ('=1', '"" is not the name of'),
+    ('i=1', '"i" is not the name of'), ('j=nan', 'must be finite'),
+])
+def test_wrong_position_of_a_joint_is_refused(sdf_pose, files, argument, words):
+    (files / 'arm.sdf').write_text(ARM)
+    done = sdf_pose('poses', 'arm.sdf', '--joint', argument)
+    assert done.returncode in (1, 2)
+    assert words in done.stderr
+
+
+def test_poses_at_positions_of_joints(sdf_pose, files):
+    (files / 'arm.sdf').write_text(ARM)
+    done = sdf_pose('poses', 'arm.sdf', '--json', '--joint', 'j=7', '--joint', 'm::j=0.5')
+    poses = {each['name']: each['pose'] for each in json.loads(done.stdout)['elements']}
+    assert poses['m::b'][:3] == [0.0, 0.0, 0.5]

@@ -8,9 +8,11 @@ from sdf_texts import joint
 from sdf_texts import model_file
 from sdf_texts import world_file
 
+from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.joint_positions import scene_at_positions
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
 
@@ -150,3 +152,34 @@ def test_joints_of_the_same_name_continue_in_another_scene():
     after.take_over(before)
     assert values_of(after) == {'i': 0.0, 'j': 2.0}
     assert after.is_known.tolist() == [name == 'j' for name in after.names]
+
+
+# Scenes at a configuration
+
+def limited(limit=''):
+    axis = f'<axis><xyz>0 0 1</xyz>{limit}</axis>'
+    return load_text(model_file(
+        LINKS + joint(ENDS + axis, 'j', 'prismatic') + following(), version='1.11'))
+
+
+@pytest.mark.parametrize(('name', 'value', 'words'), [
+    ('i', 1.0, '"i" is not the name of one movable joint'), ('j', np.nan, 'must be finite'),
+])
+def test_a_wrong_configuration_is_refused(name, value, words):
+    with pytest.raises(JointPositionError, match=words):
+        scene_at_positions(limited(), {name: value})
+
+
+def test_a_scene_at_a_configuration_has_other_poses():
+    before = limited()
+    after = scene_at_positions(before, {'j': 0.25})
+    assert after.pose('m::b')[:3] == (0.0, 0.0, 0.25)
+    assert before.pose('m::b')[:3] == (0.0, 0.0, 0.0)
+    assert not after.poses.flags.writeable
+
+
+def test_a_position_beyond_its_limits_is_warned_of():
+    before = limited('<limit><lower>-1</lower><upper>1</upper></limit>')
+    assert not scene_at_positions(before, {'j': 1.0}).warnings
+    warning, = scene_at_positions(before, {'j': 1.5}).warnings
+    assert '1.5 of "j" is beyond its limits, -1 to 1' in warning.message
