@@ -63,6 +63,7 @@ def load(
     resource_paths: Iterable[str | os.PathLike[str]] = (),
     on_missing_include: MissingInclude | str = MissingInclude.ERROR,
     limits: Limits = DEFAULT_LIMITS,
+    shapes: bool = False,
 ) -> Scene:
     """
     Read a file and resolve every pose in it.
@@ -72,6 +73,7 @@ def load(
         those of the environment variables ``GZ_SIM_RESOURCE_PATH`` and ``SDF_PATH``.
     :param on_missing_include: ``error``, or ``skip`` to leave out includes that are not found.
     :param limits: what the load may use; hostile files that need more are refused.
+    :param shapes: whether to read the shapes of visuals and collisions too.
     :return: the scene.
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
     """
@@ -80,7 +82,8 @@ def load(
     with _without_garbage_collection(), _limit_error_last(problems):
         document = document_from_file(os.fspath(path), sources, problems)
         return _scene(
-            document, sources, problems, resource_paths, MissingInclude(on_missing_include))
+            document, sources, problems, resource_paths, MissingInclude(on_missing_include),
+            shapes=shapes)
 
 
 def load_text(
@@ -90,6 +93,7 @@ def load_text(
     resource_paths: Iterable[str | os.PathLike[str]] = (),
     on_missing_include: MissingInclude | str = MissingInclude.ERROR,
     limits: Limits = DEFAULT_LIMITS,
+    shapes: bool = False,
 ) -> Scene:
     """
     Resolve every pose in SDFormat text, as :func:`load` does for a file.
@@ -99,6 +103,7 @@ def load_text(
     :param resource_paths: as for :func:`load`.
     :param on_missing_include: as for :func:`load`.
     :param limits: as for :func:`load`.
+    :param shapes: as for :func:`load`.
     :return: the scene.
     :raises SdfError: as for :func:`load`.
     """
@@ -107,7 +112,8 @@ def load_text(
     with _without_garbage_collection(), _limit_error_last(problems):
         document = document_from_text(text, name, sources, problems)
         return _scene(
-            document, sources, problems, resource_paths, MissingInclude(on_missing_include))
+            document, sources, problems, resource_paths, MissingInclude(on_missing_include),
+            shapes=shapes)
 
 
 @contextlib.contextmanager
@@ -133,7 +139,8 @@ def _limit_error_last(problems: Problems) -> Iterator[None]:
 
 def _scene(
     document: Document, sources: Sources, problems: Problems,
-    resource_paths: Iterable[str | os.PathLike[str]], on_missing_include: MissingInclude,
+    resource_paths: Iterable[str | os.PathLike[str]], on_missing_include: MissingInclude, *,
+    shapes: bool,
 ) -> Scene:
     may_hold_scoped_names = document.may_hold_scoped_names
     if next(document.root.iter('include'), None) is not None:
@@ -146,7 +153,8 @@ def _scene(
         expansion.expand(document)
         may_hold_scoped_names |= expansion.may_hold_scoped_names
     elements = elements_from_tree(
-        document.root, sources, problems, may_hold_scoped_names=may_hold_scoped_names)
+        document.root, sources, problems, may_hold_scoped_names=may_hold_scoped_names,
+        shapes=shapes)
     graph = frame_graph_from_elements(elements, sources.usage, problems)
     problems.raise_errors()
     return _scene_from_graph(document.path, elements, graph, problems)
@@ -199,6 +207,7 @@ def _scene_from_graph(
         parents=reindexed(elements.parents),
         roots=reindexed(graph.roots),
         poses=_frozen(poses[is_kept]),
+        references=reindexed(graph.references),
         attachments=reindexed(graph.attachments),
         bodies=reindexed(graph.bodies),
         canonical_links=reindexed(graph.canonical_links),
@@ -211,6 +220,9 @@ def _scene_from_graph(
             for joint, parent, child in graph.joints if is_kept[joint]),
         sensors=MappingProxyType({
             new_index_of[index]: details for index, details in elements.sensors.items()
+            if is_kept[index]}),
+        shapes=MappingProxyType({
+            new_index_of[index]: shape for index, shape in elements.shapes.items()
             if is_kept[index]}),
         lines=_frozen(elements.lines[is_kept]),
         file_indices=_frozen(elements.file_indices[is_kept]),

@@ -19,6 +19,7 @@ from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.shapes import Shape
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -60,6 +61,8 @@ class Scene:
     """The world or implicit root of each element; each of these is a tree of its own."""
     poses: PoseArray
     """Shape (n, 7): pose of each in its root, x y z in metres, unit quaternion x y z w, w >= 0."""
+    references: Indices
+    """The frame that the pose of each is relative to; -1 for worlds and implicit roots."""
     attachments: Indices
     """The frame that each frame is attached to; -1 for links, static models and roots."""
     bodies: Indices
@@ -72,6 +75,8 @@ class Scene:
     """All joints, in file order."""
     sensors: Mapping[int, SensorDetails]
     """Details of each sensor, by its index."""
+    shapes: Mapping[int, Shape]
+    """The shapes of visuals and collisions, by index; empty unless the load was to read them."""
     lines: Indices
     """The line of each element; 0 where it is not known."""
     file_indices: Indices
@@ -84,16 +89,18 @@ class Scene:
     def __init__(
         self, *,
         path: str, files: tuple[str, ...], names: tuple[str, ...], kinds: 'npt.NDArray[np.uint8]',
-        parents: Indices, roots: Indices, poses: PoseArray, attachments: Indices, bodies: Indices,
-        canonical_links: Indices, static_models: frozenset[int], joints: tuple[Joint, ...],
-        sensors: Mapping[int, SensorDetails], lines: Indices, file_indices: Indices,
-        world_names: Mapping[int, str], warnings: tuple[SdfWarning, ...],
+        parents: Indices, roots: Indices, poses: PoseArray, references: Indices,
+        attachments: Indices, bodies: Indices, canonical_links: Indices,
+        static_models: frozenset[int], joints: tuple[Joint, ...],
+        sensors: Mapping[int, SensorDetails], shapes: Mapping[int, Shape], lines: Indices,
+        file_indices: Indices, world_names: Mapping[int, str], warnings: tuple[SdfWarning, ...],
     ) -> None:
         vars(self).update(
             path=path, files=files, names=names, kinds=kinds, parents=parents, roots=roots,
-            poses=poses, attachments=attachments, bodies=bodies, canonical_links=canonical_links,
-            static_models=static_models, joints=joints, sensors=sensors, lines=lines,
-            file_indices=file_indices, world_names=world_names, warnings=warnings)
+            poses=poses, references=references, attachments=attachments, bodies=bodies,
+            canonical_links=canonical_links, static_models=static_models, joints=joints,
+            sensors=sensors, shapes=shapes, lines=lines, file_indices=file_indices,
+            world_names=world_names, warnings=warnings)
 
     def __setattr__(self, name: str, value: object) -> None:
         msg = f'{name} cannot be set: a scene is immutable'
