@@ -13,6 +13,8 @@ from typing import Any
 from sdf_pose_bridge.cli.check import add_file_arguments
 from sdf_pose_bridge.cli.check import load_file
 from sdf_pose_bridge.cli.check import print_problems
+from sdf_pose_bridge.cli.frames import add_kinds_argument
+from sdf_pose_bridge.cli.frames import SHOWN_KINDS
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UnknownFrameError
@@ -20,10 +22,6 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-
-_SHOWN_KINDS = tuple(kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD))
-_SHOWN_BY_NAME = {kind.label: kind for kind in _SHOWN_KINDS}
-_KIND_NAMES = ', '.join(_SHOWN_BY_NAME)
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -43,9 +41,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         '--relative-to', metavar='FRAME', default='',
         help='print poses relative to this frame, such as robot::arm::hand')
-    parser.add_argument(
-        '--kinds', metavar='KIND[,KIND...]', type=_kinds_from_text, default=_SHOWN_KINDS,
-        help=f'print only these kinds: {_KIND_NAMES}')
+    add_kinds_argument(parser, SHOWN_KINDS, 'print only')
     parser.set_defaults(run=run)
 
 
@@ -81,16 +77,6 @@ def run(options: argparse.Namespace) -> int:
         if not errors:
             _print_table(elements, path if len(options.files) > 1 else '')
     return 0 if are_valid else 1
-
-
-def _kinds_from_text(text: str) -> tuple[Kind, ...]:
-    kinds = []
-    for name in text.split(','):
-        if name not in _SHOWN_BY_NAME:
-            msg = f'"{name}" is not a kind of element; known are {_KIND_NAMES}'
-            raise argparse.ArgumentTypeError(msg)
-        kinds.append(_SHOWN_BY_NAME[name])
-    return tuple(kinds)
 
 
 def _elements(scene: Scene, options: argparse.Namespace) -> list[dict[str, Any]]:

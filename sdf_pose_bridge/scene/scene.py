@@ -16,6 +16,7 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -196,6 +197,19 @@ class Scene:
             if len(candidates) == 1:
                 return candidates[0]
         raise self._unknown(name, world, frames or found)
+
+    def own_name(self, index: int) -> str:
+        """
+        Return the name of an element without its scope.
+
+        :param index: its index.
+        :return: such as ``hand``; for a world its name.
+        """
+        parent = int(self.parents[index])
+        if parent < 0:
+            return self.world_names.get(index, self.names[index])
+        scope = '' if self.parents[parent] < 0 else self.names[parent]
+        return self.names[index][len(scoped_name(scope, '')):]
 
     def place(self, index: int) -> Place:
         """

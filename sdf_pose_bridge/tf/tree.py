@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 import enum
 from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -33,6 +34,9 @@ from sdf_pose_bridge.tf.frame_ids import optical_frames_of_cameras
 from sdf_pose_bridge.tf.frame_ids import with_ids_of_sensors
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 from sdf_pose_bridge.tf.parents import TfParents
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 DEFAULT_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.FRAME, Kind.SENSOR})
 """The kinds of element that become frames unless the options say otherwise."""
@@ -170,14 +174,28 @@ def _published_elements(scene: Scene, options: TfOptions, problems: Problems) ->
         what = 'the model beside the worlds' if name is None else f'world "{name}"'
         msg = f'{what} is not published; only the first world or model of a file is'
         problems.warning(msg, scene.place(root))
-    if options.model:
-        model = _model_from_name(scene, options.model)
-        is_model = np.arange(len(is_root)) == model
-        is_inside = ends_from_pointers(np.where(is_model, -1, scene.parents)) == model
-    else:
-        is_inside = scene.roots == 0
+    is_inside = (
+        elements_in_model(scene, options.model) if options.model else scene.roots == 0)
     is_wanted = np.array([kind in options.kinds for kind in Kind])[scene.kinds]
     return np.flatnonzero(is_inside & is_wanted & ~is_root).astype(np.int32)
+
+
+def elements_in_model(scene: Scene, name: str) -> npt.NDArray[np.bool_]:
+    """
+    Find a model with all that it holds.
+
+    :param scene: the scene.
+    :param name: scoped name of the model; empty for everything.
+    :return: shape (n,), True for the model and the elements in it.
+    :raises UnknownFrameError: if there is no such model.
+    """
+    if not name:
+        return np.ones(len(scene.names), np.bool_)
+    model = _model_from_name(scene, name)
+    is_model = np.arange(len(scene.names)) == model
+    is_inside: npt.NDArray[np.bool_] = (
+        ends_from_pointers(np.where(is_model, -1, scene.parents)) == model)
+    return is_inside
 
 
 def _model_from_name(scene: Scene, name: str) -> int:
