@@ -117,7 +117,9 @@ def _layout_of_axes(lowest: Points, highest: Points, origins: Points) -> dict[st
     # For the camera the largest side has the length 1.
     target = (0.5 * (first + last) - middle) / size_m
     distance = 1.7 * max(float((last - first).max()) / size_m, 0.3)
-    axis = {'showbackground': False, 'gridcolor': '#dee2e6', 'zerolinecolor': '#adb5bd'}
+    axis = {
+        'showbackground': False, 'showspikes': False, 'gridcolor': '#dee2e6',
+        'zerolinecolor': '#adb5bd'}
     return {
         'aspectmode': 'manual',
         'aspectratio': dict(zip('xyz', (sides_m / size_m).tolist(), strict=True)),

@@ -11,10 +11,8 @@ import importlib
 import os
 from pathlib import Path
 import sys
-import tempfile
 from types import ModuleType
 from typing import Any
-import webbrowser
 
 from sdf_pose_bridge.cli.check import add_file_arguments
 from sdf_pose_bridge.cli.drawn_shapes import drawn_shapes_from_scene
@@ -31,6 +29,23 @@ from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 
 _FORMATS = ('.html', '.png')
 _PICTURE_SIZE = {'width': 1600, 'height': 1000}
+_POINT_THROUGH_SURFACES = """
+const page = document.getElementById('{plot_id}');
+function pointThroughSurfaces() {
+  const scene = page._fullLayout.scene?._scene;
+  for (const trace of page._fullData.filter(trace => trace.hoverinfo === 'skip')) {
+    const drawn = scene?.traces?.[trace.uid];
+    for (const part of [drawn?.mesh, drawn?.linePlot]) if (part) part.drawPick = () => {};
+  }
+  scene?.glplot?.redraw?.();
+}
+page.on('plotly_afterplot', pointThroughSurfaces);
+pointThroughSurfaces();
+"""
+"""
+Without this plotly finds what is nearest to the eye under the pointer, even if it has nothing to
+show, and so would never find a frame inside a shape.
+"""
 _NEEDS_PLOTLY = ('this needs the library plotly: pip install plotly, or on Debian and Ubuntu '
                  'apt install python3-plotly')
 _NEEDS_KALEIDO = ('a picture needs the library kaleido (pip install kaleido) and Chrome or '
@@ -79,8 +94,8 @@ def run(options: argparse.Namespace) -> int:
         shapes, markers = drawn_shapes_from_scene(
             scene, tree, options.model, resource_finder(options.resource_paths, os.environ))
         for reason, count in Counter(marker.reason for marker in markers).items():
-            print(f'sdf_pose view: {count} of the shapes are drawn as markers: '
-                  f'{printable(reason)}', file=sys.stderr)
+            what = '1 shape is' if count == 1 else f'{count} shapes are'
+            print(f'sdf_pose view: {what} not drawn: {printable(reason)}', file=sys.stderr)
         figure = figure_from_scene(scene, tree, shapes, markers, units_from_arguments(options))
     if figure is None:
         return 1
@@ -118,10 +133,14 @@ def _fail(message: str) -> int:
 def _write_page(plotly: ModuleType, figure: Mapping[str, Any], path: Path | None) -> None:
     """Write the page; to a temporary file that is opened in the browser if there is no path."""
     page = plotly.to_html(
-        figure, include_plotlyjs=True, validate=False, config={'displaylogo': False})
+        figure, include_plotlyjs=True, validate=False, config={'displaylogo': False},
+        post_script=_POINT_THROUGH_SURFACES)
     if path is not None:
         path.write_text(page, encoding='utf-8')
         return
+    # These are imported here because the other commands need not wait for them.
+    import tempfile
+    import webbrowser
     with tempfile.NamedTemporaryFile(
             'w', prefix='sdf_pose_view_', suffix='.html', encoding='utf-8', delete=False) as file:
         file.write(page)
