@@ -8,6 +8,7 @@ The description is made of dictionaries, so this module does not import plotly.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from collections.abc import Sequence
 import html
 from typing import Any
@@ -38,9 +39,10 @@ _OTHER_COLOUR = '#495057'
 # Frames of different kinds are often in one place, where their names must not cover one another.
 _TEXT_POSITIONS = {
     'model': 'bottom center', 'link': 'top center', 'sensor': 'middle left',
-    'optical frame': 'bottom left', 'joint': 'top left', 'root': 'bottom right'}
+    'optical frame': 'bottom left', 'joint': 'top left', 'root': 'top right'}
 _OPACITY = {'visual': 0.25, 'collision': 0.2}
 _DIRECTION_OF_EYE = np.array([0.75, -0.5, 0.45])
+_MOST_AT_A_PLACE = 4
 _LABELS = (*(kind.label for kind in Kind), 'optical frame')
 
 
@@ -65,7 +67,10 @@ def figure_from_scene(
     size_m = float((highest - lowest).max()) or 1.0
     length_m = _length_of_axes(tree, size_m)
     names = [_text(frame_id.rpartition('/')[2]) for frame_id in (tree.root_frame, *tree.frame_ids)]
-    hovers = [f'<b>{_text(tree.root_frame)}</b><br>root', *_hovers(tree, labels[1:], units)]
+    places = np.round(poses[:, :3] / (1e-6 * size_m)).tolist()
+    hovers = _joined_by_place(
+        [f'<b>{_text(tree.root_frame)}</b><br>root', *_hovers(tree, labels[1:], units)], places,
+        '<br>')
     data = [_surface(kind, [shape for shape in shapes if shape.kind == kind])
             for kind in dict.fromkeys(shape.kind for shape in shapes)]
     data.append(_lines_to_parents(tree))
@@ -73,8 +78,10 @@ def figure_from_scene(
         chosen = [index for index, other in enumerate(labels) if other == label]
         data += [
             _axes(poses[chosen], label, length_m),
-            _origins(poses[chosen], label, [names[index] for index in chosen],
-                     [hovers[index] for index in chosen])]
+            _origins(
+                poses[chosen], label, _joined_by_place(
+                    [names[index] for index in chosen], [places[index] for index in chosen], ', '),
+                [hovers[index] for index in chosen])]
     if markers:
         data.append(_markers(markers))
     named = [index for index, trace in enumerate(data) if trace.get('mode') == 'markers+text']
@@ -95,6 +102,22 @@ def figure_from_scene(
 def _text(value: str) -> str:
     """Return a text from a file for plotly, which reads HTML in texts."""
     return html.escape(printable(shortened(value)))
+
+
+def _joined_by_place(
+    texts: Sequence[str], places: Iterable[Sequence[float]], separator: str,
+) -> list[str]:
+    """Replace each text by all texts of its place, where they would cover one another."""
+    keys = [tuple(place) for place in places]
+    together: dict[tuple[float, ...], list[str]] = {}
+    for key, text in zip(keys, texts, strict=True):
+        together.setdefault(key, []).append(text)
+    joined = {
+        key: separator.join([*those[:_MOST_AT_A_PLACE], *(
+            [f'and {len(those) - _MOST_AT_A_PLACE} more'] if len(those) > _MOST_AT_A_PLACE
+            else [])])
+        for key, those in together.items()}
+    return [joined[key] for key in keys]
 
 
 def _layout_of_axes(lowest: Points, highest: Points, origins: Points) -> dict[str, Any]:

@@ -14,8 +14,6 @@ from collections.abc import Iterator
 from collections.abc import Sequence
 import os
 from pathlib import Path
-import shutil
-import subprocess
 import sys
 
 import numpy as np
@@ -186,6 +184,9 @@ def _output_from_text(text: str) -> Path:
 
 def _write(text: str, path: Path) -> int:
     """Write a graph in the format that the path says; return the exit code."""
+    # The other commands need not wait for these.
+    import shutil
+    import subprocess
     error = ''
     if path.suffix.lower() == '.dot':
         try:

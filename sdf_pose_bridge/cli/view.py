@@ -37,7 +37,7 @@ function pointThroughSurfaces() {
     const drawn = scene?.traces?.[trace.uid];
     for (const part of [drawn?.mesh, drawn?.linePlot]) if (part) part.drawPick = () => {};
   }
-  scene?.glplot?.redraw?.();
+  scene?.glplot?.update?.();
 }
 page.on('plotly_afterplot', pointThroughSurfaces);
 pointThroughSurfaces();

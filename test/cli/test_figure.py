@@ -55,6 +55,15 @@ def test_frame_shows_its_pose_in_the_root_and_in_its_parent():
         '  rpy 0.00 0.00 90.00 deg')
 
 
+def test_frames_in_one_place_are_shown_together():
+    figure = figure_of('<link name="l"/>' + ''.join(
+        f'<frame name="f{number}"><pose>1 0 0 0 0 0</pose></frame>' for number in range(6)))
+    frames = trace(figure, 'frame (6)')
+    assert frames['text'] == ['f0, f1, f2, f3, and 2 more'] * 6
+    assert frames['customdata'][5].count('<b>') == 4
+    assert trace(figure, 'model (1)')['customdata'] == trace(figure, 'link (1)')['customdata']
+
+
 def test_triad_has_the_axes_of_its_frame():
     figure = figure_of()
     axes = next(trace for trace in figure['data']

@@ -90,7 +90,8 @@ def test_page_opens_in_the_browser(run_main, files, monkeypatch, plotly, has_bro
 
 
 def test_libraries_are_imported_only_by_the_command(files):
-    program = ('import sys; from sdf_pose_bridge.cli.main import main; main(["tree", "good.sdf"])\n'
+    program = ('import sys; from sdf_pose_bridge.cli.main import main\n'
+               'main(["tree", "good.sdf"])\n'
                'sys.exit(str({"plotly", "trimesh", "webbrowser"} & set(sys.modules)))')
     done = subprocess.run(
         [sys.executable, '-c', program], cwd=files, env={'PYTHONPATH': str(ROOT)},
