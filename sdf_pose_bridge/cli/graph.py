@@ -63,7 +63,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         'graph', help='draw what poses are relative to, attachments and joints',
         description='Draw the frames of a file: what each pose is relative to, what frames are '
                     'attached to, and joints with their types. Without -o the graph is printed '
-                    'in the language DOT; to draw it needs the program dot of Graphviz.')
+                    'in the language DOT; to draw it needs the program dot of Graphviz, which '
+                    'takes long for thousands of frames: --model draws one model.')
     add_file_arguments(parser, takes_many=False)
     parser.add_argument(
         '-o', dest='output', metavar='PATH', type=_output_from_text,

@@ -101,6 +101,7 @@ def run(options: argparse.Namespace) -> int:
         return 1
     try:
         if is_picture:
+            del figure['layout']['updatemenus']  # a picture has no use for buttons
             plotly.write_image(figure, options.output, **_PICTURE_SIZE)
         else:
             _write_page(plotly, figure, options.output)

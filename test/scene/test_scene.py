@@ -210,8 +210,8 @@ def test_scene_has_its_files(scene):
 # Immutability
 
 @pytest.mark.parametrize('name', [
-    'poses', 'kinds', 'parents', 'roots', 'references', 'attachments', 'bodies', 'canonical_links', 'lines',
-    'file_indices',
+    'poses', 'kinds', 'parents', 'roots', 'references', 'attachments', 'bodies',
+    'canonical_links', 'lines', 'file_indices',
 ])
 def test_arrays_cannot_be_written(scene, name):
     with pytest.raises(ValueError, match='read-only'):
