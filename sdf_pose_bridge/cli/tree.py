@@ -113,10 +113,10 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _depth_from_text(text: str) -> int:
-    depth = int(text)
-    if depth < 0:
-        raise ValueError
-    return depth
+    if not text.isdecimal():
+        msg = f'"{text}" is not a number of levels'
+        raise argparse.ArgumentTypeError(msg)
+    return int(text)
 
 
 def _rows(scene: Scene, options: argparse.Namespace) -> list[_Row] | None:

@@ -55,7 +55,9 @@ def test_unknown_model_is_an_error(run_main, option):
 
 @pytest.mark.parametrize('depth', ['-1', 'x'])
 def test_depth_must_be_a_number_of_levels(run_main, depth):
-    assert run_main('tree', f'--depth={depth}', 'good.sdf').returncode == 2
+    done = run_main('tree', f'--depth={depth}', 'good.sdf')
+    assert done.returncode == 2
+    assert f'"{depth}" is not a number of levels' in done.stderr
 
 
 def test_name_cannot_forge_a_line(run_main, files):
