@@ -72,7 +72,11 @@ setup(
     python_requires='>=3.10',
     install_requires=['numpy', 'lxml'],
     # By this colcon knows that it is pytest that runs the tests.
-    extras_require={'test': ['pytest', 'hypothesis']},
+    extras_require={
+        'test': ['pytest', 'hypothesis'],
+        # For sdf_pose view: pages; pictures, which need Chrome as well; boxes around meshes.
+        'view': ['plotly', 'kaleido', 'trimesh'],
+    },
     packages=find_packages(include=[PACKAGE, f'{PACKAGE}.*']),
     package_data={PACKAGE: ['py.typed']},
     data_files=[

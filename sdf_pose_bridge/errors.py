@@ -274,9 +274,9 @@ class MergeIncludeError(SdfError):
 
 
 class JointPositionError(SdfError, ValueError):
-    """A query gives a position to a joint that does not exist, or a value that is none."""
+    """A query names a joint that does not exist, or gives a joint a value that is no position."""
 
-    code = 'ELEMENT_INVALID'
+    code = 'JOINT_POSITION_INVALID'
 
 
 class UnknownFrameError(SdfError, LookupError):

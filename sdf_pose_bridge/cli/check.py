@@ -63,13 +63,15 @@ def run(options: argparse.Namespace) -> int:
     return 0 if are_valid else 1
 
 
-def add_file_arguments(parser: argparse.ArgumentParser) -> None:
+def add_file_arguments(parser: argparse.ArgumentParser, *, takes_many: bool = True) -> None:
     """
     Add the arguments of :func:`load_file`.
 
     :param parser: the parser of a command.
+    :param takes_many: whether the command takes several files.
     """
-    parser.add_argument('files', metavar='FILE', nargs='+', help='an SDFormat file')
+    parser.add_argument(
+        'files', metavar='FILE', nargs='+' if takes_many else 1, help='an SDFormat file')
     parser.add_argument(
         '-I', dest='resource_paths', metavar='DIR', action='append', default=[],
         help='a directory to search for included models, before those of GZ_SIM_RESOURCE_PATH '
@@ -79,22 +81,34 @@ def add_file_arguments(parser: argparse.ArgumentParser) -> None:
         help='leave out includes that are not found, with a warning')
 
 
-def load_file(path: str, options: argparse.Namespace) -> LoadedFile:
+def load_file(path: str, options: argparse.Namespace, *, shapes: bool = False) -> LoadedFile:
     """
     Load a file, or what a pipe such as that of the shell's ``<(command)`` holds.
 
     :param path: path of the file.
     :param options: the parsed arguments.
+    :param shapes: whether to read the shapes of visuals and collisions.
     :return: the scene with its warnings, or the errors of the file.
     """
     missing = MissingInclude.SKIP if options.skip_missing else MissingInclude.ERROR
     try:
         text = bytes_from_file(path, Usage(), allows_pipe=True)
         scene = load_text(
-            text, path, resource_paths=options.resource_paths, on_missing_include=missing)
+            text, path, resource_paths=options.resource_paths, on_missing_include=missing,
+            shapes=shapes)
     except SdfError as error:
         return LoadedFile(None, error.errors, error.warnings)
     return LoadedFile(scene, (), scene.warnings)
+
+
+def is_coloured(stream: TextIO) -> bool:
+    """
+    Return whether to print colours.
+
+    :param stream: where they would be printed.
+    :return: True for a terminal, unless the variable ``NO_COLOR`` is set (https://no-color.org).
+    """
+    return stream.isatty() and not os.environ.get('NO_COLOR')
 
 
 def print_problems(
@@ -107,12 +121,12 @@ def print_problems(
     :param warnings: the warnings of a file.
     :param stream: where they are printed.
     """
-    is_coloured = stream.isatty() and not os.environ.get('NO_COLOR')
-    bold, plain = (_BOLD, _PLAIN) if is_coloured else ('', '')
+    has_colours = is_coloured(stream)
+    bold, plain = (_BOLD, _PLAIN) if has_colours else ('', '')
     problems: list[SdfError | SdfWarning] = [*errors, *warnings]
     for problem in problems:
         is_error = isinstance(problem, SdfError)
-        colour = '' if not is_coloured else _RED if is_error else _YELLOW
+        colour = '' if not has_colours else _RED if is_error else _YELLOW
         kind = '' if is_error or problem.code == 'WARNING' else 'WARNING: '
         place, message = printable(str(problem.place)), printable(problem.message)
         print(f'{bold}{place}:{plain} {colour}{kind}{problem.code}:{plain} {message}', file=stream)

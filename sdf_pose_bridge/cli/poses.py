@@ -14,6 +14,8 @@ from sdf_pose_bridge.cli.check import add_file_arguments
 from sdf_pose_bridge.cli.check import load_file
 from sdf_pose_bridge.cli.check import LoadedFile
 from sdf_pose_bridge.cli.check import print_problems
+from sdf_pose_bridge.cli.frames import add_kinds_argument
+from sdf_pose_bridge.cli.frames import SHOWN_KINDS
 from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
@@ -22,10 +24,6 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-
-_SHOWN_KINDS = tuple(kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD))
-_SHOWN_BY_NAME = {kind.label: kind for kind in _SHOWN_KINDS}
-_KIND_NAMES = ', '.join(_SHOWN_BY_NAME)
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -50,9 +48,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         dest='positions',
         help='put a joint there, in radians or metres; all others stay at zero. May be repeated. '
              'Names are those of joint_states: elbow, arm/elbow, wrist_axis2, ball_roll')
-    parser.add_argument(
-        '--kinds', metavar='KIND[,KIND...]', type=_kinds_from_text, default=_SHOWN_KINDS,
-        help=f'print only these kinds: {_KIND_NAMES}')
+    add_kinds_argument(parser, SHOWN_KINDS, 'print only')
     parser.set_defaults(run=run)
 
 
@@ -97,16 +93,6 @@ def _position_from_text(text: str) -> tuple[str, float]:
     except ValueError:
         msg = f'"{text}" is not NAME=VALUE with a number, such as elbow=1.57'
         raise argparse.ArgumentTypeError(msg) from None
-
-
-def _kinds_from_text(text: str) -> tuple[Kind, ...]:
-    kinds = []
-    for name in text.split(','):
-        if name not in _SHOWN_BY_NAME:
-            msg = f'"{name}" is not a kind of element; known are {_KIND_NAMES}'
-            raise argparse.ArgumentTypeError(msg)
-        kinds.append(_SHOWN_BY_NAME[name])
-    return tuple(kinds)
 
 
 def _load_at_positions(path: str, options: argparse.Namespace) -> LoadedFile:

@@ -18,7 +18,7 @@ from sdf_pose_bridge.scene.loading import load
 from sdf_pose_bridge.sdformat.include.uris import AddressError
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.tf.tree import PoseLookup
+from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfTree
 

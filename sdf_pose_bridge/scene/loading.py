@@ -71,6 +71,7 @@ def load(
     resource_paths: Iterable[str | os.PathLike[str]] = (),
     on_missing_include: MissingInclude | str = MissingInclude.ERROR,
     limits: Limits = DEFAULT_LIMITS,
+    shapes: bool = False,
 ) -> Scene:
     """
     Read a file and resolve every pose in it.
@@ -80,6 +81,7 @@ def load(
         those of the environment variables ``GZ_SIM_RESOURCE_PATH`` and ``SDF_PATH``.
     :param on_missing_include: ``error``, or ``skip`` to leave out includes that are not found.
     :param limits: what the load may use; hostile files that need more are refused.
+    :param shapes: whether to read the shapes of visuals and collisions too.
     :return: the scene.
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
     """
@@ -88,7 +90,8 @@ def load(
     with _without_garbage_collection(), _limit_error_last(problems):
         document = document_from_file(os.fspath(path), sources, problems)
         return _scene(
-            document, sources, problems, resource_paths, MissingInclude(on_missing_include))
+            document, sources, problems, resource_paths, MissingInclude(on_missing_include),
+            shapes=shapes)
 
 
 def load_text(
@@ -98,6 +101,7 @@ def load_text(
     resource_paths: Iterable[str | os.PathLike[str]] = (),
     on_missing_include: MissingInclude | str = MissingInclude.ERROR,
     limits: Limits = DEFAULT_LIMITS,
+    shapes: bool = False,
 ) -> Scene:
     """
     Resolve every pose in SDFormat text, as :func:`load` does for a file.
@@ -107,6 +111,7 @@ def load_text(
     :param resource_paths: as for :func:`load`.
     :param on_missing_include: as for :func:`load`.
     :param limits: as for :func:`load`.
+    :param shapes: as for :func:`load`.
     :return: the scene.
     :raises SdfError: as for :func:`load`.
     """
@@ -115,7 +120,8 @@ def load_text(
     with _without_garbage_collection(), _limit_error_last(problems):
         document = document_from_text(text, name, sources, problems)
         return _scene(
-            document, sources, problems, resource_paths, MissingInclude(on_missing_include))
+            document, sources, problems, resource_paths, MissingInclude(on_missing_include),
+            shapes=shapes)
 
 
 @contextlib.contextmanager
@@ -141,7 +147,8 @@ def _limit_error_last(problems: Problems) -> Iterator[None]:
 
 def _scene(
     document: Document, sources: Sources, problems: Problems,
-    resource_paths: Iterable[str | os.PathLike[str]], on_missing_include: MissingInclude,
+    resource_paths: Iterable[str | os.PathLike[str]], on_missing_include: MissingInclude, *,
+    shapes: bool,
 ) -> Scene:
     may_hold_scoped_names = document.may_hold_scoped_names
     if next(document.root.iter('include'), None) is not None:
@@ -154,7 +161,8 @@ def _scene(
         expansion.expand(document)
         may_hold_scoped_names |= expansion.may_hold_scoped_names
     elements = elements_from_tree(
-        document.root, sources, problems, may_hold_scoped_names=may_hold_scoped_names)
+        document.root, sources, problems, may_hold_scoped_names=may_hold_scoped_names,
+        shapes=shapes)
     graph = frame_graph_from_elements(elements, sources.usage, problems)
     problems.raise_errors()
     return _scene_from_graph(document.path, elements, graph, problems)
@@ -207,6 +215,7 @@ def _scene_from_graph(
         parents=reindexed(elements.parents),
         roots=reindexed(graph.roots),
         poses=_frozen(poses[is_kept]),
+        references=reindexed(graph.references),
         attachments=reindexed(graph.attachments),
         bodies=reindexed(graph.bodies),
         canonical_links=reindexed(graph.canonical_links),
@@ -218,6 +227,9 @@ def _scene_from_graph(
             for ends in graph.joints if is_kept[ends.joint]),
         sensors=MappingProxyType({
             new_index_of[index]: details for index, details in elements.sensors.items()
+            if is_kept[index]}),
+        shapes=MappingProxyType({
+            new_index_of[index]: shape for index, shape in elements.shapes.items()
             if is_kept[index]}),
         lines=_frozen(elements.lines[is_kept]),
         file_indices=_frozen(elements.file_indices[is_kept]),

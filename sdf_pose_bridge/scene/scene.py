@@ -17,9 +17,11 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.shapes import Shape
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -94,6 +96,8 @@ class Scene:
     """The world or implicit root of each element; each of these is a tree of its own."""
     poses: PoseArray
     """Shape (n, 7): pose of each in its root, x y z in metres, unit quaternion x y z w, w >= 0."""
+    references: Indices
+    """The frame that the pose of each is relative to; -1 for worlds and implicit roots."""
     attachments: Indices
     """The frame that each frame is attached to; -1 for links, static models and roots."""
     bodies: Indices
@@ -106,6 +110,8 @@ class Scene:
     """All joints, in file order."""
     sensors: Mapping[int, SensorDetails]
     """Details of each sensor, by its index."""
+    shapes: Mapping[int, Shape]
+    """The shapes of visuals and collisions, by index; empty unless the load was to read them."""
     lines: Indices
     """The line of each element; 0 where it is not known."""
     file_indices: Indices
@@ -118,16 +124,18 @@ class Scene:
     def __init__(
         self, *,
         path: str, files: tuple[str, ...], names: tuple[str, ...], kinds: 'npt.NDArray[np.uint8]',
-        parents: Indices, roots: Indices, poses: PoseArray, attachments: Indices, bodies: Indices,
-        canonical_links: Indices, static_models: frozenset[int], joints: tuple[Joint, ...],
-        sensors: Mapping[int, SensorDetails], lines: Indices, file_indices: Indices,
-        world_names: Mapping[int, str], warnings: tuple[SdfWarning, ...],
+        parents: Indices, roots: Indices, poses: PoseArray, references: Indices,
+        attachments: Indices, bodies: Indices, canonical_links: Indices,
+        static_models: frozenset[int], joints: tuple[Joint, ...],
+        sensors: Mapping[int, SensorDetails], shapes: Mapping[int, Shape], lines: Indices,
+        file_indices: Indices, world_names: Mapping[int, str], warnings: tuple[SdfWarning, ...],
     ) -> None:
         vars(self).update(
             path=path, files=files, names=names, kinds=kinds, parents=parents, roots=roots,
-            poses=poses, attachments=attachments, bodies=bodies, canonical_links=canonical_links,
-            static_models=static_models, joints=joints, sensors=sensors, lines=lines,
-            file_indices=file_indices, world_names=world_names, warnings=warnings)
+            poses=poses, references=references, attachments=attachments, bodies=bodies,
+            canonical_links=canonical_links, static_models=static_models, joints=joints,
+            sensors=sensors, shapes=shapes, lines=lines, file_indices=file_indices,
+            world_names=world_names, warnings=warnings)
 
     def __setattr__(self, name: str, value: object) -> None:
         msg = f'{name} cannot be set: a scene is immutable'
@@ -234,6 +242,19 @@ class Scene:
             if len(candidates) == 1:
                 return candidates[0]
         raise self._unknown(name, world, frames or found)
+
+    def own_name(self, index: int) -> str:
+        """
+        Return the name of an element without its scope.
+
+        :param index: its index.
+        :return: such as ``hand``; for a world its name.
+        """
+        parent = int(self.parents[index])
+        if parent < 0:
+            return self.world_names.get(index, self.names[index])
+        scope = '' if self.parents[parent] < 0 else self.names[parent]
+        return self.names[index][len(scoped_name(scope, '')):]
 
     def place(self, index: int) -> Place:
         """

@@ -10,7 +10,6 @@ link: ``Link::ResolveAutoInertials``, ``Collision::CalculateInertial`` and
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from itertools import chain
 import math
 
@@ -25,6 +24,8 @@ from sdf_pose_bridge.sdformat.elements import FrameDetails
 from sdf_pose_bridge.sdformat.elements import ModelDetails
 from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.shapes import Shape
+from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.values import numbers_of_child
@@ -206,18 +207,6 @@ def _name_from_uri(uri: str) -> str:
 DEFAULT_DENSITY_KG_M3 = 1000.0
 """Density of a collision where neither it nor the inertial has one: that of water."""
 
-_DEFAULT_DIMENSIONS: Mapping[str, Mapping[str, tuple[float, ...]]] = {
-    'box': {'size': (1.0, 1.0, 1.0)},
-    'capsule': {'radius': (0.5,), 'length': (1.0,)},
-    'cone': {'radius': (1.0,), 'length': (1.0,)},
-    'cylinder': {'radius': (1.0,), 'length': (1.0,)},
-    'ellipsoid': {'radii': (1.0, 1.0, 1.0)},
-    'plane': {},
-    'sphere': {'radius': (1.0,)},
-    'mesh': {},
-}
-"""The shapes in the order in which the first one counts, and the defaults of their dimensions."""
-
 
 def collision_masses(
     inertial: XmlElement, sources: Sources, problems: Problems,
@@ -239,18 +228,18 @@ def collision_masses(
     if pose is not None:
         msg = 'the pose of an automatic inertial is ignored; the collisions give it'
         problems.warning(msg, sources.place(pose))
-    default_density = numbers_of_child(inertial, 'density', (DEFAULT_DENSITY_KG_M3,))
+    (default_density,) = numbers_of_child(inertial, 'density', (DEFAULT_DENSITY_KG_M3,))
     masses = []
     for collision in collisions:
-        shape = _shape(collision)
-        if shape is not None and shape.tag == 'mesh':
+        shape = shape_of(collision)
+        if shape is not None and shape.type == 'mesh':
             name = '' if link is None else attribute_of(link, 'name')
             msg = (f'the automatic inertial of link "{name}" has its pose as written, as the mass '
                    'of a mesh is not computed')
             problems.warning(msg, sources.place(collision))
             return ()
         mass = None if shape is None else _mass(
-            shape, *numbers_of_child(collision, 'density', default_density))
+            shape, *numbers_of_child(collision, 'density', (default_density,)))
         if mass is None:
             msg = ('an automatic inertial needs collisions that are boxes, capsules, cones, '
                    'cylinders, ellipsoids or spheres, with positive dimensions and density')
@@ -260,39 +249,27 @@ def collision_masses(
     return tuple(masses)
 
 
-def _shape(collision: XmlElement) -> XmlElement | None:
-    geometry = first_child(collision, 'geometry')
-    if geometry is None:
-        return None
-    shapes = (first_child(geometry, tag) for tag in _DEFAULT_DIMENSIONS)
-    return next((shape for shape in shapes if shape is not None), None)
-
-
-def _mass(shape: XmlElement, density_kg_m3: float) -> CollisionMass | None:
+def _mass(shape: Shape, density_kg_m3: float) -> CollisionMass | None:
     """Return the mass of a shape and its centre; None if a number is not positive."""
-    sizes_m = [
-        number for tag, default in _DEFAULT_DIMENSIONS[str(shape.tag)].items()
-        for number in numbers_of_child(shape, tag, default)]
-    # A capsule without its cylinder is a sphere.
-    required = sizes_m[:1] if shape.tag == 'capsule' else sizes_m
-    if not sizes_m or min([density_kg_m3, *required]) <= 0.0:
+    if shape.type == 'plane' or not shape.sizes_m or (
+            min(density_kg_m3, *shape.required_sizes_m) <= 0.0):
         return None
-    volume_m3, center_z_m = _volume(str(shape.tag), sizes_m)
+    volume_m3, center_z_m = _volume(shape)
     return CollisionMass(density_kg_m3 * volume_m3, center_z_m)
 
 
-def _volume(tag: str, sizes_m: list[float]) -> tuple[float, float]:
+def _volume(shape: Shape) -> tuple[float, float]:
     """Return the volume of a shape, and the z of its centre of mass in the shape's frame."""
-    if tag == 'box':
-        return math.prod(sizes_m), 0.0
-    if tag == 'ellipsoid':
-        return 4.0 / 3.0 * math.pi * math.prod(sizes_m), 0.0
-    radius, length = (*sizes_m, 0.0)[:2]
+    if shape.type == 'box':
+        return math.prod(shape.sizes_m), 0.0
+    if shape.type == 'ellipsoid':
+        return 4.0 / 3.0 * math.pi * math.prod(shape.sizes_m), 0.0
+    radius, length = (*shape.sizes_m, 0.0)[:2]
     disc = math.pi * radius ** 2
-    if tag == 'sphere':
+    if shape.type == 'sphere':
         return 4.0 / 3.0 * disc * radius, 0.0
-    if tag == 'capsule':
+    if shape.type == 'capsule':
         return disc * (max(length, 0.0) + 4.0 / 3.0 * radius), 0.0
-    if tag == 'cone':
+    if shape.type == 'cone':
         return disc * length / 3.0, -0.25 * length
     return disc * length, 0.0

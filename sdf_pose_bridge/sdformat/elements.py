@@ -17,6 +17,7 @@ from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.sdformat.values import IDENTITY
 from sdf_pose_bridge.sdformat.values import PoseFormat
 from sdf_pose_bridge.sdformat.values import poses_from_texts
@@ -148,6 +149,8 @@ class Elements(NamedTuple):
     frames: Mapping[int, FrameDetails]
     joints: Mapping[int, JointDetails]
     sensors: Mapping[int, SensorDetails]
+    shapes: Mapping[int, Shape]
+    """The shapes of visuals and collisions; empty unless they were asked for."""
     automatic_inertials: Mapping[int, tuple[CollisionMass, ...]]
     """For each inertial that is computed: the masses of its link's collisions in their order."""
     paths: Sequence[str]
@@ -227,6 +230,7 @@ class ElementsBuilder:
         self.frames: dict[int, FrameDetails] = {}
         self.joints: dict[int, JointDetails] = {}
         self.sensors: dict[int, SensorDetails] = {}
+        self.shapes: dict[int, Shape] = {}
         self.automatic_inertials: dict[int, tuple[CollisionMass, ...]] = {}
         self.missing_includes: dict[int, dict[str, str]] = {}
         self._scopes = array('i')
@@ -290,7 +294,7 @@ class ElementsBuilder:
             file_indices=_indices(self.file_indices), lines=_indices(self.lines),
             pose_lines=_indices(self.pose_lines), poses=poses, relative_to=self.relative_to,
             models=self.models, frames=self.frames, joints=self.joints, sensors=self.sensors,
-            automatic_inertials=self.automatic_inertials, paths=self._paths,
+            shapes=self.shapes, automatic_inertials=self.automatic_inertials, paths=self._paths,
             missing_includes=self.missing_includes, known_paths={})
         for index, reason in failures:
             problems.error(ElementInvalidError(reason, table.place_of_pose(index)))

@@ -29,6 +29,7 @@ from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.joints import joint_details_from_element
+from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sibling_names import SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
@@ -54,6 +55,7 @@ _DEFAULT_FORMAT = PoseFormat()
 
 def elements_from_tree(
     root: XmlElement, sources: Sources, problems: Problems, *, may_hold_scoped_names: bool,
+    shapes: bool = False,
 ) -> Elements:
     """
     Read all elements with a pose.
@@ -64,13 +66,14 @@ def elements_from_tree(
     :param problems: takes what is wrong with structure, names, attributes and values; references
         are not looked up here.
     :param may_hold_scoped_names: False if no name in the tree can hold ``::``.
+    :param shapes: whether to read the shapes of visuals and collisions.
     :return: the elements. One with an error is kept if that is possible, so that other errors are
         found and none follows from the first.
     """
     with sources.unchanged_trees():
         if may_hold_scoped_names:
             _check_scoped_names(root, sources, problems)
-        return _Reader(sources, problems).elements(root)
+        return _Reader(sources, problems, shapes=shapes).elements(root)
 
 
 def check_element(
@@ -100,9 +103,12 @@ def _check_scoped_names(root: XmlElement, sources: Sources, problems: Problems) 
 
 class _Reader:
 
-    def __init__(self, sources: Sources, problems: Problems) -> None:
+    def __init__(
+        self, sources: Sources, problems: Problems, *, shapes: bool = False,
+    ) -> None:
         self._sources = sources
         self._problems = problems
+        self._reads_shapes = shapes
         self._deepest = sources.usage.limits.depth
         self._builder = ElementsBuilder(sources.paths)
         self._names = SiblingNames(self._builder, sources, problems)
@@ -239,6 +245,10 @@ class _Reader:
             masses = collision_masses(xml, self._sources, self._problems)
             if masses:
                 self._builder.automatic_inertials[index] = masses
+        elif self._reads_shapes and kind in (Kind.VISUAL, Kind.COLLISION):
+            shape = shape_of(xml)
+            if shape is not None:
+                self._builder.shapes[index] = shape
 
     # Attributes and poses
 

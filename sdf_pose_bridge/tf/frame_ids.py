@@ -79,7 +79,7 @@ class FrameNaming(NamedTuple):
         for position in np.flatnonzero(np.isin(kinds, _LABELLED_KINDS)).tolist():
             parent = parents[position]
             scope = '' if scene.parents[parent] < 0 else scene.names[parent]
-            own_name = names[position][len(scoped_name(scope, '')):]
+            own_name = scene.own_name(int(elements[position]))
             label = Kind(kinds[position]).label
             names[position] = scoped_name(scope, f'{label}{SEPARATOR}{own_name}')
         is_in_model_file = (scene.kinds[scene.roots[elements[:1]]] == int(Kind.ROOT)).any()

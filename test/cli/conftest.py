@@ -5,8 +5,11 @@
 from pathlib import Path
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import pytest
+
+from sdf_pose_bridge.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[2]
 GOOD = """<sdf version="1.10">
@@ -37,4 +40,19 @@ def sdf_pose(files):
         return subprocess.run(
             [sys.executable, '-m', 'sdf_pose_bridge', *arguments], cwd=files,
             env={'PYTHONPATH': str(ROOT)}, capture_output=True, text=True, timeout=60, check=False)
+    return run
+
+
+@pytest.fixture
+def run_main(files, monkeypatch, capsys):
+    """Runs the command line in that folder, but in this process."""
+    monkeypatch.chdir(files)
+
+    def run(*arguments):
+        try:
+            code = main(arguments)
+        except SystemExit as stop:
+            code = stop.code
+        out, err = capsys.readouterr()
+        return SimpleNamespace(returncode=code, stdout=out, stderr=err)
     return run

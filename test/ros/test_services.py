@@ -19,7 +19,7 @@ from sdf_pose_bridge.ros.services import answer_to_convert_rotation
 from sdf_pose_bridge.ros.services import answer_to_lookup_pose
 from sdf_pose_bridge.ros.services import never_raising
 from sdf_pose_bridge.scene.loading import load_text
-from sdf_pose_bridge.tf.tree import PoseLookup
+from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge_interfaces.srv import ConvertPoses
 from sdf_pose_bridge_interfaces.srv import ConvertRotation

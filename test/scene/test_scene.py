@@ -190,6 +190,18 @@ def test_joint_has_its_ends():
         ('world', 'table::top')]
 
 
+def test_pose_is_relative_to_its_reference():
+    scene = sdf_pose_bridge.load_text(model_file(
+        '<link name="a"/>' + posed('frame', 'f', '0 0 1 0 0 0', 'a') + element('frame', 'g')))
+    names = {name: scene.names[scene.references[index]] for index, name in enumerate(scene.names)
+             if scene.references[index] >= 0}
+    assert names == {'m': '__root__', 'm::a': 'm', 'm::f': 'm::a', 'm::g': 'm'}
+
+
+def test_own_name_has_no_scope(worlds):
+    assert [worlds.own_name(index) for index in range(4)] == ['day', 'table', 'top', 'noon']
+
+
 def test_scene_has_its_files(scene):
     assert scene.files == ('<text>',)
     assert not scene.file_indices.any()
@@ -198,8 +210,8 @@ def test_scene_has_its_files(scene):
 # Immutability
 
 @pytest.mark.parametrize('name', [
-    'poses', 'kinds', 'parents', 'roots', 'attachments', 'bodies', 'canonical_links', 'lines',
-    'file_indices',
+    'poses', 'kinds', 'parents', 'roots', 'references', 'attachments', 'bodies',
+    'canonical_links', 'lines', 'file_indices',
 ])
 def test_arrays_cannot_be_written(scene, name):
     with pytest.raises(ValueError, match='read-only'):
@@ -225,7 +237,7 @@ def test_copy_of_a_scene_is_not_equal(scene):
     assert scene != copy.copy(scene)
 
 
-@pytest.mark.parametrize('name', ['sensors', 'world_names'])
+@pytest.mark.parametrize('name', ['sensors', 'shapes', 'world_names'])
 def test_mappings_cannot_be_written(scene, name):
     with pytest.raises(TypeError):
         getattr(scene, name)[0] = 'x'

@@ -16,10 +16,10 @@ from sdf_texts import model_file
 from sdf_pose_bridge import Kind
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import AnchorModels
-from sdf_pose_bridge.tf.tree import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
 

@@ -1,0 +1,208 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+``sdf_pose graph``: draw what poses are relative to, what is attached to what, and joints.
+
+The graph is written in the language DOT; the program ``dot`` of Graphviz lays it out and draws it.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Container
+from collections.abc import Iterator
+from collections.abc import Sequence
+import os
+from pathlib import Path
+import sys
+
+import numpy as np
+
+from sdf_pose_bridge.cli.check import add_file_arguments
+from sdf_pose_bridge.cli.frames import add_kinds_argument
+from sdf_pose_bridge.cli.frames import add_model_argument
+from sdf_pose_bridge.cli.frames import default_references_of
+from sdf_pose_bridge.cli.frames import printed_errors
+from sdf_pose_bridge.cli.frames import scene_of
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.tree import elements_in_model
+
+_FORMATS = ('svg', 'png', 'pdf', 'dot')
+_KINDS = (Kind.MODEL, Kind.LINK, Kind.JOINT, Kind.FRAME)
+_HEAD = """\
+digraph frames {
+  ranksep=0.3; nodesep=0.2; fontname=Helvetica; fontsize=11; labelloc=t; labeljust=l
+  node [fontname=Helvetica fontsize=11 height=0.3 margin="0.1,0.04" style=filled color=gray40]
+  edge [arrowsize=0.6]
+"""
+_LEGEND = (
+    'Arrows lead from what a pose is relative to: blue where the file says relative_to, gray by '
+    'default.\\lGreen: to a frame from what it is attached to, and also relative to unless a blue '
+    'arrow leads to it.\\lBold: from the parent of a joint to the joint and on to its child, '
+    'which a joint is relative to by default.\\l')
+_STYLES = {
+    Kind.ROOT: 'shape=box style="filled,bold" fillcolor=gray90',
+    Kind.WORLD: 'shape=box style="filled,bold" fillcolor=gray90',
+    Kind.MODEL: 'shape=box fillcolor="#ded6f5" fontname="Helvetica-Bold"',
+    Kind.LINK: 'shape=box fillcolor="#d5efd0"', Kind.JOINT: 'shape=ellipse fillcolor="#fff3bf"',
+    Kind.FRAME: 'shape=box style="filled,rounded" fillcolor="#d4eef7"'}
+_OTHER_STYLE = 'shape=box fillcolor=whitesmoke'
+_DEFAULT, _RELATIVE_TO, _ATTACHED_TO, _JOINT = 'gray70', 'royalblue', 'forestgreen', 'black'
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """
+    Add the command.
+
+    :param subparsers: the commands of the command line.
+    """
+    parser = subparsers.add_parser(
+        'graph', help='draw what poses are relative to, attachments and joints',
+        description='Draw the frames of a file: what each pose is relative to, what frames are '
+                    'attached to, and joints with their types. Without -o the graph is printed '
+                    'in the language DOT; to draw it needs the program dot of Graphviz, which '
+                    'takes long for thousands of frames: --model draws one model.')
+    add_file_arguments(parser, takes_many=False)
+    parser.add_argument(
+        '-o', dest='output', metavar='PATH', type=_output_from_text,
+        help=f'where to write; the ending says the format: {", ".join(_FORMATS)}')
+    add_kinds_argument(
+        parser, _KINDS, f'instead of {",".join(kind.label for kind in _KINDS)} draw')
+    add_model_argument(parser)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """
+    Draw the graph of a file.
+
+    :param options: the parsed arguments.
+    :return: exit code: 0 if it is drawn, else 1.
+    """
+    scene = scene_of(options.files[0], options)
+    text = ''
+    if scene is not None:
+        with printed_errors():
+            text = dot_from_scene(scene, options.kinds, options.model)
+    if not text:
+        return 1
+    if options.output is None:
+        print(text, end='')
+        return 0
+    return _write(text, options.output)
+
+
+def dot_from_scene(scene: Scene, kinds: Sequence[Kind] = _KINDS, model: str = '') -> str:
+    """
+    Write the graph of a scene in the language DOT.
+
+    :param scene: the scene.
+    :param kinds: the kinds of element to draw.
+    :param model: scoped name of the only model to draw; empty for everything.
+    :return: the text, one node or arrow in a line.
+    :raises UnknownFrameError: if there is no such model.
+    """
+    chosen = np.flatnonzero(
+        elements_in_model(scene, model) & np.isin(scene.kinds, kinds)).tolist()
+    edges = _edges(scene, set(chosen))
+    # What an arrow starts at or leads to is drawn too, such as the world.
+    shown = sorted({*chosen, *(end for ends in edges for end in ends)})
+    lines = [f'  label="{_LEGEND}"', *_nodes(scene, shown)]
+    for (start, end), colours in edges.items():
+        width = ' penwidth=2.5' if colours[0] == _JOINT else ''
+        # Several colours make several lines beside one another.
+        lines.append(f'  n{start} -> n{end} [color="{":".join(colours)}"{width}]')
+    return _HEAD + '\n'.join(lines) + '\n}\n'
+
+
+def _edges(scene: Scene, chosen: Container[int]) -> dict[tuple[int, int], list[str]]:
+    """Return the colours of the arrows from one element to another."""
+    edges: dict[tuple[int, int], list[str]] = {}
+    joints = {joint.element for joint in scene.joints}
+    for joint in scene.joints:
+        if joint.element in chosen:
+            edges[joint.parent, joint.element] = [_JOINT]
+            edges[joint.element, joint.child] = [_JOINT]
+    defaults = default_references_of(scene)
+    for element, (reference, default, parent) in enumerate(zip(
+            scene.references.tolist(), defaults, scene.parents.tolist(), strict=True)):
+        if element not in chosen or reference < 0:
+            continue
+        if scene.kinds[element] == Kind.FRAME and default != parent:
+            edges.setdefault((default, element), []).append(_ATTACHED_TO)
+            if reference == default:
+                continue
+        elif reference == default and element in joints:
+            continue
+        colour = _DEFAULT if reference == default else _RELATIVE_TO
+        edges.setdefault((reference, element), []).append(colour)
+    return edges
+
+
+def _nodes(scene: Scene, shown: Sequence[int]) -> Iterator[str]:
+    """Write the nodes; those of a model, and of the models in it, are in a box."""
+    joint_types = {joint.element: joint.type for joint in scene.joints}
+    boxes: list[int] = []
+    for element in shown:
+        kind = Kind(scene.kinds[element])
+        models_around = _models_around(scene, element)
+        while boxes and boxes[-1] not in models_around:
+            boxes.pop()
+            yield f'{"  " * len(boxes)}  }}'
+        if kind is Kind.MODEL:
+            yield f'{"  " * len(boxes)}  subgraph cluster_{element} {{ label=""; color=gray60'
+            boxes.append(element)
+        label = _escaped(scene.own_name(element))
+        if element in joint_types:
+            label += f'\\n{_escaped(joint_types[element])}'
+        yield (f'{"  " * len(boxes)}  n{element} [label="{label}" '
+               f'{_STYLES.get(kind, _OTHER_STYLE)}]')
+    yield from (f'{"  " * depth}}}' for depth in range(len(boxes), 0, -1))
+
+
+def _models_around(scene: Scene, element: int) -> set[int]:
+    models = set()
+    while element >= 0:
+        models.add(element)
+        element = int(scene.parents[element])
+    return models
+
+
+def _escaped(name: str) -> str:
+    return printable(shortened(name)).replace('\\', '\\\\').replace('"', '\\"')
+
+
+def _output_from_text(text: str) -> Path:
+    path = Path(text)
+    if path.suffix[1:].lower() not in _FORMATS:
+        msg = f'"{text}" must end with one of {", ".join(f".{name}" for name in _FORMATS)}'
+        raise argparse.ArgumentTypeError(msg)
+    return path
+
+
+def _write(text: str, path: Path) -> int:
+    """Write a graph in the format that the path says; return the exit code."""
+    # The other commands need not wait for these.
+    import shutil
+    import subprocess
+    error = ''
+    if path.suffix.lower() == '.dot':
+        try:
+            path.write_text(text, encoding='utf-8')
+        except OSError as os_error:
+            error = f'cannot write {path}: {os_error.strerror}'
+    elif shutil.which('dot') is None:
+        error = ('the program dot is not installed; install the package graphviz, or write a '
+                 'file that ends with .dot')
+    else:
+        done = subprocess.run(
+            ['dot', f'-T{path.suffix[1:].lower()}', '-o', os.fspath(path)],
+            input=text, encoding='utf-8', capture_output=True, check=False)
+        if done.returncode:
+            error = f'dot cannot draw the graph: {done.stderr.strip()}'
+    if error:
+        print(f'sdf_pose graph: {printable(error)}', file=sys.stderr)
+    return 1 if error else 0

@@ -1,0 +1,251 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``sdf_pose tree``: print the TF tree of files, or their elements by scope, with poses."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from collections.abc import Mapping
+from collections.abc import Sequence
+from fnmatch import fnmatchcase
+import sys
+from typing import NamedTuple
+
+from sdf_pose_bridge.cli.check import add_file_arguments
+from sdf_pose_bridge.cli.check import is_coloured
+from sdf_pose_bridge.cli.frames import add_frame_arguments
+from sdf_pose_bridge.cli.frames import add_unit_arguments
+from sdf_pose_bridge.cli.frames import default_references_of
+from sdf_pose_bridge.cli.frames import kind_labels_of
+from sdf_pose_bridge.cli.frames import printed_errors
+from sdf_pose_bridge.cli.frames import scene_of
+from sdf_pose_bridge.cli.frames import SHOWN_KINDS
+from sdf_pose_bridge.cli.frames import tf_tree_of
+from sdf_pose_bridge.cli.frames import Units
+from sdf_pose_bridge.cli.frames import units_from_arguments
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.parents import NO_PARENT
+from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
+from sdf_pose_bridge.tf.tree import elements_in_model
+from sdf_pose_bridge.tf.tree import TfTree
+
+_BOLD, _DIM, _PLAIN = '\x1b[1m', '\x1b[2m', '\x1b[0m'
+_COLOURS = {
+    'model': '\x1b[35m', 'link': '\x1b[32m', 'joint': '\x1b[33m', 'frame': '\x1b[36m',
+    'sensor': '\x1b[34m', 'optical frame': '\x1b[34m'}
+_BRANCHES = ('├─ ', '└─ ', '│  ', '   ')
+_ASCII_BRANCHES = ('|- ', '`- ', '|  ', '   ')
+_WIDEST_NAME = 80
+_WIDEST_INDENT = 60
+
+
+class _Row(NamedTuple):
+    name: str
+    """What is printed."""
+    full_name: str
+    """What a pattern is compared with."""
+    kind: str
+    parent: int
+    """Index of the row of the parent; -1 for none."""
+    pose: Pose | None
+    note: str = ''
+
+
+class _Line(NamedTuple):
+    branches: str
+    row: _Row
+    hidden: int
+    """How many rows below this one are not printed because they are too deep."""
+    is_match: bool
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """
+    Add the command.
+
+    :param subparsers: the commands of the command line.
+    """
+    parser = subparsers.add_parser(
+        'tree', help='print the TF tree of files, or their elements by scope',
+        description='Print the TF tree of files: each frame below its parent, with its kind and '
+                    'its pose in the parent, x y z roll pitch yaw. The exit code is 1 if a file '
+                    'has an error.')
+    add_file_arguments(parser)
+    parser.add_argument(
+        '--scope', action='store_true',
+        help='print elements below those that hold them in the file, all kinds unless --kinds '
+             'is given; poses are in the frame that they are relative to, which is named where '
+             'it is not the default')
+    add_frame_arguments(parser, DEFAULT_KINDS)
+    add_unit_arguments(parser)
+    parser.add_argument(
+        '--depth', metavar='N', type=_depth_from_text,
+        help='print N levels below the root, and how many frames are below them')
+    parser.add_argument(
+        '--match', metavar='GLOB', default='',
+        help='print only frames whose whole name matches, such as "*tool*", and those above them')
+    parser.set_defaults(run=run, kinds=())
+
+
+def run(options: argparse.Namespace) -> int:
+    """
+    Print the trees of files; after an invalid file the next one follows.
+
+    :param options: the parsed arguments.
+    :return: exit code: 0 if all files are valid, else 1.
+    """
+    exit_code = 0
+    options.kinds = options.kinds or (SHOWN_KINDS if options.scope else DEFAULT_KINDS)
+    for path in options.files:
+        scene = scene_of(path, options)
+        rows = None if scene is None else _rows(scene, options)
+        if rows is None:
+            exit_code = 1
+            continue
+        if len(options.files) > 1:
+            print(printable(path))
+        _print_lines(list(_lines(rows, options)), units_from_arguments(options))
+    return exit_code
+
+
+def _depth_from_text(text: str) -> int:
+    if not text.isdecimal():
+        msg = f'"{text}" is not a number of levels'
+        raise argparse.ArgumentTypeError(msg)
+    return int(text)
+
+
+def _rows(scene: Scene, options: argparse.Namespace) -> list[_Row] | None:
+    with printed_errors():
+        if options.scope:
+            return _rows_by_scope(scene, options)
+        return _rows_of_frames(scene, tf_tree_of(scene, options))
+    return None
+
+
+def _rows_of_frames(scene: Scene, tree: TfTree) -> list[_Row]:
+    root = _Row(tree.root_frame, tree.root_frame, 'root', -1, None)
+    # The root frame is row 0, so that the index of a row is that of its frame plus one.
+    return [root, *(
+        _Row(frame_id, frame_id, kind, -1, None, 'no parent') if parent == NO_PARENT
+        else _Row(frame_id, frame_id, kind, parent + 1, Pose(*pose))
+        for frame_id, kind, parent, pose in zip(
+            tree.frame_ids, kind_labels_of(scene, tree), tree.parents.tolist(),
+            tree.transforms.tolist(), strict=True))]
+
+
+def _rows_by_scope(scene: Scene, options: argparse.Namespace) -> list[_Row]:
+    """Return the elements of all worlds below those that hold them."""
+    notes = _notes(scene)
+    is_inside = elements_in_model(scene, options.model).tolist()
+    is_shown = [
+        parent < 0 or (kind in options.kinds and is_inside[element])
+        for element, (kind, parent) in enumerate(zip(
+            scene.kinds.tolist(), scene.parents.tolist(), strict=True))]
+    rows: list[_Row] = []
+    # What a hidden element holds is below the next one around it. The last entry is that of -1.
+    indices = [-1] * (len(is_shown) + 1)
+    for element, parent in enumerate(scene.parents.tolist()):
+        indices[element] = indices[parent]
+        if is_shown[element]:
+            reference = int(scene.references[element])
+            rows.append(_Row(
+                scene.own_name(element), scene.names[element], Kind(scene.kinds[element]).label,
+                indices[parent],
+                None if reference < 0 else scene.relative_pose_of(element, reference),
+                notes[element]))
+            indices[element] = len(rows) - 1
+    return rows
+
+
+def _notes(scene: Scene) -> list[str]:
+    """Return what else the file says about the place of each element."""
+    names, joints = scene.names, {joint.element: joint for joint in scene.joints}
+    notes = []
+    for element, (reference, default) in enumerate(zip(
+            scene.references.tolist(), default_references_of(scene), strict=True)):
+        parts = []
+        if element in joints:
+            joint = joints[element]
+            parts.append(f'{joint.type}: {names[joint.parent]} -> {names[joint.child]}')
+        elif scene.kinds[element] == Kind.FRAME and default != scene.parents[element]:
+            parts.append(f'attached to {names[default]}')
+        if reference != default:
+            parts.append(f'relative to {names[reference]}')
+        notes.append(', '.join(parts))
+    return notes
+
+
+def _lines(rows: Sequence[_Row], options: argparse.Namespace) -> Iterator[_Line]:
+    """Walk the rows from parents to children, in the order of the file, without recursion."""
+    is_match = [
+        bool(options.match) and fnmatchcase(row.full_name, options.match) for row in rows]
+    is_shown = [not options.match] * len(rows)
+    for index in (index for index, matches in enumerate(is_match) if matches):
+        while index >= 0 and not is_shown[index]:
+            is_shown[index] = True
+            index = rows[index].parent
+    children: dict[int, list[int]] = {}
+    for index, row in enumerate(rows):
+        if is_shown[index]:
+            children.setdefault(row.parent, []).append(index)
+    tee, corner, bar, blank = _branches()
+    waiting = [(index, 0, '', '') for index in reversed(children.get(-1, ()))]
+    while waiting:
+        index, depth, indent, branch = waiting.pop()
+        below = children.get(index, [])
+        is_deepest = depth == options.depth
+        hidden = _count_below(index, children) if is_deepest else 0
+        yield _Line(indent + branch, rows[index], hidden, is_match[index])
+        if is_deepest:
+            continue
+        if branch:
+            # A chain of thousands of links would be indented by thousands of characters.
+            indent = (indent + (blank if branch == corner else bar))[-_WIDEST_INDENT:]
+        waiting += [
+            (child, depth + 1, indent, corner if child == below[-1] else tee)
+            for child in reversed(below)]
+
+
+def _count_below(index: int, children: Mapping[int, Sequence[int]]) -> int:
+    count = 0
+    waiting = list(children.get(index, ()))
+    while waiting:
+        count += 1
+        waiting += children.get(waiting.pop(), ())
+    return count
+
+
+def _branches() -> Sequence[str]:
+    try:
+        ''.join(_BRANCHES).encode(sys.stdout.encoding or 'ascii')
+    except UnicodeEncodeError:
+        return _ASCII_BRANCHES
+    return _BRANCHES
+
+
+def _print_lines(lines: Sequence[_Line], units: Units) -> None:
+    width = min(_WIDEST_NAME, max(
+        (len(line.branches) + len(printable(line.row.name)) for line in lines), default=0))
+    kind_width = max((len(line.row.kind) for line in lines), default=0)
+    colours = _COLOURS if is_coloured(sys.stdout) else {}
+    bold, dim, plain = (_BOLD, _DIM, _PLAIN) if is_coloured(sys.stdout) else ('', '', '')
+    length, angle = units.length, units.angle
+    labels = (f'x {length}', 'y', 'z', f'roll {angle}', 'pitch', 'yaw')
+    heads = ' '.join(f'{label:>10}' for label in labels)
+    print(f'{"frame":{width}}  {"kind":{kind_width}}  {heads}')
+    for branches, row, hidden, is_match in lines:
+        name = printable(row.name)
+        pad = ' ' * (width - len(branches) - len(name))
+        numbers = ' ' * 65 if row.pose is None else ' '.join(
+            f'{text:>10}' for text in units.texts(row.pose))
+        notes = [printable(row.note)] if row.note else []
+        notes += [f'{hidden} more below'] if hidden else []
+        print(
+            f'{dim}{branches}{plain}{bold if is_match else ""}{name}{plain if is_match else ""}'
+            f'{pad}  {colours.get(row.kind, "")}{row.kind:{kind_width}}{plain}  {numbers}'
+            f'{"  " if notes else ""}{dim}{", ".join(notes)}{plain}'.rstrip())

@@ -1,0 +1,116 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Read the shapes of visuals and collisions: what they look like, and where their mass is.
+
+Source: ``Geometry::Load``, the classes of shapes, and ``Material::Load`` of libsdformat 14.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+import math
+from typing import NamedTuple
+
+from sdf_pose_bridge.sdformat.values import leading_numbers
+from sdf_pose_bridge.sdformat.values import numbers_of_child
+from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import text_of
+from sdf_pose_bridge.sdformat.xml_tree import value_of
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+_DEFAULT_SIZES: Mapping[str, Mapping[str, tuple[float, ...]]] = {
+    'box': {'size': (1.0, 1.0, 1.0)},
+    'capsule': {'radius': (0.5,), 'length': (1.0,)},
+    'cone': {'radius': (1.0,), 'length': (1.0,)},
+    'cylinder': {'radius': (1.0,), 'length': (1.0,)},
+    'ellipsoid': {'radii': (1.0, 1.0, 1.0)},
+    'plane': {'size': (1.0, 1.0)},
+    'sphere': {'radius': (1.0,)},
+    'mesh': {},
+    'heightmap': {},
+    'image': {},
+    'polyline': {},
+}
+"""The shapes in the order in which the first one counts, and the defaults of their sizes."""
+
+
+class Shape(NamedTuple):
+    """What a visual or a collision looks like, in its own frame."""
+
+    type: str
+    """``box``, ``capsule``, ``cone``, ``cylinder``, ``ellipsoid``, ``plane``, ``sphere``,
+    ``mesh``, ``heightmap``, ``image`` or ``polyline``."""
+    sizes_m: tuple[float, ...]
+    """Of a box x y z; of a plane x y; of an ellipsoid its three radii; of a sphere its radius; of
+    a capsule, a cone and a cylinder radius and length, along z. Empty for others. As written:
+    they may be zero, negative or not finite."""
+    normal: tuple[float, ...]
+    """Normal of a plane, as written; z for others."""
+    mesh_uri: str
+    """URI of a mesh, relative to the file of its element; empty for others."""
+    submesh: str
+    """Name of the part of the mesh that is meant; empty for all of it."""
+    mesh_scale: tuple[float, ...]
+    """Factors of a mesh along x, y and z; 1 for others."""
+    rgba: tuple[float, float, float, float] | None
+    """Color of the material, its diffuse or else its ambient one, each component from 0 to 1;
+    ``<transparency>`` reduces the last. None where the file gives none."""
+
+    @property
+    def required_sizes_m(self) -> tuple[float, ...]:
+        """The sizes that have to be positive: a capsule without a length is a sphere."""
+        return self.sizes_m[:1] if self.type == 'capsule' else self.sizes_m
+
+    @property
+    def has_extent(self) -> bool:
+        """Whether the sizes are positive, and they, the normal and the scale finite."""
+        return (
+            all(map(math.isfinite, (*self.sizes_m, *self.normal, *self.mesh_scale)))
+            and all(size_m > 0.0 for size_m in self.required_sizes_m) and any(self.normal))
+
+
+def shape_of(xml: XmlElement) -> Shape | None:
+    """
+    Read the shape of an element.
+
+    :param xml: a ``<visual>`` or ``<collision>``.
+    :return: its shape; None without one.
+    """
+    geometry = first_child(xml, 'geometry')
+    if geometry is None:
+        return None
+    shapes = (first_child(geometry, tag) for tag in _DEFAULT_SIZES)
+    shape = next((shape for shape in shapes if shape is not None), None)
+    if shape is None:
+        return None
+    tag = str(shape.tag)
+    sizes_m = (numbers_of_child(shape, name, size) for name, size in _DEFAULT_SIZES[tag].items())
+    submesh = first_child(shape, 'submesh')
+    return Shape(
+        type=tag,
+        sizes_m=tuple(size_m for each in sizes_m for size_m in each),
+        normal=numbers_of_child(shape, 'normal', (0.0, 0.0, 1.0)),
+        mesh_uri=_text(shape, 'uri') if tag == 'mesh' else '',
+        submesh='' if submesh is None else _text(submesh, 'name'),
+        mesh_scale=numbers_of_child(shape, 'scale', (1.0, 1.0, 1.0)),
+        rgba=_color(xml))
+
+
+def _text(parent: XmlElement, tag: str) -> str:
+    child = first_child(parent, tag)
+    return '' if child is None else value_of(child)
+
+
+def _color(xml: XmlElement) -> tuple[float, float, float, float] | None:
+    material = first_child(xml, 'material')
+    if material is None:
+        return None
+    for tag in ('diffuse', 'ambient'):
+        element = first_child(material, tag)
+        numbers = () if element is None else leading_numbers(text_of(element), 4)
+        if len(numbers) >= 3 and all(map(math.isfinite, numbers)):
+            red, green, blue, alpha = (*numbers, 1.0)[:4]
+            (transparency,) = numbers_of_child(xml, 'transparency', (0.0,))
+            return red, green, blue, alpha * (1.0 - transparency if 0 < transparency <= 1 else 1.0)
+    return None

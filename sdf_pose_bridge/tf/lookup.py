@@ -1,0 +1,98 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Look up poses by the names of SDF and of TF."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+from typing import TYPE_CHECKING
+
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import UnknownFrameError
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import pose_inverse
+from sdf_pose_bridge.geometry.poses import pose_product
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion
+from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.tf.tree import TfTree
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+class FoundPose(NamedTuple):
+    """The result of a lookup."""
+
+    pose: Pose
+    """Pose of the frame in the reference frame; unit quaternion with w >= 0."""
+    frame_id: str
+    """The reference frame, by its TF name if it has one."""
+
+
+class PoseLookup:
+    """
+    Looks up poses in a scene and its TF tree.
+
+    Names are absolute names of SDF (``robot::arm::tool``) of any kind of element, or frame ids
+    (``robot/arm/tool``), including those of optical frames. A name that is both is taken as a name
+    of SDF.
+
+    :param scene: the scene.
+    :param tree: the TF tree of the scene.
+    :param positions: the current position of each degree of freedom of the joints, in radians or
+        metres; not copied. None for all joints where the file puts them.
+    """
+
+    def __init__(
+        self, scene: Scene, tree: TfTree, positions: NDArray[np.float64] | None = None,
+    ) -> None:
+        self._scene = scene
+        self._tree = tree
+        self._positions = positions
+        self._indices = {frame_id: index for index, frame_id in enumerate(tree.frame_ids)}
+        self._frame_ids = dict(zip(tree.elements.tolist(), tree.frame_ids, strict=True))
+
+    def pose(self, frame: str, relative_to: str = '') -> FoundPose:
+        """
+        Look up the pose of a frame in another one.
+
+        :param frame: a name of SDF or of TF.
+        :param relative_to: the reference frame, likewise; empty for the root frame.
+        :return: the pose.
+        :raises UnknownFrameError: if a name is unknown or ambiguous.
+        """
+        pose, _ = self._pose_in_root(frame)
+        if not relative_to:
+            return FoundPose(pose, self._tree.root_frame)
+        reference, frame_id = self._pose_in_root(relative_to)
+        relative = pose_product(pose_inverse(reference), pose)
+        # Adding zero leaves no negative zeros.
+        x, y, z = (value + 0.0 for value in relative[:3])
+        return FoundPose(Pose(x, y, z, *canonical_quaternion(relative[3:])), frame_id)
+
+    def _pose_in_root(self, name: str) -> tuple[Pose, str]:
+        """Return the pose of a frame in the root frame, and its frame id or else its name."""
+        scene, tree, positions = self._scene, self._tree, self._positions
+        if name == tree.root_frame:
+            return Pose(), name
+        if not scene.has(name):
+            if name not in self._indices:
+                hint = hint_from_names(name, [*self._indices, *scene.names])
+                msg = f'"{name}" is the name of nothing{hint}'
+                raise UnknownFrameError(msg, Place(scene.path))
+            index = self._indices[name]
+            if positions is not None and tree.moving is not None:
+                return tree.moving.pose_of_frame(index, positions), name
+            return Pose(*tree.poses[index].tolist()), name
+        element = scene.index(name, world=tree.world)
+        if scene.roots[element]:
+            msg = f'"{name}" is in world "{scene.world_of(element)}", which is not published'
+            raise UnknownFrameError(msg, Place(scene.path))
+        if element == 0:
+            return Pose(), tree.root_frame
+        pose = scene.pose_of(element)
+        if positions is not None and tree.moving is not None:
+            pose = tree.moving.pose_of_element(element, pose, positions)
+        return pose, self._frame_ids.get(element, name)

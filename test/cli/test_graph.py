@@ -1,0 +1,138 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``sdf_pose graph``: nodes, arrows, and the program that draws them."""
+
+import re
+import shutil
+
+import pytest
+from sdf_texts import model_file
+
+from sdf_pose_bridge import Kind
+from sdf_pose_bridge import load_text
+from sdf_pose_bridge.cli.graph import dot_from_scene
+
+ARM = """
+<link name="base"/>
+<link name="hand"><pose relative_to="j"/></link>
+<joint name="j" type="revolute"><pose relative_to="base"/><parent>base</parent><child>hand</child>
+  <axis><xyz>0 0 1</xyz></axis></joint>
+<joint name="k" type="fixed"><parent>base</parent><child>eye</child></joint>
+<link name="eye"/>
+<frame name="tip" attached_to="hand"/>
+<frame name="tap" attached_to="hand"><pose relative_to="base"/></frame>
+<frame name="top"/>
+"""
+NODE = re.compile(r' n(\d+) \[label="((?:[^"\\]|\\.)*)"')
+EDGE = re.compile(r' n(\d+) -> n(\d+) \[color="([^"]*)"')
+
+
+def dot_of(content, **options):
+    return dot_from_scene(load_text(model_file(content)), **options)
+
+
+def labels_in(dot):
+    return dict(NODE.findall(dot))
+
+
+def arrows_to(name, dot):
+    """Return the names and colours of arrows that lead to a node."""
+    labels = {number: label.split(r'\n')[0] for number, label in labels_in(dot).items()}
+    return {labels[start]: colours for start, end, colours in EDGE.findall(dot)
+            if labels[end] == name}
+
+
+def test_invalid_file_is_reported(run_main):
+    done = run_main('graph', 'bad.sdf')
+    assert (done.returncode, done.stdout) == (1, '')
+    assert done.stderr.startswith('bad.sdf:3: ELEMENT_INVALID: ')
+
+
+def test_unknown_model_is_an_error(run_main):
+    done = run_main('graph', '--model', 'n', 'good.sdf')
+    assert (done.returncode, done.stdout) == (1, '')
+    assert 'there is no model "n"' in done.stderr
+
+
+def test_unknown_format_is_an_error_that_lists_the_known_ones(run_main):
+    done = run_main('graph', 'good.sdf', '-o', 'graph.gif')
+    assert done.returncode == 2
+    assert '"graph.gif" must end with one of .svg, .png, .pdf, .dot' in done.stderr
+
+
+def test_missing_program_is_an_error_of_one_line(run_main, monkeypatch):
+    monkeypatch.setenv('PATH', '')
+    done = run_main('graph', 'good.sdf', '-o', 'graph.svg')
+    assert done.returncode == 1
+    assert done.stderr.startswith('sdf_pose graph: the program dot is not installed; ')
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_folder_that_does_not_exist_is_an_error(run_main):
+    done = run_main('graph', 'good.sdf', '-o', 'nowhere/graph.dot')
+    assert done.returncode == 1
+    assert done.stderr.startswith('sdf_pose graph: cannot write nowhere/graph.dot: ')
+
+
+def test_names_are_escaped(run_main, files):
+    (files / 'evil.sdf').write_text(
+        '<sdf version="1.9"><model name="m"><link name="&quot;];\\N&#10;x"/></model></sdf>')
+    dot = run_main('graph', 'evil.sdf').stdout
+    assert r'[label="\"];\\N\\nx" ' in dot
+
+
+def test_graph_is_written_without_the_program(run_main, files, monkeypatch):
+    monkeypatch.setenv('PATH', '')
+    assert run_main('graph', 'good.sdf', '-o', 'graph.dot').returncode == 0
+    assert (files / 'graph.dot').read_text() == run_main('graph', 'good.sdf').stdout
+
+
+def test_nodes_are_frames_and_the_root():
+    assert sorted(labels_in(dot_of(ARM)).values()) == sorted([
+        '__root__', 'm', 'base', 'hand', r'j\nrevolute', r'k\nfixed', 'eye', 'tip', 'tap', 'top'])
+
+
+def test_pose_is_relative_to_what_holds_it_by_default():
+    dot = dot_of(ARM)
+    assert arrows_to('base', dot) == {'m': 'gray70'}
+    assert arrows_to('top', dot) == {'m': 'gray70'}
+
+
+def test_joint_is_between_parent_and_child():
+    dot = dot_of(ARM)
+    assert arrows_to('k', dot) == {'base': 'black'}
+    assert arrows_to('eye', dot) == {'k': 'black', 'm': 'gray70'}
+
+
+def test_pose_may_be_relative_to_a_joint_and_a_joint_to_its_parent():
+    dot = dot_of(ARM)
+    assert arrows_to('j', dot) == {'base': 'black:royalblue'}
+    assert arrows_to('hand', dot) == {'j': 'black:royalblue'}
+
+
+def test_frame_is_attached_and_relative_to_something():
+    dot = dot_of(ARM)
+    assert arrows_to('tip', dot) == {'hand': 'forestgreen'}
+    assert arrows_to('tap', dot) == {'hand': 'forestgreen', 'base': 'royalblue'}
+
+
+def test_kinds_are_chosen_with_what_they_are_relative_to():
+    dot = dot_of('<link name="l"><visual name="v"><geometry><empty/></geometry></visual></link>',
+                 kinds=[Kind.VISUAL])
+    assert list(labels_in(dot).values()) == ['l', 'v']
+
+
+def test_models_are_boxes_in_one_another():
+    dot = dot_of('<link name="a"/><model name="n"><link name="b"/></model><link name="c"/>')
+    order = [label or box for box, label in re.findall(
+        r'(subgraph|^ *}$)|label="(\w+)" shape', dot, re.MULTILINE)]
+    assert [word.strip() for word in order] == [
+        '__root__', 'subgraph', 'm', 'a', 'subgraph', 'n', 'b', '}', 'c', '}', '}']
+
+
+@pytest.mark.skipif(not shutil.which('dot'), reason='needs the program dot of Graphviz')
+@pytest.mark.parametrize(('name', 'start'), [('g.svg', b'<?xml'), ('g.PNG', b'\x89PNG')])
+def test_graph_is_drawn(run_main, files, name, start):
+    done = run_main('graph', 'good.sdf', '-o', name)
+    assert (done.returncode, done.stderr) == (0, '')
+    assert (files / name).read_bytes().startswith(start)

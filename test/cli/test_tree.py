@@ -1,0 +1,151 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``sdf_pose tree``: the TF tree and the tree of scopes."""
+
+import os
+from pathlib import Path
+import pty
+import subprocess
+import sys
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+ARM = """<sdf version="1.10">
+  <model name="arm">
+    <frame name="tip" attached_to="hand"><pose relative_to="base">0 0 1 0 0 0</pose></frame>
+    <link name="base"/>
+    <link name="hand"><pose>0.5 0 0 0 0 1.5707963267948966</pose></link>
+    <joint name="j" type="revolute"><parent>base</parent><child>hand</child>
+      <axis><xyz>0 0 1</xyz></axis></joint>
+  </model>
+</sdf>
+"""
+
+
+@pytest.fixture
+def tree(run_main, files):
+    """Lines that ``sdf_pose tree`` prints for the arm, without its head."""
+    (files / 'arm.sdf').write_text(ARM)
+
+    def lines(*arguments):
+        done = run_main('tree', 'arm.sdf', *arguments)
+        assert (done.returncode, done.stderr) == (0, '')
+        return done.stdout.splitlines()[1:]
+    return lines
+
+
+def names_in(lines):
+    return [line.lstrip(' │├└─|`-').split()[0] for line in lines]
+
+
+def test_invalid_file_is_reported_and_the_next_one_printed(run_main):
+    done = run_main('tree', 'bad.sdf', 'good.sdf')
+    assert done.returncode == 1
+    assert done.stderr.startswith('bad.sdf:3: ELEMENT_INVALID: ')
+    assert done.stdout.startswith('good.sdf\n')
+
+
+@pytest.mark.parametrize('option', [(), ('--scope',)])
+def test_unknown_model_is_an_error(run_main, option):
+    done = run_main('tree', '--model', 'n', *option, 'good.sdf')
+    assert (done.returncode, done.stdout) == (1, '')
+    assert 'there is no model "n"' in done.stderr
+
+
+@pytest.mark.parametrize('depth', ['-1', 'x'])
+def test_depth_must_be_a_number_of_levels(run_main, depth):
+    done = run_main('tree', f'--depth={depth}', 'good.sdf')
+    assert done.returncode == 2
+    assert f'"{depth}" is not a number of levels' in done.stderr
+
+
+def test_name_cannot_forge_a_line(run_main, files):
+    (files / 'evil.sdf').write_text(
+        '<sdf version="1.9"><model name="m"><link name="a&#10;b\x9b"/></model></sdf>')
+    for option in ((), ('--scope',)):
+        done = run_main('tree', 'evil.sdf', *option)
+        assert r'a\nb\x9b ' in done.stdout
+        assert len(done.stdout.splitlines()) == 4
+
+
+def test_frames_are_below_their_parents(tree):
+    lines = tree()
+    assert [line[:12].rstrip() for line in lines] == [
+        'world', '└─ base', '   ├─ arm', '   └─ hand', '      └─ tip']
+
+
+def test_pose_is_in_the_parent(tree):
+    hand = next(line for line in tree() if '─ hand ' in line)
+    assert hand.split()[-6:] == ['0.5000', '0.0000', '0.0000', '0.0000', '0.0000', '1.5708']
+
+
+def test_pose_in_other_units(tree):
+    hand = next(line for line in tree('--mm', '--degrees') if '─ hand ' in line)
+    assert hand.split()[-6:] == ['500.0', '0.0', '0.0', '0.00', '0.00', '90.00']
+
+
+def test_scope_has_elements_below_those_that_hold_them(tree):
+    lines = tree('--scope')
+    assert names_in(lines) == ['__root__', 'arm', 'tip', 'base', 'hand', 'j']
+    assert lines[2].startswith('   ├─ tip ')
+
+
+def test_scope_says_what_poses_are_relative_to(tree):
+    lines = tree('--scope')
+    tip, joint = lines[2], lines[5]
+    assert tip.endswith('0.0000  attached to arm::hand, relative to arm::base')
+    assert tip.split()[2:6] == ['frame', '0.0000', '0.0000', '1.0000']
+    assert joint.endswith('0.0000  revolute: arm::base -> arm::hand')
+
+
+def test_scope_of_some_kinds(tree):
+    assert names_in(tree('--scope', '--kinds', 'link')) == ['__root__', 'base', 'hand']
+
+
+def test_depth_hides_what_is_deeper_and_says_how_much(tree):
+    lines = tree('--depth', '1')
+    assert names_in(lines) == ['world', 'base']
+    assert lines[1].endswith('  3 more below')
+
+
+def test_match_leaves_frames_with_those_above_them(tree):
+    assert names_in(tree('--match', 'ti?')) == ['world', 'base', 'hand', 'tip']
+    assert names_in(tree('--match', 'arm')) == ['world', 'base', 'arm']
+
+
+def test_match_of_nothing_prints_no_frame(tree):
+    assert tree('--match', 'nothing') == []
+
+
+def test_terminal_without_the_characters_has_others(files):
+    (files / 'arm.sdf').write_text(ARM)
+    done = subprocess.run(
+        [sys.executable, '-m', 'sdf_pose_bridge', 'tree', 'arm.sdf'], cwd=files,
+        env={'PYTHONPATH': str(ROOT), 'PYTHONIOENCODING': 'ascii'}, capture_output=True,
+        text=True, check=True)
+    assert '   `- hand' in done.stdout
+
+
+@pytest.mark.parametrize('environment', [{}, {'NO_COLOR': '1'}])
+def test_terminal_has_colours_unless_the_user_wants_none(files, environment):
+    reader, writer = pty.openpty()
+    subprocess.run(
+        [sys.executable, '-m', 'sdf_pose_bridge', 'tree', 'good.sdf'], cwd=files,
+        env={'PYTHONPATH': str(ROOT), **environment}, stdout=writer, check=True)
+    os.close(writer)
+    assert (b'\x1b' in os.read(reader, 10_000)) is not bool(environment)
+    os.close(reader)
+
+
+def test_chain_of_thousands_of_links_is_printed(run_main, files):
+    count = 2000
+    links = ''.join(f'<link name="l{number}"/>' for number in range(count))
+    joints = ''.join(
+        f'<joint name="j{number}" type="fixed"><parent>l{number}</parent>'
+        f'<child>l{number + 1}</child></joint>' for number in range(count - 1))
+    (files / 'chain.sdf').write_text(
+        f'<sdf version="1.9"><model name="m">{links}{joints}</model></sdf>')
+    lines = run_main('tree', 'chain.sdf').stdout.splitlines()
+    assert len(lines) == count + 3
+    assert max(map(len, lines)) < 250

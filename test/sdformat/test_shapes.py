@@ -1,0 +1,101 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Shapes of visuals and collisions, as a load on request gives them."""
+
+import math
+
+import pytest
+from sdf_texts import link_with
+
+from sdf_pose_bridge import load_text
+from sdf_pose_bridge.sdformat.shapes import Shape
+
+BOX = '<geometry><box><size>1 2 3</size></box></geometry>'
+
+
+def shape_of(content, tag='visual'):
+    """Return the shape of a visual that holds something; None without one."""
+    scene = load_text(link_with(f'<{tag} name="v">{content}</{tag}>'), shapes=True)
+    return next(iter(scene.shapes.values()), None)
+
+
+def shape_in(geometry):
+    return shape_of(f'<geometry>{geometry}</geometry>')
+
+
+def test_shapes_are_not_read_unless_they_are_asked_for():
+    assert load_text(link_with(f'<visual name="v">{BOX}</visual>')).shapes == {}
+
+
+def test_shape_belongs_to_its_visual():
+    scene = load_text(
+        link_with(f'<visual name="a"><geometry><empty/></geometry></visual>'
+                  f'<visual name="b">{BOX}</visual>'), shapes=True)
+    (element,) = scene.shapes
+    assert scene.names[element].endswith('::b')
+
+
+def test_collision_has_a_shape():
+    assert shape_of(BOX, 'collision').type == 'box'
+
+
+@pytest.mark.parametrize('geometry', ['', '<empty/>'])
+def test_geometry_without_a_shape(geometry):
+    assert shape_in(geometry) is None
+
+
+@pytest.mark.parametrize(('geometry', 'kind', 'sizes_m'), [
+    ('<box><size>1 2 3</size></box>', 'box', (1, 2, 3)),
+    ('<capsule><radius>2</radius><length>3</length></capsule>', 'capsule', (2, 3)),
+    ('<cone><radius>2</radius><length>3</length></cone>', 'cone', (2, 3)),
+    ('<cylinder><radius>2</radius><length>3</length></cylinder>', 'cylinder', (2, 3)),
+    ('<ellipsoid><radii>1 2 3</radii></ellipsoid>', 'ellipsoid', (1, 2, 3)),
+    ('<sphere><radius>2</radius></sphere>', 'sphere', (2,)),
+    ('<plane><normal>1 0 0</normal><size>4 5</size></plane>', 'plane', (4, 5)),
+    ('<heightmap><uri>h.png</uri></heightmap>', 'heightmap', ()),
+])
+def test_shape_has_sizes(geometry, kind, sizes_m):
+    shape = shape_in(geometry)
+    assert (shape.type, shape.sizes_m) == (kind, sizes_m)
+
+
+def test_plane_has_a_normal():
+    assert shape_in('<plane><normal>1 0 0</normal><size>1 1</size></plane>').normal == (1, 0, 0)
+
+
+def test_mesh_has_a_uri_a_part_and_a_scale():
+    shape = shape_in('<mesh><uri> model://arm/a b.dae </uri><scale>1 2 -3</scale>'
+                     '<submesh><name>hand</name></submesh></mesh>')
+    assert shape[:3] == ('mesh', (), (0, 0, 1))
+    assert shape[3:6] == ('model://arm/a b.dae', 'hand', (1, 2, -3))
+
+
+@pytest.mark.parametrize(('material', 'rgba'), [
+    ('', None),
+    ('<material/>', None),
+    ('<material><diffuse>nan 0 0 1</diffuse></material>', None),
+    ('<material><ambient>.1 .2 .3 1</ambient></material>', (0.1, 0.2, 0.3, 1)),
+    ('<material><ambient>0 0 0 1</ambient><diffuse>.1 .2 .3 .4</diffuse></material>',
+     (0.1, 0.2, 0.3, 0.4)),
+    ('<material><diffuse>.1 .2 .3</diffuse></material>', (0.1, 0.2, 0.3, 1)),
+    ('<transparency>.75</transparency><material><diffuse>1 1 1 .5</diffuse></material>',
+     (1, 1, 1, 0.125)),
+    ('<transparency>7</transparency><material><diffuse>1 1 1 .5</diffuse></material>',
+     (1, 1, 1, 0.5)),
+])
+def test_color_is_that_of_the_material(material, rgba):
+    assert shape_of(f'{BOX}{material}').rgba == rgba
+
+
+@pytest.mark.parametrize(('sizes_m', 'has_extent'), [
+    ((1.0, 1.0), True), ((1.0, 0.0), False), ((1.0, -1.0), False), ((math.nan, 1.0), False),
+    ((math.inf, 1.0), False),
+])
+def test_shape_has_an_extent_if_its_sizes_are_positive(sizes_m, has_extent):
+    shape = Shape('cylinder', sizes_m, (0, 0, 1), '', '', (1, 1, 1), None)
+    assert shape.has_extent is has_extent
+    assert shape._replace(normal=(0, 0, 0)).has_extent is False
+
+
+def test_capsule_may_have_no_length():
+    assert Shape('capsule', (1.0, 0.0), (0, 0, 1), '', '', (1, 1, 1), None).has_extent

@@ -1,0 +1,114 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Look-ups of poses by the names of SDF and of TF."""
+
+from matrices import assert_same_pose
+from matrices import matrix_from_degrees
+import numpy as np
+import pytest
+from sdf_texts import model_file
+from sdf_texts import world_file
+
+from sdf_pose_bridge import Kind
+from sdf_pose_bridge.errors import UnknownFrameError
+from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.tf.frame_ids import FrameNames
+from sdf_pose_bridge.tf.lookup import PoseLookup
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
+
+ROBOT = """\
+<model name="robot">
+  <pose degrees="true">1 2 0 0 0 90</pose>
+  <link name="base">
+    <visual name="shell">
+      <pose>0 0 0.5 0 0 0</pose><geometry><sphere><radius>1</radius></sphere></geometry>
+    </visual>
+    <sensor name="eye" type="camera"><pose degrees="true">0.2 0 0.3 0 30 0</pose><camera/></sensor>
+  </link>
+  <frame name="grip"><pose>0 0 1 0 0 0</pose></frame>
+</model>
+"""
+BASE = matrix_from_degrees(1, 2, 0, 0, 0, 90)
+EYE = BASE @ matrix_from_degrees(0.2, 0, 0.3, 0, 30, 0)
+GRIP = BASE @ matrix_from_degrees(0, 0, 1)
+SHELL = BASE @ matrix_from_degrees(0, 0, 0.5)
+OPTICAL = np.array([[0.0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+
+
+def lookup_in(text, **options):
+    scene = load_text(text, 'file.sdf')
+    return PoseLookup(scene, tf_tree_from_scene(scene, TfOptions(**options)))
+
+
+@pytest.fixture(name='lookup')
+def make_lookup():
+    return lookup_in(world_file(ROBOT), root_frame='map', frame_prefix='left/')
+
+
+@pytest.mark.parametrize(('frame', 'relative_to', 'expected', 'frame_id'), [
+    ('robot::grip', '', GRIP, 'map'),
+    ('left/robot/grip', '', GRIP, 'map'),
+    ('robot::base::shell', '', SHELL, 'map'),
+    ('left/robot/base/eye_optical', '', EYE @ OPTICAL, 'map'),
+    ('robot::grip', 'robot::base::eye', np.linalg.inv(EYE) @ GRIP, 'left/robot/base/eye'),
+    ('left/robot/grip', 'robot::base::shell', np.linalg.inv(SHELL) @ GRIP, 'robot::base::shell'),
+    ('robot', 'map', BASE, 'map'),
+    ('robot', 'world', BASE, 'map'),
+    ('map', 'robot', np.linalg.inv(BASE), 'left/robot'),
+    ('world', 'left/robot', np.linalg.inv(BASE), 'left/robot'),
+    ('map', '', np.eye(4), 'map'),
+])
+def test_poses_by_the_names_of_sdf_and_of_tf(lookup, frame, relative_to, expected, frame_id):
+    found = lookup.pose(frame, relative_to)
+    assert_same_pose(found.pose, expected, name=frame)
+    assert found.pose.qw >= 0.0
+    assert found.frame_id == frame_id
+
+
+@pytest.mark.parametrize(('frame', 'relative_to', 'sentence'), [
+    ('robot::gripp', '', '"robot::gripp" is the name of nothing; did you mean "robot::grip"?'),
+    ('left/robot/gripp', '', 'did you mean "left/robot/grip"?'),
+    ('robot::grip', 'floor', '"floor" is the name of nothing'),
+    ('', '', '"" is the name of nothing'),
+    ('/left/robot', '', '"/left/robot" is the name of nothing; did you mean "left/robot"?'),
+])
+def test_a_name_that_means_nothing_is_named(lookup, frame, relative_to, sentence):
+    with pytest.raises(UnknownFrameError) as caught:
+        lookup.pose(frame, relative_to)
+    assert sentence in caught.value.message
+
+
+def test_where_a_text_is_both_the_name_of_sdf_is_meant():
+    lookup = lookup_in(
+        world_file('<model name="a"><link name="b"><pose>1 0 0 0 0 0</pose></link></model>'
+                   '<model name="m"><model name="a"><link name="b"/></model></model>'),
+        frame_names=FrameNames.RELATIVE, frame_separator='::', kinds=frozenset({Kind.LINK}))
+    assert lookup.pose('a::b').pose.x == 1.0
+    assert lookup.pose('m::a::b', 'a::b').pose.x == -1.0
+
+
+def test_a_model_file_is_looked_up_from_its_root():
+    found = lookup_in(model_file('<link name="a"><pose>1 0 0 0 0 0</pose></link>')).pose('m::a')
+    assert (found.pose.x, found.frame_id) == (1.0, 'world')
+
+
+def test_only_the_world_that_is_published_is_looked_up():
+    text = ('<sdf version="1.10"><world name="v"><frame name="f"><pose>1 0 0 0 0 0</pose></frame>'
+            '</world><world name="w"><frame name="f"/><frame name="g"/></world></sdf>')
+    lookup = lookup_in(text)
+    assert lookup.pose('f').pose.x == 1.0
+    assert lookup.pose('world').frame_id == 'world'
+    with pytest.raises(UnknownFrameError, match='"g"'):
+        lookup.pose('g')
+
+
+@pytest.mark.parametrize('text', [
+    '{model}<world name="w"><frame name="f"/></world>',
+    '<world name="w"><frame name="f"/></world>{model}',
+])
+def test_a_model_beside_a_world_has_nothing_in_common_with_it(text):
+    model = '<model name="m"><link name="l"/></model>'
+    lookup = lookup_in(f'<sdf version="1.10">{text.format(model=model)}</sdf>')
+    with pytest.raises(UnknownFrameError):
+        lookup.pose('m::l', 'f')
