@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import importlib
 from pathlib import Path
 from typing import NamedTuple
 
@@ -131,7 +132,7 @@ class _MeshBoxes:
 def _bounds_of_file(path: str) -> Points | str:
     """Return the lowest and the highest corner of a mesh, or why there are none."""
     try:
-        import trimesh
+        trimesh = importlib.import_module('trimesh')
     except ImportError:
         return 'meshes need the library trimesh (pip install trimesh)'
     try:
