@@ -3,7 +3,7 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test run lint bench differential fuzz clean
+.PHONY: help setup demo test run lint bench differential fuzz soak clean
 
 # Another ROS in the caller's shell would be found before the one that is meant.
 ifneq ($(filter-out jazzy,$(ROS_DISTRO)),)
@@ -27,6 +27,7 @@ help:
 	@echo 'make bench          benchmarks; ARGS="..." hands arguments to them'
 	@echo 'make differential   random scenes against libsdformat; ARGS="--scenes 100" for fewer'
 	@echo 'make fuzz           hostile files by atheris; MINUTES=60 for longer, findings in fuzz_findings'
+	@echo 'make soak           the node under load for MINUTES=30: nothing lost, nothing growing'
 	@echo 'make setup          only the environment in .underlay, which all of these share'
 	@echo 'make clean          remove the environment and everything that was built'
 	@echo ''
@@ -65,6 +66,11 @@ fuzz: setup
 	  && export PYTHONPATH=test:$$PYTHONPATH \
 	  && python -m fuzzing bytes --seconds $$((30 * $(MINUTES))) \
 	  && exec python -m fuzzing scenes --seconds $$((30 * $(MINUTES)))
+
+soak: MINUTES := 30
+soak: setup
+	@. underlay/setup.bash && export PYTHONPATH=test:test/integration:$$PYTHONPATH \
+	  && exec python -m soak --minutes $(MINUTES)
 
 clean:
 	@rm -rf .underlay build install log
