@@ -3,9 +3,8 @@
 """
 Search for inputs that end a load with anything but a scene or an SdfError.
 
-A finding is an exception, a load of more than two seconds of processor time, which other work on the
-machine does not lengthen, or more than 1 GB of memory. It ends the run, and its input is kept in the
-folder of findings.
+A finding is an exception, a load that takes more than two seconds of processor time, or more than
+1 GB of memory. It ends the run, and its input is kept in the folder of findings.
 """
 
 from __future__ import annotations

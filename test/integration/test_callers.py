@@ -3,7 +3,7 @@
 """
 Callers that ask for anything, in any number, and leave when they like.
 
-``CALLS=100000`` makes the calls of the property test so many.
+``CALLS=100000`` makes so many calls with anything in them, and one with 100 times as many numbers.
 """
 
 import array
@@ -45,7 +45,7 @@ from sdf_pose_bridge_interfaces.srv import LookupPose
 
 CALLS = int(os.environ.get('CALLS', '500'))
 CLIENTS = 100
-NUMBERS = 10_000_000
+NUMBERS = 100 * CALLS
 
 # Messages hold UTF-8, which has no surrogates.
 TEXTS = st.text(st.characters(exclude_categories=['Cs']), max_size=20) | st.sampled_from(
@@ -73,7 +73,7 @@ VALUES = filled(
     string_array_value=st.lists(TEXTS, max_size=3))
 PARAMETERS = st.lists(filled(Parameter, name=NAMES, value=VALUES), max_size=3)
 
-REQUESTS = st.one_of(*(st.tuples(st.just(type_), st.just(name), requests) for type_, name, requests in (
+REQUESTS = st.one_of(*(st.tuples(*map(st.just, names), requests) for *names, requests in (
     (ConvertRotation, 'convert_rotation', filled(
         ConvertRotation.Request, given=st.integers(0, 255) | st.integers(0, 1),
         rpy=filled(Vector3, **dict.fromkeys('xyz', NUMBERS_OF_ANY_KIND)),
@@ -81,7 +81,7 @@ REQUESTS = st.one_of(*(st.tuples(st.just(type_), st.just(name), requests) for ty
         degrees=st.booleans())),
     (ConvertPoses, 'convert_poses', filled(
         ConvertPoses.Request, from_format=FORMATS_OR_NOT, to_format=FORMATS_OR_NOT,
-        values=st.lists(NUMBERS_OF_ANY_KIND, max_size=32).map(lambda each: array.array('d', each)))),
+        values=st.lists(NUMBERS_OF_ANY_KIND, max_size=32).map(lambda row: array.array('d', row)))),
     (LookupPose, 'lookup_pose', filled(LookupPose.Request, frame=TEXTS, relative_to=TEXTS)),
     (Trigger, 'reload', st.just(Trigger.Request())),
     (SetParameters, 'set_parameters', filled(SetParameters.Request, parameters=PARAMETERS)),
@@ -170,12 +170,13 @@ def test_a_client_that_leaves_before_the_answer_harms_nobody(
     assert reload(start_listener()).success
 
 
-def test_ten_million_numbers_are_converted(bridge, start_listener):
+def test_many_numbers_in_one_call_are_converted(bridge, start_listener):
+    listener, name = start_listener(), f'{BRIDGE}/convert_poses'
     row = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.5, 2.0, -3.0, 1.0]
-    request = ConvertPoses.Request(
-        from_format='franka_matrix', to_format='sdf_quat_xyzw',
-        values=array.array('d', row) * (NUMBERS // len(row)))
-    answer = start_listener().call(ConvertPoses, f'{BRIDGE}/convert_poses', request)
+    request = ConvertPoses.Request(from_format='franka_matrix', to_format='sdf_quat_xyzw')
+    listener.call(ConvertPoses, name, request)  # a first call is repeated if it takes long
+    request.values = array.array('d', row) * (NUMBERS // len(row))
+    answer = listener.call(ConvertPoses, name, request)
     assert answer.success, answer.message
     assert answer.values == array.array('d', [0.5, 2.0, -3.0, 0.0, 0.0, 0.0, 1.0]) * (
         NUMBERS // len(row))
