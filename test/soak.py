@@ -3,8 +3,8 @@
 """
 Rewrite the file of a bridge ten times a second while twelve other processes listen and call.
 
-Every tenth file is broken. The exit code is 0 if every call was answered, if all listeners have the
-last file in the end, and if memory, threads and descriptors of the bridge have not grown.
+Every tenth file is broken. The exit code is 0 if every call was answered, if all listeners have
+the last file in the end, and if memory, threads and descriptors of the bridge have not grown.
 """
 
 from __future__ import annotations

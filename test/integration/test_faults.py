@@ -149,9 +149,8 @@ def test_a_file_that_a_full_disk_cuts_off_is_reported(
     path.write_text(world(1), encoding='utf-8')
     bridge = start(path)
     wait_for_x(listener, 1.0)
-    with pytest.raises(OSError, match='No space'), path.open('wb', buffering=0) as file:
-        for _ in range(2):
-            file.write(world(2).replace('</world>', ' ' * 4096).encode()[:4096])
+    with pytest.raises(OSError, match='No space'):
+        path.write_text(world(2).replace('</world>', ' ' * 8192), encoding='utf-8')
     assert_reported_while_old_poses_are_served(
         bridge, listener, start_listener, path, f'{path}:')
     path.write_text(world(3), encoding='utf-8')
