@@ -12,6 +12,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from ament_index_python.packages import get_package_prefix
 from ament_index_python.packages import get_package_share_directory
+import bridge_process
 from bridge_process import LoggedProcess
 from bridge_process import STARTED
 from changes import replace
@@ -69,7 +70,7 @@ def start_on(ros_domain, monkeypatch):
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'SUBNET')
     processes, made = [], []
     try:
-        for host, address in ADDRESSES.items():
+        for host in ADDRESSES:
             ip('netns', 'add', f'spb_{host}')
             made.append(host)
             if host == 'b':
@@ -150,6 +151,7 @@ def test_a_link_that_is_cut_for_longer_than_the_lease_and_restored(
 
 def test_thousands_of_frames_arrive_whole_where_packets_are_lost(
         start_bridge_on, start_listener_on, file, monkeypatch):
+    monkeypatch.setattr(bridge_process, 'SECONDS', 60.0)
     # Else Fast DDS sends pieces of 64 kB, each of which is lost if one of its 45 packets is.
     monkeypatch.setenv('FASTDDS_BUILTIN_TRANSPORTS', 'DEFAULT?max_msg_size=1400')
     for host in ADDRESSES:
