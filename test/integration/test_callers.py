@@ -43,7 +43,7 @@ from sdf_pose_bridge_interfaces.srv import ConvertPoses
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
 from sdf_pose_bridge_interfaces.srv import LookupPose
 
-CALLS = int(os.environ.get('CALLS', '500'))
+CALLS = int(os.environ.get('CALLS', '300'))
 CLIENTS = 100
 NUMBERS = 100 * CALLS
 
