@@ -32,7 +32,7 @@ from hypothesis import settings
 
 ROOT = Path(__file__).resolve().parents[2]
 LONGEST_S = 2.0
-LIMITS = ('-timeout=100', '-rss_limit_mb=1024', '-max_len=20000')
+LIMITS = ('-timeout=100', '-report_slow_units=100', '-rss_limit_mb=1024', '-max_len=20000')
 
 
 @contextlib.contextmanager
