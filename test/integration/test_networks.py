@@ -65,39 +65,47 @@ def ip(*arguments):
     subprocess.run(['ip', *arguments], check=True, capture_output=True, text=True)
 
 
-@pytest.fixture
-def start_on(ros_domain, monkeypatch):
-    """Starts a process on one of two hosts, "a" and "b"; ``start_on(host, *command)``."""
-    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'SUBNET')
-    processes, made = [], []
+@pytest.fixture(name='hosts')
+def connected_namespaces(ros_domain):
+    """Names of the network namespaces of two hosts, "a" and "b"."""
+    # Other tests have another domain, so also other names.
+    hosts = {host: f'sdf_pose_bridge_{ros_domain}{host}' for host in ADDRESSES}
+    made = []
     try:
-        for host in ADDRESSES:
-            ip('netns', 'add', f'spb_{host}')
-            made.append(host)
-            if host == 'b':
-                ip('-n', 'spb_a', 'link', 'add', 'cable', 'type', 'veth',
-                   'peer', 'name', 'cable', 'netns', 'spb_b')
+        for name in hosts.values():
+            ip('netns', 'add', name)
+            made.append(name)
+        ip('-n', hosts['a'], 'link', 'add', 'cable', 'type', 'veth',
+           'peer', 'name', 'cable', 'netns', hosts['b'])
         for host, address in ADDRESSES.items():
-            ip('-n', f'spb_{host}', 'address', 'add', f'{address}/24', 'dev', 'cable')
+            ip('-n', hosts[host], 'address', 'add', f'{address}/24', 'dev', 'cable')
             for device in ('lo', 'cable'):
-                ip('-n', f'spb_{host}', 'link', 'set', device, 'up')
+                ip('-n', hosts[host], 'link', 'set', device, 'up')
     except (OSError, subprocess.CalledProcessError) as error:
-        for host in made:
-            ip('netns', 'del', f'spb_{host}')
         pytest.skip(f'this machine does not permit network namespaces: {error}')
+    else:
+        yield hosts
+    finally:
+        for name in made:
+            ip('netns', 'del', name)
+
+
+@pytest.fixture
+def start_on(hosts, monkeypatch):
+    """Starts a process on one of the hosts; ``start_on(host, *command)``."""
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'SUBNET')
+    processes = []
 
     def start(host, *command):
         # Each host has its own shared memory.
         processes.append(LoggedProcess([
-            'ip', 'netns', 'exec', f'spb_{host}', 'sh', '-c',
+            'ip', 'netns', 'exec', hosts[host], 'sh', '-c',
             'mount -t tmpfs none /dev/shm && exec "$@"', 'sh', *command]))
         return processes[-1]
 
     yield start
     for process in processes:
         process.end()
-    for host in made:
-        ip('netns', 'del', f'spb_{host}')
 
 
 @pytest.fixture(name='file')
@@ -132,7 +140,7 @@ def test_a_late_joiner_on_another_host_gets_everything(start_bridge_on, start_li
 
 
 def test_a_link_that_is_cut_for_longer_than_the_lease_and_restored(
-        start_bridge_on, start_listener_on, file, tmp_path, monkeypatch):
+        hosts, start_bridge_on, start_listener_on, file, tmp_path, monkeypatch):
     share = get_package_share_directory('sdf_pose_bridge')
     profile = Path(share, 'config/fastdds_profile.xml').read_text(encoding='utf-8')
     short = tmp_path / 'profile.xml'
@@ -141,27 +149,26 @@ def test_a_link_that_is_cut_for_longer_than_the_lease_and_restored(
     bridge = start_bridge_on('a')
     listener = start_listener_on('b')
     listener.wait_for_line('all transforms')
-    ip('-n', 'spb_a', 'link', 'set', 'cable', 'down')
+    ip('-n', hosts['a'], 'link', 'set', 'cable', 'down')
     listener.wait_for_line('publishers 0')
     replace(file, world(2))
     bridge.wait_for_line(STARTED, 2)
-    ip('-n', 'spb_a', 'link', 'set', 'cable', 'up')
+    ip('-n', hosts['a'], 'link', 'set', 'cable', 'up')
     listener.wait_for_line('tree 2 2.0')
     listener.wait_for_line('all transforms', 3)
 
 
 def test_thousands_of_frames_arrive_whole_where_packets_are_lost(
-        start_bridge_on, start_listener_on, file, monkeypatch):
+        hosts, start_bridge_on, start_listener_on, file, monkeypatch):
     monkeypatch.setattr(bridge_process, 'SECONDS', 60.0)
     # Else Fast DDS sends pieces of 64 kB, each of which is lost if one of its 45 packets is.
     monkeypatch.setenv('FASTDDS_BUILTIN_TRANSPORTS', 'DEFAULT?max_msg_size=1400')
-    for host in ADDRESSES:
-        namespace = ['-n', f'spb_{host}']
+    for host in hosts.values():
         # The module of the kernel for netem is often not installed.
         for arguments in (['qdisc', 'add', 'dev', 'cable', 'clsact'],
                           ['filter', 'add', 'dev', 'cable', 'ingress', 'bpf', 'direct-action',
                            'bytecode', LOSE_5_PERCENT]):
-            if subprocess.run(['tc', *namespace, *arguments], check=False).returncode:
+            if subprocess.run(['tc', '-n', host, *arguments], check=False).returncode:
                 pytest.skip('this machine has no BPF for tc')
     file.write_text(world(1, extra=''.join(
         f'<frame name="f{number}"/>' for number in range(FRAMES - 2))), encoding='utf-8')
