@@ -3,7 +3,7 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test run lint bench differential fuzz clean
+.PHONY: help setup demo test run lint bench differential fuzz soak licenses audit clean
 
 # Another ROS in the caller's shell would be found before the one that is meant.
 ifneq ($(filter-out jazzy,$(ROS_DISTRO)),)
@@ -27,6 +27,9 @@ help:
 	@echo 'make bench          benchmarks; ARGS="..." hands arguments to them'
 	@echo 'make differential   random scenes against libsdformat; ARGS="--scenes 100" for fewer'
 	@echo 'make fuzz           hostile files by atheris; MINUTES=60 for longer, findings in fuzz_findings'
+	@echo 'make soak           the node under load for MINUTES=30: nothing lost, nothing growing'
+	@echo 'make licenses       licences of everything that is installed for this, as in docs/licenses.md'
+	@echo 'make audit          known vulnerabilities of it, by pip-audit; needs pypi.org'
 	@echo 'make setup          only the environment in .underlay, which all of these share'
 	@echo 'make clean          remove the environment and everything that was built'
 	@echo ''
@@ -65,6 +68,21 @@ fuzz: setup
 	  && export PYTHONPATH=test:$$PYTHONPATH \
 	  && python -m fuzzing bytes --seconds $$((30 * $(MINUTES))) \
 	  && exec python -m fuzzing scenes --seconds $$((30 * $(MINUTES)))
+
+soak: MINUTES := 30
+soak: setup
+	@. underlay/setup.bash && export PYTHONPATH=test:test/integration:$$PYTHONPATH \
+	  && exec python -m soak --minutes $(MINUTES)
+
+licenses: setup
+	@$(in_shell) python underlay/licenses.py
+
+# --strict: a package that its database does not know fails it, too.
+audit: setup
+	@. underlay/setup.bash && python -m venv .underlay/audit \
+	  && .underlay/audit/bin/python -m pip install --quiet pip-audit \
+	  && for lock in underlay/*.txt; do \
+	    .underlay/audit/bin/pip-audit --strict --no-deps --disable-pip -r $$lock || exit; done
 
 clean:
 	@rm -rf .underlay build install log

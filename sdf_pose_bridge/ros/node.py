@@ -40,6 +40,7 @@ from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.publishers import FramePublishers
 from sdf_pose_bridge.ros.services import add_services
+from sdf_pose_bridge.ros.services import SERVICE_QOS
 from sdf_pose_bridge.ros.topic_names import are_too_many_by_default
 from sdf_pose_bridge.ros.topic_names import LONGEST_FULL_NAME
 from sdf_pose_bridge.ros.topic_names import LONGEST_NAME
@@ -90,7 +91,8 @@ class SdfPoseBridge:
         self._publish_again_at(self._settings.publish_rate)
         add_services(self._node, lambda: self._loaded.lookup)
         self._node.create_service(
-            Trigger, '~/reload', self._answer_to_reload, callback_group=self._changes)
+            Trigger, '~/reload', self._answer_to_reload, qos_profile=SERVICE_QOS,
+            callback_group=self._changes)
         self._parameter_service = AtomicParameterService(
             self._node, self._changes, self._set_parameters)
         self._node.create_timer(PERIOD_S, self._diagnostics.publish, clock=self._steady_clock)

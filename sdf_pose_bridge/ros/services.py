@@ -14,6 +14,7 @@ import numpy as np
 from rclpy.clock import Clock
 from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.node import Node
+from rclpy.qos import qos_profile_parameters
 
 from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.geometry.formats import converted_poses
@@ -27,6 +28,9 @@ from sdf_pose_bridge_interfaces.srv import LookupPose
 
 Answer: TypeAlias = Callable[[Any, Any], Any]
 """Fills the response to a request and returns it."""
+
+SERVICE_QOS = qos_profile_parameters
+"""Keeps a thousand requests; the default keeps ten, and more callers at once would lose theirs."""
 
 
 def add_services(node: Node, lookup: Callable[[], PoseLookup]) -> None:
@@ -47,7 +51,8 @@ def add_services(node: Node, lookup: Callable[[], PoseLookup]) -> None:
         (ConvertPoses, '~/convert_poses', answer_to_convert_poses),
         (LookupPose, '~/lookup_pose', answer_to_lookup),
     ):
-        node.create_service(service_type, name, never_raising(answer, logger))
+        node.create_service(
+            service_type, name, never_raising(answer, logger), qos_profile=SERVICE_QOS)
 
 
 def answer_to_convert_rotation(

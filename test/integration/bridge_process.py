@@ -47,10 +47,11 @@ class LoggedProcess:
             self._has_ended = True
             self._has_changed.notify_all()
 
-    def wait_for_line(self, text):
-        """Wait until a line with a text is written, and return it."""
+    def wait_for_line(self, text, number=1):
+        """Wait until so many lines with a text are written, and return the last of these."""
         def found():
-            return next((line for line in self.lines if text in line), None)
+            lines = [line for line in self.lines if text in line]
+            return lines[number - 1] if len(lines) >= number else None
 
         with self._has_changed:
             self._has_changed.wait_for(lambda: found() or self._has_ended, SECONDS)

@@ -11,6 +11,7 @@ import rclpy
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy
+from rclpy.qos import qos_profile_parameters
 from rclpy.qos import QoSProfile
 from rclpy.qos import ReliabilityPolicy
 from tf2_msgs.msg import TFMessage
@@ -74,7 +75,9 @@ class Listener:
         # Kept, as programs do.
         is_new = name not in self._callers
         if is_new:
-            self._callers[name] = self.node.create_client(service_type, name)
+            # A client receives the answers to all clients, and by default keeps ten of them.
+            self._callers[name] = self.node.create_client(
+                service_type, name, qos_profile=qos_profile_parameters)
         client = self._callers[name]
         self.wait(client.service_is_ready, lambda: name)
         futures = [client.call_async(request)]

@@ -1,0 +1,182 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Callers that ask for anything, in any number, and leave when they like.
+
+``CALLS=100000`` makes so many calls with anything in them, and one with 100 times as many numbers.
+"""
+
+import array
+import math
+import os
+import sys
+
+from hypothesis import given
+from hypothesis import settings
+from hypothesis import strategies as st
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from bridge_process import LoggedProcess
+from changes import BRIDGE
+from changes import reload
+from changes import world
+from geometry_msgs.msg import Quaternion
+from geometry_msgs.msg import Vector3
+from rcl_interfaces.msg import Parameter
+from rcl_interfaces.msg import ParameterType
+from rcl_interfaces.msg import ParameterValue
+from rcl_interfaces.srv import DescribeParameters
+from rcl_interfaces.srv import GetParameters
+from rcl_interfaces.srv import GetParameterTypes
+from rcl_interfaces.srv import ListParameters
+from rcl_interfaces.srv import SetParameters
+from rcl_interfaces.srv import SetParametersAtomically
+from rclpy.qos import qos_profile_parameters
+from slow_file import SlowFile
+from std_srvs.srv import Trigger
+
+from sdf_pose_bridge.geometry.formats import POSE_FORMATS
+from sdf_pose_bridge.ros.parameters import DECLARATIONS
+from sdf_pose_bridge_interfaces.srv import ConvertPoses
+from sdf_pose_bridge_interfaces.srv import ConvertRotation
+from sdf_pose_bridge_interfaces.srv import LookupPose
+
+CALLS = int(os.environ.get('CALLS', '300'))
+CLIENTS = 100
+NUMBERS = 100 * CALLS
+
+# Messages hold UTF-8, which has no surrogates.
+TEXTS = st.text(st.characters(exclude_categories=['Cs']), max_size=20) | st.sampled_from(
+    ['', 'world', 'crate', 'crate::body', 'crate/body', '::', '/', '*', '[', 'a\0b', 'x' * 10_000])
+NUMBERS_OF_ANY_KIND = st.floats() | st.sampled_from([0.0, 1.0, 1e308, math.pi / 2])
+FORMATS_OR_NOT = st.sampled_from([*POSE_FORMATS]) | TEXTS
+NAMES = st.sampled_from([*DECLARATIONS, 'use_sim_time', 'start_type_description_service']) | TEXTS
+
+
+def filled(message_type, **fields):
+    """Return a strategy of messages, which are filled with what other strategies give."""
+    return st.fixed_dictionaries(fields).map(lambda values: message_type(**values))
+
+
+VALUES = filled(
+    ParameterValue, type=st.integers(0, 255), bool_value=st.booleans(),
+    integer_value=st.integers(-2**63, 2**63 - 1), double_value=NUMBERS_OF_ANY_KIND,
+    string_value=TEXTS, string_array_value=st.lists(TEXTS, max_size=3),
+    bool_array_value=st.lists(st.booleans(), max_size=2),
+    double_array_value=st.lists(NUMBERS_OF_ANY_KIND, max_size=2),
+) | filled(
+    ParameterValue, type=st.just(ParameterType.PARAMETER_STRING), string_value=TEXTS
+) | filled(
+    ParameterValue, type=st.just(ParameterType.PARAMETER_STRING_ARRAY),
+    string_array_value=st.lists(TEXTS, max_size=3))
+PARAMETERS = st.lists(filled(Parameter, name=NAMES, value=VALUES), max_size=3)
+
+REQUESTS = st.one_of(*(st.tuples(*map(st.just, names), requests) for *names, requests in (
+    (ConvertRotation, 'convert_rotation', filled(
+        ConvertRotation.Request, given=st.integers(0, 255) | st.integers(0, 1),
+        rpy=filled(Vector3, **dict.fromkeys('xyz', NUMBERS_OF_ANY_KIND)),
+        quaternion=filled(Quaternion, **dict.fromkeys('xyzw', NUMBERS_OF_ANY_KIND)),
+        degrees=st.booleans())),
+    (ConvertPoses, 'convert_poses', filled(
+        ConvertPoses.Request, from_format=FORMATS_OR_NOT, to_format=FORMATS_OR_NOT,
+        values=st.lists(NUMBERS_OF_ANY_KIND, max_size=32).map(lambda row: array.array('d', row)))),
+    (LookupPose, 'lookup_pose', filled(LookupPose.Request, frame=TEXTS, relative_to=TEXTS)),
+    (Trigger, 'reload', st.just(Trigger.Request())),
+    (SetParameters, 'set_parameters', filled(SetParameters.Request, parameters=PARAMETERS)),
+    (SetParametersAtomically, 'set_parameters_atomically', filled(
+        SetParametersAtomically.Request, parameters=PARAMETERS)),
+    (GetParameters, 'get_parameters', filled(
+        GetParameters.Request, names=st.lists(NAMES, max_size=3))),
+    (GetParameterTypes, 'get_parameter_types', filled(
+        GetParameterTypes.Request, names=st.lists(NAMES, max_size=3))),
+    (DescribeParameters, 'describe_parameters', filled(
+        DescribeParameters.Request, names=st.lists(NAMES, max_size=3))),
+    (ListParameters, 'list_parameters', filled(
+        ListParameters.Request, prefixes=st.lists(TEXTS, max_size=3),
+        depth=st.integers(0, 2**64 - 1))),
+)))
+
+LEAVING_CLIENT = f"""
+import rclpy
+from std_srvs.srv import Trigger
+
+rclpy.init()
+node = rclpy.create_node('leaving')
+client = node.create_client(Trigger, '{BRIDGE}/reload')
+client.wait_for_service()
+client.call_async(Trigger.Request())
+print('asked', flush=True)
+rclpy.spin(node)
+"""
+
+
+@pytest.fixture(name='file')
+def write_file(tmp_path):
+    path = tmp_path / 'cell.sdf'
+    path.write_text(world(1), encoding='utf-8')
+    return path
+
+
+@pytest.fixture(name='bridge')
+def bridge_on_file(start_bridge, file):
+    return start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
+
+
+def test_whatever_is_asked_is_answered(bridge, start_listener):
+    listener = start_listener()
+
+    @settings(max_examples=CALLS, database=None)
+    @given(REQUESTS)
+    def ask(request):
+        service_type, name, content = request
+        answer = listener.call(service_type, f'{BRIDGE}/{name}', content)
+        if hasattr(answer, 'success'):
+            assert answer.success or answer.message
+        assert 'internal' not in str(answer)[:1000]
+
+    ask()
+    assert not [line for line in bridge.lines if 'internal error' in line]
+
+
+def test_many_clients_at_once_are_all_answered(bridge, start_listener):
+    listener = start_listener()
+    # Every client receives the answers to all others, and by default keeps ten.
+    clients = [
+        listener.node.create_client(
+            LookupPose, f'{BRIDGE}/lookup_pose', qos_profile=qos_profile_parameters)
+        for _ in range(CLIENTS)]
+    for client in clients:
+        listener.wait(client.service_is_ready, lambda: 'the service')
+    futures = [client.call_async(LookupPose.Request(frame='crate::body')) for client in clients]
+    listener.wait(lambda: all(future.done() for future in futures),
+                  lambda: sum(not future.done() for future in futures))
+    assert all(future.result().success for future in futures)
+
+
+def test_a_client_that_leaves_before_the_answer_harms_nobody(
+        ros_domain, start_bridge, start_listener, tmp_path):
+    slow = SlowFile(tmp_path / 'slow.sdf', world(1))
+    start_bridge('--ros-args', '-p', f'sdf_file:={slow.path}', '-p', 'watch:=false'
+                 ).wait_until_started()
+    slow.hold()
+    client = LoggedProcess([sys.executable, '-c', LEAVING_CLIENT])
+    with slow.opened():
+        client.send(9)
+        client.wait_for_end()
+        slow.write(world(2))
+    client.end()
+    assert reload(start_listener()).success
+
+
+def test_many_numbers_in_one_call_are_converted(bridge, start_listener):
+    listener, name = start_listener(), f'{BRIDGE}/convert_poses'
+    row = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.5, 2.0, -3.0, 1.0]
+    request = ConvertPoses.Request(from_format='franka_matrix', to_format='sdf_quat_xyzw')
+    listener.call(ConvertPoses, name, request)  # a first call is repeated if it takes long
+    request.values = array.array('d', row) * (NUMBERS // len(row))
+    answer = listener.call(ConvertPoses, name, request)
+    assert answer.success, answer.message
+    assert answer.values == array.array('d', [0.5, 2.0, -3.0, 0.0, 0.0, 0.0, 1.0]) * (
+        NUMBERS // len(row))

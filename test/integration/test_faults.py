@@ -1,0 +1,243 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Faults of disks, clocks and other processes; what was read before is served throughout."""
+
+import os
+from pathlib import Path
+import signal
+import subprocess
+import sys
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from bridge_process import LoggedProcess
+from builtin_interfaces.msg import Time
+from changes import listen_to_tf
+from changes import Monitor
+from changes import reload
+from changes import replace
+from changes import wait_for_x
+from changes import world
+from diagnostic_msgs.msg import DiagnosticStatus
+from rosgraph_msgs.msg import Clock
+from slow_file import SlowFile
+
+LISTENING = """
+import rclpy
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from tf2_msgs.msg import TFMessage
+
+def show(message):
+    print('x', message.transforms[-1].transform.translation.x, flush=True)
+
+rclpy.init()
+node = rclpy.create_node('stopped')
+quality = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+node.create_subscription(TFMessage, '/tf_static', show, quality)
+rclpy.spin(node)
+"""
+
+
+@pytest.fixture(name='file')
+def write_file(tmp_path):
+    path = tmp_path / 'cell.sdf'
+    path.write_text(world(1), encoding='utf-8')
+    return path
+
+
+@pytest.fixture(name='start')
+def start_with_file(start_bridge):
+    """Starts a bridge on a file; ``start(path, *parameters)``."""
+    def start(path, *parameters):
+        arguments = [word for parameter in parameters for word in ('-p', parameter)]
+        return start_bridge(
+            '--ros-args', '-p', f'sdf_file:={path}', *arguments).wait_until_started()
+    return start
+
+
+@pytest.fixture(name='listener')
+def tf_listener(start_listener):
+    listener = start_listener()
+    listen_to_tf(listener)
+    return listener
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A folder on a disk with room for one page, in 4096 bytes."""
+    folder = tmp_path / 'small'
+    folder.mkdir()
+    if subprocess.run(
+            ['mount', '-t', 'tmpfs', '-o', 'size=4k', 'none', folder], capture_output=True,
+            check=False).returncode:
+        pytest.skip('this machine does not permit to mount a file system')
+    yield folder
+    subprocess.run(['umount', '--lazy', folder], check=True)
+
+
+def assert_reported_while_old_poses_are_served(bridge, listener, start_listener, path, text):
+    monitor = Monitor(listener)
+    monitor.wait_for(DiagnosticStatus.ERROR)
+    assert text in monitor.status.message
+    line = bridge.wait_for_line(f'{path} is not taken; what was published before stays')
+    assert line.startswith('[ERROR]')
+    assert text in bridge.wait_for_line(text)
+    late = start_listener()
+    listen_to_tf(late)
+    wait_for_x(late, 1.0)
+
+
+def make_directory(path):
+    path.unlink()
+    path.mkdir()
+
+
+def make_fifo(path):
+    path.unlink()
+    os.mkfifo(path)
+
+
+def make_circle(path):
+    path.unlink()
+    path.symlink_to(path)
+
+
+def truncate(path):
+    os.truncate(path, 0)
+
+
+@pytest.mark.parametrize(('fault', 'text'), [
+    (truncate, ':1: FILE_READ: '),
+    (make_directory, ': FILE_READ: '),
+    (make_fifo, ': FILE_READ: '),
+    (make_circle, ': FILE_READ: '),
+])
+def test_a_file_that_cannot_be_read_any_more_is_reported_and_its_repair_noticed(
+        start, file, listener, start_listener, fault, text):
+    bridge = start(file)
+    wait_for_x(listener, 1.0)
+    fault(file)
+    assert_reported_while_old_poses_are_served(
+        bridge, listener, start_listener, file, f'{file}{text}')
+    if file.is_dir():
+        file.rmdir()
+    replace(file, world(2))
+    wait_for_x(listener, 2.0)
+
+
+def test_a_config_map_that_is_replaced_is_noticed(start, listener, tmp_path):
+    # As Kubernetes does: cell.sdf -> ..data/cell.sdf, and ..data -> a folder for each version.
+    for version, x in (('..1', 1), ('..2', 2)):
+        (tmp_path / version).mkdir()
+        (tmp_path / version / 'cell.sdf').write_text(world(x), encoding='utf-8')
+    (tmp_path / '..data').symlink_to('..1')
+    (tmp_path / 'cell.sdf').symlink_to('..data/cell.sdf')
+    start(tmp_path / 'cell.sdf')
+    wait_for_x(listener, 1.0)
+    (tmp_path / '..data_tmp').symlink_to('..2')
+    (tmp_path / '..data_tmp').rename(tmp_path / '..data')
+    (tmp_path / '..1/cell.sdf').unlink()
+    (tmp_path / '..1').rmdir()
+    wait_for_x(listener, 2.0)
+
+
+def test_a_file_that_a_full_disk_cuts_off_is_reported(
+        start, small_disk, listener, start_listener):
+    path = small_disk / 'cell.sdf'
+    path.write_text(world(1), encoding='utf-8')
+    bridge = start(path)
+    wait_for_x(listener, 1.0)
+    with pytest.raises(OSError, match='No space'):
+        path.write_text(world(2).replace('</world>', ' ' * 8192), encoding='utf-8')
+    assert_reported_while_old_poses_are_served(
+        bridge, listener, start_listener, path, f'{path}:')
+    path.write_text(world(3), encoding='utf-8')
+    wait_for_x(listener, 3.0)
+
+
+def test_a_full_disk_for_the_log_and_a_full_terminal_end_nothing(
+        start, file, small_disk, listener, monkeypatch):
+    monkeypatch.setenv('ROS_LOG_DIR', str(small_disk))
+    (small_disk / 'filling').write_bytes(bytes(4096))
+    with Path('/dev/full').open('w') as full:
+        from ament_index_python.packages import get_package_prefix
+        executable = Path(get_package_prefix('sdf_pose_bridge'), 'lib/sdf_pose_bridge/bridge')
+        process = subprocess.Popen(
+            [executable, '--ros-args', '-p', f'sdf_file:={file}'], stdout=full, stderr=full)
+    try:
+        wait_for_x(listener, 1.0)
+        replace(file, '<sdf')
+        Monitor(listener).wait_for(DiagnosticStatus.ERROR)
+        replace(file, world(2))
+        wait_for_x(listener, 2.0)
+    finally:
+        process.send_signal(signal.SIGINT)
+        assert process.wait(20.0) == 0
+
+
+def test_an_included_file_that_changes_during_the_load_is_read_again(start, listener, tmp_path):
+    def model(name, x):
+        return (f'<sdf version="1.10"><model name="{name}"><pose>{x} 0 0 0 0 0</pose>'
+                '<link name="body"/></model></sdf>')
+
+    path, first = tmp_path / 'cell.sdf', tmp_path / 'crate.sdf'
+    first.write_text(model('crate', 1), encoding='utf-8')
+    slow = SlowFile(tmp_path / 'slow.sdf', model('other', 0))
+    path.write_text(
+        '<sdf version="1.10"><world name="w"><include><uri>crate.sdf</uri></include>'
+        '<include><uri>slow.sdf</uri></include></world></sdf>', encoding='utf-8')
+    start(path)
+    wait_for_x(listener, 1.0)
+    slow.hold()
+    os.utime(path)
+    with slow.opened():
+        replace(first, model('crate', 2))
+    wait_for_x(listener, 2.0)
+
+
+def test_listeners_follow_a_bridge_that_was_killed_and_started_again(start, file, listener):
+    killed = start(file)
+    wait_for_x(listener, 1.0)
+    killed.send(signal.SIGKILL)
+    assert killed.wait_for_end() == -signal.SIGKILL
+    replace(file, world(2))
+    start(file)
+    wait_for_x(listener, 2.0)
+    assert reload(listener).success
+
+
+def test_a_clock_that_jumps_back_keeps_nothing_from_being_published(start, file, listener):
+    start(file, 'use_sim_time:=true', 'publish_rate:=20.0')
+    wait_for_x(listener, 1.0)
+    clock = listener.node.create_publisher(Clock, '/clock', 1)
+
+    def stamp():
+        return listener.tf_messages[-1].transforms[0].header.stamp.sec
+
+    def has_jumped(seconds):
+        clock.publish(Clock(clock=Time(sec=seconds)))
+        return stamp() == seconds
+
+    for x, seconds in enumerate((1000, 10, 2_000_000_000, 0), start=2):
+        listener.wait(lambda seconds=seconds: has_jumped(seconds), stamp)
+        replace(file, world(x))
+        wait_for_x(listener, float(x))
+        assert stamp() == seconds
+
+
+def test_a_listener_that_is_stopped_keeps_nobody_waiting_and_gets_the_last(
+        start, file, listener):
+    start(file, 'publish_rate:=100.0')
+    wait_for_x(listener, 1.0)
+    stopped = LoggedProcess([sys.executable, '-c', LISTENING])
+    stopped.wait_for_line('x 1.0')
+    stopped.send(signal.SIGSTOP)
+    for x in range(2, 12):
+        replace(file, world(x))
+        assert reload(listener).success
+        wait_for_x(listener, float(x))
+    stopped.send(signal.SIGCONT)
+    stopped.wait_for_line('x 11.0')
+    stopped.end()

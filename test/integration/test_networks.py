@@ -1,0 +1,190 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""A bridge and a listener on two hosts: network namespaces that a cable (veth) connects."""
+
+from pathlib import Path
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from ament_index_python.packages import get_package_prefix
+from ament_index_python.packages import get_package_share_directory
+import bridge_process
+from bridge_process import LoggedProcess
+from bridge_process import STARTED
+from changes import replace
+from changes import world
+
+ADDRESSES = {'a': '10.211.7.1', 'b': '10.211.7.2'}
+LEASE = '<leaseDuration><sec>3</sec></leaseDuration>'
+"""How long Fast DDS waits for a silent participant; 20 s by default."""
+
+FRAMES = 2_000
+LOSE_5_PERCENT = '4,32 0 0 4294963256,53 1 0 214748365,6 0 0 2,6 0 0 0'
+"""Classic BPF: a random number; if it is below 5 % of 2**32, drop the packet."""
+
+LISTENING = """
+import sys
+import rclpy
+from geometry_msgs.msg import TransformStamped
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from tf2_msgs.msg import TFMessage
+
+frames = set()
+publishers = 0
+
+def show(message):
+    x = max(each.transform.translation.x for each in message.transforms)
+    print('tree', len(message.transforms), x, flush=True)
+
+def collect(message):
+    frames.add(message.child_frame_id)
+    if len(frames) == int(sys.argv[1]):
+        print('all transforms', flush=True)
+
+def count():
+    global publishers
+    if publishers != (publishers := node.count_publishers('/tf_static')):
+        print('publishers', publishers, flush=True)
+
+rclpy.init()
+node = rclpy.create_node('remote')
+latched = QoSProfile(depth=20000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+node.create_subscription(TFMessage, '/tf_static', show, latched)
+node.create_subscription(TransformStamped, '/sdf_pose_bridge/transforms', collect, latched)
+node.create_timer(0.1, count)
+rclpy.spin(node)
+"""
+
+
+def ip(*arguments):
+    subprocess.run(['ip', *arguments], check=True, capture_output=True, text=True)
+
+
+@pytest.fixture(name='hosts')
+def connected_namespaces(ros_domain):
+    """Names of the network namespaces of two hosts, "a" and "b"."""
+    # Other tests have another domain, so also other names.
+    hosts = {host: f'sdf_pose_bridge_{ros_domain}{host}' for host in ADDRESSES}
+    made = []
+    try:
+        for name in hosts.values():
+            ip('netns', 'add', name)
+            made.append(name)
+        ip('-n', hosts['a'], 'link', 'add', 'cable', 'type', 'veth',
+           'peer', 'name', 'cable', 'netns', hosts['b'])
+        for host, address in ADDRESSES.items():
+            ip('-n', hosts[host], 'address', 'add', f'{address}/24', 'dev', 'cable')
+            for device in ('lo', 'cable'):
+                ip('-n', hosts[host], 'link', 'set', device, 'up')
+    except (OSError, subprocess.CalledProcessError) as error:
+        pytest.skip(f'this machine does not permit network namespaces: {error}')
+    else:
+        yield hosts
+    finally:
+        for name in made:
+            ip('netns', 'del', name)
+
+
+@pytest.fixture
+def start_on(hosts, monkeypatch):
+    """Starts a process on one of the hosts; ``start_on(host, *command)``."""
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'SUBNET')
+    processes = []
+
+    def start(host, *command):
+        # Each host has its own shared memory.
+        processes.append(LoggedProcess([
+            'ip', 'netns', 'exec', hosts[host], 'sh', '-c',
+            'mount -t tmpfs none /dev/shm && exec "$@"', 'sh', *command]))
+        return processes[-1]
+
+    yield start
+    for process in processes:
+        process.end()
+
+
+@pytest.fixture(name='file')
+def write_file(tmp_path):
+    path = tmp_path / 'cell.sdf'
+    path.write_text(world(1), encoding='utf-8')
+    return path
+
+
+@pytest.fixture
+def start_bridge_on(start_on, file):
+    def start(host):
+        executable = Path(get_package_prefix('sdf_pose_bridge'), 'lib/sdf_pose_bridge/bridge')
+        bridge = start_on(host, executable, '--ros-args', '-p', f'sdf_file:={file}')
+        bridge.wait_for_line(STARTED)
+        return bridge
+    return start
+
+
+@pytest.fixture
+def start_listener_on(start_on):
+    def start(host, count=2):
+        return start_on(host, sys.executable, '-c', LISTENING, str(count))
+    return start
+
+
+def test_a_late_joiner_on_another_host_gets_everything(start_bridge_on, start_listener_on):
+    start_bridge_on('a')
+    listener = start_listener_on('b')
+    listener.wait_for_line('tree 2 1.0')
+    listener.wait_for_line('all transforms')
+
+
+def test_a_link_that_is_cut_for_longer_than_the_lease_and_restored(
+        hosts, start_bridge_on, start_listener_on, file, tmp_path, monkeypatch):
+    share = get_package_share_directory('sdf_pose_bridge')
+    profile = Path(share, 'config/fastdds_profile.xml').read_text(encoding='utf-8')
+    short = tmp_path / 'profile.xml'
+    short.write_text(profile.replace('<leaseAnnouncement>', f'{LEASE}<leaseAnnouncement>'))
+    monkeypatch.setenv('FASTRTPS_DEFAULT_PROFILES_FILE', str(short))
+    bridge = start_bridge_on('a')
+    listener = start_listener_on('b')
+    listener.wait_for_line('all transforms')
+    ip('-n', hosts['a'], 'link', 'set', 'cable', 'down')
+    listener.wait_for_line('publishers 0')
+    replace(file, world(2))
+    bridge.wait_for_line(STARTED, 2)
+    ip('-n', hosts['a'], 'link', 'set', 'cable', 'up')
+    listener.wait_for_line('tree 2 2.0')
+    listener.wait_for_line('all transforms', 3)
+
+
+def test_thousands_of_frames_arrive_whole_where_packets_are_lost(
+        hosts, start_bridge_on, start_listener_on, file, monkeypatch):
+    monkeypatch.setattr(bridge_process, 'SECONDS', 60.0)
+    # Else Fast DDS sends pieces of 64 kB, each of which is lost if one of its 45 packets is.
+    monkeypatch.setenv('FASTDDS_BUILTIN_TRANSPORTS', 'DEFAULT?max_msg_size=1400')
+    for host in hosts.values():
+        # The module of the kernel for netem is often not installed.
+        for arguments in (['qdisc', 'add', 'dev', 'cable', 'clsact'],
+                          ['filter', 'add', 'dev', 'cable', 'ingress', 'bpf', 'direct-action',
+                           'bytecode', LOSE_5_PERCENT]):
+            if subprocess.run(['tc', '-n', host, *arguments], check=False).returncode:
+                pytest.skip('this machine has no BPF for tc')
+    file.write_text(world(1, extra=''.join(
+        f'<frame name="f{number}"/>' for number in range(FRAMES - 2))), encoding='utf-8')
+    start_bridge_on('a')
+    listener = start_listener_on('b', FRAMES)
+    listener.wait_for_line(f'tree {FRAMES} 1.0')
+    listener.wait_for_line('all transforms')
+
+
+def test_a_discovery_server_leads_to_everything(
+        start_on, start_bridge_on, start_listener_on, monkeypatch):
+    if shutil.which('fast-discovery-server') is None:
+        pytest.skip('the discovery server of Fast DDS is not installed')
+    start_on('a', 'fast-discovery-server', '-i', '0', '-l', ADDRESSES['a'], '-p', '11811')
+    monkeypatch.setenv('ROS_DISCOVERY_SERVER', f'{ADDRESSES["a"]}:11811')
+    start_bridge_on('a')
+    listener = start_listener_on('b')
+    listener.wait_for_line('tree 2 1.0')
+    listener.wait_for_line('all transforms')
