@@ -175,7 +175,7 @@ class IncludeExpansion:
         except LimitError:
             raise
         except SdfError as error:
-            self._problems.error(error)
+            self._problems.extend(error.errors)
             return None
         if next(document.root.iter('include'), None) is not None:
             self._sources.set_composed(document.root)

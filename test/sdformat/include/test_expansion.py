@@ -115,12 +115,6 @@ def test_error_in_an_included_file_has_that_file(errors_in, tmp_path, text, code
     assert (error.code, error.file) == (code, str(tmp_path / 'bad.sdf'))
 
 
-def test_included_urdf_is_named_in_the_message(write, tmp_path):
-    (tmp_path / 'robot.urdf').write_text('<robot name="r"/>')
-    (error,) = errors_of_file(write(include('robot.urdf')))
-    assert 'this is URDF' in error.message
-
-
 def test_directory_without_a_manifest_is_named_in_the_message(errors_in, tmp_path):
     (tmp_path / 'box').mkdir()
     (error,) = errors_in(include('box'))
