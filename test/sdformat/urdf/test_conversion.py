@@ -129,8 +129,8 @@ def test_fixed_joint_leaves_two_frames():
     ('<preserveFixedJoint>true</preserveFixedJoint>', 'fixed'),
     ('<preserveFixedJoint value="YES"/>', 'fixed'),
     ('<disableFixedJointLumping>1</disableFixedJointLumping>', 'revolute'),
-    ('<disableFixedJointLumping>1</disableFixedJointLumping>'
-     '<preserveFixedJoint>1</preserveFixedJoint>', 'fixed'),
+    ('<disableFixedJointLumping>1</disableFixedJointLumping><preserveFixedJoint value="1"/>',
+     'fixed'),
 ])
 def test_fixed_joint_is_kept_on_demand(option, expected):
     model = converted(robot(TWO + FIXED + gazebo(option, 'j')))
@@ -174,7 +174,8 @@ def test_link_without_mass_gets_that_of_a_lumped_link():
 def test_pitch_near_a_right_angle_is_rounded_as_by_libsdformat():
     pose = '<origin rpy="0 1.57 0"/>'
     scene = load_text(robot(link('a', shape('visual', pose))))
-    assert scene.pose('r::a::a_visual')[3:] == pytest.approx((0, math.sqrt(0.5), 0, math.sqrt(0.5)))
+    right_angle = (0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5))
+    assert scene.pose('r::a::a_visual')[3:] == pytest.approx(right_angle)
 
 
 # What <gazebo> elements hold
