@@ -34,6 +34,7 @@ from sdf_pose_bridge.sdformat.urdf.robot import Link
 from sdf_pose_bridge.sdformat.urdf.robot import Robot
 from sdf_pose_bridge.sdformat.urdf.robot import robot_from_tree
 from sdf_pose_bridge.sdformat.urdf.robot import SHAPES
+from sdf_pose_bridge.sdformat.urdf.values import is_true
 from sdf_pose_bridge.sdformat.urdf.values import numbers_of
 from sdf_pose_bridge.sdformat.urdf.values import pose_from_numbers
 from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math
@@ -107,11 +108,10 @@ class _Conversion:
         self._sdf = etree.Element('sdf', version='1.11')
         self._sdf.sourceline = root.sourceline  # type: ignore[misc]  # it can be set
         self._model = self._element(self._sdf, 'model', root, name=robot.name)
-        self._static: XmlElement | None = None
+        self._static: str | None = None
         self._preserved: set[str] = set()
         self._revolute: set[str] = set()
-        self._extensions: dict[str, list[XmlElement]] = {}
-        self._read_extensions()
+        self._extensions = self._read_extensions()
         self._links = self._links_in_order()
         self._bases: dict[str, _Base] = {}
         self._find_bases()
@@ -123,8 +123,7 @@ class _Conversion:
         self._replace_lumped_ends_of_joints()
         self._add_links()
         if self._static is not None:
-            text = str(_is_true(self._static)).lower()
-            self._element(self._model, 'static', self._static, text=text)
+            self._element(self._model, 'static', self._root, text=self._static)
         self._add_extensions(self._model, '')
         self._add_frames()
         self._add_robot_origin()
@@ -133,20 +132,22 @@ class _Conversion:
 
     # Reading
 
-    def _read_extensions(self) -> None:
+    def _read_extensions(self) -> dict[str, list[XmlElement]]:
         """Find what ``<gazebo>`` elements hold, by the name that they refer to."""
+        extensions: dict[str, list[XmlElement]] = {}
         for gazebo in child_elements(self._root, 'gazebo'):
             reference = gazebo.get('reference', '')
             for child in child_elements(gazebo):
                 if child.tag not in _SETTINGS:
-                    self._extensions.setdefault(reference, []).append(child)
+                    extensions.setdefault(reference, []).append(child)
                 elif child.tag == 'static' and not reference:
-                    self._static = child
-                elif child.tag == 'preserveFixedJoint' and _is_true(child):
+                    self._static = str(is_true(child)).lower()
+                elif child.tag == 'preserveFixedJoint' and is_true(child):
                     self._preserved.add(reference)
-                elif child.tag == 'disableFixedJointLumping' and _is_true(child):
+                elif child.tag == 'disableFixedJointLumping' and is_true(child):
                     self._revolute.add(reference)
         self._revolute -= self._preserved
+        return extensions
 
     def _links_in_order(self) -> list[Link]:
         """Return the links, each before its children; those are in the order of their joints."""
@@ -205,6 +206,11 @@ class _Conversion:
             self._lines[element] = self._lines[source]
         return element
 
+    def _counted(self, name: str, xml: XmlElement) -> str:
+        """Count a name that may be longer than all that is written where it goes."""
+        self._sources.usage.add('name_characters', len(name), self._sources.place(xml))
+        return name
+
     def _add_links(self) -> None:
         left_out = set()
         for link in self._links:
@@ -248,7 +254,7 @@ class _Conversion:
             for shape in member.visuals if tag == 'visual' else member.collisions:
                 name = f'{shape.name or member.name}_{tag}{f"_{index}" if index else ""}'
                 if not name.startswith(link.name):
-                    name = f'{link.name}{_LUMP_PREFIX}{name}'
+                    name = f'{self._counted(link.name, shape.geometry)}{_LUMP_PREFIX}{name}'
                 index += 1
                 element = self._element(xml, tag, shape.geometry, name=name)
                 pose = pose_product(self._bases[member.name].pose, shape.origin)
@@ -270,7 +276,7 @@ class _Conversion:
             self._problems.error(RelativeToError(msg, self._sources.place(joint.xml)))
             return False
         base = self._bases[joint.parent]
-        parent = base.link.name
+        parent = self._counted(base.link.name, joint.xml)
         joint_type = 'revolute' if joint.name in self._revolute else _JOINT_TYPES[joint.type]
         xml = self._element(self._model, 'joint', joint.xml, name=joint.name, type=joint_type)
         pose = self._add_pose(
@@ -379,12 +385,11 @@ class _Conversion:
             name = joint.parent
 
     def _replace_lumped_ends_of_joints(self) -> None:
-        """Replace lumped links as parents and children of joints in ``<gazebo>`` elements."""
         for joint in chain.from_iterable(self._extensions.values()):
             for end in child_elements(joint, 'parent', 'child') if joint.tag == 'joint' else ():
                 base = self._bases.get(text_of(end).strip(WHITE_SPACE))
                 if base is not None:
-                    end.text = base.link.name
+                    end.text = self._counted(base.link.name, end)
 
     def _report_unused_extensions(self) -> None:
         for reference, children in self._extensions.items():
@@ -393,8 +398,3 @@ class _Conversion:
 
     def _warning(self, message: str, xml: XmlElement, code: str = 'WARNING') -> None:
         self._problems.warning(message, self._sources.place(xml), code)
-
-
-def _is_true(xml: XmlElement) -> bool:
-    value = xml.get('value', text_of(xml))
-    return value.strip(WHITE_SPACE).lower() in ('true', 'yes', '1')

@@ -12,12 +12,25 @@ from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.sdformat.values import is_representable
 from sdf_pose_bridge.sdformat.values import leading_numbers
+from sdf_pose_bridge.sdformat.xml_tree import text_of
+from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _URDFDOM_GIMBAL_LOCK = 1e-5
 _GZ_MATH_GIMBAL_LOCK = 1e-15
 """Where 1 - |sin(pitch)| is less, libsdformat writes angles that are only nearly the same."""
+
+
+def is_true(xml: XmlElement) -> bool:
+    """
+    Read an option in a ``<gazebo>`` element.
+
+    :param xml: the option; its value is its attribute ``value`` or its text.
+    :return: True for ``true``, ``yes`` and ``1`` in any case.
+    """
+    value = xml.get('value', text_of(xml))
+    return value.strip(WHITE_SPACE).lower() in ('true', 'yes', '1')
 
 
 def numbers_of(xml: XmlElement, attributes: str) -> dict[str, list[float]]:

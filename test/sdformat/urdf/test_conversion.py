@@ -18,9 +18,11 @@ from urdf_texts import shape
 
 from sdf_pose_bridge import load
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge import SdfError
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.documents import document_from_text
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.sources import Sources
 
 FIXED = joint('j', 'a', 'b', 'fixed', origin('1 0 0', f'0 0 {math.pi / 2}'))
@@ -252,6 +254,31 @@ def test_what_sdformat_does_not_define_is_reported_only_in_gazebo_elements():
         + gazebo('<sensr name="s"/>', 'a')))
     (warning,) = scene.warnings
     assert 'did you mean <sensor>?' in warning.message
+
+
+# Hostile files
+
+def test_long_name_in_many_names_is_limited():
+    shapes = shape('visual') * 200
+    text = robot(link('a' * 1000) + link('b', shapes) + joint('j', 'a' * 1000, 'b'))
+    with pytest.raises(SdfError, match='the limit name_characters is 100000'):
+        load_text(text, limits=Limits(name_characters=100_000))
+
+
+def test_sensors_at_the_end_of_a_long_chain_are_limited():
+    links = ''.join(link(f'l{i}') for i in range(101))
+    joints = ''.join(joint(f'j{i}', f'l{i}', f'l{i + 1}') for i in range(100))
+    text = robot(links + joints + gazebo(SENSOR.format('') * 10, 'l100'))
+    with pytest.raises(SdfError, match='the limit included_elements is 999'):
+        load_text(text, limits=Limits(included_elements=999))
+
+
+def test_deep_chain_is_converted():
+    count = 5000
+    links = ''.join(link(f'l{i}') for i in range(count + 1))
+    joints = ''.join(
+        joint(f'j{i}', f'l{i}', f'l{i + 1}', 'fixed', origin('1 0 0')) for i in range(count))
+    assert load_text(robot(links + joints)).pose(f'r::l{count}').x == count
 
 
 # Files
