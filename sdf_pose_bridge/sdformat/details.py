@@ -156,14 +156,18 @@ class DetailsReader:
 
         :param xml: an ``<include>``.
         :return: the name that the included model would have, as far as it can be known, and the
-            URI. The name is empty for a merge, whose elements have names of their own.
+            URI. The name is empty if any unknown name may come from the include.
         """
         uri = first_child(xml, 'uri')
         uri_value = ('' if uri is None else value_of(uri)) or 'no URI'
-        if boolean_from_text(xml.get('merge', '')):
+        if boolean_from_text(xml.get('merge', 'false')) is not False:
+            # What is merged has names of its own.
             return '', uri_value
         name = first_child(xml, 'name')
-        return ('' if name is None else value_of(name)) or _name_from_uri(uri_value), uri_value
+        if name is not None and value_of(name):
+            return value_of(name), uri_value
+        # Where the include is an error, nothing is lost by what its file may be called.
+        return '' if self._problems.errors else _name_from_uri(uri_value), uri_value
 
     def check_content(self, xml: XmlElement, identifier: str) -> None:
         """

@@ -13,6 +13,7 @@ from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.sources import Document
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.versions import convert
+from sdf_pose_bridge.sdformat.versions import NEWEST
 from sdf_pose_bridge.sdformat.versions import version_from_text
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
@@ -65,6 +66,11 @@ def _document_from_bytes(
     sources.usage.add_elements_of(text, Place(path))
     root, warnings, lines = xml_from_bytes(text, path, encoding)
     problems.extend(warnings)
+    if root.tag == 'robot':
+        # Most files are not URDF and need not wait for this import.
+        from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
+        sources.add_document(Document(path, root, NEWEST), lines)
+        root, lines = sdf_from_urdf(root, lines, sources, problems)
     version = version_from_text(_declared_version(root, path), Place(path, root.sourceline or 0))
     document = Document(path, root, version, _may_hold_scoped_names(text))
     sources.add_document(document, lines)
@@ -75,12 +81,8 @@ def _document_from_bytes(
 
 def _declared_version(root: XmlElement, path: str) -> str:
     place = Place(path, root.sourceline or 0, f'/{written_tag(root)}')
-    if root.tag == 'robot':
-        msg = ('this is URDF, not SDFormat; publish it with robot_state_publisher, or convert it '
-               'with "gz sdf -p" first')
-        raise ParsingError(msg, place)
     if root.tag != 'sdf':
-        msg = f'the outermost element is <{written_tag(root)}>, it must be <sdf>'
+        msg = f'the outermost element is <{written_tag(root)}>, it must be <sdf> or <robot>'
         raise ParsingError(msg, place)
     version = root.get('version')
     if version is None:

@@ -52,7 +52,9 @@ def main() -> int:
         print(f'differential: {error}', file=sys.stderr)
         return 2
     if int(reference.version.split('.')[0]) < 14:
-        features -= {Feature.AUTOMATIC_INERTIALS}
+        features -= {
+            Feature.AUTOMATIC_INERTIALS, Feature.MERGED_OVERRIDES, Feature.NESTED_JOINTS,
+            Feature.URDF, Feature.XML_ODDITIES}
     print(f'libsdformat {reference.version}, {arguments.scenes} scenes, seed {arguments.seed}, '
           f'with {", ".join(sorted(f.value for f in features)) or "nothing special"}')
     started, told = time.monotonic(), time.monotonic()

@@ -95,7 +95,7 @@ def write_scene(files: dict[str, str], folder: Path, name: str) -> Path:
         target = folder / name / path
         target.parent.mkdir(parents=True, exist_ok=True)
         # Line ends stay as they were drawn.
-        target.write_bytes(text.replace(SCENE, name).encode())
+        target.write_bytes(text.replace(SCENE, name).encode(errors='surrogateescape'))
     return folder / name / 'scene.sdf'
 
 

@@ -23,6 +23,9 @@ TOLERANCE = 1e-9
 ROUNDED_TOLERANCE = 1e-3
 """The same for a scene in which the reference rounds poses to six digits: MERGED_PLACEMENT."""
 
+URDF_TOLERANCE = 1e-7
+"""The same for a scene with URDF: URDF_AT_GIMBAL_LOCK."""
+
 NOT_RESOLVED = {'sensor of a joint': JOINT_SENSOR, 'projector': PROJECTOR}
 """Elements that some release cannot resolve."""
 
@@ -83,7 +86,11 @@ def difference_between(own: Answer, reference: Answer, version: str,
     if reference.accepted and not own.accepted:
         return Difference('refused', f'accepted by libsdformat, refused here: {own.message}')
     is_rounded = 'merge-placement' in traits and is_before(version, MERGED_PLACEMENT.fixed_in)
-    tolerance = ROUNDED_TOLERANCE if is_rounded else TOLERANCE
+    tolerance = TOLERANCE
+    if 'urdf' in traits:
+        tolerance = URDF_TOLERANCE
+    if is_rounded:
+        tolerance = ROUNDED_TOLERANCE
     for key, expected in reference.poses.items():
         got = own.poses.get(key)
         if got is None:

@@ -40,11 +40,18 @@ PROJECTOR = KnownDefect(
 MERGED_PLACEMENT = KnownDefect(
     'merged model with a placement frame', '14.0', Remedy.LOOSENED,
     'the pose that follows from it is written with six digits')
+URDF_AT_GIMBAL_LOCK = KnownDefect(
+    'joint of URDF near gimbal lock', '', Remedy.LOOSENED,
+    'its pose is written as angles, of which the pitch is then off by up to 5e-8')
 
 KNOWN_DEFECTS = (
     JOINT_SENSOR,
     PROJECTOR,
     MERGED_PLACEMENT,
+    URDF_AT_GIMBAL_LOCK,
+    KnownDefect(
+        'fixed joint or its child link in URDF with one of "\'&< in its name', '',
+        Remedy.NOT_DRAWN, 'it crashes'),
     KnownDefect(
         'version 1.12', '15.0', Remedy.NOT_DRAWN,
         'releases 13 and 14 refuse it, though its poses are those of 1.11'),
@@ -69,9 +76,6 @@ KNOWN_DEFECTS = (
     KnownDefect(
         'expressed_in that names nothing', '14.0', Remedy.NOT_DRAWN,
         'it is accepted'),
-    KnownDefect(
-        'parent of a joint that names nothing, or is the child, in a deeply nested model', '',
-        Remedy.NOT_DRAWN, 'it is accepted; models directly in a world or file are checked'),
     KnownDefect(
         'model and frame of one name in a world', '14.0', Remedy.NOT_DRAWN,
         'the frame is renamed, whatever the version of the file'),

@@ -29,6 +29,10 @@ class Feature(enum.Enum):
     OLD_VERSIONS = 'old-versions'
     WORLDS = 'several-worlds'
     AUTOMATIC_INERTIALS = 'automatic-inertials'
+    NESTED_JOINTS = 'nested-joints'
+    MERGED_OVERRIDES = 'merged-overrides'
+    XML_ODDITIES = 'xml-oddities'
+    URDF = 'urdf'
     DEFECTS = 'defects'
 
 

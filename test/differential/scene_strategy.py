@@ -10,6 +10,7 @@ from that, so most references point forward as often as backward.
 
 from __future__ import annotations
 
+from random import Random
 from typing import Any
 from xml.etree import ElementTree
 
@@ -18,6 +19,7 @@ from hypothesis import strategies as st
 from differential.scene_defects import add_defect
 from differential.scene_links import joint_body
 from differential.scene_links import LinkBuilder
+from differential.scene_links import UNKNOWN_FRAME
 from differential.scene_parts import Built
 from differential.scene_parts import Feature
 from differential.scene_parts import first_canonical_body
@@ -31,6 +33,10 @@ from differential.scene_text import BOOLEANS
 from differential.scene_text import Draw
 from differential.scene_text import new_name
 from differential.scene_text import new_pose
+from differential.scene_text import SEEDS
+from differential.scene_urdf import RobotBuilder
+from differential.scene_urdf import text_from_robot
+from differential.scene_xml import with_oddities
 
 
 class SceneBuilder:
@@ -82,7 +88,11 @@ class SceneBuilder:
                 if 'relative_to' in pose.attrib:
                     pose.set('frame', pose.attrib.pop('relative_to'))
         ElementTree.indent(root)
-        return ElementTree.tostring(root, encoding='unicode', xml_declaration=False)
+        text = ElementTree.tostring(root, encoding='unicode', xml_declaration=False)
+        if Feature.XML_ODDITIES in self.features and self.chance(6):
+            self.traits.add('xml-oddities')
+            return with_oddities(Random(self.draw(SEEDS)), text)
+        return text
 
     def included_path(self, content: ElementTree.Element) -> str:
         """Write a file, or a folder with a manifest, to be included; return its URI."""
@@ -105,10 +115,18 @@ class SceneBuilder:
 
     def include(self, taken: set[str], depth: int, *, merge: bool) -> Built:
         """Draw a file and the element that includes it; the pose is added later."""
-        built = self.model(taken, depth + 1, top=True, merged=merge)
         element = ElementTree.Element('include')
         uri = ElementTree.SubElement(element, 'uri')
-        uri.text = self.included_path(built.element)
+        if Feature.URDF in self.features and self.chance(3):
+            built = self.robot(taken, merged=merge)
+            path = f'part_{len(self.files)}.urdf'
+            self.files[path] = text_from_robot(built.element)
+            uri.text = f'model://{SCENE}/{path}'
+        else:
+            built = self.model(taken, depth + 1, top=True, merged=merge)
+            if merge and Feature.MERGED_OVERRIDES in self.features and self.chance(4):
+                self.override_placement(element, built)
+            uri.text = self.included_path(built.element)
         if merge:
             element.set('merge', self.draw(st.sampled_from(BOOLEANS[True])))
             self.traits.add('merge')
@@ -117,6 +135,10 @@ class SceneBuilder:
         if self.chance(2):
             built.name = new_name(self.draw, taken)
             ElementTree.SubElement(element, 'name').text = built.name
+        if merge and Feature.MERGED_OVERRIDES in self.features and self.chance(2):
+            self.traits.add('merged-override')
+            text = self.draw(st.sampled_from(BOOLEANS[self.chance(2)]))
+            ElementTree.SubElement(element, 'static').text = text
         if not merge and built.links and self.chance(4):
             # Never from true to false: frames that were apart could then be on one link.
             static = built.static or self.chance(2)
@@ -127,11 +149,19 @@ class SceneBuilder:
         return Built(element, built.name, built.static, built.canonical_body, built.static_body,
                      built.inner, built.links)
 
+    def robot(self, taken: set[str], *, merged: bool = False) -> Built:
+        """Draw a robot in URDF; see :meth:`model`."""
+        self.traits.add('urdf')
+        builder = RobotBuilder(self.draw, self.last_body)
+        built = builder.robot(taken, merged=merged)
+        self.last_body = builder.last_body
+        return built
+
     def place(self, built: Built, available: list[Visible], *, merge: bool = False) -> None:
         """Draw the pose of a nested, included or merged model."""
         element = built.element
         pose = new_pose(self.draw, self.reference(available), short=merge)
-        if pose is None:
+        if pose is None or element.find('placement_frame') is not None:
             return
         element.insert(self.draw(st.integers(0, len(element))), pose)
         if element.tag == 'include' and self.chance(6 if merge else 3):
@@ -139,6 +169,14 @@ class SceneBuilder:
                 self.traits.add('merge-placement')
             frame = self.draw(st.sampled_from(built.inner)).reference
             ElementTree.SubElement(element, 'placement_frame').text = frame
+
+    def override_placement(self, include: ElementTree.Element, built: Built) -> None:
+        """Let an include override a placement frame that does not exist."""
+        self.traits |= {'merge-placement', 'merged-override'}
+        built.element.set('placement_frame', UNKNOWN_FRAME)
+        frame = self.draw(st.sampled_from(built.inner)).reference
+        ElementTree.SubElement(include, 'placement_frame').text = frame
+        ElementTree.SubElement(include, 'pose').text = '1 2 3 0.1 0.2 0.3'
 
     def model(self, taken: set[str], depth: int, *, top: bool = False,
               merged: bool = False) -> Built:
@@ -197,7 +235,10 @@ class SceneBuilder:
             element.set('canonical_link', chosen.reference)
             canonical = chosen.body
         built = Built(element, name, static, canonical, self.new_body(), links=links)
-        children = self.content(built, units, visible_bodies, names)
+        # libsdformat checks the joints of a model in a world or at the top of a file.
+        are_joints_checked = depth < 2 or top or merged
+        children = self.content(
+            built, units, visible_bodies, names, are_joints_checked=are_joints_checked)
 
         if static or self.chance(8):
             text = draw(st.sampled_from(BOOLEANS[static]))
@@ -216,7 +257,7 @@ class SceneBuilder:
         return built
 
     def content(self, built: Built, units: list[tuple[str, Any]], bodies: list[Visible],
-                names: set[str]) -> list[ElementTree.Element]:
+                names: set[str], *, are_joints_checked: bool) -> list[ElementTree.Element]:
         """Draw poses for a model's parts, its frames, joints and the links' children."""
         own = Visible(MODEL, OWN)
         placed = [own]
@@ -233,6 +274,8 @@ class SceneBuilder:
             elif step == 'joint':
                 joint, joint_seen = self.joint(built, placed, bodies, names)
                 if joint is not None and joint_seen is not None:
+                    if not are_joints_checked:
+                        self.misuse_nested_joint(joint)
                     added.append(joint)
                     filled.append(joint)
                     placed.append(joint_seen)
@@ -308,6 +351,17 @@ class SceneBuilder:
             element.insert(0, pose)
         return element, Visible(name, child.body)
 
+    def misuse_nested_joint(self, joint: ElementTree.Element) -> None:
+        """Give a joint an end that libsdformat does not check in a model in a model."""
+        if Feature.NESTED_JOINTS not in self.features or not self.chance(3):
+            return
+        self.traits.add('nested-joint')
+        parent = joint.find('parent')
+        if parent is not None and self.chance(2):
+            parent.text = self.draw(st.sampled_from((UNKNOWN_FRAME, joint.get('name'))))
+        elif joint.find('axis/xyz') is not None:
+            joint.find('axis/xyz').set('expressed_in', UNKNOWN_FRAME)
+
     # Worlds ---------------------------------------------------------------------------------
 
     def world(self, name: str) -> ElementTree.Element:
@@ -375,6 +429,9 @@ def scenes(draw: Draw, features: frozenset[Feature] = frozenset(Feature)) -> Sce
     :param features: what it may hold. With DEFECTS, one scene in five at most is broken.
     """
     builder = SceneBuilder(draw, features)
+    if Feature.URDF in features and builder.chance(12):
+        robot = builder.robot(set())
+        return SceneFiles({'scene.sdf': text_from_robot(robot.element)}, frozenset(builder.traits))
     content = [builder.scene()]
     if Feature.WORLDS in features and content[0].tag == 'world' and builder.chance(8):
         content.append(builder.world(content[0].get('name', '') + ' too'))

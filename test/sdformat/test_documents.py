@@ -42,10 +42,6 @@ def test_other_outermost_element_is_refused(text, code):
     assert codes_of(text) == [code]
 
 
-def test_urdf_is_named_in_the_message():
-    assert 'URDF' in only_error('<robot name="r"/>').message
-
-
 def test_missing_version_is_named_in_the_message():
     assert 'version' in only_error('<sdf/>').message
 

@@ -111,7 +111,7 @@ class IncludeExpansion:
         if found is None:
             return
         chosen = self._top(include, found)
-        if chosen is None:
+        if chosen is None or is_merge is None:
             return
         self.may_hold_scoped_names |= found.may_hold_scoped_names
         copies = _COPIES_OF_MERGED_MODEL if is_merge else 1
@@ -175,7 +175,7 @@ class IncludeExpansion:
         except LimitError:
             raise
         except SdfError as error:
-            self._problems.error(error)
+            self._problems.extend(error.errors)
             return None
         if next(document.root.iter('include'), None) is not None:
             self._sources.set_composed(document.root)
@@ -277,13 +277,13 @@ class IncludeExpansion:
 
     # Where it goes
 
-    def _is_merge(self, include: XmlElement) -> bool:
+    def _is_merge(self, include: XmlElement) -> bool | None:
         written = include.get('merge', 'false')
         value = boolean_from_text(written)
         if value is None:
             msg = f'merge="{written}" is not a boolean (true, false, 1 or 0)'
             self._problems.error(AttributeInvalidError(msg, self._sources.place(include)))
-        return bool(value)
+        return value
 
     def _insert(self, include: XmlElement, top: XmlElement, *, is_merge: bool) -> None:
         parent = include.getparent()

@@ -115,10 +115,17 @@ def test_error_in_an_included_file_has_that_file(errors_in, tmp_path, text, code
     assert (error.code, error.file) == (code, str(tmp_path / 'bad.sdf'))
 
 
-def test_included_urdf_is_named_in_the_message(write, tmp_path):
-    (tmp_path / 'robot.urdf').write_text('<robot name="r"/>')
-    (error,) = errors_of_file(write(include('robot.urdf')))
-    assert 'this is URDF' in error.message
+@pytest.mark.parametrize(('content', 'codes'), [
+    (include(attributes='merge="maybe"') + '<frame name="f" attached_to="body"/>',
+     ['ATTRIBUTE_INVALID']),
+    (include('none.sdf') + '<frame name="f" attached_to="name_in_the_file::l"/>', ['URI_LOOKUP']),
+    (include('none.sdf', '<name>n</name>') + '<frame name="f" attached_to="n::l"/>',
+     ['URI_LOOKUP']),
+    (include('none.sdf', '<name>n</name>') + '<frame name="f" attached_to="m::l"/>',
+     ['URI_LOOKUP', 'FRAME_ATTACHED_TO_INVALID']),
+])
+def test_references_into_a_wrong_include_are_not_reported(errors_in, content, codes):
+    assert [error.code for error in errors_in(content)] == codes
 
 
 def test_directory_without_a_manifest_is_named_in_the_message(errors_in, tmp_path):

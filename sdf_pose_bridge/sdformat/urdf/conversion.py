@@ -1,0 +1,400 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Convert URDF to SDFormat as libsdformat does, so that a robot has the poses that Gazebo gives it.
+
+A link that a fixed joint holds is lumped into its parent link: what it has moves there, and two
+frames with the names of the joint and of the link remain. ``<gazebo>`` elements hold SDFormat for
+the link or joint that they refer to, or for the model. Source: libsdformat's ``parser_urdf.cc``.
+
+Materials, and what only physics needs, are not converted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from collections.abc import Mapping
+from collections.abc import Sequence
+from itertools import chain
+import math
+from typing import NamedTuple
+
+from lxml import etree
+
+from sdf_pose_bridge.errors import RelativeToError
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import pose_product
+from sdf_pose_bridge.names import MODEL_FRAME
+from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.urdf.robot import Inertial
+from sdf_pose_bridge.sdformat.urdf.robot import Joint
+from sdf_pose_bridge.sdformat.urdf.robot import Link
+from sdf_pose_bridge.sdformat.urdf.robot import Robot
+from sdf_pose_bridge.sdformat.urdf.robot import robot_from_tree
+from sdf_pose_bridge.sdformat.urdf.robot import SHAPES
+from sdf_pose_bridge.sdformat.urdf.values import is_true
+from sdf_pose_bridge.sdformat.urdf.values import numbers_of
+from sdf_pose_bridge.sdformat.urdf.values import pose_from_numbers
+from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math
+from sdf_pose_bridge.sdformat.urdf.values import rpy_by_urdfdom
+from sdf_pose_bridge.sdformat.urdf.values import text_from_numbers
+from sdf_pose_bridge.sdformat.values import leading_numbers
+from sdf_pose_bridge.sdformat.xml_tree import child_elements
+from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import text_of
+from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+_JOINT_TYPES = {
+    'continuous': 'revolute', 'fixed': 'fixed', 'prismatic': 'prismatic', 'revolute': 'revolute'}
+
+_SETTINGS = frozenset({
+    'canonicalBody', 'cfmDamping', 'collision', 'dampingFactor', 'disableFixedJointLumping',
+    'fdir1', 'fudgeFactor', 'implicitSpringDamper', 'kd', 'kp', 'laserRetro', 'material',
+    'maxContacts', 'maxVel', 'minDepth', 'mu1', 'mu2', 'preserveFixedJoint', 'provideFeedback',
+    'selfCollide', 'springReference', 'springStiffness', 'static', 'stopCfm', 'stopErp',
+    'turnGravityOff', 'visual',
+})
+"""Children of ``<gazebo>`` that are not SDFormat."""
+
+_MOVED_TAGS = ('light', 'projector', 'sensor')
+"""Children of ``<gazebo>`` whose poses change when their link is lumped."""
+
+_LUMP_PREFIX = '_fixed_joint_lump__'
+
+
+class _Base(NamedTuple):
+    """The link that another one is lumped into; of a link that is not, itself."""
+
+    link: Link
+    pose: Pose
+    """Pose of the lumped link in it."""
+    members: list[Link]
+    """The link itself and those that are lumped into it."""
+
+
+def sdf_from_urdf(
+    root: XmlElement, lines: Mapping[XmlElement, int], sources: Sources, problems: Problems,
+) -> tuple[XmlElement, Mapping[XmlElement, int]]:
+    """
+    Convert a file.
+
+    :param root: the ``robot`` element; what ``<gazebo>`` elements hold is taken out of it.
+    :param lines: the lines of those of its elements whose lines lxml does not know.
+    :param sources: where its elements were written.
+    :param problems: takes what is wrong but does not keep the file from being read.
+    :return: the ``sdf`` element, and the lines of its elements as in ``lines``.
+    :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
+    """
+    robot = robot_from_tree(root, sources, problems)
+    return _Conversion(root, robot, lines, sources, problems).result()
+
+
+class _Conversion:
+    """Converts one file."""
+
+    def __init__(
+        self, root: XmlElement, robot: Robot, lines: Mapping[XmlElement, int], sources: Sources,
+        problems: Problems,
+    ) -> None:
+        self._root = root
+        self._robot = robot
+        self._lines = dict(lines)
+        self._sources = sources
+        self._problems = problems
+        # libsdformat reads what <gazebo> elements hold in this version.
+        self._sdf = etree.Element('sdf', version='1.11')
+        self._sdf.sourceline = root.sourceline  # type: ignore[misc]  # it can be set
+        self._model = self._element(self._sdf, 'model', root, name=robot.name)
+        self._static: str | None = None
+        self._preserved: set[str] = set()
+        self._revolute: set[str] = set()
+        self._extensions = self._read_extensions()
+        self._links = self._links_in_order()
+        self._bases: dict[str, _Base] = {}
+        self._find_bases()
+        self._inertials = {link.name: link.inertial for link in self._links}
+        for link in reversed(self._links):
+            self._lump_inertial(link)
+
+    def result(self) -> tuple[XmlElement, Mapping[XmlElement, int]]:
+        self._replace_lumped_ends_of_joints()
+        self._add_links()
+        if self._static is not None:
+            self._element(self._model, 'static', self._root, text=self._static)
+        self._add_extensions(self._model, '')
+        self._add_frames()
+        self._add_robot_origin()
+        self._report_unused_extensions()
+        return self._sdf, self._lines
+
+    # Reading
+
+    def _read_extensions(self) -> dict[str, list[XmlElement]]:
+        """Find what ``<gazebo>`` elements hold, by the name that they refer to."""
+        extensions: dict[str, list[XmlElement]] = {}
+        for gazebo in child_elements(self._root, 'gazebo'):
+            reference = gazebo.get('reference', '')
+            for child in child_elements(gazebo):
+                if child.tag not in _SETTINGS:
+                    extensions.setdefault(reference, []).append(child)
+                elif child.tag == 'static' and not reference:
+                    self._static = str(is_true(child)).lower()
+                elif child.tag == 'preserveFixedJoint' and is_true(child):
+                    self._preserved.add(reference)
+                elif child.tag == 'disableFixedJointLumping' and is_true(child):
+                    self._revolute.add(reference)
+        self._revolute -= self._preserved
+        return extensions
+
+    def _links_in_order(self) -> list[Link]:
+        """Return the links, each before its children; those are in the order of their joints."""
+        links = []
+        names = [self._robot.root.name]
+        while names:
+            name = names.pop()
+            links.append(self._robot.links[name])
+            names += [joint.child for joint in reversed(self._robot.child_joints.get(name, ()))]
+        return links
+
+    def _is_reducible(self, joint: Joint) -> bool:
+        return (joint.type == 'fixed' and joint.name not in self._preserved
+                and joint.name not in self._revolute)
+
+    def _is_lumped(self, link: Link) -> bool:
+        joint = self._robot.parent_joints.get(link.name)
+        return joint is not None and joint.parent != WORLD_FRAME and self._is_reducible(joint)
+
+    def _find_bases(self) -> None:
+        for link in self._links:
+            base = _Base(link, Pose(), [])
+            if self._is_lumped(link):
+                joint = self._robot.parent_joints[link.name]
+                base = self._bases[joint.parent]
+                base = base._replace(pose=pose_product(base.pose, joint.origin))
+            base.members.append(link)
+            self._bases[link.name] = base
+
+    def _lump_inertial(self, link: Link) -> None:
+        """Add the mass of a link that is lumped to that of its parent."""
+        inertial = self._inertials[link.name]
+        if inertial is None or not self._is_lumped(link):
+            return
+        joint = self._robot.parent_joints[link.name]
+        old = self._inertials[joint.parent] or Inertial()
+        joint_pose = pose_from_numbers([*joint.origin[:3], *rpy_by_urdfdom(joint.origin)])
+        centre = pose_product(joint_pose, inertial.origin)
+        mass = old.mass + inertial.mass
+        x, y, z = (
+            (a * old.mass + b * inertial.mass) / mass if mass else math.nan
+            for a, b in zip(old.origin[:3], centre[:3], strict=True))
+        self._inertials[joint.parent] = Inertial(mass, old.origin._replace(x=x, y=y, z=z))
+
+    # Writing
+
+    def _element(
+        self, parent: XmlElement, tag: str, source: XmlElement, *, text: str | None = None,
+        **attributes: str,
+    ) -> XmlElement:
+        """Add an element with the line of the URDF element that it comes from."""
+        element = etree.SubElement(parent, tag, attributes)
+        element.text = text
+        element.sourceline = source.sourceline  # type: ignore[misc]  # it can be set
+        if source in self._lines:
+            self._lines[element] = self._lines[source]
+        return element
+
+    def _counted(self, name: str, xml: XmlElement) -> str:
+        """Count a name that may be longer than all that is written where it goes."""
+        self._sources.usage.add('name_characters', len(name), self._sources.place(xml))
+        return name
+
+    def _add_links(self) -> None:
+        left_out = set()
+        for link in self._links:
+            name = link.name
+            joint = self._robot.parent_joints.get(name)
+            inertial = self._inertials[name]
+            is_massless = inertial is None or inertial.mass <= 0.0
+            if joint is not None and joint.parent in left_out:
+                left_out.add(name)
+            elif is_massless and name != WORLD_FRAME and not (
+                    joint is not None and self._is_reducible(joint)):
+                left_out.add(name)
+                self._warning('the link is left out with all links and joints below it, as '
+                              'libsdformat leaves them out: it has no mass', link.xml,
+                              'LINK_INERTIA_INVALID')
+            elif inertial is not None and not is_massless and not self._is_lumped(link) and (
+                    joint is not None or name != WORLD_FRAME):
+                self._add_link(link, inertial, joint)
+
+    def _add_link(self, link: Link, inertial: Inertial, joint: Joint | None) -> None:
+        is_joined = joint is not None and self._add_joint(joint)
+        xml = self._element(self._model, 'link', link.xml, name=link.name)
+        if joint is not None and is_joined:
+            self._element(xml, 'pose', joint.xml, relative_to=joint.name)
+        inertial_xml = self._element(xml, 'inertial', link.xml)
+        self._add_pose(inertial_xml, link.xml, inertial.origin, rpy_by_gz_math)
+        self._element(inertial_xml, 'mass', link.xml, text=text_from_numbers([inertial.mass]))
+        members = self._bases[link.name].members
+        for tag in ('collision', 'visual'):
+            self._add_shapes(xml, tag, link, members)
+        for member in members:
+            for child in self._extensions.get(member.name, ()):
+                self._move_extension(child, member)
+            self._add_extensions(xml, member.name)
+
+    def _add_shapes(
+        self, xml: XmlElement, tag: str, link: Link, members: Sequence[Link],
+    ) -> None:
+        index = 0
+        for member in members:
+            for shape in member.visuals if tag == 'visual' else member.collisions:
+                name = f'{shape.name or member.name}_{tag}{f"_{index}" if index else ""}'
+                if not name.startswith(link.name):
+                    name = f'{self._counted(link.name, shape.geometry)}{_LUMP_PREFIX}{name}'
+                index += 1
+                element = self._element(xml, tag, shape.geometry, name=name)
+                pose = pose_product(self._bases[member.name].pose, shape.origin)
+                self._add_pose(element, shape.geometry, pose, rpy_by_urdfdom)
+                self._add_geometry(element, shape.geometry)
+
+    def _add_geometry(self, xml: XmlElement, geometry: XmlElement) -> None:
+        shape = self._element(
+            self._element(xml, 'geometry', geometry), str(geometry.tag), geometry)
+        if shape.tag == 'mesh':
+            uri = geometry.get('filename', '').replace('package://', 'model://', 1)
+            self._element(shape, 'uri', geometry, text=uri)
+        self._add_numbers(shape, geometry, numbers_of(geometry, SHAPES[str(shape.tag)]))
+
+    def _add_joint(self, joint: Joint) -> bool:
+        if joint.type not in _JOINT_TYPES:
+            msg = (f'joint "{joint.name}" is {joint.type}, which SDFormat does not have, so link '
+                   f'"{joint.child}" has no place')
+            self._problems.error(RelativeToError(msg, self._sources.place(joint.xml)))
+            return False
+        base = self._bases[joint.parent]
+        parent = self._counted(base.link.name, joint.xml)
+        joint_type = 'revolute' if joint.name in self._revolute else _JOINT_TYPES[joint.type]
+        xml = self._element(self._model, 'joint', joint.xml, name=joint.name, type=joint_type)
+        pose = self._add_pose(
+            xml, joint.xml, pose_product(base.pose, joint.origin), rpy_by_gz_math)
+        pose.set('relative_to', MODEL_FRAME if parent == WORLD_FRAME else parent)
+        self._element(xml, 'parent', joint.xml, text=parent)
+        self._element(xml, 'child', joint.xml, text=joint.child)
+        if joint_type != 'fixed':
+            self._add_axis(xml, joint)
+        self._add_extensions(xml, joint.name)
+        return True
+
+    def _add_axis(self, xml: XmlElement, joint: Joint) -> None:
+        values = {tag: dict(part) for tag, part in joint.values.items()}
+        xyz = values.get('axis', {'xyz': [1.0, 0.0, 0.0]}).get('xyz', [0.0, 0.0, 0.0])
+        limit = values.get('limit', {})
+        if joint.type == 'fixed':
+            values, limit = {}, {'lower': [0.0], 'upper': [0.0]}
+        elif 'limit' in values:
+            ends = sorted((*limit.pop('lower', [0.0]), *limit.pop('upper', [0.0])))
+            if joint.type != 'continuous':
+                limit.update({'lower': ends[:1], 'upper': ends[1:]})
+        axis = self._element(xml, 'axis', joint.xml)
+        self._add_numbers(axis, joint.xml, {'xyz': xyz})
+        self._add_numbers(self._element(axis, 'limit', joint.xml), joint.xml, limit)
+        if 'dynamics' in values:
+            dynamics = self._element(axis, 'dynamics', joint.xml)
+            self._add_numbers(dynamics, joint.xml, values['dynamics'])
+        mimic = first_child(joint.xml, 'mimic')
+        if mimic is not None and 'mimic' in values:
+            self._add_numbers(
+                self._element(axis, 'mimic', mimic, joint=mimic.get('joint', '')), mimic,
+                {'multiplier': [1.0], 'offset': [0.0], **values['mimic']})
+
+    def _add_frames(self) -> None:
+        for name, (base, *_) in self._bases.items():
+            if base.name != name:
+                joint = self._robot.parent_joints[name]
+                frame = self._element(
+                    self._model, 'frame', joint.xml, name=joint.name, attached_to=joint.parent)
+                self._add_pose(frame, joint.xml, joint.origin, rpy_by_gz_math)
+                self._element(
+                    self._model, 'frame', self._robot.links[name].xml, name=name,
+                    attached_to=joint.name)
+
+    def _add_robot_origin(self) -> None:
+        origin = first_child(self._root, 'origin')
+        if origin is None:
+            return
+        numbers = {'xyz': [0.0] * 3, 'rpy': [0.0] * 3}
+        for attribute in ('xyz:3', 'rpy:3'):
+            try:
+                numbers.update(numbers_of(origin, attribute))
+            except ValueError as error:
+                self._warning(f'{error}; libsdformat takes zeros for it', origin)
+        pose = first_child(self._model, 'pose')
+        if pose is not None:
+            self._model.remove(pose)
+        robot_pose = pose_from_numbers([*numbers['xyz'], *numbers['rpy']])
+        self._add_pose(self._model, origin, robot_pose, rpy_by_urdfdom)
+
+    def _add_pose(
+        self, xml: XmlElement, source: XmlElement, pose: Pose,
+        rpy_from_pose: Callable[[Pose], Sequence[float]],
+    ) -> XmlElement:
+        text = text_from_numbers([*pose[:3], *rpy_from_pose(pose)])
+        return self._element(xml, 'pose', source, text=text)
+
+    def _add_numbers(
+        self, xml: XmlElement, source: XmlElement, numbers: Mapping[str, Sequence[float]],
+    ) -> None:
+        for tag, values in numbers.items():
+            self._element(xml, tag, source, text=text_from_numbers(values))
+
+    # What <gazebo> elements hold
+
+    def _add_extensions(self, xml: XmlElement, reference: str) -> None:
+        for child in self._extensions.pop(reference, ()):
+            child.tail = None
+            xml.append(child)
+
+    def _move_extension(self, xml: XmlElement, link: Link) -> None:
+        """Change the pose of what belongs to a link that is lumped."""
+        pose = first_child(xml, 'pose')
+        if xml.tag not in _MOVED_TAGS or not self._is_lumped(link) or (
+                pose is not None and pose.get('relative_to') is not None):
+            return
+        if pose is None:
+            pose = self._element(xml, 'pose', xml)
+        elif pose.keys():
+            self._warning('the attributes of this <pose> are ignored, as libsdformat ignores them '
+                          'where a fixed joint is removed', pose)
+            pose.attrib.clear()
+        numbers = list(leading_numbers(text_of(pose) or '0 0 0 0 0 0', 6))
+        place = self._sources.place(xml)
+        name = link.name
+        while self._bases[name].link.name != name:
+            if len(numbers) != 6 or not all(map(math.isfinite, numbers)):
+                return
+            self._sources.usage.add('included_elements', 1, place)
+            joint = self._robot.parent_joints[name]
+            moved = pose_product(joint.origin, pose_from_numbers(numbers))
+            # libsdformat writes six digits at each step.
+            pose.text = text_from_numbers([*moved[:3], *rpy_by_urdfdom(moved)], 6)
+            numbers = list(map(float, pose.text.split()))
+            name = joint.parent
+
+    def _replace_lumped_ends_of_joints(self) -> None:
+        for joint in chain.from_iterable(self._extensions.values()):
+            for end in child_elements(joint, 'parent', 'child') if joint.tag == 'joint' else ():
+                base = self._bases.get(text_of(end).strip(WHITE_SPACE))
+                if base is not None:
+                    end.text = self._counted(base.link.name, end)
+
+    def _report_unused_extensions(self) -> None:
+        for reference, children in self._extensions.items():
+            self._warning(f'what <gazebo reference="{reference}"> holds is left out: the '
+                          'converted model has no link or joint of that name', children[0])
+
+    def _warning(self, message: str, xml: XmlElement, code: str = 'WARNING') -> None:
+        self._problems.warning(message, self._sources.place(xml), code)

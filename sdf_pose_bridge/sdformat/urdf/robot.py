@@ -1,0 +1,271 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Read the robot that a URDF file describes: links and joints, and nothing that poses do not need.
+
+What is accepted is what the parser of libsdformat accepts, which is that of urdfdom: a joint with
+a fault is an error, but in a link the parser stops at the fault and keeps what it has read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from sdf_pose_bridge.errors import DuplicateNameError
+from sdf_pose_bridge.errors import LoadError
+from sdf_pose_bridge.errors import ParsingError
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.urdf.values import numbers_of
+from sdf_pose_bridge.sdformat.urdf.values import pose_from_numbers
+from sdf_pose_bridge.sdformat.xml_tree import child_elements
+from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import written_tag
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+_JOINT_TYPES = ('continuous', 'fixed', 'floating', 'planar', 'prismatic', 'revolute')
+
+_JOINT_PARTS = {
+    'axis': 'xyz:3',
+    'limit': 'lower upper effort! velocity!',
+    'dynamics': 'damping friction',
+    'mimic': 'multiplier offset',
+    'safety_controller': 'k_velocity! soft_lower_limit soft_upper_limit k_position',
+    'calibration': 'rising falling',
+}
+"""Elements in a joint, and their attributes that are numbers; see :func:`numbers_of`."""
+
+SHAPES = {
+    'box': 'size:3!', 'cylinder': 'length! radius!', 'mesh': 'scale:3', 'sphere': 'radius!'}
+"""Shapes, and their attributes that are numbers."""
+
+_INERTIA = 'ixx! ixy! ixz! iyy! iyz! izz!'
+
+
+class Inertial(NamedTuple):
+    """Mass and centre of mass of a link."""
+
+    mass: float = 0.0
+    origin: Pose = Pose()
+    """The inertial frame in the link."""
+
+
+class Shape(NamedTuple):
+    """A visual or a collision."""
+
+    name: str
+    """As written; empty if it has none."""
+    origin: Pose
+    """Its pose in its link."""
+    geometry: XmlElement
+    """The shape, such as ``<box>``."""
+
+
+class Link(NamedTuple):
+    """A link."""
+
+    xml: XmlElement
+    name: str
+    inertial: Inertial | None
+    visuals: Sequence[Shape]
+    collisions: Sequence[Shape]
+
+
+class Joint(NamedTuple):
+    """A joint; the frame of its child link is the joint's."""
+
+    xml: XmlElement
+    name: str
+    type: str
+    origin: Pose
+    """The joint in its parent link."""
+    parent: str
+    child: str
+    values: Mapping[str, Mapping[str, Sequence[float]]]
+    """The numbers of its ``axis``, ``limit`` and so on, by element and attribute."""
+
+
+class Robot(NamedTuple):
+    """A tree of links and joints."""
+
+    name: str
+    root: Link
+    links: Mapping[str, Link]
+    parent_joints: Mapping[str, Joint]
+    """By the name of the child link."""
+    child_joints: Mapping[str, Sequence[Joint]]
+    """By the name of the parent link, ordered by their own names."""
+
+
+def robot_from_tree(root: XmlElement, sources: Sources, problems: Problems) -> Robot:
+    """
+    Read a robot.
+
+    :param root: the ``robot`` element.
+    :param sources: where its elements were written.
+    :param problems: takes the warnings.
+    :return: the robot.
+    :raises SdfError: if it is not valid; ``errors`` on it has all errors.
+    """
+    return _RobotReader(root, sources, problems).robot()
+
+
+class _RobotReader:
+    """Reads one file; collects its errors."""
+
+    def __init__(self, root: XmlElement, sources: Sources, problems: Problems) -> None:
+        self._root = root
+        self._sources = sources
+        self._problems = problems
+        self._errors: list[SdfError] = []
+
+    def robot(self) -> Robot:
+        if self._root.get('name') is None:
+            self._error(self._root, 'the robot has no name')
+        self._check_names('material')
+        links = {name: self._link(xml) for name, xml in self._check_names('link')}
+        if not links:
+            self._error(self._root, 'the robot has no <link>')
+        joints = [self._joint(name, xml, links) for name, xml in self._check_names('joint')]
+        self._raise_errors()
+        parent_joints: dict[str, Joint] = {}
+        child_joints: dict[str, list[Joint]] = {}
+        for joint in sorted(filter(None, joints), key=lambda joint: joint.name.encode()):
+            if joint.child in parent_joints:
+                other = parent_joints[joint.child].name
+                self._error(joint.xml, f'link "{joint.child}" is already the child of joint '
+                            f'"{other}"', DuplicateNameError)
+            parent_joints[joint.child] = joint
+            child_joints.setdefault(joint.parent, []).append(joint)
+        roots = [link for name, link in links.items() if name not in parent_joints]
+        if len(roots) != 1:
+            names = ', '.join(f'"{link.name}"' for link in roots[:10])
+            self._error(self._root, 'the links must be one tree, in which one link has no parent; '
+                        f'here these have none: {names or "no link"}')
+        self._raise_errors()
+        robot = Robot(self._root.get('name', ''), roots[0], links, parent_joints, child_joints)
+        self._warn_of_cycles(robot)
+        return robot
+
+    def _error(
+        self, xml: XmlElement, message: str, error_type: type[SdfError] = ParsingError,
+    ) -> None:
+        self._errors.append(error_type(message, self._sources.place(xml)))
+
+    def _raise_errors(self) -> None:
+        if self._errors:
+            raise LoadError(sorted(self._errors, key=lambda error: error.line))
+
+    def _check_names(self, tag: str) -> list[tuple[str, XmlElement]]:
+        named: dict[str, XmlElement] = {}
+        for xml in child_elements(self._root, tag):
+            name = xml.get('name')
+            if name is None:
+                self._error(xml, f'the {tag} has no name')
+            elif name in named:
+                self._error(xml, f'there is another {tag} named "{name}"')
+            else:
+                named[name] = xml
+        return list(named.items())
+
+    def _warn_of_cycles(self, robot: Robot) -> None:
+        reached = {robot.root.name}
+        names = [robot.root.name]
+        while names:
+            children = [joint.child for joint in robot.child_joints.get(names.pop(), ())]
+            names += children
+            reached.update(children)
+        for name, link in robot.links.items():
+            if name not in reached:
+                self._problems.warning(
+                    f'link "{name}" is left out: its joints form a cycle',
+                    self._sources.place(link.xml))
+
+    def _link(self, xml: XmlElement) -> Link:
+        inertial = None
+        shapes: dict[str, list[Shape]] = {'visual': [], 'collision': []}
+        try:
+            inertial_xml = first_child(xml, 'inertial')
+            if inertial_xml is not None:
+                inertial = Inertial()
+                origin = _origin(inertial_xml)
+                mass = numbers_of(_required_child(inertial_xml, 'mass'), 'value!')
+                inertial = Inertial(mass['value'][0], origin)
+                numbers_of(_required_child(inertial_xml, 'inertia'), _INERTIA)
+            for tag, shapes_of_tag in shapes.items():
+                for shape in child_elements(xml, tag):
+                    shapes_of_tag.append(_shape(shape))
+        except ValueError as error:
+            self._problems.warning(
+                f'{error}; libsdformat reads the link no further', self._sources.place(xml))
+        return Link(xml, xml.get('name', ''), inertial, shapes['visual'], shapes['collision'])
+
+    def _joint(self, name: str, xml: XmlElement, links: Mapping[str, Link]) -> Joint | None:
+        ends = {}
+        for tag in ('parent', 'child'):
+            end = first_child(xml, tag)
+            link = '' if end is None else end.get('link', '')
+            if link not in links:
+                self._error(
+                    xml if end is None else end,
+                    f'"{link}" is not a link' if link else f'the joint names no {tag} link')
+            ends[tag] = link
+        joint_type = xml.get('type', '')
+        if joint_type not in _JOINT_TYPES:
+            self._error(xml, f'type="{joint_type}" of <joint> must be one of '
+                        f'{", ".join(_JOINT_TYPES)}')
+        if joint_type in ('prismatic', 'revolute') and first_child(xml, 'limit') is None:
+            self._error(xml, f'the {joint_type} joint has no <limit>')
+        values = {}
+        try:
+            for tag, attributes in _JOINT_PARTS.items():
+                part = first_child(xml, tag)
+                if part is None or (tag == 'axis' and joint_type in ('fixed', 'floating')):
+                    continue
+                values[tag] = numbers_of(part, attributes)
+                if tag == 'mimic' and part.get('joint') is None:
+                    self._error(part, 'the <mimic> names no joint')
+                if tag == 'dynamics' and not values[tag]:
+                    self._error(part, 'the <dynamics> has neither damping nor friction')
+            return Joint(
+                xml, name, joint_type, _origin(xml), ends['parent'], ends['child'], values)
+        except ValueError as error:
+            self._error(xml, str(error))
+            return None
+
+
+def _required_child(xml: XmlElement, tag: str) -> XmlElement:
+    child = first_child(xml, tag)
+    if child is None:
+        msg = f'<{written_tag(xml)}> has no <{tag}>'
+        raise ValueError(msg)
+    return child
+
+
+def _origin(xml: XmlElement) -> Pose:
+    origin = first_child(xml, 'origin')
+    if origin is None:
+        return Pose()
+    numbers = {'xyz': [0.0] * 3, 'rpy': [0.0] * 3, **numbers_of(origin, 'xyz:3 rpy:3')}
+    return pose_from_numbers([*numbers['xyz'], *numbers['rpy']])
+
+
+def _shape(xml: XmlElement) -> Shape:
+    origin = _origin(xml)
+    geometry = next(child_elements(_required_child(xml, 'geometry')), None)
+    if geometry is None or geometry.tag not in SHAPES:
+        msg = f'the <geometry> of <{written_tag(xml)}> must hold one of {", ".join(SHAPES)}'
+        raise ValueError(msg)
+    numbers_of(geometry, SHAPES[str(geometry.tag)])
+    if geometry.tag == 'mesh' and geometry.get('filename') is None:
+        msg = '<mesh> has no filename'
+        raise ValueError(msg)
+    material = first_child(xml, 'material')
+    if xml.tag == 'visual' and material is not None and material.get('name') is None:
+        msg = '<material> has no name'
+        raise ValueError(msg)
+    return Shape(xml.get('name', ''), origin, geometry)

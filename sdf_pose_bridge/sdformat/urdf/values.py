@@ -1,0 +1,120 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Read and write numbers and poses as libsdformat's conversion of URDF does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import math
+
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
+from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
+from sdf_pose_bridge.sdformat.values import is_representable
+from sdf_pose_bridge.sdformat.values import leading_numbers
+from sdf_pose_bridge.sdformat.xml_tree import text_of
+from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
+from sdf_pose_bridge.sdformat.xml_tree import written_tag
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+_URDFDOM_GIMBAL_LOCK = 1e-5
+_GZ_MATH_GIMBAL_LOCK = 1e-15
+"""Where 1 - |sin(pitch)| is less, libsdformat writes angles that are only nearly the same."""
+
+
+def is_true(xml: XmlElement) -> bool:
+    """
+    Read an option in a ``<gazebo>`` element.
+
+    :param xml: the option; its value is its attribute ``value`` or its text.
+    :return: True for ``true``, ``yes`` and ``1`` in any case.
+    """
+    value = xml.get('value', text_of(xml))
+    return value.strip(WHITE_SPACE).lower() in ('true', 'yes', '1')
+
+
+def numbers_of(xml: XmlElement, attributes: str) -> dict[str, list[float]]:
+    """
+    Read the attributes of an element that are numbers.
+
+    :param xml: the element.
+    :param attributes: names, with ``!`` for a required one, and ``:3`` for three numbers.
+    :return: the numbers of those that it has.
+    :raises ValueError: if one is missing or is not numbers.
+    """
+    tag = written_tag(xml)
+    result = {}
+    for word in attributes.split():
+        name, _, count = word.rstrip('!').partition(':')
+        text = xml.get(name)
+        if text is not None:
+            result[name] = _numbers_from_text(text, int(count or 1), f'{name} of <{tag}>')
+        elif word.endswith('!'):
+            msg = f'<{tag}> has no {name}'
+            raise ValueError(msg)
+    return result
+
+
+def _numbers_from_text(text: str, count: int, what: str) -> list[float]:
+    words = text.split()
+    numbers = leading_numbers(text, len(words))
+    if (len(numbers) != len(words) or len(words) != count
+            or not all(map(is_representable, words, numbers))
+            or (count > 1 and not all(map(math.isfinite, numbers)))):
+        type_name = 'a number' if count == 1 else f'{count} finite numbers'
+        hint = '; run xacro on the file first' if '${' in text else ''
+        msg = f'{what} is "{text[:80]}", which is not {type_name}{hint}'
+        raise ValueError(msg)
+    return list(numbers)
+
+
+def pose_from_numbers(numbers: Sequence[float]) -> Pose:
+    """
+    Convert a pose.
+
+    :param numbers: x y z in metres, roll pitch yaw in radians; finite.
+    :return: the pose.
+    """
+    x, y, z, roll, pitch, yaw = numbers
+    return Pose(x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))
+
+
+def text_from_numbers(numbers: Sequence[float], digits: int = 16) -> str:
+    """
+    Write numbers.
+
+    :param numbers: the numbers.
+    :param digits: how many significant digits they have.
+    :return: the text.
+    """
+    return ' '.join(f'{number:.{digits}g}' for number in numbers)
+
+
+def rpy_by_gz_math(pose: Pose) -> Sequence[float]:
+    """
+    Return the rotation of a pose as ``gz::math::Quaternion::Euler`` does.
+
+    :param pose: the pose.
+    :return: roll, pitch and yaw in radians.
+    """
+    _, _, _, x, y, z, w = pose
+    sin_pitch = max(-1.0, min(1.0, 2.0 * (w * y - x * z)))
+    if 1.0 - abs(sin_pitch) >= _GZ_MATH_GIMBAL_LOCK:
+        return rpy_from_quaternion((x, y, z, w))
+    roll = math.atan2(2.0 * (x * y - z * w), w * w - x * x + y * y - z * z)
+    return math.copysign(1.0, sin_pitch) * roll, math.asin(sin_pitch), 0.0
+
+
+def rpy_by_urdfdom(pose: Pose) -> Sequence[float]:
+    """
+    Return the rotation of a pose as ``urdf::Rotation::getRPY`` does.
+
+    :param pose: the pose.
+    :return: roll, pitch and yaw in radians.
+    """
+    _, _, _, x, y, z, w = pose
+    sin_pitch = 2.0 * (w * y - x * z)
+    if 1.0 - abs(sin_pitch) > _URDFDOM_GIMBAL_LOCK:
+        return rpy_by_gz_math(pose)
+    sign = math.copysign(1.0, sin_pitch)
+    return 0.0, sign * math.pi / 2.0, 2.0 * math.atan2(-sign * x, sign * y)

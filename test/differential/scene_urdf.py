@@ -1,0 +1,201 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Draw robots in URDF, which libsdformat converts."""
+
+from __future__ import annotations
+
+from random import Random
+from typing import Any
+from xml.etree import ElementTree
+
+from differential.scene_parts import Built
+from differential.scene_parts import MODEL
+from differential.scene_parts import OWN
+from differential.scene_parts import Visible
+from differential.scene_parts import WORLD
+from differential.scene_text import Draw
+from differential.scene_text import LENGTHS
+from differential.scene_text import new_name
+from differential.scene_text import new_pose
+from differential.scene_text import number_from
+from differential.scene_text import SEEDS
+from differential.scene_text import text_from_number
+from differential.scene_text import TURNS
+
+JOINT_TYPES = ('fixed', 'fixed', 'fixed', 'revolute', 'continuous', 'prismatic')
+MOVED = ('sensor', 'sensor', 'light', 'projector')
+SHAPES = {'box': {'size': '1 2 3'}, 'sphere': {'radius': '1'}, 'mesh': {'filename': 'm.dae'},
+          'cylinder': {'radius': '1', 'length': '2'}}
+
+
+class RobotBuilder:
+    """Draws one robot: its file, and what can be said of the model that it becomes."""
+
+    def __init__(self, draw: Draw, first_body: int) -> None:
+        self.draw: Any = draw
+        self.dice = Random(self.draw(SEEDS))
+        self.last_body = first_body
+        self.root = ElementTree.Element('robot')
+        self.bases: dict[str, str] = {}
+        """The link that each one is lumped into."""
+
+    def robot(self, taken: set[str], *, merged: bool) -> Built:
+        """
+        Draw a robot.
+
+        :param taken: names that it must not have; its own is added.
+        :param merged: whether its content goes into the scope whose names are ``taken``.
+        :return: the model; its element is the ``robot``.
+        """
+        names = taken if merged else set()
+        self.root.set('name', self.name(taken))
+        links = [self.name(names) for _ in range(self.dice.randint(1, 6))]
+        if self.dice.random() < 0.2 and 'world' not in names:
+            links.insert(0, 'world')
+            links += [] if len(links) > 1 else [self.name(names)]
+        bodies = {'world': WORLD}
+        children: dict[str, list[tuple[bytes, str]]] = {link: [] for link in links}
+        joints = []
+        for number, link in enumerate(links):
+            joint = None
+            if number:
+                parent = self.dice.choice(links[:number])
+                joint, is_lumped = self.joint(self.name(names), parent, link)
+                joints.append(Visible(joint.get('name', ''), 0))
+                children[parent].append((joint.get('name', '').encode(), link))
+            is_lumped = joint is not None and is_lumped and parent != 'world'
+            self.bases[link] = self.bases[parent] if is_lumped else link
+            if not is_lumped and link != 'world':
+                self.last_body += 1
+                bodies[link] = self.last_body
+            self.link(link, is_massless=link == 'world' or (
+                is_lumped and self.dice.random() < 0.3))
+        static = not merged and self.dice.random() < 0.2
+        self.extensions(links, [link for link in links if link != 'world'], names, static=static)
+        order = self.in_order(links[0], children)
+        canonical = next(bodies[link] for link in order if link in bodies and link != 'world')
+        inner = [Visible(MODEL, OWN)]
+        inner += [Visible(link, bodies[self.bases[link]]) for link in links if link != 'world']
+        kept = [link for link in order if link in bodies and link != 'world']
+        self.last_body += 1
+        return Built(self.root, self.root.get('name', ''), static, canonical, self.last_body,
+                     inner, [Visible(link, bodies[link]) for link in kept])
+
+    def name(self, taken: set[str]) -> str:
+        """Draw a name on which libsdformat does not crash."""
+        return next(name for name in iter(lambda: new_name(self.draw, taken), '')
+                    if not set(name) & set('"\'&<'))
+
+    def in_order(self, link: str, children: dict[str, list[tuple[bytes, str]]]) -> list[str]:
+        """Return the links below one in the order in which libsdformat visits them."""
+        return [link, *(below for _, child in sorted(children[link])
+                        for below in self.in_order(child, children))]
+
+    def numbers(self, often: tuple[float, ...], limit: float, count: int = 3) -> str:
+        """Draw numbers as they are written."""
+        return self.dice.choice((' ', ' ', '  ')).join(
+            text_from_number(self.dice, number_from(self.dice, often, limit))
+            for _ in range(count))
+
+    def origin(self, parent: ElementTree.Element) -> None:
+        """Add an origin, whole, in part or none."""
+        choice = self.dice.randrange(8)
+        if choice:
+            origin = ElementTree.SubElement(parent, 'origin')
+            if choice > 1:
+                origin.set('xyz', self.numbers(LENGTHS, 10))
+            if choice != 2:
+                origin.set('rpy', self.numbers(TURNS, 7))
+
+    def joint(self, name: str, parent: str, child: str) -> tuple[ElementTree.Element, bool]:
+        """Add a joint; return whether it lumps its child into its parent."""
+        kind = self.dice.choice(JOINT_TYPES)
+        joint = ElementTree.SubElement(self.root, 'joint', name=name, type=kind)
+        self.origin(joint)
+        ElementTree.SubElement(joint, 'parent', link=parent)
+        ElementTree.SubElement(joint, 'child', link=child)
+        if kind != 'fixed' and self.dice.random() < 0.7:
+            axis = self.dice.choice(('0 0 1', '0 -2 0', '1 1 0'))
+            ElementTree.SubElement(joint, 'axis', xyz=axis)
+        if kind in ('revolute', 'prismatic'):
+            ElementTree.SubElement(joint, 'limit', lower='-1', upper='1', effort='1', velocity='1')
+        is_lumped = kind == 'fixed'
+        for option in ('preserveFixedJoint', 'disableFixedJointLumping'):
+            if self.dice.random() < 0.1:
+                gazebo = ElementTree.SubElement(self.root, 'gazebo', reference=name)
+                value = self.dice.choice(('true', 'YES', '1', 'false', 'no'))
+                ElementTree.SubElement(gazebo, option).text = value
+                is_lumped &= value in ('false', 'no')
+        return joint, is_lumped
+
+    def link(self, name: str, *, is_massless: bool) -> None:
+        """Add a link."""
+        link = ElementTree.SubElement(self.root, 'link', name=name)
+        if not is_massless:
+            inertial = ElementTree.SubElement(link, 'inertial')
+            self.origin(inertial)
+            mass = str(self.dice.choice((0.1, 1, 2.5, 10)))
+            ElementTree.SubElement(inertial, 'mass', value=mass)
+            ElementTree.SubElement(
+                inertial, 'inertia', ixx='1', iyy='1', izz='1', ixy='0', ixz='0', iyz='0')
+        for kind in self.dice.choices(('visual', 'collision'), k=self.dice.randrange(4)):
+            element = ElementTree.SubElement(link, kind)
+            if self.dice.random() < 0.4:
+                element.set('name', self.dice.choice(('v', 'größe', name, f'{name} 2', '')))
+            self.origin(element)
+            tag = self.dice.choice(sorted(SHAPES))
+            ElementTree.SubElement(ElementTree.SubElement(element, 'geometry'), tag, SHAPES[tag])
+
+    def extensions(self, links: list[str], references: list[str], names: set[str], *,
+                   static: bool) -> None:
+        """Add what is SDFormat in a URDF file."""
+        for number in range(self.dice.randrange(5)):
+            kind = self.dice.choice(MOVED)
+            gazebo = ElementTree.SubElement(
+                self.root, 'gazebo', reference=self.dice.choice(references))
+            ElementTree.SubElement(gazebo, 'mu1').text = '0.2'
+            element = ElementTree.SubElement(gazebo, kind, name=f'{kind}_{number}')
+            if kind == 'projector':
+                ElementTree.SubElement(element, 'texture').text = 't.png'
+            else:
+                element.set('type', {'sensor': 'imu', 'light': 'point'}[kind])
+            reference = self.dice.choice(references) if self.dice.random() < 0.2 else ''
+            pose = new_pose(self.draw, reference)
+            if pose is not None and not (pose.text or '').strip():
+                pose.text = None if len(pose) else '0 0 0 0 0 0'
+            if pose is not None:
+                element.append(pose)
+        if self.dice.random() < 0.2:
+            self.extra_joint(references, names)
+        if self.dice.random() < 0.2:
+            gazebo = ElementTree.SubElement(self.root, 'gazebo')
+            ElementTree.SubElement(
+                gazebo, 'frame', name=self.name(names),
+                attached_to=self.dice.choice(references))
+        if static or self.dice.random() < 0.1:
+            gazebo = ElementTree.SubElement(self.root, 'gazebo')
+            ElementTree.SubElement(gazebo, 'static').text = 'true' if static else 'no'
+        if self.dice.random() < 0.2:
+            self.origin(self.root)
+        if self.dice.random() < 0.1:
+            gazebo = ElementTree.SubElement(self.root, 'gazebo')
+            ElementTree.SubElement(gazebo, 'pose').text = self.numbers(LENGTHS, 5, 6)
+
+    def extra_joint(self, links: list[str], names: set[str]) -> None:
+        """Add a joint of SDFormat, which may name links that are lumped."""
+        parent, child = self.dice.choices(links, k=2)
+        if self.bases[parent] == self.bases[child]:
+            return
+        gazebo = ElementTree.SubElement(self.root, 'gazebo')
+        joint = ElementTree.SubElement(
+            gazebo, 'joint', name=self.name(names), type='ball')
+        ElementTree.SubElement(joint, 'parent').text = parent
+        ElementTree.SubElement(joint, 'child').text = child
+        if self.dice.random() < 0.5:
+            ElementTree.SubElement(joint, 'pose').text = self.numbers(LENGTHS, 5, 6)
+
+
+def text_from_robot(robot: ElementTree.Element) -> str:
+    """Write a robot as a file."""
+    ElementTree.indent(robot)
+    return ElementTree.tostring(robot, encoding='unicode')

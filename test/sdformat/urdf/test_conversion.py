@@ -1,0 +1,314 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Converted robots: names, poses and joints as libsdformat 14.9 has them."""
+
+import math
+
+import pytest
+from sdf_texts import errors_of_file
+from sdf_texts import names_of
+from sdf_texts import only_error
+from sdf_texts import world_file
+from urdf_texts import gazebo
+from urdf_texts import joint
+from urdf_texts import link
+from urdf_texts import origin
+from urdf_texts import robot
+from urdf_texts import shape
+
+from sdf_pose_bridge import load
+from sdf_pose_bridge import load_text
+from sdf_pose_bridge import SdfError
+from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.sdformat.documents import document_from_text
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.limits import Limits
+from sdf_pose_bridge.sdformat.sources import Sources
+
+FIXED = joint('j', 'a', 'b', 'fixed', origin('1 0 0', f'0 0 {math.pi / 2}'))
+TWO = link('a') + link('b')
+SENSOR = '<sensor name="s" type="imu">{}</sensor>'
+
+
+def converted(text):
+    """Return the ``model`` that a robot becomes."""
+    return document_from_text(text, 'f', Sources(), Problems(['f'])).root.find('model')
+
+
+def kinds_of(scene):
+    """Return the kinds of named elements."""
+    return {name: Kind(kind).label for name, kind in zip(scene.names, scene.kinds, strict=True)}
+
+
+# Links and joints
+
+def test_frame_of_a_link_is_that_of_its_joint():
+    scene = load_text(robot(
+        TWO + joint('j', 'a', 'b', 'continuous', origin('1 2 3'))))
+    assert names_of(scene) == ['r', 'r::a', 'r::a::inertial', 'r::j', 'r::b', 'r::b::inertial']
+    assert scene.pose('r::b') == scene.pose('r::j')
+    assert scene.pose('r::b')[:3] == (1.0, 2.0, 3.0)
+
+
+def test_children_are_in_the_order_of_their_joints():
+    scene = load_text(robot(
+        TWO + link('c') + joint('k', 'a', 'b', 'continuous') + joint('j', 'a', 'c', 'continuous')))
+    links = [name for name in scene.names if name in ('r::a', 'r::b', 'r::c')]
+    assert links == ['r::a', 'r::c', 'r::b']
+
+
+@pytest.mark.parametrize(('joint_type', 'expected'), [
+    ('continuous', 'revolute'), ('revolute', 'revolute'), ('prismatic', 'prismatic'),
+])
+def test_type_of_a_joint(joint_type, expected):
+    limit = '<limit effort="1" velocity="1"/>'
+    assert converted(robot(TWO + joint('j', 'a', 'b', joint_type, limit))).find(
+        'joint').get('type') == expected
+
+
+@pytest.mark.parametrize('joint_type', ['floating', 'planar'])
+def test_joint_that_sdformat_does_not_have_is_refused(joint_type):
+    error = only_error(robot(TWO + '\n' + joint('j', 'a', 'b', joint_type)))
+    assert (error.code, error.line) == ('POSE_RELATIVE_TO_INVALID', 2)
+
+
+def test_axis_limits_and_mimic_are_converted():
+    content = ('<axis xyz="0 1 0"/><limit lower="2" upper="-1" effort="3" velocity="4"/>'
+               '<mimic joint="k" multiplier="5"/>')
+    axis = converted(robot(TWO + joint('j', 'a', 'b', 'revolute', content))).find('joint/axis')
+    texts = {child.tag: child.text for child in axis.iter() if len(child) == 0}
+    assert texts == {'xyz': '0 1 0', 'lower': '-1', 'upper': '2', 'effort': '3', 'velocity': '4',
+                     'multiplier': '5', 'offset': '0'}
+    assert axis.find('mimic').get('joint') == 'k'
+
+
+def test_axis_is_x_where_none_is_given():
+    model = converted(robot(TWO + joint('j', 'a', 'b', 'continuous')))
+    assert model.find('joint/axis/xyz').text == '1 0 0'
+
+
+def test_continuous_joint_has_no_range():
+    limit = '<limit lower="-1" upper="1" effort="3" velocity="4"/>'
+    model = converted(robot(TWO + joint('j', 'a', 'b', 'continuous', limit)))
+    assert [child.tag for child in model.find('joint/axis/limit')] == ['effort', 'velocity']
+
+
+def test_axis_of_length_zero_is_refused():
+    text = robot(TWO + joint('j', 'a', 'b', 'continuous', '<axis/>'))
+    assert only_error(text).code == 'ELEMENT_INVALID'
+
+
+def test_link_world_is_the_world():
+    scene = load_text(robot(
+        '<link name="world"/>' + link('b') + joint('j', 'world', 'b', 'fixed', origin('1 0 0'))))
+    assert names_of(scene) == ['r', 'r::j', 'r::b', 'r::b::inertial']
+    assert scene.pose('r::b').x == 1.0
+    assert len(scene.joints) == 1
+
+
+def test_link_without_mass_is_left_out_with_what_is_below_it():
+    scene = load_text(robot(
+        TWO + '<link name="c"/>' + link('d') + joint('j', 'a', 'b', 'continuous')
+        + joint('k', 'b', 'c', 'continuous') + joint('l', 'c', 'd', 'continuous')))
+    assert 'r::b' in scene.names
+    assert not {'r::c', 'r::d', 'r::k', 'r::l'} & set(scene.names)
+    (warning,) = scene.warnings
+    assert warning.code == 'LINK_INERTIA_INVALID'
+    assert warning.place.element == '/robot[@name="r"]/link[@name="c"]'
+
+
+# Fixed joints
+
+def test_fixed_joint_leaves_two_frames():
+    scene = load_text(robot(TWO + FIXED))
+    kinds = kinds_of(scene)
+    assert (kinds['r::j'], kinds['r::b']) == ('frame', 'frame')
+    assert scene.pose('r::b')[:3] == (1.0, 0.0, 0.0)
+    assert scene.joints == ()
+
+
+@pytest.mark.parametrize(('option', 'expected'), [
+    ('<preserveFixedJoint>true</preserveFixedJoint>', 'fixed'),
+    ('<preserveFixedJoint value="YES"/>', 'fixed'),
+    ('<disableFixedJointLumping>1</disableFixedJointLumping>', 'revolute'),
+    ('<disableFixedJointLumping>1</disableFixedJointLumping><preserveFixedJoint value="1"/>',
+     'fixed'),
+])
+def test_fixed_joint_is_kept_on_demand(option, expected):
+    model = converted(robot(TWO + FIXED + gazebo(option, 'j')))
+    assert model.find('joint').get('type') == expected
+
+
+@pytest.mark.parametrize(('tag', 'expected'), [
+    ('visual', ['a_visual', 'a_fixed_joint_lump__b_visual_1', 'a_fixed_joint_lump__v_visual_2']),
+    ('collision', ['a_collision', 'a_fixed_joint_lump__b_collision_1',
+                   'a_fixed_joint_lump__v_collision_2']),
+])
+def test_shapes_of_a_lumped_link_move_to_its_parent(tag, expected):
+    pose = origin('1 0 0')
+    scene = load_text(robot(
+        link('a', shape(tag)) + link('b', shape(tag, pose) + shape(tag, pose, 'v')) + FIXED))
+    names = [name.removeprefix('r::a::') for name in scene.names if tag in name]
+    assert names == expected
+    assert scene.pose(f'r::a::{names[1]}')[:3] == pytest.approx((1.0, 1.0, 0.0))
+
+
+def test_joint_below_a_lumped_link_starts_at_the_link_it_is_lumped_into():
+    model = converted(robot(
+        TWO + link('c') + FIXED + joint('k', 'b', 'c', 'continuous', origin('1 0 0'))))
+    assert model.find('joint/parent').text == 'a'
+    assert load_text(robot(
+        TWO + link('c') + FIXED + joint('k', 'b', 'c', 'continuous', origin('1 0 0'))
+    )).pose('r::c')[:3] == pytest.approx((1.0, 1.0, 0.0))
+
+
+def test_masses_are_added():
+    scene = load_text(robot(
+        link('a', mass=1.0) + link('b', mass=3.0, centre='1 0 0') + FIXED))
+    assert scene.pose('r::a::inertial')[:3] == pytest.approx((0.75, 0.75, 0.0))
+
+
+def test_link_without_mass_gets_that_of_a_lumped_link():
+    scene = load_text(robot('<link name="a"/>' + link('b') + FIXED))
+    assert scene.pose('r::a::inertial')[:3] == (1.0, 0.0, 0.0)
+
+
+def test_pitch_near_a_right_angle_is_rounded_as_by_libsdformat():
+    pose = '<origin rpy="0 1.57 0"/>'
+    scene = load_text(robot(link('a', shape('visual', pose))))
+    right_angle = (0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5))
+    assert scene.pose('r::a::a_visual')[3:] == pytest.approx(right_angle)
+
+
+# What <gazebo> elements hold
+
+def test_sensor_of_a_link():
+    text = SENSOR.format('<pose>1 2 3 0 0 0</pose>')
+    scene = load_text(robot(link('a') + gazebo('<mu1>0.2</mu1>' + text, 'a')))
+    assert scene.pose('r::a::s')[:3] == (1.0, 2.0, 3.0)
+    assert scene.warnings == ()
+
+
+def test_pose_of_a_sensor_on_a_lumped_link_is_written_with_six_digits():
+    text = SENSOR.format('<pose>0.123456789 0 0 0 0 0</pose>')
+    scene = load_text(robot(TWO + FIXED + gazebo(text, 'b')))
+    assert scene.pose('r::a::s')[:2] == (1.0, 0.123457)
+
+
+def test_reference_of_a_sensor_on_a_lumped_link_is_kept():
+    text = SENSOR.format('<pose relative_to="b">1 0 0 0 0 0</pose>')
+    scene = load_text(robot(TWO + FIXED + gazebo(text, 'b')))
+    assert scene.pose('r::a::s')[:3] == pytest.approx((1.0, 1.0, 0.0))
+
+
+def test_degrees_are_ignored_with_a_warning_where_a_fixed_joint_is_removed():
+    text = SENSOR.format('<pose degrees="true">0 0 0 1 0 0</pose>')
+    scene = load_text(robot(TWO + joint('j', 'a', 'b') + gazebo(text, 'b')))
+    assert scene.pose('r::a::s').qx == pytest.approx(math.sin(0.5))
+    assert 'attributes of this <pose> are ignored' in scene.warnings[0].message
+
+
+@pytest.mark.parametrize('number', ['x', 'inf', '1e999'])
+def test_pose_that_is_not_one_is_refused(number):
+    text = SENSOR.format(f'<pose>{number} 0 0 0 0 0</pose>')
+    assert only_error(robot(TWO + FIXED + gazebo(text, 'b'))).code == 'ELEMENT_INVALID'
+
+
+def test_sensor_of_a_joint():
+    text = SENSOR.format('').replace('imu', 'force_torque')
+    scene = load_text(robot(TWO + joint('j', 'a', 'b', 'continuous') + gazebo(text, 'j')))
+    assert 'r::j::s' in scene.names
+
+
+@pytest.mark.parametrize('reference', ['j', 'c'])
+def test_what_belongs_to_nothing_is_left_out_with_a_warning(reference):
+    scene = load_text(robot(TWO + FIXED + gazebo(SENSOR.format(''), reference)))
+    assert not any(name.endswith('::s') for name in scene.names)
+    assert f'reference="{reference}"' in scene.warnings[0].message
+
+
+def test_joint_in_a_gazebo_element_joins_the_link_that_remains():
+    text = '<joint name="k" type="ball"><parent>world</parent><child>b</child></joint>'
+    scene = load_text(robot(TWO + FIXED + gazebo(text)))
+    assert scene.names[scene.joints[0].child] == 'r::a'
+
+
+@pytest.mark.parametrize(('content', 'x'), [
+    (origin('1 0 0'), 1.0),
+    (gazebo('<pose>2 0 0 0 0 0</pose>'), 2.0),
+    (origin('1 0 0') + gazebo('<pose>2 0 0 0 0 0</pose>'), 1.0),
+    (origin('x 0 0'), 0.0),
+])
+def test_pose_of_the_robot(content, x):
+    assert load_text(robot(link('a') + content)).pose('r').x == x
+
+
+def test_static_robot():
+    scene = load_text(robot(link('a') + gazebo('<static>yes</static>')))
+    assert len(scene.static_models) == 1
+
+
+def test_what_sdformat_does_not_define_is_reported_only_in_gazebo_elements():
+    scene = load_text(robot(
+        '<transmission name="t"/>' + link('a', '<self_collision_checking/>')
+        + gazebo('<sensr name="s"/>', 'a')))
+    (warning,) = scene.warnings
+    assert 'did you mean <sensor>?' in warning.message
+
+
+# Hostile files
+
+def test_long_name_in_many_names_is_limited():
+    shapes = shape('visual') * 200
+    text = robot(link('a' * 1000) + link('b', shapes) + joint('j', 'a' * 1000, 'b'))
+    with pytest.raises(SdfError, match='the limit name_characters is 100000'):
+        load_text(text, limits=Limits(name_characters=100_000))
+
+
+def test_sensors_at_the_end_of_a_long_chain_are_limited():
+    links = ''.join(link(f'l{i}') for i in range(101))
+    joints = ''.join(joint(f'j{i}', f'l{i}', f'l{i + 1}') for i in range(100))
+    text = robot(links + joints + gazebo(SENSOR.format('') * 10, 'l100'))
+    with pytest.raises(SdfError, match='the limit included_elements is 999'):
+        load_text(text, limits=Limits(included_elements=999))
+
+
+def test_deep_chain_is_converted():
+    count = 5000
+    links = ''.join(link(f'l{i}') for i in range(count + 1))
+    joints = ''.join(
+        joint(f'j{i}', f'l{i}', f'l{i + 1}', 'fixed', origin('1 0 0')) for i in range(count))
+    assert load_text(robot(links + joints)).pose(f'r::l{count}').x == count
+
+
+# Files
+
+def write(folder, text):
+    (folder / 'r.urdf').write_text(robot(text))
+    include = '<include><uri>r.urdf</uri><name>n</name><pose>5 0 0 0 0 0</pose></include>'
+    (folder / 'w.sdf').write_text(world_file(include))
+    return folder / 'w.sdf'
+
+
+def test_robot_is_included(tmp_path):
+    scene = load(write(tmp_path, TWO + FIXED))
+    assert scene.pose('n::b').x == 6.0
+
+
+def test_robot_is_merged(tmp_path):
+    path = write(tmp_path, TWO + FIXED)
+    path.write_text('<sdf version="1.9"><model name="m"><include merge="true"><uri>r.urdf</uri>'
+                    '</include></model></sdf>')
+    assert load(path).pose('m::b').x == 1.0
+
+
+def test_all_errors_of_an_included_robot_are_reported(tmp_path):
+    path = write(tmp_path, TWO + '\n' + joint('j', 'a', 'c') + '\n' + joint('k', 'd', 'b'))
+    assert [error.line for error in errors_of_file(path)] == [2, 3]
+
+
+def test_lines_beyond_those_that_libxml2_counts(tmp_path):
+    bad_pose = SENSOR.format('\n<pose>x</pose>')
+    path = write(tmp_path, '\n' * 70_000 + link('a') + gazebo(bad_pose, 'a') + '\n' + link('b')
+                 + '\n' + joint('j', 'a', 'b', 'continuous', '<axis/>'))
+    assert [error.line for error in errors_of_file(path)] == [70_002, 70_004]

@@ -1,0 +1,81 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers and angles as libsdformat's conversion of URDF reads and writes them."""
+
+import math
+
+from hypothesis import given
+from hypothesis import strategies as st
+from lxml import etree
+import numpy as np
+import pytest
+
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.rotations import matrix_from_rpy
+from sdf_pose_bridge.sdformat.urdf.values import is_true
+from sdf_pose_bridge.sdformat.urdf.values import numbers_of
+from sdf_pose_bridge.sdformat.urdf.values import pose_from_numbers
+from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math
+from sdf_pose_bridge.sdformat.urdf.values import rpy_by_urdfdom
+from sdf_pose_bridge.sdformat.urdf.values import text_from_numbers
+
+ANGLES = st.floats(-4, 4) | st.sampled_from([0.0, math.pi / 2, -math.pi / 2, 1.5707963, 1.57])
+
+
+@pytest.mark.parametrize(('text', 'numbers'), [
+    ('1 2 3', [1, 2, 3]), (' 1.  -2e1   +3 ', [1, -20, 3]), ('1m 2 3', [1, 2, 3]),
+])
+def test_numbers_are_read_as_by_strtod(text, numbers):
+    assert numbers_of(etree.Element('a', x=text), 'x:3 y') == {'x': numbers}
+
+
+@pytest.mark.parametrize('text', ['', '1 2', '1 2 3 4', '1 2 x', '1 2 1e999', '1 2 nan'])
+def test_what_is_not_three_numbers(text):
+    with pytest.raises(ValueError, match='is not 3 finite numbers'):
+        numbers_of(etree.Element('a', x=text), 'x:3')
+
+
+def test_missing_number():
+    with pytest.raises(ValueError, match='<a> has no x'):
+        numbers_of(etree.Element('a'), 'x!')
+
+
+@pytest.mark.parametrize(('text', 'expected'), [
+    ('<a>true</a>', True), ('<a> Yes\n</a>', True), ('<a value="1">0</a>', True),
+    ('<a>on</a>', False), ('<a/>', False), ('<a value=""/>', False),
+])
+def test_options(text, expected):
+    assert is_true(etree.fromstring(text)) is expected
+
+
+@pytest.mark.parametrize(('digits', 'expected'), [
+    (16, '0.3333333333333333 0 1e-05 inf'), (6, '0.333333 0 1e-05 inf'),
+])
+def test_text_of_numbers(digits, expected):
+    assert text_from_numbers([1 / 3, 0.0, 1e-5, math.inf], digits) == expected
+
+
+@given(ANGLES, ANGLES, ANGLES)
+def test_angles_by_gz_math_are_the_rotation(roll, pitch, yaw):
+    angles = rpy_by_gz_math(pose_from_numbers([0, 0, 0, roll, pitch, yaw]))
+    np.testing.assert_allclose(
+        matrix_from_rpy(angles), matrix_from_rpy((roll, pitch, yaw)), atol=1e-7)
+
+
+@given(ANGLES, ANGLES, ANGLES)
+def test_angles_by_urdfdom_are_nearly_the_rotation(roll, pitch, yaw):
+    angles = rpy_by_urdfdom(pose_from_numbers([0, 0, 0, roll, pitch, yaw]))
+    np.testing.assert_allclose(
+        matrix_from_rpy(angles), matrix_from_rpy((roll, pitch, yaw)), atol=6e-3)
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_angles_by_urdfdom_near_gimbal_lock(sign):
+    roll, pitch, yaw = rpy_by_urdfdom(pose_from_numbers([0, 0, 0, 0.3, sign * 1.568, 0.1]))
+    assert (roll, pitch) == (0.0, sign * math.pi / 2)
+    assert yaw == pytest.approx(0.1 - sign * 0.3, abs=1e-2)
+
+
+def test_pose_from_numbers():
+    assert pose_from_numbers([1, 2, 3, math.pi, 0, 0]) == pytest.approx(
+        Pose(1, 2, 3, 1, 0, 0, 0))
