@@ -3,7 +3,7 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test run lint bench differential fuzz soak licenses audit clean
+.PHONY: help setup demo test run lint bench differential fuzz soak licenses audit docs clean
 
 # Another ROS in the caller's shell would be found before the one that is meant.
 ifneq ($(filter-out jazzy,$(ROS_DISTRO)),)
@@ -30,6 +30,7 @@ help:
 	@echo 'make soak           the node under load for MINUTES=30: nothing lost, nothing growing'
 	@echo 'make licenses       licences of everything that is installed for this, as in docs/licenses.md'
 	@echo 'make audit          known vulnerabilities of it, by pip-audit; needs pypi.org'
+	@echo 'make docs           the documentation, into docs/_build/html'
 	@echo 'make setup          only the environment in .underlay, which all of these share'
 	@echo 'make clean          remove the environment and everything that was built'
 	@echo ''
@@ -83,6 +84,10 @@ audit: setup
 	  && .underlay/audit/bin/python -m pip install --quiet pip-audit \
 	  && for lock in underlay/*.txt; do \
 	    .underlay/audit/bin/pip-audit --strict --no-deps --disable-pip -r $$lock || exit; done
+
+# Warnings, such as those of links that lead nowhere, are errors.
+docs: setup
+	@$(in_shell) python -m sphinx --fail-on-warning --keep-going --quiet docs docs/_build/html
 
 clean:
 	@rm -rf .underlay build install log
