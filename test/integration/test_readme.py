@@ -16,6 +16,7 @@ from sdf_pose_bridge_interfaces.srv import ConvertRotation
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / 'README.md').read_text(encoding='utf-8')
+COMMAND_LINE = (ROOT / 'docs/command_line.md').read_text(encoding='utf-8')
 BROKEN = """\
 <sdf version="1.10">
   <model name="gripper">
@@ -40,9 +41,9 @@ MISSPELT = """\
 """
 
 
-def shown_after(command):
-    """Return the lines of the README's sample that a line begins, without the indent."""
-    (sample,) = re.findall(rf'^    {re.escape(command)}.*\n((?:(?:    .*)?\n)*)', README, re.M)
+def shown_after(command, page=README):
+    """Return the lines of the sample of a page that a line begins, without the indent."""
+    (sample,) = re.findall(rf'^    {re.escape(command)}.*\n((?:(?:    .*)?\n)*)', page, re.M)
     return [line.removeprefix('    ') for line in sample.splitlines()]
 
 
@@ -117,4 +118,4 @@ def test_warnings(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(['check', '--strict', 'cell.sdf']) == 1
     printed = capsys.readouterr().out.splitlines()
-    assert shown_after('$ sdf_pose check --strict cell.sdf')[:len(printed)] == printed
+    assert shown_after('$ sdf_pose check --strict cell.sdf', COMMAND_LINE)[:len(printed)] == printed

@@ -1,0 +1,157 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every command and snippet of the documentation is run here, or named with the reason why not."""
+
+from pathlib import Path
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from sdf_pose_bridge import load_text
+from sdf_pose_bridge.cli.main import main
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').glob('*.md'))]
+
+TESTED_ELSEWHERE = {
+    'ros2 run sdf_pose_bridge bridge': 'test_readme.py starts the bridge in this way',
+    'ros2 topic echo': 'test_readme.py compares the message',
+    'ros2 service call': 'test_readme.py and test_bridge_services.py make the calls',
+    'ros2 param set': 'test_readme.py and test_bridge_changes.py set parameters',
+    'sdf_pose check broken.sdf': 'test_readme.py compares the output',
+    'sdf_pose check --strict cell.sdf': 'test_readme.py compares the output',
+    'sdf_pose convert': 'test_formats_of_the_documentation, below',
+    'make ': 'it is what runs the tests, or takes minutes',
+}
+"""Beginnings of commands."""
+
+NOT_RUN = {
+    'ros2 security': 'the ros2 command line is not on PyPI',
+    'ros2 run ros_gz_bridge': 'needs Gazebo',
+    'ros2 run tf2_ros': 'needs tf2_ros',
+    'gz ': 'needs Gazebo',
+    'sdf_pose view examples/work_cell.sdf': 'opens a browser; test_view.py writes the page',
+    'sdf_pose poses robot.sdf': "the file is the reader's",
+    'sdf_pose poses --json -I models cell.sdf': "the file is the reader's",
+    'FASTDDS_': 'needs a network that loses packets, or a profile of the user',
+    'export ROS_': "sets variables of the reader's shell",
+    'export ': "sets variables of the reader's shell",
+    'pip install': 'needs the network',
+    'sudo apt install': 'needs the network',
+    'rosdep install': 'needs the network',
+    'colcon build': 'the setup of the tests has built the packages',
+    'cd ws': "the workspace is the reader's",
+    '. ': "sets up the reader's shell",
+}
+"""Beginnings of commands, and why no test runs them."""
+
+
+def blocks():
+    """Give each page with the lines of each of its indented blocks."""
+    for page in PAGES:
+        text = re.sub(r'^```.*?^```$', '', page.read_text(encoding='utf-8'), flags=re.M | re.S)
+        for block in re.findall(r'(?:(?:^|\n)(?: {4}.*)?(?=\n|$))+', text):
+            lines = [line[4:] for line in block.strip('\n').splitlines()]
+            if any(lines):
+                yield page, lines
+
+
+def commands():
+    """Give each command of the pages, with the lines that continue it."""
+    first_words = re.compile(
+        r'\$ |(?:ros2|sdf_pose|make|gz|pip|sudo|rosdep|colcon|cd|export|\.|[A-Z_]+=\S+) ')
+    found = set()
+    for _, lines in blocks():
+        text = '\n'.join(lines).replace('\\\n', ' ')
+        for line in text.splitlines():
+            if first_words.match(line):
+                found.add(' '.join(line.removeprefix('$ ').split('  #')[0].split()))
+    return sorted(found)
+
+
+def is_run_here(command):
+    return not any(command.startswith(known) for known in [*TESTED_ELSEWHERE, *NOT_RUN])
+
+
+def test_the_lists_name_nothing_that_is_gone():
+    for known in [*TESTED_ELSEWHERE, *NOT_RUN]:
+        assert any(command.startswith(known) for command in commands()), known
+
+
+@pytest.fixture(name='folder')
+def copied_files(tmp_path, monkeypatch):
+    for name in ('examples', 'docs/pictures'):
+        shutil.copytree(ROOT / name, tmp_path / name)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize('command', [each for each in commands() if is_run_here(each)])
+def test_commands(command, folder, capsys):
+    program, *arguments = shlex.split(command)
+    assert program == 'sdf_pose', 'run it here, or name it above'
+    if '-o' in arguments:
+        if arguments[0] == 'graph' and shutil.which('dot') is None:
+            pytest.skip('needs dot of Graphviz')
+        if arguments[0] == 'view':
+            pytest.importorskip('plotly', reason='needs plotly')
+    assert main(arguments) == 0
+    if '-o' in arguments:
+        assert (folder / arguments[arguments.index('-o') + 1]).stat().st_size
+    else:
+        assert capsys.readouterr().out
+
+
+@pytest.mark.parametrize('command', [
+    each for each in commands() if each.startswith('sdf_pose convert ')])
+def test_formats_of_the_documentation(command, capsys):
+    assert main(shlex.split(command)[1:]) == 0
+    assert capsys.readouterr().out
+
+
+def shown_after(page, command):
+    for each, lines in blocks():
+        if each.name == page and lines[0] == f'$ {command}':
+            return lines[1:]
+    raise AssertionError(command)
+
+
+@pytest.mark.parametrize(('page', 'command'), [
+    ('concepts.md', 'sdf_pose tree docs/pictures/arm.sdf'),
+    ('pose_formats.md', 'sdf_pose convert --from rpy_degrees --to quaternion 0 0 90'),
+])
+def test_outputs(page, command, folder, capsys):
+    main(shlex.split(command)[1:])
+    assert capsys.readouterr().out.splitlines() == shown_after(page, command)
+
+
+@pytest.mark.parametrize('page', ['README.md', 'python_api.md'])
+def test_snippets_of_python(page, folder):
+    snippets = [
+        '\n'.join(lines) for each, lines in blocks()
+        if each.name == page and lines[0].startswith('import ')]
+    assert snippets
+    for snippet in snippets:
+        done = subprocess.run(
+            [sys.executable, '-c', snippet], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+
+
+def test_files_of_sdf():
+    files = ['\n'.join(lines) for _, lines in blocks() if lines[0].startswith('<?xml')]
+    assert files
+    for text in files:
+        load_text(text)
+
+
+def test_pages_are_built_without_a_warning(tmp_path):
+    pytest.importorskip('sphinx', reason='needs Sphinx')
+    pytest.importorskip('myst_parser', reason='needs myst-parser')
+    done = subprocess.run(
+        [sys.executable, '-m', 'sphinx', '--fail-on-warning', '--keep-going', '--quiet',
+         ROOT / 'docs', tmp_path], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
