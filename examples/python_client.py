@@ -42,9 +42,10 @@ class Client(Node):
             while not service.wait_for_service(timeout_sec=1.0):
                 self.get_logger().info(f'waiting for {service.service_name}')
 
-        # A pose is published once, and again when it changes. A transient local subscription gets
-        # the last message even if it starts later; a volatile one, which is the default, would
-        # miss it. The function writes characters that a topic name cannot have as their code.
+        # A pose is published once, and again when it changes or the file is read again. A
+        # transient local subscription gets the last message even if it starts later; a volatile
+        # one, which is the default, would miss it. Characters that a topic name cannot have are
+        # escaped.
         latched = QoSProfile(
             depth=1, reliability=ReliabilityPolicy.RELIABLE,
             durability=DurabilityPolicy.TRANSIENT_LOCAL)

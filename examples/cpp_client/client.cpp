@@ -79,8 +79,9 @@ int main(int argc, char ** argv)
         });
     };
 
-  // A pose is published once, and again when it changes. A transient local subscription gets the
-  // last message even if it starts later; a volatile one, which is the default, would miss it.
+  // A pose is published once, and again when it changes or the file is read again. A transient
+  // local subscription gets the last message even if it starts later; a volatile one, which is the
+  // default, would miss it.
   // A topic name has letters, digits, "_" and "/"; other characters of a frame id are escaped:
   // the pose of "left cam" is on ~/poses/left_x20_cam.
   const auto subscription = node->create_subscription<PoseStamped>(
