@@ -18,6 +18,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = {
     'sdf_pose_bridge': ROOT,
     'sdf_pose_bridge_interfaces': ROOT / 'sdf_pose_bridge_interfaces',
+    'sdf_pose_bridge_cpp_client': ROOT / 'examples/cpp_client',
     'tf2_msgs': ROOT / 'underlay/tf2_msgs',
 }
 OURS = ('sdf_pose_bridge', 'sdf_pose_bridge_interfaces')

@@ -1,0 +1,85 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The clients in Python and in C++ that users copy from: both log what the bridge answers."""
+
+from pathlib import Path
+import shutil
+import signal
+import subprocess
+import sys
+
+from bridge_process import LoggedProcess
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
+
+
+@pytest.fixture(scope='module')
+def cpp_client(tmp_path_factory):
+    """The command of the client in C++, which is compiled here."""
+    from ament_index_python.packages import get_package_prefix
+    from ament_index_python.packages import PackageNotFoundError
+    try:
+        get_package_prefix('rclcpp')
+    except PackageNotFoundError:
+        pytest.skip('needs rclcpp, which is not installed')
+    if shutil.which('cmake') is None:
+        pytest.skip('needs cmake, which is not installed')
+    build = tmp_path_factory.mktemp('cpp_client')
+    for options in (['-S', EXAMPLES / 'cpp_client', '-B', build], ['--build', build]):
+        done = subprocess.run(
+            ['cmake', *options], capture_output=True, text=True, timeout=600, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+        assert 'warning' not in done.stderr.lower()
+    return [build / 'client']
+
+
+@pytest.fixture(scope='module')
+def python_client():
+    return [sys.executable, EXAMPLES / 'python_client.py']
+
+
+@pytest.fixture(params=['python_client', 'cpp_client'])
+def start_client(request, ros_domain):
+    """Starts a client; ``start_client(**parameters)``."""
+    command = request.getfixturevalue(request.param)
+    processes = []
+
+    def start(**parameters):
+        words = [word for key, value in parameters.items() for word in ('-p', f'{key}:={value}')]
+        processes.append(LoggedProcess([*command, '--ros-args', *words]))
+        return processes[-1]
+
+    yield start
+    for process in processes:
+        process.end()
+
+
+@pytest.fixture(name='bridge')
+def bridge_of_work_cell(start_bridge):
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={EXAMPLES / "work_cell.sdf"}')
+    return bridge.wait_until_started()
+
+
+@pytest.mark.usefixtures('bridge')
+def test_it_logs_pose_lookup_and_rotation(start_client):
+    client = start_client(frame='fixture', relative_to='table')
+    client.wait_for_line(': fixture in world: xyz ')
+    client.wait_for_line(': fixture in table: xyz ')
+    client.wait_for_line(': roll pitch yaw: ')
+    client.send(signal.SIGINT)
+    assert client.wait_for_end() == 0
+
+
+@pytest.mark.usefixtures('bridge')
+def test_it_logs_why_a_lookup_was_refused(start_client):
+    start_client(frame='fixture', relative_to='tabel').wait_for_line('"tabel"')
+
+
+def test_it_ends_while_it_waits_for_the_bridge(start_client):
+    client = start_client()
+    client.wait_for_line(': waiting for ')
+    client.send(signal.SIGINT)
+    assert client.wait_for_end() == 0
