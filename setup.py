@@ -12,7 +12,7 @@ from setuptools.command.install_scripts import install_scripts
 
 PACKAGE = 'sdf_pose_bridge'
 SHARE = f'share/{PACKAGE}'
-SHARED_FOLDERS = ('launch', 'config', 'examples')
+SHARED_FOLDERS = ('launch', 'config', 'rviz', 'examples')
 NOT_INSTALLED = ('__pycache__', '.pytest_cache', '.mypy_cache', '.ruff_cache')
 BLOCK_SIGNALS = (
     'import signal',

@@ -7,6 +7,8 @@ Start the bridge on one file.
 
 A parameter whose argument is not given comes from the params file, or else is the default of the
 node. ``config/bridge.yaml`` of this package is a params file that explains every parameter.
+
+With ``rviz:=true`` RViz shows the frames and the visuals of the links, from ``rviz/bridge.rviz``.
 """
 
 from __future__ import annotations
@@ -15,7 +17,10 @@ from launch import LaunchContext
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.actions import OpaqueFunction
+from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
+from launch.substitutions import PathJoinSubstitution
+from launch.substitutions import ThisLaunchFileDir
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterFile
 from launch_ros.parameter_descriptions import ParameterValue
@@ -26,6 +31,9 @@ PARAMETERS = {
     'root_frame': "TF frame of the SDF world, or of a model file's root.",
 }
 """Arguments that set the parameter of the same name."""
+
+VISUALS = '/sdf_pose_bridge/visuals'
+"""The topic in ``rviz/bridge.rviz``."""
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -45,6 +53,9 @@ def generate_launch_description() -> LaunchDescription:
         DeclareLaunchArgument(
             'params_file', default_value='',
             description='YAML file with parameters of the node; none if empty.'),
+        DeclareLaunchArgument(
+            'rviz', default_value='false',
+            description='Whether to start RViz too; needs the package rviz2.'),
         OpaqueFunction(function=_nodes),
     ])
 
@@ -52,7 +63,7 @@ def generate_launch_description() -> LaunchDescription:
 def _nodes(context: LaunchContext) -> list[Node]:
     given = {name: LaunchConfiguration(name).perform(context) for name in PARAMETERS}
     params_file = LaunchConfiguration('params_file').perform(context)
-    return [Node(
+    bridge = Node(
         package='sdf_pose_bridge',
         executable='bridge',
         # With the full name of the node the values below override those of any params file.
@@ -65,4 +76,19 @@ def _nodes(context: LaunchContext) -> list[Node]:
              if value},
         ],
         output='screen',
-    )]
+    )
+    with_rviz = IfCondition(LaunchConfiguration('rviz')).evaluate(context)
+    return [bridge, _rviz(context, given['root_frame'])] if with_rviz else [bridge]
+
+
+def _rviz(context: LaunchContext, root_frame: str) -> Node:
+    namespace = LaunchConfiguration('namespace').perform(context).strip('/')
+    return Node(
+        package='rviz2',
+        executable='rviz2',
+        arguments=[
+            '-d', PathJoinSubstitution([ThisLaunchFileDir(), '..', 'rviz', 'bridge.rviz']),
+            *(['-f', root_frame] if root_frame else [])],
+        remappings=[(VISUALS, f'/{namespace}{VISUALS}')] if namespace else [],
+        output='screen',
+    )

@@ -12,13 +12,18 @@ pytest.importorskip('launch_xml', reason='needs launch_xml, which is not install
 
 from launch import LaunchContext
 from launch.actions import IncludeLaunchDescription
+from launch.conditions import InvalidConditionExpressionError
 from launch.launch_description_sources import AnyLaunchDescriptionSource
 from launch.launch_description_sources import get_launch_description_from_any_launch_file
+from launch.utilities import perform_substitutions
 from launch_ros.actions import Node
 import yaml
 
 FOLDER = Path(__file__).resolve().parents[1] / 'launch'
+RVIZ_FILE = FOLDER.parent / 'rviz/bridge.rviz'
+VISUALS = '/sdf_pose_bridge/visuals'
 FILES = sorted(path.name for path in FOLDER.glob('*.launch.*'))
+BRIDGE_FILES = ['bridge.launch.py', 'bridge.launch.xml']
 URDF = '<robot name="r"><link name="world"/></robot>'
 
 
@@ -27,8 +32,8 @@ def declared(name):
     return {each.name: each for each in description.get_launch_arguments()}
 
 
-def parameters_of_nodes(name, **arguments):
-    """Return the parameters that each node of a file would get, by executable; start none."""
+def nodes_of(name, **arguments):
+    """Return the nodes that a file would start, by executable, and the context; start none."""
     context = LaunchContext()
     found = {}
 
@@ -36,17 +41,34 @@ def parameters_of_nodes(name, **arguments):
         if isinstance(entity, Node):
             # The action itself does this before it starts the process.
             entity._perform_substitutions(context)
-            (file, is_file), = entity._Node__expanded_parameter_arguments
-            assert is_file
-            entries, = yaml.safe_load(Path(file).read_text(encoding='utf-8')).values()
-            found[entity.node_executable] = entries['ros__parameters']
+            found[entity.node_executable] = entity
             return
         for each in entity.visit(context) or []:
             visit(each)
 
     visit(IncludeLaunchDescription(
         AnyLaunchDescriptionSource(str(FOLDER / name)), launch_arguments=arguments.items()))
+    return found, context
+
+
+def parameters_of_nodes(name, **arguments):
+    """Return the parameters that each node of a file would get, by executable."""
+    found = {}
+    for executable, node in nodes_of(name, **arguments)[0].items():
+        (file, is_file), = node._Node__expanded_parameter_arguments
+        assert is_file
+        entries, = yaml.safe_load(Path(file).read_text(encoding='utf-8')).values()
+        found[executable] = entries['ros__parameters']
     return found
+
+
+def rviz_of(name, **arguments):
+    """Return the command line of RViz and the topics that it finds under other names."""
+    nodes, context = nodes_of(name, rviz='true', **arguments)
+    node = nodes['rviz2']
+    # After the executable come the words of the file, and then those of ROS.
+    words = [perform_substitutions(context, each) for each in node.cmd[1:]]
+    return words[:words.index('--ros-args')], dict(node.expanded_remapping_rules or [])
 
 
 def test_these_are_the_launch_files():
@@ -63,10 +85,10 @@ def test_every_argument_has_a_description(name):
         *arguments.values()]
 
 
-@pytest.mark.parametrize('name', ['bridge.launch.py', 'bridge.launch.xml'])
+@pytest.mark.parametrize('name', BRIDGE_FILES)
 def test_the_bridge_can_be_told_file_names_and_parameters(name):
     assert declared(name).keys() == {
-        'sdf_file', 'namespace', 'frame_prefix', 'root_frame', 'params_file'}
+        'sdf_file', 'namespace', 'frame_prefix', 'root_frame', 'params_file', 'rviz'}
 
 
 def test_both_forms_say_the_same_of_their_arguments():
@@ -86,6 +108,41 @@ def test_the_xml_form_hands_on_every_argument():
 def test_a_value_stays_text_whatever_it_looks_like(value):
     nodes = parameters_of_nodes('bridge.launch.py', sdf_file='a.sdf', root_frame=value)
     assert nodes == {'bridge': {'sdf_file': 'a.sdf', 'root_frame': value}}
+
+
+@pytest.mark.parametrize('name', BRIDGE_FILES)
+def test_rviz_is_not_started_unless_it_is_asked_for(name):
+    assert nodes_of(name, sdf_file='a.sdf')[0].keys() == {'bridge'}
+
+
+def test_rviz_must_be_true_or_false():
+    with pytest.raises(InvalidConditionExpressionError):
+        nodes_of('bridge.launch.py', rviz='perhaps')
+
+
+@pytest.mark.parametrize('name', BRIDGE_FILES)
+def test_rviz_starts_with_the_file_of_this_package(name):
+    (option, file), remappings = rviz_of(name, sdf_file='a.sdf')
+    assert (option, Path(file).resolve(), remappings) == ('-d', RVIZ_FILE, {})
+
+
+@pytest.mark.parametrize('namespace', ['left', '/left'])
+def test_rviz_follows_root_frame_and_namespace(namespace):
+    words, remappings = rviz_of('bridge.launch.py', root_frame='map', namespace=namespace)
+    assert words[2:] == ['-f', 'map']
+    assert remappings == {VISUALS: f'/left{VISUALS}'}
+
+
+def test_rviz_shows_frames_and_visuals():
+    manager = yaml.safe_load(RVIZ_FILE.read_text(encoding='utf-8'))['Visualization Manager']
+    assert manager['Global Options']['Fixed Frame'] == 'world'
+    displays = {each['Class'].split('/')[1]: each for each in manager['Displays']}
+    assert displays['TF']['Enabled']
+    assert displays['MarkerArray']['Enabled']
+    # As the node publishes it.
+    assert displays['MarkerArray']['Topic'].items() >= {
+        'Value': VISUALS, 'Durability Policy': 'Transient Local',
+        'Reliability Policy': 'Reliable', 'History Policy': 'Keep Last'}.items()
 
 
 def test_beside_robot_state_publisher_the_two_publish_different_frames(tmp_path):

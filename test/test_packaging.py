@@ -194,7 +194,7 @@ def test_cmake_generates_every_service_file():
     assert set(re.findall(r'"srv/(\w+)\.srv"', text)) == set(SERVICES)
 
 
-@pytest.mark.parametrize('folder', ['launch', 'config', 'examples'])
+@pytest.mark.parametrize('folder', ['launch', 'config', 'rviz', 'examples'])
 def test_every_file_to_share_is_installed_in_its_place(folder):
     files = [
         file.relative_to(ROOT).as_posix() for file in (ROOT / folder).rglob('*')

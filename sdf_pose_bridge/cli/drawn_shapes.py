@@ -5,18 +5,17 @@
 from __future__ import annotations
 
 import importlib
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.cli.triangles import Points
-from sdf_pose_bridge.cli.triangles import points_in_parent
-from sdf_pose_bridge.cli.triangles import Triangles
-from sdf_pose_bridge.cli.triangles import triangles_from_shape
-from sdf_pose_bridge.cli.triangles import triangles_of_box
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.scene.triangles import Points
+from sdf_pose_bridge.scene.triangles import points_in_parent
+from sdf_pose_bridge.scene.triangles import Triangles
+from sdf_pose_bridge.scene.triangles import triangles_from_shape
+from sdf_pose_bridge.scene.triangles import triangles_of_box
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.sdformat.shapes import Shape
@@ -71,8 +70,9 @@ def drawn_shapes_from_scene(
             if not is_inside[element] or (shape.type == 'plane') is not of_planes:
                 continue
             pose = scene.pose_of(element)
-            triangles = boxes.triangles(shape, scene.place(element).file) if (
-                shape.type == 'mesh') else _triangles(shape, largest_m)
+            triangles: Triangles | str = boxes.triangles(shape, scene.place(element).file) if (
+                shape.type == 'mesh') else (
+                triangles_from_shape(shape, largest_m) or shape.reason_without_surface)
             if isinstance(triangles, str):
                 markers.append(Marker(scene.names[element], pose, reason=triangles))
                 continue
@@ -82,13 +82,6 @@ def drawn_shapes_from_scene(
                 (shape.rgba or _GRAY)[:3]))
         largest_m = 1.2 * _size_m(tree, drawn)
     return drawn, markers
-
-
-def _triangles(shape: Shape, largest_m: float) -> Triangles | str:
-    """Return a surface, or why there is none."""
-    if not shape.sizes_m:
-        return f'a {shape.type} is not supported'
-    return triangles_from_shape(shape, largest_m) or 'its sizes are not positive'
 
 
 def _size_m(tree: TfTree, drawn: list[DrawnShape]) -> float:
@@ -115,8 +108,8 @@ class _MeshBoxes:
         :param file: path of the file that names it.
         :return: its surface, or why there is none.
         """
-        path = self._finder.path_from_uri(shape.mesh_uri, file) if shape.mesh_uri else None
-        if path is None or not Path(path).is_file():
+        path = self._finder.file_from_uri(shape.mesh_uri, file)
+        if path is None:
             return f'the mesh "{shape.mesh_uri}" is not found'
         if path not in self._bounds:
             self._bounds[path] = _bounds_of_file(path)

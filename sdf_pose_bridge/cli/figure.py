@@ -19,13 +19,13 @@ from sdf_pose_bridge.cli.drawn_shapes import DrawnShape
 from sdf_pose_bridge.cli.drawn_shapes import Marker
 from sdf_pose_bridge.cli.frames import kind_labels_of
 from sdf_pose_bridge.cli.frames import Units
-from sdf_pose_bridge.cli.triangles import Points
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.scene.triangles import Points
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT

@@ -10,6 +10,8 @@ import time
 from typing import NamedTuple
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UriLookupError
@@ -31,6 +33,7 @@ class LoadedScene(NamedTuple):
     """A file that was read."""
 
     path: Path
+    scene: Scene
     tree: TfTree
     lookup: PoseLookup
     joint_positions: JointPositions | None
@@ -56,13 +59,12 @@ def loaded_scene_from_settings(settings: Settings) -> LoadedScene:
     read_since_ns = time.time_ns()
     begin = time.perf_counter()
     path, manifests, warnings = _file_from_settings(settings)
-    scene = load(
-        path, resource_paths=settings.resource_paths,
-        on_missing_include=settings.on_missing_include)
+    scene = _scene_from_file(path, settings)
     tree = tf_tree_from_scene(scene, settings.tf_options)
     joint_positions = _joint_positions(scene, tree, settings)
     return LoadedScene(
         path=path,
+        scene=scene,
         tree=tree,
         lookup=PoseLookup(
             scene, tree, None if joint_positions is None else joint_positions.values),
@@ -72,6 +74,32 @@ def loaded_scene_from_settings(settings: Settings) -> LoadedScene:
         read_since_ns=read_since_ns,
         seconds=time.perf_counter() - begin,
     )
+
+
+def scene_with_shapes(loaded: LoadedScene, settings: Settings) -> Scene | None:
+    """
+    Read the file of a loaded scene again, with its shapes.
+
+    Shapes are not read with the rest because that would make each load a quarter longer, or more,
+    and few nodes need them.
+
+    :param loaded: the loaded scene.
+    :param settings: the settings that it was loaded with.
+    :return: the scene with shapes; None if the file is not valid, or has other elements or poses.
+    """
+    try:
+        scene = _scene_from_file(loaded.path, settings, shapes=True)
+    except SdfError:
+        return None
+    is_same = scene.names == loaded.scene.names and np.array_equal(
+        scene.poses, loaded.scene.poses)
+    return scene if is_same else None
+
+
+def _scene_from_file(path: Path, settings: Settings, *, shapes: bool = False) -> Scene:
+    return load(
+        path, resource_paths=settings.resource_paths,
+        on_missing_include=settings.on_missing_include, shapes=shapes)
 
 
 def _joint_positions(scene: Scene, tree: TfTree, settings: Settings) -> JointPositions | None:

@@ -52,6 +52,7 @@ from sdf_pose_bridge.sdformat.include.uris import AddressError
 
 if TYPE_CHECKING:
     from sdf_pose_bridge.ros.joint_states import JointStates
+    from sdf_pose_bridge.ros.visuals import VisualPublisher
 
 
 class SdfPoseBridge:
@@ -83,6 +84,7 @@ class SdfPoseBridge:
         self._steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._again_timer: Timer | None = None
         self._joint_states: JointStates | None = None
+        self._visuals: VisualPublisher | None = None
 
     async def start(self) -> None:
         """Publish the scene on all other topics, and offer services."""
@@ -105,6 +107,9 @@ class SdfPoseBridge:
                 guard_condition.trigger()
 
         self._polling = PollingThread(self._has_to_check_files, trigger)
+        # Imported here because everything else is more urgent.
+        from sdf_pose_bridge.ros.visuals import VisualPublisher
+        self._visuals = VisualPublisher(self._node, self._loaded, self._settings)
 
     # Loading
 
@@ -130,6 +135,8 @@ class SdfPoseBridge:
             f'{_count(loaded.tree.transform_count, "transform")}, root frame '
             f'"{loaded.tree.root_frame}" (read in {1e3 * loaded.seconds:.0f} ms)')
         self._diagnostics.update(loaded)
+        if self._visuals is not None:
+            self._visuals.replace(loaded, self._settings)
 
     def _follow_joints(self, loaded: LoadedScene) -> None:
         """Publish what joints move on ``/tf``, if they follow ``joint_states``."""

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from collections.abc import Mapping
 from collections.abc import Sequence
 from itertools import compress
@@ -11,6 +12,7 @@ from itertools import compress
 from geometry_msgs.msg import PoseStamped
 from geometry_msgs.msg import TransformStamped
 from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.event_handler import QoSPublisherMatchedInfo
 from rclpy.logging import LoggingSeverity
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -151,7 +153,10 @@ class FramePublishers:
                 logger.debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
 
 
-def latched_publisher(node: Node, message_type: type, name: str, *, depth: int) -> Publisher:
+def latched_publisher(
+    node: Node, message_type: type, name: str, *, depth: int,
+    matched: Callable[[QoSPublisherMatchedInfo], None] | None = None,
+) -> Publisher:
     """
     Make a publisher whose last messages also reach listeners that come later.
 
@@ -159,6 +164,7 @@ def latched_publisher(node: Node, message_type: type, name: str, *, depth: int) 
     :param message_type: class of the messages.
     :param name: name of the topic.
     :param depth: how many messages it keeps.
+    :param matched: called when a listener comes or goes.
     :return: the publisher.
     """
     quality = QoSProfile(
@@ -169,4 +175,4 @@ def latched_publisher(node: Node, message_type: type, name: str, *, depth: int) 
     # cannot be offered; but the executor waits for each, a thousand of them in a large scene.
     return node.create_publisher(
         message_type, name, quality,
-        event_callbacks=PublisherEventCallbacks(use_default_callbacks=False))
+        event_callbacks=PublisherEventCallbacks(matched=matched, use_default_callbacks=False))

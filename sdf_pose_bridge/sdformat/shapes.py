@@ -69,6 +69,13 @@ class Shape(NamedTuple):
             all(map(math.isfinite, (*self.sizes_m, *self.normal, *self.mesh_scale)))
             and all(size_m > 0.0 for size_m in self.required_sizes_m) and any(self.normal))
 
+    @property
+    def reason_without_surface(self) -> str:
+        """Why no surface can be made from the sizes alone; empty if one can."""
+        if not self.sizes_m:
+            return f'a {self.type} is not supported'
+        return '' if self.has_extent else 'its sizes are not positive'
+
 
 def shape_of(xml: XmlElement) -> Shape | None:
     """

@@ -93,6 +93,9 @@ class TfTree(NamedTuple):
     """Shape (n, 7): pose of each frame in its parent; the identity if it has none."""
     elements: Indices
     """The element of the scene that each frame belongs to; -1 for an optical frame."""
+    nearest_frames: Indices
+    """The frame of each element of the scene, or that of the nearest element above it in TF that
+    has one; or :data:`ROOT_IS_PARENT`, or :data:`NO_PARENT`."""
     moving: MovingFrames | None
     """The frames that joints move; None if joints do not follow ``joint_states``."""
     world: str
@@ -161,8 +164,10 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
                'it moves nothing there')
         problems.warning(msg, scene.place(joint.element))
     problems.raise_errors()
+    nearest_frames, parents_of_elements = _nearest_frames_and_parents(
+        scene, tf_parents, options.anchor_models, elements)
     parents = np.concatenate([
-        _parents_of_frames(scene, tf_parents, options.anchor_models, elements),
+        parents_of_elements,
         np.array([ROOT_IS_PARENT if frame.parent is None else frame.parent
                   for frame in optical_frames], np.int32)])
     # The last two poses serve the two negative indices among the parents.
@@ -186,11 +191,13 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         parents=parents,
         transforms=transforms,
         elements=np.concatenate([elements, np.full(len(optical_frames), -1, np.int32)]),
+        nearest_frames=nearest_frames,
         moving=moving,
         world=scene.world_names.get(0, ''),
         warnings=problems.warnings,
     )
-    for array in (tree.poses, tree.parents, tree.transforms, tree.elements):
+    for array in (
+            tree.poses, tree.parents, tree.transforms, tree.elements, tree.nearest_frames):
         array.setflags(write=False)
     return tree
 
@@ -274,17 +281,21 @@ def _description(scene: Scene, element: int) -> str:
     return f'{Kind(scene.kinds[element]).label} "{scene.names[element]}"'
 
 
-def _parents_of_frames(
+def _nearest_frames_and_parents(
     scene: Scene, tf_parents: TfParents, anchor_models: AnchorModels, elements: Indices,
-) -> Indices:
+) -> tuple[Indices, Indices]:
     """
-    Find the parent of each frame: the nearest TF ancestor of its element that has a frame.
+    Find the frame that each element is in, and the parent of each frame.
+
+    The parent is the nearest TF ancestor of the frame's element that has a frame.
 
     :param scene: the scene.
     :param tf_parents: the TF parents of all elements.
     :param anchor_models: which top-level models get a transform from the root frame.
     :param elements: the elements that have a frame.
-    :return: the index of each parent among the frames, or one of the two constants.
+    :return: for each element of the scene the index of the frame of the nearest element, itself
+        included, that has one; for each frame the index of its parent. Both may be one of the two
+        constants instead.
     """
     is_root = scene.parents < 0
     is_detached = np.zeros(len(is_root), np.bool_)
@@ -296,10 +307,11 @@ def _parents_of_frames(
     frames[elements] = np.arange(len(elements))
     ends_here = is_root | is_detached
     ends_here[elements] = True
-    nearest = ends_from_pointers(np.where(ends_here, -1, tf_parents.parents))
-    parents: Indices = frames[nearest[tf_parents.parents[elements]]]
+    nearest_frames: Indices = frames[ends_from_pointers(
+        np.where(ends_here, -1, tf_parents.parents))]
+    parents: Indices = nearest_frames[tf_parents.parents[elements]]
     parents[is_detached[elements]] = NO_PARENT
-    return parents
+    return nearest_frames, parents
 
 
 def _is_anchored(

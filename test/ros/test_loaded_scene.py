@@ -12,6 +12,7 @@ from sdf_texts import world_file
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
+from sdf_pose_bridge.ros.loaded_scene import scene_with_shapes
 from sdf_pose_bridge.ros.parameters import settings_from_node
 
 GOOD = '<model name="m"><link name="l"><pose>1 0 0 0 0 0</pose></link><frame name="f"/></model>'
@@ -44,3 +45,37 @@ def test_a_path_that_is_too_long_is_said_to_be(make_node):
     settings = settings_from_node(make_node('bridge', '-p', f'sdf_file:=/{"x" * 1000}'))
     with pytest.raises(SdfError, match='File name too long'):
         loaded_scene_from_settings(settings)
+
+
+VISUAL = '<visual name="v"><geometry><box/></geometry></visual>'
+WITH_SHAPE = world_file(f'<model name="m"><link name="l">{VISUAL}</link></model>')
+
+
+@pytest.fixture(name='reread')
+def make_reread(make_node, tmp_path):
+    """Loads a file, changes it and reads it with its shapes; ``reread(text)``."""
+    path = tmp_path / 'cell.sdf'
+    path.write_text(WITH_SHAPE, encoding='utf-8')
+    settings = settings_from_node(make_node('bridge', '-p', f'sdf_file:={path}'))
+    loaded = loaded_scene_from_settings(settings)
+    assert not loaded.scene.shapes
+
+    def reread(text):
+        path.write_text(text, encoding='utf-8')
+        return scene_with_shapes(loaded, settings)
+
+    return reread
+
+
+@pytest.mark.parametrize('text', [
+    '', world_file(BAD), world_file(GOOD),
+    WITH_SHAPE.replace('"l">', '"l"><pose>1 0 0 0 0 0</pose>'),
+    WITH_SHAPE.replace('"v"', '"w"'),
+], ids=['empty', 'bad', 'other elements', 'other pose', 'other name'])
+def test_shapes_of_a_file_that_has_changed_are_refused(reread, text):
+    assert reread(text) is None
+
+
+def test_shapes_are_read_again(reread):
+    (shape,) = reread(WITH_SHAPE).shapes.values()
+    assert shape.type == 'box'

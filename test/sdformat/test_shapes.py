@@ -97,5 +97,13 @@ def test_shape_has_an_extent_if_its_sizes_are_positive(sizes_m, has_extent):
     assert shape._replace(normal=(0, 0, 0)).has_extent is False
 
 
+@pytest.mark.parametrize(('kind', 'sizes_m', 'reason'), [
+    ('mesh', (), 'a mesh is not supported'), ('sphere', (0.0,), 'its sizes are not positive'),
+    ('sphere', (1.0,), '')])
+def test_reason_without_a_surface(kind, sizes_m, reason):
+    shape = Shape(kind, sizes_m, (0, 0, 1), '', '', (1, 1, 1), None)
+    assert shape.reason_without_surface == reason
+
+
 def test_capsule_may_have_no_length():
     assert Shape('capsule', (1.0, 0.0), (0, 0, 1), '', '', (1, 1, 1), None).has_extent

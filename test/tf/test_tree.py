@@ -174,6 +174,23 @@ def test_a_frame_without_a_parent_starts_a_tree_of_its_own():
     assert (parents['free/l'], parents['free'], parents['free/f']) == ('', 'free/l', 'free')
 
 
+@pytest.mark.parametrize(('kinds', 'anchor', 'nearest'), [
+    ({Kind.LINK}, AnchorModels.NONE, {
+        'world': 'world', 'free': 'free/l', 'free::l': 'free/l', 'free::f': 'free/l',
+        'held::l': 'held/l'}),
+    ({Kind.FRAME}, AnchorModels.STATIC, {
+        'table::l': 'world', 'free': '', 'free::l': '', 'free::f': 'free/f',
+        'bolted::l': 'world', 'held::l': 'world'}),
+])
+def test_nearest_frame_of_each_element(kinds, anchor, nearest):
+    scene = sdf_pose_bridge.load_text(CELL)
+    tree = tf_tree_from_scene(scene, TfOptions(kinds=frozenset(kinds), anchor_models=anchor))
+    # The last two serve the two negative indices.
+    ids = (*tree.frame_ids, '', tree.root_frame)
+    assert {
+        name: ids[tree.nearest_frames[scene.index(name)]] for name in nearest} == nearest
+
+
 def test_the_default_kinds():
     assert {kind.label for kind in DEFAULT_KINDS} == {'model', 'link', 'frame', 'sensor'}
 

@@ -72,6 +72,17 @@ class ResourceFinder(NamedTuple):
             if os.path.exists(path))  # noqa: PTH110
         return next(found, None)
 
+    def file_from_uri(self, uri: str, naming_file: str) -> str | None:
+        """
+        Find a file that is no directory, such as a mesh.
+
+        :param uri: as for :meth:`path_from_uri`.
+        :param naming_file: path of the file that holds the URI.
+        :return: the path, or None.
+        """
+        path = self.path_from_uri(uri, naming_file)
+        return path if path is not None and os.path.isfile(path) else None  # noqa: PTH113
+
     def path_from_address(self, address: str) -> Path:
         """
         Return the path that a user's address of a file means.

@@ -64,6 +64,17 @@ def test_first_search_path_is_used(tmp_path):
     assert found('model://box', tmp_path, [tmp_path / 'a', tmp_path / 'b']) == box
 
 
+@pytest.mark.parametrize('uri', ['', 'folder', 'none.stl', 'a\x00b'])
+def test_what_is_no_file_is_not_found_as_one(uri, tmp_path):
+    (tmp_path / 'folder').mkdir()
+    assert resource_finder([tmp_path], {}).file_from_uri(uri, 'm.sdf') is None
+
+
+def test_file_is_found(tmp_path):
+    mesh = write(tmp_path, 'arm/a.stl')
+    assert resource_finder([tmp_path], {}).file_from_uri('model://arm/a.stl', 'm.sdf') == mesh
+
+
 @pytest.mark.parametrize('scheme', ['', 'file://'])
 def test_absolute_path_is_used_as_it_is(scheme, tmp_path):
     box = write(tmp_path, 'box.sdf')

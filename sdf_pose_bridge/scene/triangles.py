@@ -45,7 +45,7 @@ def triangles_from_shape(shape: Shape, largest_m: float) -> Triangles | None:
         other shapes from files.
     """
     sizes = shape.sizes_m
-    if not sizes or not shape.has_extent:
+    if shape.reason_without_surface:
         return None
     if shape.type == 'box':
         return Triangles(_CORNERS * sizes, _BOX_FACES)

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from sdf_pose_bridge.cli.triangles import triangles_from_shape
-from sdf_pose_bridge.cli.triangles import triangles_of_box
+from sdf_pose_bridge.scene.triangles import triangles_from_shape
+from sdf_pose_bridge.scene.triangles import triangles_of_box
 from sdf_pose_bridge.sdformat.shapes import Shape
 
 

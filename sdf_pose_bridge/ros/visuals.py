@@ -1,0 +1,121 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Publish what the links look like, for RViz, while somebody listens."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+import os
+
+from geometry_msgs.msg import Point
+from geometry_msgs.msg import Pose as PoseMessage
+from geometry_msgs.msg import Quaternion
+from geometry_msgs.msg import Vector3
+from rclpy.event_handler import QoSPublisherMatchedInfo
+from rclpy.node import Node
+from std_msgs.msg import ColorRGBA
+from std_msgs.msg import Header
+from visualization_msgs.msg import Marker
+from visualization_msgs.msg import MarkerArray
+
+from sdf_pose_bridge.ros.background import run_in_thread
+from sdf_pose_bridge.ros.loaded_scene import LoadedScene
+from sdf_pose_bridge.ros.loaded_scene import scene_with_shapes
+from sdf_pose_bridge.ros.log_lines import lines_from_warnings
+from sdf_pose_bridge.ros.parameters import Settings
+from sdf_pose_bridge.ros.publishers import latched_publisher
+from sdf_pose_bridge.sdformat.include.uris import resource_finder
+from sdf_pose_bridge.tf.visual_markers import visual_markers_from_scene
+from sdf_pose_bridge.tf.visual_markers import VisualMarker
+
+
+class VisualPublisher:
+    """
+    Publishes ``~/visuals``.
+
+    Shapes are read and markers made when somebody listens for the first time, and again for each
+    scene that replaces another one while somebody listens.
+
+    :param node: the node that it belongs to.
+    :param loaded: the scene.
+    :param settings: the settings that it was loaded with.
+    """
+
+    def __init__(self, node: Node, loaded: LoadedScene, settings: Settings) -> None:
+        self._node = node
+        self._loaded, self._settings = loaded, settings
+        self._is_up_to_date = False
+        self._publisher = latched_publisher(
+            node, MarkerArray, '~/visuals', depth=1, matched=self._on_match)
+
+    def replace(self, loaded: LoadedScene, settings: Settings) -> None:
+        """
+        Show another scene from now on.
+
+        :param loaded: the scene.
+        :param settings: the settings that it was loaded with.
+        """
+        self._loaded, self._settings = loaded, settings
+        self._is_up_to_date = False
+        self._publish_to_listeners()
+
+    def _on_match(self, _event: QoSPublisherMatchedInfo) -> None:
+        self._publish_to_listeners()
+
+    def _publish_to_listeners(self) -> None:
+        if not self._is_up_to_date and self._publisher.get_subscription_count() > 0:
+            self._is_up_to_date = True
+            self._node.executor.create_task(self._publish, self._loaded, self._settings)
+
+    async def _publish(self, loaded: LoadedScene, settings: Settings) -> None:
+        message, lines = await run_in_thread(
+            self._node, lambda: _message_and_warnings(loaded, settings))
+        if loaded is not self._loaded:
+            return
+        for line in lines:
+            self._node.get_logger().warning(line)
+        if message is not None:
+            self._publisher.publish(message)
+
+
+def _message_and_warnings(
+    loaded: LoadedScene, settings: Settings,
+) -> tuple[MarkerArray | None, list[str]]:
+    scene = scene_with_shapes(loaded, settings)
+    if scene is None:
+        return None, [f'~/visuals stays as it is: {loaded.path} has changed since it was read']
+    markers, warnings = visual_markers_from_scene(
+        scene, loaded.tree, settings.model, resource_finder(settings.resource_paths, os.environ))
+    return message_from_markers(markers, loaded.tree.root_frame), lines_from_warnings(warnings)
+
+
+def message_from_markers(markers: Iterable[VisualMarker], root_frame: str) -> MarkerArray:
+    """
+    Make the message of all markers.
+
+    :param markers: the markers.
+    :param root_frame: frame id of the root.
+    :return: the message, which deletes all markers of earlier messages first. Stamps are zero, for
+        which RViz takes the latest transforms.
+    """
+    delete_all = Marker(header=Header(frame_id=root_frame), action=Marker.DELETEALL)
+    return MarkerArray(markers=[
+        delete_all,
+        *(_marker_message(marker, number) for number, marker in enumerate(markers, start=1))])
+
+
+def _marker_message(marker: VisualMarker, number: int) -> Marker:
+    x, y, z, qx, qy, qz, qw = marker.pose
+    form = marker.form
+    # No color means that of the mesh itself.
+    red, green, blue, alpha = marker.rgba or (0.0, 0.0, 0.0, 0.0)
+    return Marker(
+        header=Header(frame_id=marker.frame_id), frame_locked=True,
+        ns=marker.namespace, id=number, action=Marker.ADD, type=getattr(Marker, form.type),
+        pose=PoseMessage(
+            position=Point(x=x, y=y, z=z), orientation=Quaternion(x=qx, y=qy, z=qz, w=qw)),
+        scale=Vector3(**dict(zip('xyz', form.scale, strict=True))),
+        color=ColorRGBA(r=red, g=green, b=blue, a=alpha),
+        points=[Point(x=x, y=y, z=z) for x, y, z in form.points.tolist()],
+        mesh_resource=form.mesh_resource,
+        mesh_use_embedded_materials=marker.rgba is None)

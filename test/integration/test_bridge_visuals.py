@@ -1,0 +1,105 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``~/visuals`` of a running bridge, received by another process."""
+
+from changes import BRIDGE
+from changes import reload
+from changes import replace
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from listener import latched
+from visualization_msgs.msg import Marker
+from visualization_msgs.msg import MarkerArray
+
+
+def crate(*visuals):
+    """Return a file with a crate that has visuals of these names and shapes."""
+    children = ''.join(
+        f'<visual name="{name}"><pose>0 0 1 0 0 0</pose><geometry>{shape}</geometry></visual>'
+        for name, shape in visuals)
+    return f"""<sdf version="1.10"><world name="w">
+  <model name="crate"><pose>5 0 0 0 0 0</pose><link name="body">{children}</link></model>
+</world></sdf>"""
+
+
+BOX = ('side', '<box><size>1 2 3</size></box>')
+BALL = ('ball', '<sphere><radius>2</radius></sphere>')
+
+
+@pytest.fixture
+def sdf_file(tmp_path):
+    path = tmp_path / 'crate.sdf'
+    path.write_text(crate(BOX), encoding='utf-8')
+    return path
+
+
+def arrays_of(listener):
+    arrays = []
+    listener.node.create_subscription(
+        MarkerArray, f'{BRIDGE}/visuals', arrays.append, latched(1))
+    return arrays
+
+
+def wait_for_types(listener, arrays, *types):
+    """Wait for an array with markers of these types after the one that deletes all; return it."""
+    def last():
+        return [each.type for each in arrays[-1].markers[1:]] if arrays else None
+
+    listener.wait(lambda: last() == list(types), lambda: f'{types}; last was {last()}')
+    return arrays[-1]
+
+
+@pytest.mark.parametrize('comes_first', ['bridge', 'listener'])
+def test_listener_gets_the_visuals(start_bridge, start_listener, sdf_file, comes_first):
+    listener = start_listener()
+    arrays = arrays_of(listener) if comes_first == 'listener' else None
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={sdf_file}')
+    if arrays is None:
+        bridge.wait_until_started()
+        arrays = arrays_of(listener)
+    first, box = wait_for_types(listener, arrays, Marker.CUBE).markers
+    assert first.action == Marker.DELETEALL
+    assert (box.header.frame_id, box.ns) == ('crate/body', 'crate')
+    assert (box.scale.x, box.scale.y, box.scale.z, box.pose.position.z) == (1, 2, 3, 1)
+    assert len(arrays) == 1
+
+
+def test_second_listener_gets_them_too(start_bridge, start_listener, sdf_file):
+    start_bridge('--ros-args', '-p', f'sdf_file:={sdf_file}')
+    listener = start_listener()
+    wait_for_types(listener, arrays_of(listener), Marker.CUBE)
+    late = start_listener()
+    wait_for_types(late, arrays_of(late), Marker.CUBE)
+
+
+def test_visuals_follow_a_reload(start_bridge, start_listener, sdf_file):
+    start_bridge('--ros-args', '-p', f'sdf_file:={sdf_file}', '-p', 'watch:=false')
+    listener = start_listener()
+    arrays = arrays_of(listener)
+    wait_for_types(listener, arrays, Marker.CUBE)
+    replace(sdf_file, crate(BALL))
+    assert reload(listener).success
+    array = wait_for_types(listener, arrays, Marker.SPHERE)
+    assert array.markers[0].action == Marker.DELETEALL
+
+
+def test_visuals_are_those_of_the_published_file(start_bridge, start_listener, sdf_file):
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={sdf_file}', '-p', 'watch:=false')
+    bridge.wait_until_started()
+    replace(sdf_file, crate(BALL))
+    listener = start_listener()
+    arrays = arrays_of(listener)
+    bridge.wait_for_line('has changed since it was read')
+    assert reload(listener).success
+    wait_for_types(listener, arrays, Marker.SPHERE)
+    assert len(arrays) == 1
+
+
+def test_visual_that_cannot_be_shown_is_reported(start_bridge, start_listener, sdf_file):
+    replace(sdf_file, crate(('part', '<mesh><uri>none.stl</uri></mesh>'), BOX))
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={sdf_file}')
+    listener = start_listener()
+    wait_for_types(listener, arrays_of(listener), Marker.CUBE)
+    bridge.wait_for_line('"crate::body::part" is not shown: the mesh "none.stl" is not found')
