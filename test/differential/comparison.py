@@ -23,8 +23,8 @@ TOLERANCE = 1e-9
 ROUNDED_TOLERANCE = 1e-3
 """The same for a scene in which the reference rounds poses to six digits: MERGED_PLACEMENT."""
 
-URDF_TOLERANCE = 1e-7
-"""The same for a scene with URDF: URDF_AT_GIMBAL_LOCK."""
+URDF_TOLERANCE = 2e-5
+"""The same for a scene with URDF: URDF_ANGLES."""
 
 NOT_RESOLVED = {'sensor of a joint': JOINT_SENSOR, 'projector': PROJECTOR}
 """Elements that some release cannot resolve."""

@@ -40,15 +40,15 @@ PROJECTOR = KnownDefect(
 MERGED_PLACEMENT = KnownDefect(
     'merged model with a placement frame', '14.0', Remedy.LOOSENED,
     'the pose that follows from it is written with six digits')
-URDF_AT_GIMBAL_LOCK = KnownDefect(
-    'joint of URDF near gimbal lock', '', Remedy.LOOSENED,
-    'its pose is written as angles, of which the pitch is then off by up to 5e-8')
+URDF_ANGLES = KnownDefect(
+    'angles in URDF near half turns and gimbal lock', '', Remedy.LOOSENED,
+    'they are written with few digits; by chance, 3.14159 and -3.14159 are not one rotation')
 
 KNOWN_DEFECTS = (
     JOINT_SENSOR,
     PROJECTOR,
     MERGED_PLACEMENT,
-    URDF_AT_GIMBAL_LOCK,
+    URDF_ANGLES,
     KnownDefect(
         'fixed joint or its child link in URDF with one of "\'&< in its name', '',
         Remedy.NOT_DRAWN, 'it crashes'),

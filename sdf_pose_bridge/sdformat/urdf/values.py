@@ -73,10 +73,15 @@ def pose_from_numbers(numbers: Sequence[float]) -> Pose:
     Convert a pose.
 
     :param numbers: x y z in metres, roll pitch yaw in radians; finite.
-    :return: the pose.
+    :return: the pose. Its quaternion has the sign that libsdformat gives it, because the angles
+        that ``rpy_by_urdfdom`` makes of it depend on the sign, and with them how they are rounded.
     """
-    x, y, z, roll, pitch, yaw = numbers
-    return Pose(x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))
+    x, y, z, *rpy_rad = numbers
+    halves = [angle / 2.0 for angle in rpy_rad]
+    sign = math.copysign(
+        1.0, math.prod(map(math.cos, halves)) + math.prod(map(math.sin, halves)))
+    qx, qy, qz, qw = quaternion_from_rpy(rpy_rad)
+    return Pose(x, y, z, sign * qx, sign * qy, sign * qz, sign * qw)
 
 
 def text_from_numbers(numbers: Sequence[float], digits: int = 16) -> str:

@@ -76,6 +76,10 @@ def test_angles_by_urdfdom_near_gimbal_lock(sign):
     assert yaw == pytest.approx(0.1 - sign * 0.3, abs=1e-2)
 
 
+def test_quaternion_has_the_sign_of_libsdformat():
+    assert pose_from_numbers([0, 0, 0, 0, 0, 5.0]).qw == pytest.approx(math.cos(2.5))
+
+
 def test_pose_from_numbers():
     assert pose_from_numbers([1, 2, 3, math.pi, 0, 0]) == pytest.approx(
         Pose(1, 2, 3, 1, 0, 0, 0))
