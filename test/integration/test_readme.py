@@ -118,4 +118,5 @@ def test_warnings(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(['check', '--strict', 'cell.sdf']) == 1
     printed = capsys.readouterr().out.splitlines()
-    assert shown_after('$ sdf_pose check --strict cell.sdf', COMMAND_LINE)[:len(printed)] == printed
+    shown = shown_after('$ sdf_pose check --strict cell.sdf', COMMAND_LINE)
+    assert shown[:len(printed)] == printed
