@@ -12,6 +12,7 @@ import numpy as np
 
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
@@ -24,22 +25,26 @@ from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import elements_in_model
 from sdf_pose_bridge.tf.tree import TfTree
 
-MOST_MARKERS = 20_000
-MOST_POINTS = 1_000_000
-"""How many corners of triangles all markers may have together."""
+MOST_MARKERS = 10_000
+"""How many markers there may be. To send these takes a fifth of a second, in one piece."""
+
+MOST_POINTS = 150_000
+"""How many corners of triangles all markers may have together; to send these takes as long."""
 
 _GRAY = (0.7, 0.7, 0.7, 1.0)
 _NO_POINTS = np.zeros((0, 3))
 
 
 class Form(NamedTuple):
-    """What a marker looks like, in its own frame."""
+    """What a marker looks like."""
 
     type: str
     """The name of a constant of ``visualization_msgs/Marker``: ``CUBE``, ``SPHERE``,
     ``CYLINDER``, ``MESH_RESOURCE`` or ``TRIANGLE_LIST``."""
     scale: tuple[float, ...] = (1.0, 1.0, 1.0)
     """Along x, y and z: metres, but factors for a mesh and triangles."""
+    z_m: float = 0.0
+    """Where its center is on the z axis of the visual."""
     points: Points = _NO_POINTS
     """Shape (3 n, 3): the corners of n triangles, one after the other; empty for others."""
     mesh_resource: str = ''
@@ -47,14 +52,14 @@ class Form(NamedTuple):
 
 
 class VisualMarker(NamedTuple):
-    """The marker of a visual."""
+    """The marker of a visual, or of a part of it."""
 
     namespace: str
     """Scoped name of the model, so that RViz can show and hide each."""
     frame_id: str
     """Frame id of the link, or of its nearest ancestor in TF that is published."""
     pose: Pose
-    """Pose of the visual in this frame."""
+    """Pose of the form in this frame."""
     form: Form
     rgba: tuple[float, float, float, float] | None
     """Color, each component from 0 to 1; None for the materials of the mesh itself."""
@@ -87,54 +92,64 @@ def visual_markers_from_scene(
         link = int(scene.parents[element])
         frame = int(tree.nearest_frames[link])
         place = scene.place(element)
-        form = _form_from_shape(shape, place.file, finder)
-        if isinstance(form, str) or frame == NO_PARENT:
-            reason = form if isinstance(form, str) else (
+        forms = _forms_from_shape(shape, place.file, finder)
+        if isinstance(forms, str) or frame == NO_PARENT:
+            reason = forms if isinstance(forms, str) else (
                 'neither its link nor a frame above that in TF is published')
             msg = f'the visual "{scene.names[element]}" is not shown: {reason}'
             problems.warning(msg, place)
             continue
-        point_count += len(form.points)
-        if len(markers) == MOST_MARKERS or point_count > MOST_POINTS:
-            msg = f'only the first {len(markers)} visuals are shown'
+        point_count += sum(len(form.points) for form in forms)
+        if len(markers) + len(forms) > MOST_MARKERS or point_count > MOST_POINTS:
+            msg = (f'the visual "{scene.names[element]}" and all that follow are not shown: there '
+                   'are too many')
             problems.warning(msg, place)
             break
         if shape.submesh:
             msg = (f'all of the mesh "{shortened(shape.mesh_uri)}" is shown instead of its part '
                    f'"{shortened(shape.submesh)}", because RViz cannot show a part of a mesh')
             problems.warning(msg, place)
-        is_in_root = frame < 0
-        markers.append(VisualMarker(
-            scene.names[scene.parents[link]],
-            tree.root_frame if is_in_root else tree.frame_ids[frame],
-            scene.relative_pose_of(element, 0 if is_in_root else int(tree.elements[frame])),
-            form,
-            shape.rgba or (None if form.mesh_resource else _GRAY)))
+        namespace = scene.names[scene.parents[link]]
+        frame_id, reference = (tree.root_frame, 0) if frame < 0 else (
+            tree.frame_ids[frame], int(tree.elements[frame]))
+        pose = scene.relative_pose_of(element, reference)
+        rgba = shape.rgba or (None if shape.type == 'mesh' else _GRAY)
+        markers += [
+            VisualMarker(namespace, frame_id, pose_product(pose, Pose(z=form.z_m)), form, rgba)
+            for form in forms]
     return markers, problems.warnings
 
 
-def _form_from_shape(shape: Shape, file: str, finder: ResourceFinder) -> Form | str:
+def _forms_from_shape(
+    shape: Shape, file: str, finder: ResourceFinder,
+) -> tuple[Form, ...] | str:
     """Return what a visual looks like, or why it cannot be shown."""
     if shape.type == 'mesh':
-        return _form_from_mesh(shape, file, finder)
+        return _form_of_mesh(shape, file, finder)
     if shape.reason_without_surface:
         return shape.reason_without_surface
     sizes_m = shape.sizes_m
     if shape.type == 'box':
-        return Form('CUBE', sizes_m)
-    if shape.type in ('sphere', 'ellipsoid'):
-        radii_m = sizes_m if len(sizes_m) == 3 else 3 * sizes_m
-        return Form('SPHERE', tuple(2.0 * radius_m for radius_m in radii_m))
+        return (Form('CUBE', sizes_m),)
+    if shape.type == 'ellipsoid':
+        return (Form('SPHERE', tuple(2.0 * radius_m for radius_m in sizes_m)),)
+    if shape.type in ('cone', 'plane'):
+        triangles = triangles_from_shape(shape, largest_m=math.inf)
+        assert triangles is not None
+        return (Form('TRIANGLE_LIST', points=triangles.points[triangles.faces.reshape(-1)]),)
+    # What remains is round. A capsule that is not longer than its ends is a sphere.
+    diameter_m, length_m = 2.0 * sizes_m[0], max((*sizes_m, 0.0)[1], 0.0)
+    sphere = Form('SPHERE', (diameter_m, diameter_m, diameter_m))
+    if not length_m:
+        return (sphere,)
+    cylinder = Form('CYLINDER', (diameter_m, diameter_m, length_m))
     if shape.type == 'cylinder':
-        radius_m, length_m = sizes_m
-        return Form('CYLINDER', (2.0 * radius_m, 2.0 * radius_m, length_m))
-    triangles = triangles_from_shape(shape, largest_m=math.inf)
-    if triangles is None:
-        return shape.reason_without_surface
-    return Form('TRIANGLE_LIST', points=triangles.points[triangles.faces.reshape(-1)])
+        return (cylinder,)
+    return (
+        cylinder, sphere._replace(z_m=-0.5 * length_m), sphere._replace(z_m=0.5 * length_m))
 
 
-def _form_from_mesh(shape: Shape, file: str, finder: ResourceFinder) -> Form | str:
+def _form_of_mesh(shape: Shape, file: str, finder: ResourceFinder) -> tuple[Form] | str:
     if not all(map(math.isfinite, shape.mesh_scale)):
         return f'the scale of the mesh "{shortened(shape.mesh_uri)}" is not finite'
     uri = shape.mesh_uri
@@ -144,4 +159,4 @@ def _form_from_mesh(shape: Shape, file: str, finder: ResourceFinder) -> Form | s
         if path is None:
             return f'the mesh "{shortened(uri)}" is not found'
         uri = Path(path).absolute().as_uri()
-    return Form('MESH_RESOURCE', shape.mesh_scale, mesh_resource=uri)
+    return (Form('MESH_RESOURCE', shape.mesh_scale, mesh_resource=uri),)

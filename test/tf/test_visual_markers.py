@@ -91,7 +91,7 @@ def test_number_of_markers_is_limited(monkeypatch):
     content = ''.join(visual(BOX, name=name) for name in 'abcd')
     markers, (warning,) = markers_and_warnings(link_with(content))
     assert len(markers) == 2
-    assert 'only the first 2 visuals are shown' in str(warning)
+    assert 'the visual "m::l::c" and all that follow are not shown' in str(warning)
 
 
 def test_number_of_points_is_limited(monkeypatch):
@@ -99,7 +99,7 @@ def test_number_of_points_is_limited(monkeypatch):
     content = ''.join(visual('<plane/>', name=name) for name in 'abcd')
     markers, (warning,) = markers_and_warnings(link_with(content))
     assert len(markers) == 2
-    assert 'only the first 2 visuals are shown' in str(warning)
+    assert 'the visual "m::l::c" and all that follow are not shown' in str(warning)
 
 
 @pytest.mark.parametrize(('geometry', 'kind', 'scale'), [
@@ -107,6 +107,8 @@ def test_number_of_points_is_limited(monkeypatch):
     ('<sphere><radius>2</radius></sphere>', 'SPHERE', (4, 4, 4)),
     ('<ellipsoid><radii>1 2 3</radii></ellipsoid>', 'SPHERE', (2, 4, 6)),
     ('<cylinder><radius>1</radius><length>5</length></cylinder>', 'CYLINDER', (2, 2, 5)),
+    ('<capsule><radius>2</radius><length>0</length></capsule>', 'SPHERE', (4, 4, 4)),
+    ('<capsule><radius>2</radius><length>-1</length></capsule>', 'SPHERE', (4, 4, 4)),
 ])
 def test_shape_that_rviz_has(geometry, kind, scale):
     marker = only_marker(visual(geometry))
@@ -114,8 +116,16 @@ def test_shape_that_rviz_has(geometry, kind, scale):
     assert len(marker.form.points) == 0
 
 
+def test_capsule_is_a_cylinder_and_two_spheres():
+    markers = markers_of(link_with(visual(
+        '<capsule><radius>1</radius><length>4</length></capsule>',
+        '<pose>5 0 0 0 1.5707963267948966 0</pose>')))
+    assert [(each.form.type, each.form.scale) for each in markers] == [
+        ('CYLINDER', (2, 2, 4)), ('SPHERE', (2, 2, 2)), ('SPHERE', (2, 2, 2))]
+    assert [each.pose.x for each in markers] == pytest.approx([5, 3, 7])
+
+
 @pytest.mark.parametrize(('geometry', 'lowest', 'highest'), [
-    ('<capsule><radius>1</radius><length>4</length></capsule>', (-1, -1, -3), (1, 1, 3)),
     ('<cone><radius>1</radius><length>4</length></cone>', (-1, -1, -2), (1, 1, 2)),
     ('<plane><normal>0 0 1</normal><size>400 2</size></plane>', (-200, -1, 0), (200, 1, 0)),
     ('<plane><normal>1 0 0</normal><size>4 2</size></plane>', (0, -1, -2), (0, 1, 2)),
