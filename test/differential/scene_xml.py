@@ -8,6 +8,7 @@ from random import Random
 import re
 
 ATTRIBUTE = re.compile(r'(?<= )[a-z_]+="[^"]*"')
+VALUE = re.compile(r'"[^"]*"|>[^<]*<')
 BYTE_OF_LATIN_1 = '\udcfc'
 """A byte that is not UTF-8, when it is encoded with the error handler ``surrogateescape``."""
 
@@ -31,7 +32,9 @@ def with_oddities(dice: Random, text: str) -> str:
     :return: the text, in which single bytes may be surrogates.
     """
     if dice.random() < 0.5:
-        text = text.replace('&amp;', '&')
+        text = VALUE.sub(
+            lambda match: match[0].replace('&amp;', '&') if match[0].count('&') == 1 else match[0],
+            text)
     if dice.random() < 0.5:
         text = ATTRIBUTE.sub(lambda match: match[0].replace('&lt;', '<'), text)
     if dice.random() < 0.3:
