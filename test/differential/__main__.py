@@ -23,6 +23,7 @@ from differential.reference import built_reference
 from differential.reference import Reference
 from differential.reference import ReferenceMissingError
 from differential.scene_parts import Feature
+from differential.scene_parts import features_of_release
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / 'build' / 'differential'
@@ -51,10 +52,7 @@ def main() -> int:
     except ReferenceMissingError as error:
         print(f'differential: {error}', file=sys.stderr)
         return 2
-    if int(reference.version.split('.')[0]) < 14:
-        features -= {
-            Feature.AUTOMATIC_INERTIALS, Feature.MERGED_OVERRIDES, Feature.NESTED_JOINTS,
-            Feature.URDF, Feature.XML_ODDITIES}
+    features &= features_of_release(reference.version)
     print(f'libsdformat {reference.version}, {arguments.scenes} scenes, seed {arguments.seed}, '
           f'with {", ".join(sorted(f.value for f in features)) or "nothing special"}')
     started, told = time.monotonic(), time.monotonic()

@@ -36,6 +36,17 @@ class Feature(enum.Enum):
     DEFECTS = 'defects'
 
 
+_SINCE_14 = frozenset({
+    Feature.AUTOMATIC_INERTIALS, Feature.MERGED_OVERRIDES, Feature.NESTED_JOINTS, Feature.URDF,
+    Feature.XML_ODDITIES})
+
+
+def features_of_release(version):
+    """Return the features that a release of libsdformat reads as the package does."""
+    is_older = int(version.split('.')[0]) < 14
+    return frozenset(Feature) - (_SINCE_14 if is_older else set())
+
+
 class Visible(NamedTuple):
     """A frame as it is named from some scope."""
 
