@@ -13,7 +13,6 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.poses import relative_poses
-from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.values import IDENTITY
 from sdf_pose_bridge.tf.joint_motion import JointMotion
@@ -79,7 +78,8 @@ class MovingFrames:
         for number, (rows, freedoms, motions) in enumerate(self._parts):
             poses = motions.poses(positions[freedoms])
             transforms[rows] = pose_products(transforms[rows], poses) if number else poses
-        transforms[:, 3:] = canonical_quaternion(transforms[:, 3:])
+        # They are unit already. Only the sign has to be made canonical.
+        transforms[:, 3:] *= np.copysign(1.0, transforms[:, 6:])
         return transforms
 
     def poses(self, positions: NDArray[np.float64]) -> PoseArray:
