@@ -6,6 +6,7 @@ from pathlib import Path
 import shutil
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -62,7 +63,17 @@ rclpy.spin(node)
 
 
 def ip(*arguments):
-    subprocess.run(['ip', *arguments], check=True, capture_output=True, text=True)
+    return subprocess.run(
+        ['ip', *arguments], check=True, capture_output=True, text=True).stdout
+
+
+def wait_for_link(hosts):
+    """Wait for the kernel to report the cable as running; Fast DDS looks once, at its start."""
+    deadline = time.monotonic() + 10.0
+    for name in hosts.values():
+        while 'state UP' not in ip('-n', name, 'link', 'show', 'cable'):
+            assert time.monotonic() < deadline, f'the cable of {name} does not come up'
+            time.sleep(0.01)
 
 
 @pytest.fixture(name='hosts')
@@ -81,6 +92,7 @@ def connected_namespaces(ros_domain):
             ip('-n', hosts[host], 'address', 'add', f'{address}/24', 'dev', 'cable')
             for device in ('lo', 'cable'):
                 ip('-n', hosts[host], 'link', 'set', device, 'up')
+        wait_for_link(hosts)
     except (OSError, subprocess.CalledProcessError) as error:
         pytest.skip(f'this machine does not permit network namespaces: {error}')
     else:
@@ -94,8 +106,8 @@ def connected_namespaces(ros_domain):
 def start_on(hosts, monkeypatch):
     """Starts a process on one of the hosts; ``start_on(host, *command)``."""
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'SUBNET')
-    # Where a first packet is lost, Fast DDS repeats it much later.
-    monkeypatch.setattr(bridge_process, 'SECONDS', 90.0)
+    # Where a packet is lost, Fast DDS may repeat it much later.
+    monkeypatch.setattr(bridge_process, 'SECONDS', 60.0)
     processes = []
 
     def start(host, *command):
