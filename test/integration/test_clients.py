@@ -49,7 +49,9 @@ def start_client(request, ros_domain):
 
     def start(**parameters):
         words = [word for key, value in parameters.items() for word in ('-p', f'{key}:={value}')]
-        processes.append(LoggedProcess([*command, '--ros-args', *words]))
+        # Where the tests run in the background, SIGINT may be ignored.
+        processes.append(LoggedProcess(
+            ['env', '--default-signal=INT', *command, '--ros-args', *words]))
         return processes[-1]
 
     yield start
