@@ -44,8 +44,7 @@ class Client(Node):
 
         # A pose is published once, and again when it changes or the file is read again. A
         # transient local subscription gets the last message even if it starts later; a volatile
-        # one, which is the default, would miss it. Characters that a topic name cannot have are
-        # escaped.
+        # one, the default, would miss it. Characters that a topic cannot have are escaped.
         latched = QoSProfile(
             depth=1, reliability=ReliabilityPolicy.RELIABLE,
             durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -90,9 +89,10 @@ def main() -> None:
     try:
         rclpy.spin(Client())
     except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        rclpy.try_shutdown()
+        pass  # rclpy has shut ROS down
+    except RuntimeError:
+        if rclpy.ok():  # else it was shut down in the middle of a call
+            raise
 
 
 if __name__ == '__main__':
