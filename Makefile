@@ -29,7 +29,7 @@ help:
 	@echo 'make fuzz           hostile files by atheris; MINUTES=60 for longer, findings in fuzz_findings'
 	@echo 'make soak           the node under load for MINUTES=30: nothing lost, nothing growing'
 	@echo 'make licenses       licences of everything that is installed for this, as in docs/licenses.md'
-	@echo 'make audit          known vulnerabilities of it, by pip-audit; needs pypi.org'
+	@echo 'make audit          known vulnerabilities of it, by pip-audit; needs the network'
 	@echo 'make docs           the documentation, into docs/_build/html'
 	@echo 'make setup          only the environment in .underlay, which all of these share'
 	@echo 'make clean          remove the environment and everything that was built'

@@ -7,7 +7,9 @@ from __future__ import annotations
 import argparse
 from collections.abc import Collection
 from collections.abc import Iterator
+from collections.abc import Sequence
 import contextlib
+from pathlib import Path
 import sys
 from typing import NamedTuple
 
@@ -110,6 +112,27 @@ def add_model_argument(parser: argparse.ArgumentParser) -> None:
     """
     parser.add_argument(
         '--model', metavar='NAME', default='', help='show only this model, such as robot::arm')
+
+
+def add_output_argument(
+    parser: argparse.ArgumentParser, formats: Sequence[str], what: str,
+) -> None:
+    """
+    Add the argument ``-o``, a path whose ending says the format.
+
+    :param parser: the parser of a command.
+    :param formats: the endings, such as ``.svg``.
+    :param what: what is written there.
+    """
+    def path_from_text(text: str) -> Path:
+        path = Path(text)
+        if path.suffix.lower() not in formats:
+            msg = f'"{text}" must end with one of {", ".join(formats)}'
+            raise argparse.ArgumentTypeError(msg)
+        return path
+
+    parser.add_argument(
+        '-o', dest='output', metavar='PATH', type=path_from_text, help=f'where to write {what}')
 
 
 def add_unit_arguments(parser: argparse.ArgumentParser) -> None:

@@ -21,6 +21,7 @@ import numpy as np
 from sdf_pose_bridge.cli.check import add_file_arguments
 from sdf_pose_bridge.cli.frames import add_kinds_argument
 from sdf_pose_bridge.cli.frames import add_model_argument
+from sdf_pose_bridge.cli.frames import add_output_argument
 from sdf_pose_bridge.cli.frames import default_references_of
 from sdf_pose_bridge.cli.frames import printed_errors
 from sdf_pose_bridge.cli.frames import scene_of
@@ -30,7 +31,7 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.tree import elements_in_model
 
-_FORMATS = ('svg', 'png', 'pdf', 'dot')
+_FORMATS = ('.svg', '.png', '.pdf', '.dot')
 _KINDS = (Kind.MODEL, Kind.LINK, Kind.JOINT, Kind.FRAME)
 _HEAD = """\
 digraph frames {
@@ -66,9 +67,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
                     'in the language DOT; to draw it needs the program dot of Graphviz, which '
                     'takes long for thousands of frames: --model draws one model.')
     add_file_arguments(parser, takes_many=False)
-    parser.add_argument(
-        '-o', dest='output', metavar='PATH', type=_output_from_text,
-        help=f'where to write; the ending says the format: {", ".join(_FORMATS)}')
+    add_output_argument(
+        parser, _FORMATS, f'the graph; the ending says the format: {", ".join(_FORMATS)}')
     add_kinds_argument(
         parser, _KINDS, f'instead of {",".join(kind.label for kind in _KINDS)} draw')
     add_model_argument(parser)
@@ -173,14 +173,6 @@ def _models_around(scene: Scene, element: int) -> set[int]:
 
 def _escaped(name: str) -> str:
     return printable(shortened(name)).replace('\\', '\\\\').replace('"', '\\"')
-
-
-def _output_from_text(text: str) -> Path:
-    path = Path(text)
-    if path.suffix[1:].lower() not in _FORMATS:
-        msg = f'"{text}" must end with one of {", ".join(f".{name}" for name in _FORMATS)}'
-        raise argparse.ArgumentTypeError(msg)
-    return path
 
 
 def _write(text: str, path: Path) -> int:

@@ -18,6 +18,7 @@ from sdf_pose_bridge.cli.check import add_file_arguments
 from sdf_pose_bridge.cli.drawn_shapes import drawn_shapes_from_scene
 from sdf_pose_bridge.cli.figure import figure_from_scene
 from sdf_pose_bridge.cli.frames import add_frame_arguments
+from sdf_pose_bridge.cli.frames import add_output_argument
 from sdf_pose_bridge.cli.frames import add_unit_arguments
 from sdf_pose_bridge.cli.frames import printed_errors
 from sdf_pose_bridge.cli.frames import scene_of
@@ -66,9 +67,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
                     '-o the page opens in the browser. It needs the library plotly; boxes around '
                     'meshes need trimesh.')
     add_file_arguments(parser, takes_many=False)
-    parser.add_argument(
-        '-o', dest='output', metavar='PATH', type=_output_from_text,
-        help='where to write: a page for .html, a picture for .png')
+    add_output_argument(parser, _FORMATS, 'a page for .html, or a picture for .png')
     add_frame_arguments(parser, DEFAULT_KINDS)
     add_unit_arguments(parser)
     parser.set_defaults(run=run)
@@ -109,14 +108,6 @@ def run(options: argparse.Namespace) -> int:
     except (OSError, RuntimeError, ValueError) as error:
         return _fail(f'cannot write {options.output or "the page"}: {error}'.split('\n')[0])
     return 0
-
-
-def _output_from_text(text: str) -> Path:
-    path = Path(text)
-    if path.suffix.lower() not in _FORMATS:
-        msg = f'"{text}" must end with {" or ".join(_FORMATS)}'
-        raise argparse.ArgumentTypeError(msg)
-    return path
 
 
 def _imported(name: str) -> ModuleType | None:

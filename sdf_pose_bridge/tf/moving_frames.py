@@ -100,9 +100,8 @@ class MovingFrames:
         :param positions: the position of each degree of freedom, in radians or metres.
         :return: its pose in the root.
         """
-        (pose,) = self._motion.moved_poses(
-            self._poses[[index]], self._elements[[index]], positions)
-        return Pose(*pose.tolist())
+        pose = Pose(*self._poses[index].tolist())
+        return self.pose_of_element(int(self._elements[index]), pose, positions)
 
     def pose_of_element(self, element: int, pose: Pose, positions: NDArray[np.float64]) -> Pose:
         """

@@ -39,7 +39,7 @@ def test_missing_library_of_pictures_is_an_error_of_one_line(run_main, monkeypat
 def test_unknown_format_is_an_error(run_main):
     done = run_main('view', 'good.sdf', '-o', 'page.svg')
     assert done.returncode == 2
-    assert '"page.svg" must end with .html or .png' in done.stderr
+    assert '"page.svg" must end with one of .html, .png' in done.stderr
 
 
 def test_invalid_file_is_reported(run_main, plotly):
