@@ -128,6 +128,14 @@ def test_a_follower_moves_with_its_leader():
     assert values_of(positions) == {'j': 2.0, 'k': 4.0}
 
 
+def test_a_follower_stays_while_its_leader_has_no_position():
+    positions = positions_of(model_file(LINKS + joint(
+        ENDS + '<axis><xyz>0 0 1</xyz></axis>', 'j', 'revolute') + following(), version='1.11'))
+    assert update(positions, j=np.nan) == ['j']
+    assert values_of(positions) == {'j': 0.0, 'k': 0.0}
+    assert not positions.is_known.any()
+
+
 def test_the_position_of_a_follower_can_be_given():
     positions = positions_of(model_file(LINKS + joint(
         ENDS + '<axis><xyz>0 0 1</xyz></axis>', 'j', 'revolute') + following(), version='1.11'))
