@@ -118,7 +118,7 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
         scene = sdf_pose_bridge.load_text(chain_text(100))
         tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
         assert tree.moving is not None
-        positions = JointPositions(scene, tree.moving.freedoms)
+        positions = JointPositions(scene, tree.moving.dofs)
         follower = JointStates(ros, tree, tree.moving, positions)
         broadcaster = JointBroadcaster(ros, 100, '/tf_of_counterpart')
         messages = joint_states(100)

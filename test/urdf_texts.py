@@ -11,9 +11,9 @@ def robot(content):
     return f'<robot name="r">{content}</robot>'
 
 
-def link(name, content='', *, mass=1.0, centre='0 0 0'):
+def link(name, content='', *, mass=1.0, center='0 0 0'):
     """Return a link with a mass."""
-    inertial = f'<origin xyz="{centre}"/>{MASS.format(mass=mass)}'
+    inertial = f'<origin xyz="{center}"/>{MASS.format(mass=mass)}'
     return f'<link name="{name}"><inertial>{inertial}</inertial>{content}</link>'
 
 

@@ -101,9 +101,9 @@ def load_file(path: str, options: argparse.Namespace, *, shapes: bool = False) -
     return LoadedFile(scene, (), scene.warnings)
 
 
-def is_coloured(stream: TextIO) -> bool:
+def is_colored(stream: TextIO) -> bool:
     """
-    Return whether to print colours.
+    Return whether to print colors.
 
     :param stream: where they would be printed.
     :return: True for a terminal, unless the variable ``NO_COLOR`` is set (https://no-color.org).
@@ -115,18 +115,18 @@ def print_problems(
     errors: tuple[SdfError, ...], warnings: tuple[SdfWarning, ...], stream: TextIO,
 ) -> None:
     """
-    Print errors and warnings, one per line; in colour on a terminal.
+    Print errors and warnings, one per line; in color on a terminal.
 
     :param errors: the errors of a file.
     :param warnings: the warnings of a file.
     :param stream: where they are printed.
     """
-    has_colours = is_coloured(stream)
-    bold, plain = (_BOLD, _PLAIN) if has_colours else ('', '')
+    has_colors = is_colored(stream)
+    bold, plain = (_BOLD, _PLAIN) if has_colors else ('', '')
     problems: list[SdfError | SdfWarning] = [*errors, *warnings]
     for problem in problems:
         is_error = isinstance(problem, SdfError)
-        colour = '' if not has_colours else _RED if is_error else _YELLOW
+        color = '' if not has_colors else _RED if is_error else _YELLOW
         kind = '' if is_error or problem.code == 'WARNING' else 'WARNING: '
         place, message = printable(str(problem.place)), printable(problem.message)
-        print(f'{bold}{place}:{plain} {colour}{kind}{problem.code}:{plain} {message}', file=stream)
+        print(f'{bold}{place}:{plain} {color}{kind}{problem.code}:{plain} {message}', file=stream)

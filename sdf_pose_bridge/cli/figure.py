@@ -31,11 +31,11 @@ from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
-_AXIS_COLOURS = ('#e03131', '#2b8a3e', '#1c5fd6')
-_POINT_COLOURS = {
+_AXIS_COLORS = ('#e03131', '#2b8a3e', '#1c5fd6')
+_POINT_COLORS = {
     'root': 'black', 'model': '#7048c6', 'link': '#2f9e44', 'frame': '#0c8599',
     'joint': '#e67700', 'sensor': '#c2255c', 'optical frame': '#e8590c'}
-_OTHER_COLOUR = '#495057'
+_OTHER_COLOR = '#495057'
 # Frames of different kinds are often in one place, where their names must not cover one another.
 _TEXT_POSITIONS = {
     'model': 'bottom center', 'link': 'top center', 'sensor': 'middle left',
@@ -189,12 +189,12 @@ def _surface(kind: str, shapes: Sequence[DrawnShape]) -> dict[str, Any]:
     points = np.concatenate([shape.triangles.points for shape in shapes])
     faces = np.concatenate([
         shape.triangles.faces + offset for shape, offset in zip(shapes, offsets, strict=True)])
-    colours = [
+    colors = [
         f'rgb({",".join(str(round(255 * part)) for part in shape.rgb)})'
         for shape in shapes for _ in shape.triangles.faces]
     return {
         'type': 'mesh3d', 'name': f'{kind}s ({len(shapes)})', 'showlegend': True,
-        **_columns(points, 'xyz'), **_columns(faces, 'ijk'), 'facecolor': colours,
+        **_columns(points, 'xyz'), **_columns(faces, 'ijk'), 'facecolor': colors,
         'color': '#adb5bd', 'opacity': _OPACITY[kind], 'flatshading': True, 'hoverinfo': 'skip',
         # Collisions are most often where visuals are.
         'visible': True if kind == 'visual' else 'legendonly'}
@@ -215,22 +215,22 @@ def _axes(poses: PoseArray, label: str, length_m: float) -> dict[str, Any]:
     starts = np.repeat(poses[:, :3], 3, axis=0)
     # The columns of a rotation matrix are the axes.
     directions = np.swapaxes(matrix_from_quaternion(poses[:, 3:]), 1, 2).reshape(-1, 3)
-    colours = [colour for colour in _AXIS_COLOURS for _ in range(3)] * len(poses)
+    colors = [color for color in _AXIS_COLORS for _ in range(3)] * len(poses)
     return {
         'type': 'scatter3d', 'mode': 'lines', 'legendgroup': label, 'showlegend': False,
         **_segments(starts, starts + length_m * directions),
-        'line': {'color': colours, 'width': 5}, 'hoverinfo': 'skip'}
+        'line': {'color': colors, 'width': 5}, 'hoverinfo': 'skip'}
 
 
 def _origins(
     poses: PoseArray, label: str, names: Sequence[str], hovers: Sequence[str],
 ) -> dict[str, Any]:
-    colour = _POINT_COLOURS.get(label, _OTHER_COLOUR)
+    color = _POINT_COLORS.get(label, _OTHER_COLOR)
     return {
         'type': 'scatter3d', 'mode': 'markers+text', 'legendgroup': label,
         'name': f'{label} ({len(names)})', **_columns(poses, 'xyz'), 'text': names,
         'textposition': _TEXT_POSITIONS.get(label, 'middle right'),
-        'textfont': {'size': 11, 'color': colour}, 'marker': {'size': 3, 'color': colour},
+        'textfont': {'size': 11, 'color': color}, 'marker': {'size': 3, 'color': color},
         'customdata': hovers, 'hovertemplate': '%{customdata}<extra></extra>'}
 
 

@@ -111,15 +111,15 @@ def dot_from_scene(scene: Scene, kinds: Sequence[Kind] = _KINDS, model: str = ''
     # What an arrow starts at or leads to is drawn too, such as the world.
     shown = sorted({*chosen, *(end for ends in edges for end in ends)})
     lines = [f'  label="{_LEGEND}"', *_nodes(scene, shown)]
-    for (start, end), colours in edges.items():
-        width = ' penwidth=2.5' if colours[0] == _JOINT else ''
-        # Several colours make several lines beside one another.
-        lines.append(f'  n{start} -> n{end} [color="{":".join(colours)}"{width}]')
+    for (start, end), colors in edges.items():
+        width = ' penwidth=2.5' if colors[0] == _JOINT else ''
+        # Several colors make several lines beside one another.
+        lines.append(f'  n{start} -> n{end} [color="{":".join(colors)}"{width}]')
     return _HEAD + '\n'.join(lines) + '\n}\n'
 
 
 def _edges(scene: Scene, chosen: Container[int]) -> dict[tuple[int, int], list[str]]:
-    """Return the colours of the arrows from one element to another."""
+    """Return the colors of the arrows from one element to another."""
     edges: dict[tuple[int, int], list[str]] = {}
     joints = {joint.element for joint in scene.joints}
     for joint in scene.joints:
@@ -137,8 +137,8 @@ def _edges(scene: Scene, chosen: Container[int]) -> dict[tuple[int, int], list[s
                 continue
         elif reference == default and element in joints:
             continue
-        colour = _DEFAULT if reference == default else _RELATIVE_TO
-        edges.setdefault((reference, element), []).append(colour)
+        color = _DEFAULT if reference == default else _RELATIVE_TO
+        edges.setdefault((reference, element), []).append(color)
     return edges
 
 

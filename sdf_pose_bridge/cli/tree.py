@@ -13,7 +13,7 @@ import sys
 from typing import NamedTuple
 
 from sdf_pose_bridge.cli.check import add_file_arguments
-from sdf_pose_bridge.cli.check import is_coloured
+from sdf_pose_bridge.cli.check import is_colored
 from sdf_pose_bridge.cli.frames import add_frame_arguments
 from sdf_pose_bridge.cli.frames import add_unit_arguments
 from sdf_pose_bridge.cli.frames import default_references_of
@@ -34,7 +34,7 @@ from sdf_pose_bridge.tf.tree import elements_in_model
 from sdf_pose_bridge.tf.tree import TfTree
 
 _BOLD, _DIM, _PLAIN = '\x1b[1m', '\x1b[2m', '\x1b[0m'
-_COLOURS = {
+_COLORS = {
     'model': '\x1b[35m', 'link': '\x1b[32m', 'joint': '\x1b[33m', 'frame': '\x1b[36m',
     'sensor': '\x1b[34m', 'optical frame': '\x1b[34m'}
 _BRANCHES = ('├─ ', '└─ ', '│  ', '   ')
@@ -232,8 +232,8 @@ def _print_lines(lines: Sequence[_Line], units: Units) -> None:
     width = min(_WIDEST_NAME, max(
         (len(line.branches) + len(printable(line.row.name)) for line in lines), default=0))
     kind_width = max((len(line.row.kind) for line in lines), default=0)
-    colours = _COLOURS if is_coloured(sys.stdout) else {}
-    bold, dim, plain = (_BOLD, _DIM, _PLAIN) if is_coloured(sys.stdout) else ('', '', '')
+    colors = _COLORS if is_colored(sys.stdout) else {}
+    bold, dim, plain = (_BOLD, _DIM, _PLAIN) if is_colored(sys.stdout) else ('', '', '')
     length, angle = units.length, units.angle
     labels = (f'x {length}', 'y', 'z', f'roll {angle}', 'pitch', 'yaw')
     heads = ' '.join(f'{label:>10}' for label in labels)
@@ -247,5 +247,5 @@ def _print_lines(lines: Sequence[_Line], units: Units) -> None:
         notes += [f'{hidden} more below'] if hidden else []
         print(
             f'{dim}{branches}{plain}{bold if is_match else ""}{name}{plain if is_match else ""}'
-            f'{pad}  {colours.get(row.kind, "")}{row.kind:{kind_width}}{plain}  {numbers}'
+            f'{pad}  {colors.get(row.kind, "")}{row.kind:{kind_width}}{plain}  {numbers}'
             f'{"  " if notes else ""}{dim}{", ".join(notes)}{plain}'.rstrip())

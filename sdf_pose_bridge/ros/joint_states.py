@@ -189,7 +189,7 @@ class JointStates:
         if selection.unknown:
             self._logger.warning(
                 f'{self._subscription.topic_name} has {names_in_line(selection.unknown)}, not the '
-                f'name of one movable joint{positions.hint(selection.unknown[0])}',
+                f'name of one moving joint{positions.hint(selection.unknown[0])}',
                 throttle_duration_sec=_WARNING_PERIOD_S)
         were_known = positions.is_known.copy()
         positions.update(selection, values)

@@ -108,7 +108,7 @@ def _joint_positions(scene: Scene, tree: TfTree, settings: Settings) -> JointPos
     # Imported here because most often joints do not move.
     from sdf_pose_bridge.tf.joint_positions import JointPositions
     return JointPositions(
-        scene, tree.moving.freedoms, settings.frame_names, settings.model)
+        scene, tree.moving.dofs, settings.frame_names, settings.model)
 
 
 def files_behind_error(error: Exception, settings: Settings) -> list[str]:

@@ -176,7 +176,7 @@ class Settings:
     )
     use_joint_states = Declaration(
         False,
-        'Makes movable joints follow the topic joint_states: their transforms are on /tf instead '
+        'Makes moving joints follow the topic joint_states: their transforms are on /tf instead '
         'of /tf_static.',
         'true or false',
         bool,

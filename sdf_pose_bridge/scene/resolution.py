@@ -50,7 +50,7 @@ def root_poses_from_graph(poses: PoseArray, graph: FrameGraph) -> PoseArray:
 
 def set_automatic_inertials(root_poses: PoseArray, elements: Elements) -> None:
     """
-    Move automatic inertials to the centres of mass of their links' collisions.
+    Move automatic inertials to the centers of mass of their links' collisions.
 
     :param root_poses: shape (n, 7), pose of each element in its root; changed in place.
     :param elements: the elements.

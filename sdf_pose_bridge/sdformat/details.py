@@ -3,7 +3,7 @@
 """
 Read what only some elements have besides a name and a pose.
 
-An automatic inertial (``<inertial auto="true">``) is the centre of mass of the collisions of its
+An automatic inertial (``<inertial auto="true">``) is the center of mass of the collisions of its
 link: ``Link::ResolveAutoInertials``, ``Collision::CalculateInertial`` and
 ``Geometry::CalculateInertial`` of libsdformat 14.
 """
@@ -254,7 +254,7 @@ def collision_masses(
 
 
 def _mass(shape: Shape, density_kg_m3: float) -> CollisionMass | None:
-    """Return the mass of a shape and its centre; None if a number is not positive."""
+    """Return the mass of a shape and its center; None if a number is not positive."""
     if shape.type == 'plane' or not shape.sizes_m or (
             min(density_kg_m3, *shape.required_sizes_m) <= 0.0):
         return None
@@ -263,7 +263,7 @@ def _mass(shape: Shape, density_kg_m3: float) -> CollisionMass | None:
 
 
 def _volume(shape: Shape) -> tuple[float, float]:
-    """Return the volume of a shape, and the z of its centre of mass in the shape's frame."""
+    """Return the volume of a shape, and the z of its center of mass in the shape's frame."""
     if shape.type == 'box':
         return math.prod(shape.sizes_m), 0.0
     if shape.type == 'ellipsoid':

@@ -104,7 +104,7 @@ class CollisionMass(NamedTuple):
 
     mass_kg: float
     center_z_m: float
-    """The z of the centre of mass in the frame of the collision; its x and y are 0."""
+    """The z of the center of mass in the frame of the collision; its x and y are 0."""
 
 
 class SensorDetails(NamedTuple):

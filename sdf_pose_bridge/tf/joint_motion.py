@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     Floats = NDArray[np.float64]
 
-NO_FREEDOM = -1
+NO_DOF = -1
 """Index that means no degree of freedom."""
 
 _TURN_RAD = 2.0 * math.pi
@@ -55,7 +55,7 @@ class DegreeOfFreedom(NamedTuple):
     """How far it moves along the axis for a position of 1."""
 
 
-def degrees_of_freedom_from_joint(joint: Joint) -> list[DegreeOfFreedom]:
+def dofs_from_joint(joint: Joint) -> list[DegreeOfFreedom]:
     """
     List the ways in which a joint can move.
 
@@ -90,57 +90,57 @@ class JointMotion:
     """
 
     def __init__(self, scene: Scene, tf_parents: TfParents) -> None:
-        freedoms: list[DegreeOfFreedom] = []
+        dofs: list[DegreeOfFreedom] = []
         signs: list[float] = []
         ranges: dict[int, range] = {}
         for body, step in tf_parents.joints.items():
             if not _is_in_static_model(scene, body):
-                path = degrees_of_freedom_from_joint(step.joint)
-                freedoms += reversed(path) if step.is_reversed else path
+                path = dofs_from_joint(step.joint)
+                dofs += reversed(path) if step.is_reversed else path
                 signs += [-1.0 if step.is_reversed else 1.0] * len(path)
                 if path:
                     ranges[body] = range(len(signs) - len(path), len(signs))
-        self.freedoms = tuple(freedoms)
+        self.dofs = tuple(dofs)
         """All degrees of freedom; those of a joint stand together."""
         bodies = list(ranges)
         is_moved = np.zeros(len(scene.kinds), np.bool_)
         is_moved[bodies] = True
-        last_of_bodies = np.full(len(scene.kinds), NO_FREEDOM, np.int32)
+        last_of_bodies = np.full(len(scene.kinds), NO_DOF, np.int32)
         last_of_bodies[bodies] = [each[-1] for each in ranges.values()]
-        self.last_freedoms: Indices = last_of_bodies[
+        self.last_dofs: Indices = last_of_bodies[
             ends_from_pointers(np.where(is_moved, -1, tf_parents.parents))]
         """For each element the last degree of freedom between the root and it; -1 for none."""
-        self.previous: Indices = np.arange(-1, len(freedoms) - 1, dtype=np.int32)
+        self.previous: Indices = np.arange(-1, len(dofs) - 1, dtype=np.int32)
         """For each degree of freedom the one before it on the way from the root; -1 for none."""
-        self.previous[[each[0] for each in ranges.values()]] = self.last_freedoms[
+        self.previous[[each[0] for each in ranges.values()]] = self.last_dofs[
             tf_parents.parents[bodies]]
         self._axes, self._points = self._axes_in_root(scene)
-        self._rad_per_unit = np.array([each.rad_per_unit for each in freedoms]) * signs
-        self._m_per_unit = np.array([each.m_per_unit for each in freedoms]) * signs
-        identities = np.tile(IDENTITY, (len(freedoms), 1))
+        self._rad_per_unit = np.array([each.rad_per_unit for each in dofs]) * signs
+        self._m_per_unit = np.array([each.m_per_unit for each in dofs]) * signs
+        identities = np.tile(IDENTITY, (len(dofs), 1))
         self._displacements = self.screw_motions(
-            identities, np.arange(len(freedoms)), identities)
+            identities, np.arange(len(dofs)), identities)
 
     def _axes_in_root(self, scene: Scene) -> tuple[Floats, Floats]:
-        poses = scene.poses[[freedom.joint.element for freedom in self.freedoms]]
+        poses = scene.poses[[dof.joint.element for dof in self.dofs]]
         directions = np.tile(IDENTITY, (len(poses), 1))
-        directions[:, :3] = np.reshape([each.direction for each in self.freedoms], (-1, 3))
+        directions[:, :3] = np.reshape([each.direction for each in self.dofs], (-1, 3))
         return pose_products(poses, directions)[:, :3] - poses[:, :3], poses[:, :3]
 
     def screw_motions(
-        self, before: PoseArray, freedoms: NDArray[np.intp], after: PoseArray,
+        self, before: PoseArray, dofs: NDArray[np.intp], after: PoseArray,
     ) -> ScrewMotions:
         """
         Prepare products of a pose, the displacement by a degree of freedom, and a pose.
 
         :param before: shape (n, 7), poses of the root in frames.
-        :param freedoms: shape (n,), indices of degrees of freedom.
+        :param dofs: shape (n,), indices of degrees of freedom.
         :param after: shape (n, 7), poses of frames in the root.
         :return: the products, which take the positions of these degrees of freedom.
         """
         return ScrewMotions(
-            before, self._axes[freedoms], self._points[freedoms], self._rad_per_unit[freedoms],
-            self._m_per_unit[freedoms], after)
+            before, self._axes[dofs], self._points[dofs], self._rad_per_unit[dofs],
+            self._m_per_unit[dofs], after)
 
     def moved_poses(self, poses: PoseArray, elements: Indices, positions: Floats) -> PoseArray:
         """
@@ -151,13 +151,13 @@ class JointMotion:
         :param positions: shape (n,), the position of each degree of freedom, in radians or metres.
         :return: shape (k, 7), poses in the root; unit quaternions with w >= 0.
         """
-        last = self.last_freedoms[elements]
-        rows = np.flatnonzero(last != NO_FREEDOM)
+        last = self.last_dofs[elements]
+        rows = np.flatnonzero(last != NO_DOF)
         moved: PoseArray = poses.copy()
         if len(rows):
             # The root comes last, where the index -1 finds it.
             edges = np.concatenate([self._displacements.poses(positions), [IDENTITY]])
-            ends = np.append(self.previous % len(edges), NO_FREEDOM)
+            ends = np.append(self.previous % len(edges), NO_DOF)
             displacements = poses_along_chains(edges, ends, np.arange(len(edges)))
             moved[rows] = pose_products(displacements[last[rows]], poses[rows])
             moved[rows, 3:] = canonical_quaternion(moved[rows, 3:])

@@ -41,7 +41,7 @@ LARGEST_POSITION = 1e9
 class Follower(NamedTuple):
     """A degree of freedom whose position follows from that of another one."""
 
-    freedom: int
+    dof: int
     leader: int
     mimic: Mimic
 
@@ -51,7 +51,7 @@ class Selection(NamedTuple):
 
     rows: NDArray[np.intp]
     """The entries of the list that name degrees of freedom."""
-    freedoms: NDArray[np.intp]
+    dofs: NDArray[np.intp]
     """What each of these entries names."""
     followers: tuple[Follower, ...]
     """Those that follow from these, and are not named themselves; each after its leader."""
@@ -61,7 +61,7 @@ class Selection(NamedTuple):
     @property
     def changed(self) -> set[int]:
         """All degrees of freedom that get a position."""
-        return {*self.freedoms.tolist(), *(follower.freedom for follower in self.followers)}
+        return {*self.dofs.tolist(), *(follower.dof for follower in self.followers)}
 
 
 class JointPositions:
@@ -69,33 +69,33 @@ class JointPositions:
     The positions of the degrees of freedom of a scene; all are zero at first.
 
     :param scene: the scene.
-    :param freedoms: its degrees of freedom.
+    :param dofs: its degrees of freedom.
     :param frame_names: how much of a scoped name goes into the name of a joint.
     :param model: the scoped name of the only model whose joints have names; empty for all.
     """
 
     def __init__(
-        self, scene: Scene, freedoms: Sequence[DegreeOfFreedom],
+        self, scene: Scene, dofs: Sequence[DegreeOfFreedom],
         frame_names: FrameNames = FrameNames.AUTO, model: str = '',
     ) -> None:
-        self.values = np.zeros(len(freedoms))
+        self.values = np.zeros(len(dofs))
         """The position of each degree of freedom, in radians or metres."""
-        self.is_known = np.zeros(len(freedoms), np.bool_)
+        self.is_known = np.zeros(len(dofs), np.bool_)
         """Whether each has been given a position, or follows from one that has."""
-        self.freedoms = tuple(freedoms)
-        joints = np.array([each.joint.element for each in freedoms], np.int32)
+        self.dofs = tuple(dofs)
+        joints = np.array([each.joint.element for each in dofs], np.int32)
         is_named = [
             scene.roots[joint] == 0
             and (not model or scene.names[joint].startswith(model + SEPARATOR))
             for joint in joints.tolist()]
         names = FrameNaming(frame_names).frame_ids_from_scene(scene, joints)
         self.names = tuple(
-            name + each.suffix for name, each in zip(names, freedoms, strict=True))
+            name + each.suffix for name, each in zip(names, dofs, strict=True))
         """The name of each degree of freedom."""
         self._indices = _indices_from_names(
             self.names, [scene.names[joint] for joint in joints.tolist()],
-            [each.suffix for each in freedoms], is_named)
-        self._followers = _followers(freedoms)
+            [each.suffix for each in dofs], is_named)
+        self._followers = _followers(dofs)
 
     def selection(self, names: Sequence[str]) -> Selection:
         """
@@ -105,19 +105,19 @@ class JointPositions:
         :return: what they mean.
         """
         found = [self._indices.get(name) for name in names]
-        rows = [row for row, freedom in enumerate(found) if freedom is not None]
-        freedoms = [freedom for freedom in found if freedom is not None]
-        reached = dict.fromkeys(freedoms)
+        rows = [row for row, dof in enumerate(found) if dof is not None]
+        dofs = [dof for dof in found if dof is not None]
+        reached = dict.fromkeys(dofs)
         followers: list[Follower] = []
         for leader in (waiting := list(reached)):
             for follower in self._followers.get(leader, ()):
-                if follower.freedom not in reached:
-                    reached[follower.freedom] = None
+                if follower.dof not in reached:
+                    reached[follower.dof] = None
                     followers.append(follower)
-                    waiting.append(follower.freedom)
+                    waiting.append(follower.dof)
         return Selection(
-            np.array(rows, np.intp), np.array(freedoms, np.intp), tuple(followers),
-            tuple(name for name, freedom in zip(names, found, strict=True) if freedom is None))
+            np.array(rows, np.intp), np.array(dofs, np.intp), tuple(followers),
+            tuple(name for name, dof in zip(names, found, strict=True) if dof is None))
 
     def hint(self, name: str) -> str:
         """
@@ -136,19 +136,19 @@ class JointPositions:
         :param values: a value for each name that was looked up, in radians or metres.
         :return: the names whose values are not finite or too large; their positions stay.
         """
-        freedoms, new = selection.freedoms, values[selection.rows]
+        dofs, new = selection.dofs, values[selection.rows]
         is_valid = np.abs(new) <= LARGEST_POSITION
         invalid: list[str] = []
         if not is_valid.all():
-            invalid = [self.names[freedom] for freedom in freedoms[~is_valid].tolist()]
-            freedoms, new = freedoms[is_valid], new[is_valid]
-        self.values[freedoms] = new
-        self.is_known[freedoms] = True
-        for freedom, leader, mimic in selection.followers:
+            invalid = [self.names[dof] for dof in dofs[~is_valid].tolist()]
+            dofs, new = dofs[is_valid], new[is_valid]
+        self.values[dofs] = new
+        self.is_known[dofs] = True
+        for dof, leader, mimic in selection.followers:
             value = mimic.multiplier * (self.values[leader] - mimic.reference) + mimic.offset
             if self.is_known[leader] and abs(value) <= LARGEST_POSITION:
-                self.values[freedom] = value
-                self.is_known[freedom] = True
+                self.values[dof] = value
+                self.is_known[dof] = True
         return invalid
 
     def take_over(self, before: JointPositions) -> None:
@@ -158,10 +158,10 @@ class JointPositions:
         :param before: the positions in the scene that this one's scene replaces.
         """
         rows = {name: row for row, name in enumerate(before.names)}
-        for freedom, name in enumerate(self.names):
+        for dof, name in enumerate(self.names):
             if name in rows:
-                self.values[freedom] = before.values[rows[name]]
-                self.is_known[freedom] = before.is_known[rows[name]]
+                self.values[dof] = before.values[rows[name]]
+                self.is_known[dof] = before.is_known[rows[name]]
 
 
 def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
@@ -173,15 +173,15 @@ def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
         at zero, but for those that mimic one of these.
     :return: a scene with other poses and, where a position is beyond the limits of its joint, more
         warnings.
-    :raises JointPositionError: if a name is not that of one movable joint, or a position is not
+    :raises JointPositionError: if a name is not that of one moving joint, or a position is not
         finite or too large.
     """
     motion = JointMotion(scene, tf_parents_from_scene(scene))
-    state = JointPositions(scene, motion.freedoms)
+    state = JointPositions(scene, motion.dofs)
     selection = state.selection(list(positions))
     invalid = state.update(selection, np.array(list(positions.values()), float))
     for name in selection.unknown:
-        msg = f'"{name}" is not the name of one movable joint{state.hint(name)}'
+        msg = f'"{name}" is not the name of one moving joint{state.hint(name)}'
         raise JointPositionError(msg, Place(scene.path))
     for name in invalid:
         msg = f'the position of "{name}" must be finite and at most {LARGEST_POSITION:g}'
@@ -190,13 +190,13 @@ def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
     poses = motion.moved_poses(scene.poses, elements, state.values)
     poses.setflags(write=False)
     warnings = []
-    for name, freedom, value in zip(
-            state.names, motion.freedoms, state.values.tolist(), strict=True):
-        axis = None if freedom.axis is None else freedom.joint.axes[freedom.axis]
+    for name, dof, value in zip(
+            state.names, motion.dofs, state.values.tolist(), strict=True):
+        axis = None if dof.axis is None else dof.joint.axes[dof.axis]
         if axis is not None and not axis.lower <= value <= axis.upper:
             msg = (f'the position {value:g} of "{name}" is beyond its limits, {axis.lower:g} to '
                    f'{axis.upper:g}')
-            warnings.append(SdfWarning('WARNING', msg, scene.place(freedom.joint.element)))
+            warnings.append(SdfWarning('WARNING', msg, scene.place(dof.joint.element)))
     return scene.with_poses(poses, (*scene.warnings, *warnings))
 
 
@@ -220,14 +220,14 @@ def _indices_from_names(
     return {name: min(found) for name, found in shorter.items() if len(found) == 1} | own
 
 
-def _followers(freedoms: Sequence[DegreeOfFreedom]) -> Mapping[int, list[Follower]]:
+def _followers(dofs: Sequence[DegreeOfFreedom]) -> Mapping[int, list[Follower]]:
     """Return the degrees of freedom that mimic each one."""
     indices = {
-        (each.joint.element, each.axis): index for index, each in enumerate(freedoms)
+        (each.joint.element, each.axis): index for index, each in enumerate(dofs)
         if each.axis is not None}
     followers: dict[int, list[Follower]] = {}
-    for index, freedom in enumerate(freedoms):
-        mimic = None if freedom.axis is None else freedom.joint.axes[freedom.axis].mimic
+    for index, dof in enumerate(dofs):
+        mimic = None if dof.axis is None else dof.joint.axes[dof.axis].mimic
         leader = None if mimic is None else indices.get((mimic.joint, mimic.axis))
         if mimic is not None and leader is not None:
             followers.setdefault(leader, []).append(Follower(index, leader, mimic))

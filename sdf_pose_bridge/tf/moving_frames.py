@@ -16,7 +16,7 @@ from sdf_pose_bridge.geometry.poses import relative_poses
 from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.values import IDENTITY
 from sdf_pose_bridge.tf.joint_motion import JointMotion
-from sdf_pose_bridge.tf.joint_motion import NO_FREEDOM
+from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.parents import NO_PARENT
 
 if TYPE_CHECKING:
@@ -40,17 +40,17 @@ class MovingFrames:
         self, motion: JointMotion, poses: PoseArray, parents: Indices, elements: Indices,
     ) -> None:
         self._motion = motion
-        self.freedoms = motion.freedoms
+        self.dofs = motion.dofs
         """The degrees of freedom, in the order of positions."""
-        last = motion.last_freedoms[elements]
-        last_of_parents = np.where(parents < 0, NO_FREEDOM, last[parents])
+        last = motion.last_dofs[elements]
+        last_of_parents = np.where(parents < 0, NO_DOF, last[parents])
         self.indices = np.flatnonzero((last != last_of_parents) & (parents != NO_PARENT))
         """Shape (m,), the frames that move in their parents."""
-        self.posed_indices = np.flatnonzero(last != NO_FREEDOM)
+        self.posed_indices = np.flatnonzero(last != NO_DOF)
         """The frames that move in the root frame."""
         self._poses, self._elements = poses, elements
         self._crossed = [
-            _freedoms_between(motion.previous, *ends) for ends in zip(
+            _dofs_between(motion.previous, *ends) for ends in zip(
                 last_of_parents[self.indices].tolist(), last[self.indices].tolist(), strict=True)]
         identities = np.tile(IDENTITY, (len(self.indices), 1))
         parents = parents[self.indices]
@@ -60,12 +60,12 @@ class MovingFrames:
         # The first part has all frames, the second those that cross two degrees of freedom, ...
         self._parts = []
         for number in range(max(map(len, self._crossed), default=0)):
-            rows = [row for row, freedoms in enumerate(self._crossed) if len(freedoms) > number]
-            freedoms = np.array([self._crossed[row][number] for row in rows])
+            rows = [row for row, dofs in enumerate(self._crossed) if len(dofs) > number]
+            dofs = np.array([self._crossed[row][number] for row in rows])
             is_last = np.array([[len(self._crossed[row]) == number + 1] for row in rows])
-            self._parts.append((rows, freedoms, motion.screw_motions(
+            self._parts.append((rows, dofs, motion.screw_motions(
                 identities[rows] if number else before,
-                freedoms, np.where(is_last, after[rows], identities[rows]))))
+                dofs, np.where(is_last, after[rows], identities[rows]))))
 
     def transforms(self, positions: NDArray[np.float64]) -> PoseArray:
         """
@@ -75,8 +75,8 @@ class MovingFrames:
         :return: shape (m, 7), pose of each frame in its parent; unit quaternions with w >= 0.
         """
         transforms = np.empty((len(self.indices), 7))
-        for number, (rows, freedoms, motions) in enumerate(self._parts):
-            poses = motions.poses(positions[freedoms])
+        for number, (rows, dofs, motions) in enumerate(self._parts):
+            poses = motions.poses(positions[dofs])
             transforms[rows] = pose_products(transforms[rows], poses) if number else poses
         # They are unit already. Only the sign has to be made canonical.
         transforms[:, 3:] *= np.copysign(1.0, transforms[:, 6:])
@@ -116,18 +116,18 @@ class MovingFrames:
             np.array([pose]), np.array([element], np.int32), positions)
         return Pose(*moved.tolist())
 
-    def rows_moved_by(self, freedoms: Sequence[int]) -> NDArray[np.intp]:
+    def rows_moved_by(self, dofs: Sequence[int]) -> NDArray[np.intp]:
         """
         Find the transforms that depend on some degrees of freedom.
 
-        :param freedoms: indices of degrees of freedom.
+        :param dofs: indices of degrees of freedom.
         :return: their rows in :meth:`transforms`.
         """
-        chosen = set(freedoms)
+        chosen = set(dofs)
         return np.flatnonzero([not chosen.isdisjoint(each) for each in self._crossed])
 
 
-def _freedoms_between(previous: Indices, begin: int, end: int) -> list[int]:
+def _dofs_between(previous: Indices, begin: int, end: int) -> list[int]:
     """Return the degrees of freedom behind one, up to another one that follows it."""
     found = []
     while end != begin:

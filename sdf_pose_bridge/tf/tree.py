@@ -72,7 +72,7 @@ class TfOptions(NamedTuple):
     optical_frames: bool = True
     """Whether each camera gets an optical frame besides its own."""
     use_joint_states: bool = False
-    """Whether movable joints follow ``joint_states``."""
+    """Whether moving joints follow ``joint_states``."""
 
 
 class TfTree(NamedTuple):

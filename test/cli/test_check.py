@@ -36,7 +36,7 @@ def test_check_continues_after_an_invalid_file(sdf_pose):
         'missing.sdf', 'bad.sdf', 'bad.sdf']
 
 
-def test_check_prints_no_colours_to_a_pipe(sdf_pose):
+def test_check_prints_no_colors_to_a_pipe(sdf_pose):
     assert '\x1b' not in sdf_pose('check', 'bad.sdf').stdout
 
 

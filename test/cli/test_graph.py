@@ -36,9 +36,9 @@ def labels_in(dot):
 
 
 def arrows_to(name, dot):
-    """Return the names and colours of arrows that lead to a node."""
+    """Return the names and colors of arrows that lead to a node."""
     labels = {number: label.split(r'\n')[0] for number, label in labels_in(dot).items()}
-    return {labels[start]: colours for start, end, colours in EDGE.findall(dot)
+    return {labels[start]: colors for start, end, colors in EDGE.findall(dot)
             if labels[end] == name}
 
 

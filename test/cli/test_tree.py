@@ -128,7 +128,7 @@ def test_terminal_without_the_characters_has_others(files):
 
 
 @pytest.mark.parametrize('environment', [{}, {'NO_COLOR': '1'}])
-def test_terminal_has_colours_unless_the_user_wants_none(files, environment):
+def test_terminal_has_colors_unless_the_user_wants_none(files, environment):
     reader, writer = pty.openpty()
     subprocess.run(
         [sys.executable, '-m', 'sdf_pose_bridge', 'tree', 'good.sdf'], cwd=files,

@@ -129,7 +129,7 @@ def test_a_message_moves_the_joints_that_it_names(start, file, joints, tf):
     ({'turn': nan}, None, 'not finite'),
     ({'turn': 1e12}, None, 'beyond 1e+09'),
     ({'turn': 1.0}, ['turn', 'lift'], 'has 2 names and 1 positions'),
-    ({'turns': 1.0}, None, '"turns", not the name of one movable joint; did you mean "turn"?'),
+    ({'turns': 1.0}, None, '"turns", not the name of one moving joint; did you mean "turn"?'),
 ])
 def test_a_wrong_message_is_reported_and_the_next_one_taken(
     start, file, joints, tf, positions, names, line,

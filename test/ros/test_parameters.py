@@ -75,10 +75,10 @@ def test_the_separator_of_sdf_can_be_kept_as_its_description_says(make_node):
 
 def test_unknown_parameters_are_named_with_the_nearest_one(make_node):
     node = make_node(
-        'bridge', *FILE, '-p', 'frame_prefx:=r1/', '-p', 'colour:=3', '-p', 'use_sim_time:=true')
+        'bridge', *FILE, '-p', 'frame_prefx:=r1/', '-p', 'color:=3', '-p', 'use_sim_time:=true')
     sentences = [
         'there is no parameter "frame_prefx", so it has no effect; did you mean "frame_prefix"?',
-        'there is no parameter "colour", so it has no effect']
+        'there is no parameter "color", so it has no effect']
     assert warnings_about_unknown_parameters(node) == sentences
     settings_from_node(node)
     assert warnings_about_unknown_parameters(node) == sentences

@@ -180,7 +180,7 @@ def test_written_pose_is_ignored_with_a_warning():
     assert 'pose of an automatic inertial is ignored' in scene.warnings[0].message
 
 
-# Centres of mass
+# Centers of mass
 
 @pytest.mark.parametrize(('shape', 'volume'), [
     ('<box><size>1 2 3</size></box>', 6.0),

@@ -37,7 +37,7 @@ def motion_of(text):
 def poses_at(text, positions):
     """Return the pose of each element, by its name, at positions of joints by their names."""
     scene, motion = motion_of(text)
-    state = JointPositions(scene, motion.freedoms)
+    state = JointPositions(scene, motion.dofs)
     selection = state.selection(list(positions))
     assert not selection.unknown
     state.update(selection, np.array(list(positions.values()), float))
@@ -82,12 +82,12 @@ def test_types_of_joints_that_slide(joint_type, content, pose):
 
 
 def test_a_fixed_joint_has_no_degree_of_freedom():
-    assert not motion_of(two_links('fixed'))[1].freedoms
+    assert not motion_of(two_links('fixed'))[1].dofs
 
 
 def test_a_static_model_does_not_move():
     text = two_links('revolute').replace('<link', '<static>true</static><link', 1)
-    assert not motion_of(text)[1].freedoms
+    assert not motion_of(text)[1].dofs
 
 
 def test_a_joint_of_the_world_moves_a_model():
@@ -103,7 +103,7 @@ def test_the_last_joint_of_a_loop_moves_nothing():
         '</joint>' for name, parent, child in ('xab', 'ybc', 'zac'))
     links = ''.join(f'<link name="{name}"/>' for name in 'abc')
     scene, motion = motion_of(model_file(links + joints))
-    assert [scene.names[each.joint.element] for each in motion.freedoms] == ['m::x', 'm::y']
+    assert [scene.names[each.joint.element] for each in motion.dofs] == ['m::x', 'm::y']
 
 
 @given(st.data())
@@ -146,7 +146,7 @@ def test_joints_at_zero_leave_every_pose_as_it_is(data, count):
     joints = data.draw(random_joints(count))
     scene, motion = motion_of(model_text([data.draw(POSES) for _ in range(count)], joints))
     elements = np.arange(len(scene.names), dtype=np.int32)
-    moved = motion.moved_poses(scene.poses, elements, np.zeros(len(motion.freedoms)))
+    moved = motion.moved_poses(scene.poses, elements, np.zeros(len(motion.dofs)))
     np.testing.assert_allclose(moved, scene.poses, rtol=0.0, atol=1e-14)
 
 

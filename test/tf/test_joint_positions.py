@@ -30,7 +30,7 @@ def model(name, content=''):
 def positions_of(text, frame_names=FrameNames.AUTO, model=''):
     scene = load_text(text)
     tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
-    return JointPositions(scene, tree.moving.freedoms, frame_names, model)
+    return JointPositions(scene, tree.moving.dofs, frame_names, model)
 
 
 def update(positions, **values):
@@ -61,31 +61,31 @@ def test_unknown_names(name):
 def test_names_of_a_joint_of_a_model_file(name):
     positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
     assert positions.names == ('j',)
-    assert positions.selection([name]).freedoms.tolist() == [0]
+    assert positions.selection([name]).dofs.tolist() == [0]
 
 
 def test_names_of_joints_in_a_world_are_scoped():
     positions = positions_of(world_file(model('x') + model('y')))
     assert positions.names == ('x/j', 'y/j')
-    assert positions.selection(['y::j', 'y/j']).freedoms.tolist() == [1, 1]
+    assert positions.selection(['y::j', 'y/j']).dofs.tolist() == [1, 1]
     assert positions.selection(['j']).unknown == ('j',)
 
 
 def test_names_of_models_can_be_left_out_where_one_joint_is_meant():
     text = world_file(model('x') + '<model name="y"><static>1</static><link name="l"/></model>')
-    assert positions_of(text).selection(['j']).freedoms.tolist() == [0]
+    assert positions_of(text).selection(['j']).dofs.tolist() == [0]
 
 
 def test_the_name_of_a_joint_itself_comes_first():
     text = model_file(LINKS + joint(ENDS, 'j', 'revolute') + model('n'))
     positions = positions_of(text)
-    assert positions.selection(['j', 'n/j']).freedoms.tolist() == [
+    assert positions.selection(['j', 'n/j']).dofs.tolist() == [
         positions.names.index('j'), positions.names.index('n/j')]
 
 
 def test_of_several_models_one_can_have_all_names():
     positions = positions_of(world_file(model('x') + model('y')), model='y')
-    assert positions.selection(['j']).freedoms.tolist() == [1]
+    assert positions.selection(['j']).dofs.tolist() == [1]
     assert positions.selection(['x/j']).unknown == ('x/j',)
 
 
@@ -171,7 +171,7 @@ def limited(limit=''):
 
 
 @pytest.mark.parametrize(('name', 'value', 'words'), [
-    ('i', 1.0, '"i" is not the name of one movable joint'), ('j', np.nan, 'must be finite'),
+    ('i', 1.0, '"i" is not the name of one moving joint'), ('j', np.nan, 'must be finite'),
 ])
 def test_a_wrong_configuration_is_refused(name, value, words):
     with pytest.raises(JointPositionError, match=words):

@@ -72,7 +72,7 @@ def test_fixed_joints_move_nothing():
 
 def test_rows_moved_by_a_degree_of_freedom():
     moving = moving_tree(model_file(ARM)).moving
-    assert [moving.rows_moved_by([freedom]).tolist() for freedom in (0, 1)] == [[0], [1]]
+    assert [moving.rows_moved_by([dof]).tolist() for dof in (0, 1)] == [[0], [1]]
     assert moving.rows_moved_by([0, 1]).tolist() == [0, 1]
     assert not moving.rows_moved_by([]).size
 
@@ -96,7 +96,7 @@ def test_transforms_along_the_tree_give_the_poses(data, count):
     kinds = data.draw(st.sampled_from([
         {Kind.LINK}, {Kind.JOINT}, {Kind.MODEL, Kind.LINK, Kind.JOINT}]))
     tree = moving_tree(text, kinds=frozenset(kinds))
-    positions = np.array([data.draw(POSITIONS) for _ in tree.moving.freedoms])
+    positions = np.array([data.draw(POSITIONS) for _ in tree.moving.dofs])
     transforms = tree.transforms.copy()
     transforms[tree.moving.indices] = tree.moving.transforms(positions)
     poses = tree.poses.copy()

@@ -185,11 +185,11 @@ class _Conversion:
         joint = self._robot.parent_joints[link.name]
         old = self._inertials[joint.parent] or Inertial()
         joint_pose = pose_from_numbers([*joint.origin[:3], *rpy_by_urdfdom(joint.origin)])
-        centre = pose_product(joint_pose, inertial.origin)
+        center = pose_product(joint_pose, inertial.origin)
         mass = old.mass + inertial.mass
         x, y, z = (
             (a * old.mass + b * inertial.mass) / mass if mass else math.nan
-            for a, b in zip(old.origin[:3], centre[:3], strict=True))
+            for a, b in zip(old.origin[:3], center[:3], strict=True))
         self._inertials[joint.parent] = Inertial(mass, old.origin._replace(x=x, y=y, z=z))
 
     # Writing

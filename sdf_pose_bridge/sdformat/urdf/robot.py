@@ -47,7 +47,7 @@ _INERTIA = 'ixx! ixy! ixz! iyy! iyz! izz!'
 
 
 class Inertial(NamedTuple):
-    """Mass and centre of mass of a link."""
+    """Mass and center of mass of a link."""
 
     mass: float = 0.0
     origin: Pose = Pose()

@@ -179,7 +179,7 @@ def test_parameter_removes_an_element(load, params, gone):
 
 
 def test_attribute_of_an_added_element_that_is_not_defined_is_left_out(load):
-    scene = load('<frame element_id="" name="f" action="add" colour="red"/>')
+    scene = load('<frame element_id="" name="f" action="add" color="red"/>')
     assert 'arm::f' in names_of(scene)
     assert scene.warnings == ()
 

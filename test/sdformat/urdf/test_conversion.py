@@ -164,7 +164,7 @@ def test_joint_below_a_lumped_link_starts_at_the_link_it_is_lumped_into():
 
 def test_masses_are_added():
     scene = load_text(robot(
-        link('a', mass=1.0) + link('b', mass=3.0, centre='1 0 0') + FIXED))
+        link('a', mass=1.0) + link('b', mass=3.0, center='1 0 0') + FIXED))
     assert scene.pose('r::a::inertial')[:3] == pytest.approx((0.75, 0.75, 0.0))
 
 
