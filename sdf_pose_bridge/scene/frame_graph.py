@@ -21,6 +21,9 @@ from sdf_pose_bridge.errors import ModelWithoutLinkError
 from sdf_pose_bridge.errors import RelativeToCycleError
 from sdf_pose_bridge.errors import RelativeToError
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.chains import cycles_from_pointers
+from sdf_pose_bridge.geometry.chains import ends_from_pointers
+from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.joints import JointEnds
@@ -29,7 +32,6 @@ from sdf_pose_bridge.scene.name_scopes import IS_FRAME_KIND
 from sdf_pose_bridge.scene.name_scopes import NameScopes
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import FrameDetails
-from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.elements import ModelDetails
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -325,42 +327,3 @@ class _Builder:
                 msg += '; the default reference of a joint is its child'
             place = self._elements.place(first, int(self._elements.pose_lines[first]))
             self._problems.error(error_class(msg, place))
-
-
-def ends_from_pointers(pointers: Indices) -> Indices:
-    """
-    Follow every node to the end of its path.
-
-    :param pointers: the node that each node points to; -1 for none.
-    :return: for each node the one without a pointer that it leads to; for a node that leads into
-        a cycle, any node of that cycle.
-    """
-    ends = np.where(pointers < 0, np.arange(len(pointers), dtype=np.int32), pointers)
-    # Each round doubles the length of what has been followed.
-    for _ in range(len(pointers).bit_length()):
-        further = ends[ends]
-        if np.array_equal(further, ends):
-            break
-        ends = further
-    return ends
-
-
-def cycles_from_pointers(pointers: Indices) -> list[list[int]]:
-    """
-    Find the cycles.
-
-    :param pointers: the node that each node points to; -1 for none.
-    :return: the nodes of each cycle, each pointing to the next.
-    """
-    ends = ends_from_pointers(pointers)
-    cycles: list[list[int]] = []
-    found: set[int] = set()
-    for node in ends[pointers[ends] >= 0].tolist():
-        cycle: list[int] = []
-        while node not in found:
-            found.add(node)
-            cycle.append(node)
-            node = int(pointers[node])
-        if cycle:
-            cycles.append(cycle)
-    return cycles

@@ -19,12 +19,12 @@ from sdf_pose_bridge.errors import JointParentError
 from sdf_pose_bridge.errors import JointSameLinkError
 from sdf_pose_bridge.errors import MimicError
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.name_scopes import NameScopes
 from sdf_pose_bridge.sdformat.elements import AxisDetails
 from sdf_pose_bridge.sdformat.elements import Elements
-from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.elements import MimicDetails
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.elements import Reference

@@ -20,6 +20,7 @@ import numpy as np
 
 from sdf_pose_bridge.errors import LimitError
 from sdf_pose_bridge.errors import LoadError
+from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.problems import Problems
@@ -38,7 +39,6 @@ from sdf_pose_bridge.sdformat.documents import document_from_file
 from sdf_pose_bridge.sdformat.documents import document_from_text
 from sdf_pose_bridge.sdformat.elements import AxisDetails
 from sdf_pose_bridge.sdformat.elements import Elements
-from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder

@@ -5,10 +5,10 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sdf_pose_bridge.geometry.chains import poses_along_chains
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_inverse
 from sdf_pose_bridge.geometry.poses import pose_product
@@ -18,12 +18,7 @@ from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.scene.frame_graph import FrameGraph
 from sdf_pose_bridge.sdformat.elements import Elements
-from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.values import IDENTITY
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
 
 
 def root_poses_from_graph(poses: PoseArray, graph: FrameGraph) -> PoseArray:
@@ -61,7 +56,7 @@ def set_automatic_inertials(root_poses: PoseArray, elements: Elements) -> None:
             collisions.setdefault(int(elements.parents[index]), []).append(index)
     for index, masses in elements.automatic_inertials.items():
         link = int(elements.parents[index])
-        centers = np.tile(IDENTITY, (len(masses), 1))
+        centers = np.tile(Pose(), (len(masses), 1))
         centers[:, 2] = [mass.center_z_m for mass in masses]
         points = pose_products(root_poses[collisions[link]], centers)[:, :3]
         root_poses[index, :3] = np.average(
@@ -89,30 +84,6 @@ def axis_in_joint(
         Pose(0.0, 0.0, 0.0, *root_poses[index, 3:].tolist()) for index in (joint, expressed_in))
     direction = pose_product(relative_pose(*rotations), Pose(x, y, z))
     return direction.x, direction.y, direction.z
-
-
-def poses_along_chains(
-    edges: PoseArray, references: Indices, indices: npt.NDArray[np.intp],
-) -> PoseArray:
-    """
-    Multiply poses along chains of references.
-
-    Each round doubles the length of the chains, so a chain of a thousand takes ten rounds.
-
-    :param edges: the pose of each element in the one that it is relative to.
-    :param references: the element that each is relative to; -1 at the end of a chain.
-    :param indices: the elements to resolve. All references of these are among them.
-    :return: a copy of the poses, in which those of these elements are in the ends of their chains.
-    """
-    resolved: PoseArray = edges.copy()
-    targets = references.copy()
-    active = indices[references[indices] >= 0]
-    while len(active):
-        next_targets = targets[targets[active]]
-        active = active[next_targets >= 0]
-        resolved[active] = pose_products(resolved[targets[active]], resolved[active])
-        targets[active] = next_targets[next_targets >= 0]
-    return resolved
 
 
 def _edges_of_model_frames(poses: PoseArray, graph: FrameGraph) -> PoseArray:

@@ -9,16 +9,16 @@ from collections.abc import Mapping
 from collections.abc import Sequence
 from typing import Any
 from typing import NamedTuple
-from typing import TypeAlias
 
 import numpy as np
 
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.geometry.chains import Indices
+from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.shapes import Shape
-from sdf_pose_bridge.sdformat.values import IDENTITY
 from sdf_pose_bridge.sdformat.values import PoseFormat
 from sdf_pose_bridge.sdformat.values import poses_from_texts
 from sdf_pose_bridge.sdformat.xml_tree import path_step
@@ -27,8 +27,6 @@ NO_ELEMENT = -1
 """Index that means no element."""
 
 _MOST_PATHS_KNOWN = 1000
-
-Indices: TypeAlias = 'np.ndarray[Any, np.dtype[np.int32]]'
 
 
 class Reference(NamedTuple):
@@ -279,7 +277,7 @@ class ElementsBuilder:
             that may mean another pose.
         :return: the table.
         """
-        poses = np.tile(IDENTITY, (len(self.names), 1))
+        poses = np.tile(Pose(), (len(self.names), 1))
         failures = []
         doubts = []
         for pose_format, texts in self._texts.items():

@@ -178,9 +178,6 @@ def numbers_of_child(
 
 # Poses
 
-IDENTITY = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
-"""The pose of a frame in itself: x y z, quaternion x y z w."""
-
 SHORTEST_QUATERNION = 1e-9
 """A quaternion with a smaller norm has no meaningful direction."""
 
@@ -345,7 +342,7 @@ def _numbers_from_texts(texts: Sequence[str], count: int) -> npt.NDArray[np.floa
     except ValueError:
         return None
     numbers = numbers.reshape(-1, count)
-    is_quaternion = count == len(IDENTITY)
+    is_quaternion = count == 7
     if np.abs(numbers).max(initial=0.0) > (_LARGEST_NORM if is_quaternion else sys.float_info.max):
         return None
     if is_quaternion and (np.linalg.norm(numbers[:, 3:], axis=1) < SHORTEST_QUATERNION).any():

@@ -22,13 +22,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sdf_pose_bridge.geometry.chains import ends_from_pointers
+from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.scene.frame_graph import ends_from_pointers
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.grammar import Kind
 
 _LABELLED_KINDS = (

@@ -17,16 +17,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sdf_pose_bridge.geometry.chains import ends_from_pointers
+from sdf_pose_bridge.geometry.chains import Indices
+from sdf_pose_bridge.geometry.chains import poses_along_chains
+from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.geometry.screws import ScrewMotions
-from sdf_pose_bridge.scene.frame_graph import ends_from_pointers
-from sdf_pose_bridge.scene.resolution import poses_along_chains
 from sdf_pose_bridge.scene.scene import Joint
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.elements import Indices
-from sdf_pose_bridge.sdformat.values import IDENTITY
 from sdf_pose_bridge.tf.parents import TfParents
 
 if TYPE_CHECKING:
@@ -117,13 +117,13 @@ class JointMotion:
         self._axes, self._points = self._axes_in_root(scene)
         self._rad_per_unit = np.array([each.rad_per_unit for each in dofs]) * signs
         self._m_per_unit = np.array([each.m_per_unit for each in dofs]) * signs
-        identities = np.tile(IDENTITY, (len(dofs), 1))
+        identities = np.tile(Pose(), (len(dofs), 1))
         self._displacements = self.screw_motions(
             identities, np.arange(len(dofs)), identities)
 
     def _axes_in_root(self, scene: Scene) -> tuple[Floats, Floats]:
         poses = scene.poses[[dof.joint.element for dof in self.dofs]]
-        directions = np.tile(IDENTITY, (len(poses), 1))
+        directions = np.tile(Pose(), (len(poses), 1))
         directions[:, :3] = np.reshape([each.direction for each in self.dofs], (-1, 3))
         return pose_products(poses, directions)[:, :3] - poses[:, :3], poses[:, :3]
 
@@ -156,7 +156,7 @@ class JointMotion:
         moved: PoseArray = poses.copy()
         if len(rows):
             # The root comes last, where the index -1 finds it.
-            edges = np.concatenate([self._displacements.poses(positions), [IDENTITY]])
+            edges = np.concatenate([self._displacements.poses(positions), [Pose()]])
             ends = np.append(self.previous % len(edges), NO_DOF)
             displacements = poses_along_chains(edges, ends, np.arange(len(edges)))
             moved[rows] = pose_products(displacements[last[rows]], poses[rows])

@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.poses import relative_poses
-from sdf_pose_bridge.sdformat.elements import Indices
-from sdf_pose_bridge.sdformat.values import IDENTITY
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.parents import NO_PARENT
@@ -52,7 +51,7 @@ class MovingFrames:
         self._crossed = [
             _dofs_between(motion.previous, *ends) for ends in zip(
                 last_of_parents[self.indices].tolist(), last[self.indices].tolist(), strict=True)]
-        identities = np.tile(IDENTITY, (len(self.indices), 1))
+        identities = np.tile(Pose(), (len(self.indices), 1))
         parents = parents[self.indices]
         poses_of_parents = np.where((parents < 0)[:, np.newaxis], identities, poses[parents])
         before = relative_poses(poses_of_parents, identities)

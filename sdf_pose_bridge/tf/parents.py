@@ -19,9 +19,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.scene.scene import Joint
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.elements import Indices
 from sdf_pose_bridge.sdformat.grammar import Kind
 
 ROOT_IS_PARENT = -1

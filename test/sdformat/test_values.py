@@ -21,9 +21,9 @@ from sdf_texts import TWO_LINKS
 from sdf_texts import world_file
 
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.values import boolean_from_text
-from sdf_pose_bridge.sdformat.values import IDENTITY
 from sdf_pose_bridge.sdformat.values import is_of_type
 from sdf_pose_bridge.sdformat.values import pose_from_text
 from sdf_pose_bridge.sdformat.values import PoseFormat
@@ -311,7 +311,7 @@ def test_decimal_numbers(word, value):
 
 @pytest.mark.parametrize('text', ['', ' ', '\n\t\r '])
 def test_blank_text_is_the_identity(text):
-    assert rpy(text) == quaternion(text) == list(IDENTITY)
+    assert rpy(text) == quaternion(text) == list(Pose())
 
 
 @pytest.mark.parametrize('separator', ['  ', '\t', '\n', '\r\n', ' \n\t '])
@@ -366,7 +366,7 @@ def read_one_by_one(texts, pose_format):
             poses.append(pose_from_text(text, pose_format))
         except PoseTextError as error:
             failures.append((index, str(error)))
-            poses.append(IDENTITY)
+            poses.append(Pose())
     return np.array(poses).reshape(-1, 7), failures
 
 
@@ -384,7 +384,7 @@ def test_failures_have_index_and_reason():
     assert [index for index, _ in failures] == [1, 3]
     assert re.search('"1 2".*has 2', failures[0][1])
     assert '"x"' in failures[1][1]
-    assert poses[1].tolist() == poses[3].tolist() == list(IDENTITY)
+    assert poses[1].tolist() == poses[3].tolist() == list(Pose())
     assert poses[2, :3].tolist() == [1, 2, 3]
 
 

@@ -1,0 +1,88 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Follow chains of pointers, and multiply the poses along them.
+
+A pointer of a node is the index of another node, or -1 for none. Chains are followed by doubling:
+each round doubles the length of what has been followed, so a chain of a thousand takes ten rounds.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+from typing import TYPE_CHECKING
+from typing import TypeAlias
+
+import numpy as np
+
+from sdf_pose_bridge.geometry.poses import pose_products
+from sdf_pose_bridge.geometry.poses import PoseArray
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+Indices: TypeAlias = 'np.ndarray[Any, np.dtype[np.int32]]'
+"""Shape (n,): indices of elements or nodes; -1 for none."""
+
+
+def ends_from_pointers(pointers: Indices) -> Indices:
+    """
+    Follow every node to the end of its path.
+
+    :param pointers: the node that each node points to; -1 for none.
+    :return: for each node the one without a pointer that it leads to; for a node that leads into
+        a cycle, any node of that cycle.
+    """
+    ends = np.where(pointers < 0, np.arange(len(pointers), dtype=np.int32), pointers)
+    # Each round doubles the length of what has been followed.
+    for _ in range(len(pointers).bit_length()):
+        further = ends[ends]
+        if np.array_equal(further, ends):
+            break
+        ends = further
+    return ends
+
+
+def cycles_from_pointers(pointers: Indices) -> list[list[int]]:
+    """
+    Find the cycles.
+
+    :param pointers: the node that each node points to; -1 for none.
+    :return: the nodes of each cycle, each pointing to the next.
+    """
+    ends = ends_from_pointers(pointers)
+    cycles: list[list[int]] = []
+    found: set[int] = set()
+    for node in ends[pointers[ends] >= 0].tolist():
+        cycle: list[int] = []
+        while node not in found:
+            found.add(node)
+            cycle.append(node)
+            node = int(pointers[node])
+        if cycle:
+            cycles.append(cycle)
+    return cycles
+
+
+def poses_along_chains(
+    edges: PoseArray, references: Indices, indices: NDArray[np.intp],
+) -> PoseArray:
+    """
+    Multiply poses along chains of references.
+
+    Each round doubles the length of the chains, so a chain of a thousand takes ten rounds.
+
+    :param edges: the pose of each element in the one that it is relative to.
+    :param references: the element that each is relative to; -1 at the end of a chain.
+    :param indices: the elements to resolve. All references of these are among them.
+    :return: a copy of the poses, in which those of these elements are in the ends of their chains.
+    """
+    resolved: PoseArray = edges.copy()
+    targets = references.copy()
+    active = indices[references[indices] >= 0]
+    while len(active):
+        next_targets = targets[targets[active]]
+        active = active[next_targets >= 0]
+        resolved[active] = pose_products(resolved[targets[active]], resolved[active])
+        targets[active] = next_targets[next_targets >= 0]
+    return resolved
