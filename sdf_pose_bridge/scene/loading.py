@@ -35,6 +35,7 @@ from sdf_pose_bridge.scene.scene import Joint
 from sdf_pose_bridge.scene.scene import JointAxis
 from sdf_pose_bridge.scene.scene import Mimic
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.documents import Document
 from sdf_pose_bridge.sdformat.documents import document_from_file
 from sdf_pose_bridge.sdformat.documents import document_from_text
 from sdf_pose_bridge.sdformat.elements import AxisDetails
@@ -46,7 +47,6 @@ from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
 from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.reader import elements_from_tree
-from sdf_pose_bridge.sdformat.sources import Document
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 

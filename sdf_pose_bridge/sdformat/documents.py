@@ -4,15 +4,16 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.sources import Document
+from sdf_pose_bridge.sdformat.old_versions import convert
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.versions import convert
 from sdf_pose_bridge.sdformat.versions import NEWEST
 from sdf_pose_bridge.sdformat.versions import version_from_text
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
@@ -20,6 +21,17 @@ from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+
+class Document(NamedTuple):
+    """One file as a tree."""
+
+    path: str
+    """The path that it was opened by."""
+    root: XmlElement
+    """The ``sdf`` element."""
+    may_hold_scoped_names: bool
+    """False if no name in the file can hold ``::``."""
 
 
 def document_from_file(path: str, sources: Sources, problems: Problems) -> Document:
@@ -69,12 +81,12 @@ def _document_from_bytes(
     if root.tag == 'robot':
         # Most files are not URDF and need not wait for this import.
         from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
-        sources.add_document(Document(path, root, NEWEST), lines)
+        sources.add_tree(path, root, NEWEST, lines)
         root, lines = sdf_from_urdf(root, lines, sources, problems)
     version = version_from_text(_declared_version(root, path), Place(path, root.sourceline or 0))
-    document = Document(path, root, version, _may_hold_scoped_names(text))
-    sources.add_document(document, lines)
-    convert(document, sources)
+    document = Document(path, root, _may_hold_scoped_names(text))
+    sources.add_tree(path, root, version, lines)
+    convert(root, version, sources, may_hold_scoped_names=document.may_hold_scoped_names)
     _check_top_model(root, sources, problems)
     return document
 

@@ -14,39 +14,16 @@ import contextlib
 import copy
 from itertools import chain
 from itertools import islice
-from typing import NamedTuple
 
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
 from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.versions import Version
 from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _MOST_PLACES_REMEMBERED = 1000
-
-
-class Version(NamedTuple):
-    """A version of SDFormat."""
-
-    major: int
-    minor: int
-
-    def __str__(self) -> str:
-        return f'{self.major}.{self.minor}'
-
-
-class Document(NamedTuple):
-    """One file as a tree."""
-
-    path: str
-    """The path that it was opened by."""
-    root: XmlElement
-    """The ``sdf`` element."""
-    version: Version
-    """The version that the file declares."""
-    may_hold_scoped_names: bool = True
-    """False if no name in the file can hold ``::``."""
 
 
 class Sources:
@@ -85,19 +62,23 @@ class Sources:
         if path not in self.paths:
             self.paths.append(path)
 
-    def add_document(self, document: Document, lines: Mapping[XmlElement, int]) -> None:
+    def add_tree(
+        self, path: str, root: XmlElement, version: Version, lines: Mapping[XmlElement, int],
+    ) -> None:
         """
         Add a file that was read.
 
-        :param document: the file.
+        :param path: its path.
+        :param root: its outermost element.
+        :param version: the version that it declares.
         :param lines: the lines of those of its elements whose lines lxml does not know.
         """
-        self.add_path(document.path)
-        self.versions[document.path] = document.version
-        self._files[document.root] = document.path
+        self.add_path(path)
+        self.versions[path] = version
+        self._files[root] = path
         self._lines.update(lines)
         if lines:
-            self.set_composed(document.root)
+            self.set_composed(root)
 
     def set_composed(self, root: XmlElement) -> None:
         """

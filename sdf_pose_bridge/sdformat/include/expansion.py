@@ -28,6 +28,7 @@ from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import UriLookupError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.sdformat.documents import Document
 from sdf_pose_bridge.sdformat.documents import document_from_file
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.merge import merge
@@ -36,7 +37,6 @@ from sdf_pose_bridge.sdformat.include.params import params_of
 from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.sdformat.reader import check_element
-from sdf_pose_bridge.sdformat.sources import Document
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.values import boolean_from_text

@@ -26,6 +26,7 @@ from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.versions import NEWEST
+from sdf_pose_bridge.sdformat.versions import version_numbers
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
@@ -276,10 +277,10 @@ def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
     usage.add_elements_of(text, Place(manifest))
     root, xml_warnings, _ = xml_from_bytes(text, manifest)
     warnings += xml_warnings
-    best: tuple[int, ...] = (0, 0)
+    best: tuple[int, ...] = ()
     chosen = None
     for entry in child_elements(root, 'sdf'):
-        version = _version_from_text(entry.get('version', ''))
+        version = version_numbers(entry.get('version', '').strip(WHITE_SPACE))
         if version > NEWEST:
             written = shortened(entry.get('version', ''))
             msg = f'version {written} of the model is newer than {NEWEST} and skipped'
@@ -298,10 +299,3 @@ def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
         place = Place(manifest, chosen.sourceline or 0, '/model/sdf')
         warnings.append(SdfWarning('WARNING', msg, place))
     return ModelFile(str(Path(directory, name)), manifest, tuple(warnings))
-
-
-def _version_from_text(text: str) -> tuple[int, ...]:
-    parts = text.strip(WHITE_SPACE).split('.')
-    if all(part.isascii() and part.isdigit() and len(part) < 6 for part in parts):
-        return tuple(int(part) for part in parts)
-    return (0, 0)
