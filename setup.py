@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Build and install the Python package; with ROS and without it."""
 
+import configparser
 import os
 from pathlib import Path
 from typing import Any
@@ -12,11 +13,17 @@ from setuptools.command.install_scripts import install_scripts
 
 PACKAGE = 'sdf_pose_bridge'
 SHARE = f'share/{PACKAGE}'
-SHARED_FOLDERS = ('launch', 'config', 'rviz', 'examples')
 NOT_INSTALLED = ('__pycache__', '.pytest_cache', '.mypy_cache', '.ruff_cache')
 BLOCK_SIGNALS = (
     'import signal',
     'signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM])')
+
+
+def shared_folders() -> list[str]:
+    """Return the folders in the root that are installed in share/."""
+    settings = configparser.ConfigParser()
+    settings.read('setup.cfg')
+    return settings[PACKAGE]['share'].split()
 
 
 def data_files_of(folder: str) -> list[tuple[str, list[str]]]:
@@ -82,7 +89,7 @@ setup(
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (SHARE, ['package.xml']),
-        *(pair for folder in SHARED_FOLDERS for pair in data_files_of(folder)),
+        *(pair for folder in shared_folders() for pair in data_files_of(folder)),
     ],
     cmdclass={'install_scripts': InstallScripts},
     entry_points={

@@ -205,6 +205,15 @@ def test_every_file_to_share_is_installed_in_its_place(folder):
         file: f'share/sdf_pose_bridge/{file}' for file in files}
 
 
+def test_the_environment_is_built_again_after_a_change_of_any_installed_file(monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / 'underlay'))
+    from make_underlay import bridge_sources
+    sources = bridge_sources()
+    assert [file for file in installed_files() if not any(
+        (ROOT / file).is_relative_to(source) for source in sources)] == []
+    assert ROOT / 'sdf_pose_bridge' in sources
+
+
 def test_package_xml_and_the_index_entry_are_installed():
     places = installed_files()
     assert (places['package.xml'], places['resource/sdf_pose_bridge']) == (

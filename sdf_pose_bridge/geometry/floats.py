@@ -14,7 +14,7 @@ from typing import TypeVar
 
 T = TypeVar('T')
 
-all = any = bool  # noqa: A001 - of one condition
+all = any = bool  # noqa: A001 - a float has one condition where an array has many
 arctan2 = math.atan2
 copysign = math.copysign
 cos = math.cos

@@ -89,7 +89,7 @@ class Scene:
     names: tuple[str, ...]
     """Absolute names such as ``robot::arm::hand``; ``world`` for a world's own frame."""
     kinds: 'npt.NDArray[np.uint8]'
-    """Values of :class:`~sdf_pose_bridge.names.Kind`."""
+    """Values of :class:`~sdf_pose_bridge.sdformat.grammar.Kind`."""
     parents: Indices
     """The parent element of each element; -1 for a world and the implicit root."""
     roots: Indices

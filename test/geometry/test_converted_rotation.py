@@ -87,6 +87,17 @@ def test_at_lock_yaw_is_zero_and_the_flag_is_set(rpy, expected):
     assert answer.gimbal_lock
 
 
+def test_next_to_lock_the_flag_is_set_and_the_rotation_is_kept():
+    answer = converted_rpy(0.0, 0.5 * math.pi - 2e-8, 0.2)
+    assert answer.gimbal_lock
+    assert answer.rpy[2] == pytest.approx(0.2, abs=1e-7)
+
+
+@pytest.mark.parametrize(('distance', 'expected'), [(4e-8, True), (5e-8, False)])
+def test_the_flag_is_set_as_near_to_lock_as_by_gz_math(distance, expected):
+    assert converted_rpy(0.1, 0.5 * math.pi - distance, 0.2).gimbal_lock is expected
+
+
 def test_quaternions_are_returned_canonical():
     assert converted_quaternion(0.0, -2.0, 0.0, -0.0).quat_xyzw == (0.0, 1.0, 0.0, 0.0)
     assert converted_quaternion(1e-300, 0.0, 0.0, -1e-300).quat_xyzw == pytest.approx(

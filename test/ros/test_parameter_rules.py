@@ -1,0 +1,62 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Rules refuse a value with the words that a sentence ends with, or make the setting of it."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from sdf_pose_bridge.ros import parameter_rules as rules
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.tree import AnchorModels
+
+
+@pytest.mark.parametrize(('rule', 'value', 'words'), [
+    (rules.file_setting, '', 'is not set; name the SDFormat file'),
+    (rules.root_frame_setting, '', 'is ""; it must be a frame id'),
+    (rules.root_frame_setting, '/map', 'is "/map"; it must be without a leading slash'),
+    (rules.root_frame_setting, 'ma\np', 'it must be without control characters'),
+    (rules.prefix_setting, '/r1', 'is "/r1"; it must be without a leading slash'),
+    (rules.prefix_setting, 'r\x001', 'it must be without control characters'),
+    (rules.separator_setting, '', 'is ""; it must be at least one character'),
+    (rules.separator_setting, '\t', 'it must be without control characters'),
+    (rules.rate_setting, 0.0009, 'is 0.0009; it must be 0.0 for never, or from 0.001 to 100.0'),
+    (rules.rate_setting, 100.1, 'is 100.1; it must be 0.0 for never'),
+    (rules.rate_setting, -1.0, 'is -1.0; it must be 0.0 for never'),
+    (rules.rate_setting, math.nan, 'is nan; it must be 0.0 for never'),
+    (rules.choice_setting(AnchorModels), 'ALL', 'is "ALL"; it must be one of '),
+    (rules.kinds_setting, [], 'is []; it must be at least one of model, '),
+    (rules.kinds_setting, ['link', 'links'], 'is "links"; it must be made of model, '),
+    (rules.kinds_setting, ['world'], 'is "world"; it must be made of model, '),
+    (rules.patterns_setting, ['a'] * 1001, 'has 1001 patterns; it must have at most 1000'),
+])
+def test_refused(rule, value, words):
+    with pytest.raises(ValueError, match=r'it must|is not set') as refusal:
+        rule(value)
+    assert words in str(refusal.value)
+    assert str(refusal.value).isprintable()
+
+
+@pytest.mark.parametrize(('rule', 'value', 'setting'), [
+    (rules.file_setting, 'cell.sdf', 'cell.sdf'),
+    (rules.root_frame_setting, 'map', 'map'),
+    (rules.prefix_setting, '', ''),
+    (rules.prefix_setting, 'r1/', 'r1/'),
+    (rules.separator_setting, '::', '::'),
+    (rules.rate_setting, 0.0, 0.0),
+    (rules.rate_setting, 0.001, 0.001),
+    (rules.rate_setting, 100.0, 100.0),
+    (rules.choice_setting(AnchorModels), 'static', AnchorModels.STATIC),
+    (rules.kinds_setting, ['link', 'light', 'link'], frozenset({Kind.LINK, Kind.LIGHT})),
+    (rules.patterns_setting, ['*'] * 1000, ('*',) * 1000),
+    (rules.patterns_setting, [], ()),
+    (rules.directories_setting, ['', 'models', ''], (Path('models'),)),
+])
+def test_taken(rule, value, setting):
+    assert rule(value) == setting
+
+
+def test_directories_may_begin_with_that_of_the_user(monkeypatch):
+    monkeypatch.setenv('HOME', '/home/me')
+    assert rules.directories_setting(['~/models']) == (Path('/home/me/models'),)

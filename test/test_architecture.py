@@ -1,0 +1,49 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Modules, tests and pages fit together as docs/architecture.md describes."""
+
+from pathlib import Path
+import re
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = ROOT / 'sdf_pose_bridge'
+TESTS = ROOT / 'test'
+MODULES = sorted(
+    path.relative_to(PACKAGE) for path in PACKAGE.rglob('*.py') if not path.stem.startswith('__'))
+PAGES = [ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').glob('*.md'))]
+
+TESTED_BY_PROCESSES = {
+    'ros/joint_states.py': ['test_joint_states.py'],
+    'ros/moving_publishers.py': ['test_joint_states.py'],
+    'ros/node.py': [
+        'test_bridge_changes.py', 'test_bridge_reload.py', 'test_bridge_background.py'],
+    'ros/parameter_service.py': ['test_bridge_changes.py', 'test_bridge_reload.py'],
+    'ros/process.py': ['test_bridge_process.py'],
+}
+"""Modules that run only in a whole node, and the modules in test/integration that test them."""
+
+
+def path_of_test(module):
+    return TESTS / module.with_name(f'test_{module.name}')
+
+
+def test_every_module_has_its_test_module_or_is_tested_by_processes():
+    without = {str(module) for module in MODULES if not path_of_test(module).exists()}
+    assert without == TESTED_BY_PROCESSES.keys()
+
+
+@pytest.mark.parametrize('module', TESTED_BY_PROCESSES)
+def test_tests_by_processes_exist(module):
+    assert all((TESTS / 'integration' / name).exists() for name in TESTED_BY_PROCESSES[module])
+
+
+@pytest.mark.parametrize('page', PAGES, ids=lambda page: page.name)
+def test_files_that_a_page_names_exist(page):
+    rooms = '|'.join(sorted({module.parts[0] for module in MODULES}))
+    named = re.findall(
+        rf'`((?:(?:{rooms}|test|docs|config|underlay)/)[\w/.]+)`',
+        page.read_text(encoding='utf-8'))
+    assert [name for name in named
+            if not (PACKAGE / name).exists() and not (ROOT / name).exists()] == []
