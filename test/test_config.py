@@ -40,13 +40,6 @@ def test_a_value_is_the_default(name):
     assert type(value) is type(DEFAULTS[name])
 
 
-@pytest.mark.parametrize('name', values_in_file())
-def test_a_parameter_is_explained_above_it(name):
-    lines = FILE.read_text(encoding='utf-8').splitlines()
-    place = next(i for i, line in enumerate(lines) if line.startswith(f'    {name}:'))
-    assert lines[place - 1].startswith('    # ')
-
-
 def test_a_node_takes_it(make_node, tmp_path):
     copy = tmp_path / 'bridge.yaml'
     text = FILE.read_text(encoding='utf-8')
