@@ -14,6 +14,7 @@ TFMessage, TransformStamped and PoseStamped.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 from typing import TYPE_CHECKING
 
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 _LENGTH = 4
 _STAMP = 8
 _NUMBERS = 7 * 8
+_BYTES_AT_A_TIME = 100_000
 _HEADER = 8
 """Room before the fields of a message: the four bytes, behind four that keep it aligned."""
 
@@ -181,9 +183,15 @@ def _records(
     buffer = np.zeros(start + int(sizes.sum()) + 8, np.uint8)
     for data, lengths, place in strings:
         buffer.view('<i4')[(begins + place) // 4] = lengths
+        bounds = np.append(0, np.cumsum(lengths))
         # Each byte moves as far as the first one of its string.
-        moves = begins + place + _LENGTH - (np.cumsum(lengths) - lengths)
-        buffer[np.arange(len(data)) + np.repeat(moves, lengths)] = data
+        moves = begins + place + _LENGTH - bounds[:-1]
+        # The indices of all bytes at once would take many times the memory of long strings.
+        parts = np.searchsorted(bounds[:-1], np.arange(0, len(data), _BYTES_AT_A_TIME))
+        for first, last in pairwise([*parts.tolist(), len(lengths)]):
+            begin, end = bounds[[first, last]].tolist()
+            targets = np.arange(begin, end) + np.repeat(moves[first:last], lengths[first:last])
+            buffer[targets] = data[begin:end]
     records = _Records(buffer, begins + room, begins + offsets, ends)
     StampedMessages(*records[:3], ()).set_poses(numbers)
     return records

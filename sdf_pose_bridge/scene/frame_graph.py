@@ -40,6 +40,9 @@ from sdf_pose_bridge.sdformat.limits import Usage
 _MOST_NAMES_SHOWN = 5
 _LONGEST_CYCLE_SHOWN = 12
 
+_STEPS_OF_REFERENCE = 2
+"""Steps of work to follow one reference from a placement frame."""
+
 
 class FrameGraph(NamedTuple):
     """The checked references of all elements. Entry i of a sequence is about element i."""
@@ -72,10 +75,10 @@ def frame_graph_from_elements(
     Look up and check every reference.
 
     :param elements: the elements.
-    :param usage: counts the characters of names.
+    :param usage: counts the work.
     :param problems: takes what is wrong with references.
     :return: the graph; a wrong reference in it is replaced by the default of its kind.
-    :raises LimitError: if the absolute names are too long.
+    :raises LimitError: if the absolute names are too long, or chains of references.
     """
     return _Builder(elements, usage, problems).graph()
 
@@ -84,6 +87,7 @@ class _Builder:
 
     def __init__(self, elements: Elements, usage: Usage, problems: Problems) -> None:
         self._elements = elements
+        self._usage = usage
         self._problems = problems
         self._scopes = NameScopes(elements, usage)
         self._scope_of: list[int] = elements.scopes.tolist()
@@ -105,7 +109,7 @@ class _Builder:
             [ends for ends in joints.values() if ends.joint not in self._unresolved],
             bodies, self._problems)
         references = self._references(joints)
-        placements = self._placements()
+        placements = self._placements(references)
         self._add_dependents(references, attachments, joints)
         return FrameGraph(
             self._scopes.names, self._scopes.roots, references, placements, attachments, bodies,
@@ -248,7 +252,7 @@ class _Builder:
             self._problems.warning(msg, place, RelativeToError.code)
         return NO_ELEMENT
 
-    def _placements(self) -> dict[int, int]:
+    def _placements(self, references: Indices) -> dict[int, int]:
         elements = self._elements
         names = [(model, model, details.placement_frame)
                  for model, details in elements.models.items() if details.placement_frame]
@@ -259,9 +263,23 @@ class _Builder:
             found = self._scopes.frame(scope, name)
             if found is None:
                 self._report_unknown(RelativeToError, index, 'placement_frame', name, scope)
-            elif found != index:
+            elif self._is_placed_with(found, index, references):
                 placements[index] = found
+            else:
+                msg = (f'placement_frame="{name}" cannot place the model that is merged here: it '
+                       'names a frame outside that model')
+                self._problems.error(RelativeToError(msg, elements.place(index)))
         return placements
+
+    def _is_placed_with(self, frame: int, model: int, references: Indices) -> bool:
+        """Return whether references lead from a placement frame to its model frame."""
+        steps = 0
+        while frame not in (model, NO_ELEMENT):
+            steps += 1
+            last, frame = frame, int(references[frame])
+        self._usage.add('work', _STEPS_OF_REFERENCE * steps, lambda: self._elements.place(model))
+        # A cycle, which is reported already, ends at the element at which it was broken.
+        return frame == model or self._elements.parents[last] != NO_ELEMENT
 
     # Reports
 

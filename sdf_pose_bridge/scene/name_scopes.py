@@ -25,6 +25,7 @@ from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
 from sdf_pose_bridge.sdformat.limits import Usage
 
 _OWN_FRAME = SEPARATOR + MODEL_FRAME
@@ -41,7 +42,7 @@ class NameScopes:
     The absolute names of all elements, and the frames that they name.
 
     :param elements: the elements.
-    :param usage: counts the characters of their absolute names.
+    :param usage: counts the work of joining them.
     :raises LimitError: if there are too many.
 
     ``names[i]`` is the absolute name of element i, such as ``robot::arm::hand``, without the name
@@ -161,7 +162,7 @@ class NameScopes:
 def _absolute_names(elements: Elements, usage: Usage) -> list[str]:
     names: list[str] = []
     scopes: list[str] = []
-    characters, most = 0, usage.left('name_characters')
+    characters, most = 0, usage.left('work') * CHARACTERS_OF_STEP
     for name, parent, kind in zip(
             elements.names, elements.parents.tolist(), elements.kinds.tolist(), strict=True):
         if parent >= 0:
@@ -174,7 +175,7 @@ def _absolute_names(elements: Elements, usage: Usage) -> list[str]:
             names.append(WORLD_FRAME if kind == Kind.WORLD else ROOT_FRAME)
             scopes.append('')
     if characters:
-        usage.add('name_characters', characters, elements.place(len(names) - 1))
+        usage.add('work', -(-characters // CHARACTERS_OF_STEP), elements.place(len(names) - 1))
     return names
 
 

@@ -9,6 +9,7 @@ zeros, and these are the only bytes that are not compared.
 
 import struct
 import sys
+import tracemalloc
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -158,6 +159,24 @@ def test_long_names_have_the_bytes_of_the_serializer(serialized):
     (ours,) = tf_message(*columns(rows)).with_stamp(1, 2)
     assert meant(ours, mask) == meant(serialized(tf_message_object(rows, (1, 2))), mask)
     assert not any(byte for byte, counts in zip(ours, mask, strict=True) if not counts)
+
+
+def test_names_of_two_megabytes_have_the_bytes_of_the_serializer(serialized):
+    lengths = [0, 7, 200_000, 99_999, 3, 300_000, 1, 0]
+    rows = [('p' * length, 'c' * length, [1.0] * 7) for length in lengths]
+    mask = mask_of_list([row[:2] for row in rows])
+    (ours,) = tf_message(*columns(rows)).with_stamp(1, 2)
+    assert meant(ours, mask) == meant(serialized(tf_message_object(rows, (1, 2))), mask)
+
+
+def test_long_names_take_little_more_memory_than_the_message():
+    names = [str(number) * 1000 for number in range(1000, 2000)]
+    tracemalloc.start()
+    messages = tf_message(names, names, np.zeros((len(names), 7)))
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    (data,) = messages.with_stamp(1, 2)
+    assert peak < 4 * len(data)
 
 
 @given(rows=ROWS)

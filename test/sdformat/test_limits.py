@@ -19,6 +19,10 @@ from sdf_pose_bridge import load
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge import SdfError
 from sdf_pose_bridge.problems import MOST_PROBLEMS
+from sdf_pose_bridge.sdformat.limits import BYTES_OF_STEP
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_INCLUDE
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_NAMED_ELEMENT
 
 FILES = 30
 TWICE = ('<include><name>a</name><uri>{0}.sdf</uri></include>'
@@ -43,13 +47,13 @@ def test_includes_that_double_thirty_times_are_refused(tmp_path, content):
     write_files(tmp_path, empty=model_file(f'<model name="n">{LINK}</model>'), **{
         str(number): model_file(content.format(number + 1) if number < FILES - 1 else LINK)
         for number in range(FILES)})
-    assert exceeded_limit(tmp_path / '0.sdf') == 'included_elements'
+    assert exceeded_limit(tmp_path / '0.sdf') == 'work'
 
 
 def test_long_name_of_many_elements_is_refused(tmp_path):
     links = ''.join(f'<link name="{number}"/>' for number in range(15_000))
     write_files(tmp_path, long=model_file(links).replace('"m"', f'"{"m" * 350_000}"'))
-    assert exceeded_limit(tmp_path / 'long.sdf') == 'name_characters'
+    assert exceeded_limit(tmp_path / 'long.sdf') == 'work'
 
 
 def test_too_many_elements_are_refused_before_they_are_parsed(tmp_path):
@@ -77,11 +81,11 @@ def test_included_pipe_is_refused(tmp_path):
 def test_error_about_a_limit_follows_the_other_errors(tmp_path):
     write_files(tmp_path, main=world_file(
         '<include/><include><uri>leaf.sdf</uri></include>'), leaf=model_file(LINK))
-    errors = errors_of_file(tmp_path / 'main.sdf', limits=Limits(included_elements=1))
+    errors = errors_of_file(tmp_path / 'main.sdf', limits=Limits(work=100))
     assert [error.code for error in errors] == ['ATTRIBUTE_MISSING', 'LIMIT']
 
 
-@pytest.mark.parametrize('limit', ['elements', 'bytes_read', 'name_characters', 'depth'])
+@pytest.mark.parametrize('limit', ['elements', 'bytes_read', 'depth'])
 def test_limits_can_be_set(limit):
     text = model_file(LINK)
     with pytest.raises(SdfError, match=f'the limit {limit} is 1'):
@@ -93,12 +97,16 @@ def test_limits_that_are_just_met_refuse_nothing(tmp_path):
                 leaf=model_file(LINK))
     size = sum(path.stat().st_size for path in tmp_path.iterdir())
     scene = load(tmp_path / 'main.sdf', limits=Limits(
-        bytes_read=size, elements=7, included_elements=2, include_depth=2, depth=3,
-        name_characters=len('m' + 'm::l')))
+        bytes_read=size, elements=7, include_depth=2, depth=3,
+        work=STEPS_OF_INCLUDE + 2 * (STEPS_OF_ELEMENT + STEPS_OF_NAMED_ELEMENT)
+        + 1 - size // BYTES_OF_STEP))
     assert names_of(scene) == ['m', 'm::l']
 
 
 CHAIN = ''.join(f'<frame name="f{i}" attached_to="f{i + 1}"/>' for i in range(10_000))
+DEEP_PLACEMENTS = '<sdf version="1.9">' + ''.join(
+    f'<model name="n" placement_frame="{"n::" * (199 - depth)}f0">{LINK}' for depth in range(200)
+) + CHAIN.replace(' attached_to="f10000"', '') + '</model>' * 200 + '</sdf>'
 MISSING = '<include><uri>none.sdf</uri><name>x</name></include>'
 
 
@@ -108,11 +116,12 @@ MISSING = '<include><uri>none.sdf</uri><name>x</name></include>'
     model_file('<link name="l" ' + ' '.join(f'a{i}=""' for i in range(30_000)) + '/>'),
     b'<sdf version="1.9">' + b'\xff' * 200_000 + model_file(LINK).encode()[19:],
     '<' + 'a' * 200_000,
+    DEEP_PLACEMENTS,
     '<sdf version="1.9">' + ''.join(f'<model name="m{i}">' for i in range(240)) + LINK
     + ''.join(f'<frame name="f{i}" attached_to="g"/>' for i in range(9000))
     + '</model>' * 240 + '</sdf>',
 ], ids=['chain to a missing file', 'long path to a missing file', 'attributes', 'not UTF-8',
-        'long tag', 'errors in deep models'])
+        'long tag', 'placement frames at the end of a chain', 'errors in deep models'])
 def test_time_grows_with_the_size_of_a_file_and_not_faster(text):
     begin = time.perf_counter()
     with contextlib.suppress(SdfError):

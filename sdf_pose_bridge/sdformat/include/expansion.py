@@ -36,6 +36,9 @@ from sdf_pose_bridge.sdformat.include.params import apply_params
 from sdf_pose_bridge.sdformat.include.params import params_of
 from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_INCLUDE
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_NAMED_ELEMENT
 from sdf_pose_bridge.sdformat.reader import check_element
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
@@ -47,7 +50,7 @@ from sdf_pose_bridge.sdformat.xml_tree import value_of
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-_COPIES_OF_MERGED_MODEL = 10
+_READINGS_OF_MERGED_MODEL = 3
 """How often the elements of a merged model are counted: it is also read by itself."""
 
 _TOP_TAGS = ('model', 'actor', 'light')
@@ -97,6 +100,8 @@ class IncludeExpansion:
                 self._expand_include(include, files)
 
     def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
+        self._sources.usage.add(
+            'work', STEPS_OF_INCLUDE, lambda: self._sources.place(include))
         is_merge = self._is_merge(include)
         self._undefined.report_content(include, definition_of('include'))
         for plugin in child_elements(include, 'plugin'):
@@ -114,10 +119,7 @@ class IncludeExpansion:
         if chosen is None or is_merge is None:
             return
         self.may_hold_scoped_names |= found.may_hold_scoped_names
-        copies = _COPIES_OF_MERGED_MODEL if is_merge else 1
-        self._sources.usage.add(
-            'included_elements', copies * int(chosen.xpath('count(descendant-or-self::*)')),
-            self._sources.place(include))
+        self._count_copy(include, chosen, is_merge=is_merge)
         top = self._sources.copy_of(chosen)
         self._sources.set_include(top, include)
         self._override(include, top)
@@ -127,6 +129,15 @@ class IncludeExpansion:
                 self.may_hold_scoped_names = True
                 self._expand_in(added, files)
         self._insert(include, top, is_merge=is_merge)
+
+    def _count_copy(self, include: XmlElement, top: XmlElement, *, is_merge: bool) -> None:
+        """Count the work of copying an element and reading the copy."""
+        elements = int(top.xpath('count(descendant-or-self::*)'))
+        named = int(top.xpath('count(descendant-or-self::*[@name])'))
+        steps = STEPS_OF_ELEMENT * elements + STEPS_OF_NAMED_ELEMENT * named
+        self._sources.usage.add(
+            'work', steps * (_READINGS_OF_MERGED_MODEL if is_merge else 1),
+            lambda: self._sources.place(include))
 
     # What an include names
 

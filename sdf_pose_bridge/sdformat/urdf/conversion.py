@@ -27,6 +27,8 @@ from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.urdf.robot import Inertial
 from sdf_pose_bridge.sdformat.urdf.robot import Joint
@@ -61,6 +63,9 @@ _SETTINGS = frozenset({
 
 _MOVED_TAGS = ('light', 'projector', 'sensor')
 """Children of ``<gazebo>`` whose poses change when their link is lumped."""
+
+_STEPS_OF_MOVE = 16
+"""Steps of work to move a sensor from a link that is lumped to the next one."""
 
 _LUMP_PREFIX = '_fixed_joint_lump__'
 
@@ -208,7 +213,9 @@ class _Conversion:
 
     def _counted(self, name: str, xml: XmlElement) -> str:
         """Count a name that may be longer than all that is written where it goes."""
-        self._sources.usage.add('name_characters', len(name), self._sources.place(xml))
+        self._sources.usage.add(
+            'work', STEPS_OF_ELEMENT + len(name) // CHARACTERS_OF_STEP,
+            lambda: self._sources.place(xml))
         return name
 
     def _add_links(self) -> None:
@@ -371,12 +378,12 @@ class _Conversion:
                           'where a fixed joint is removed', pose)
             pose.attrib.clear()
         numbers = list(leading_numbers(text_of(pose) or '0 0 0 0 0 0', 6))
-        place = self._sources.place(xml)
         name = link.name
         while self._bases[name].link.name != name:
             if len(numbers) != 6 or not all(map(math.isfinite, numbers)):
                 return
-            self._sources.usage.add('included_elements', 1, place)
+            self._sources.usage.add(
+                'work', _STEPS_OF_MOVE, lambda: self._sources.place(xml))
             joint = self._robot.parent_joints[name]
             moved = pose_product(joint.origin, pose_from_numbers(numbers))
             # libsdformat writes six digits at each step.

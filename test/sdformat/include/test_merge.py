@@ -225,6 +225,24 @@ def test_first_merged_link_can_be_the_canonical_link_of_the_parent(scene_of):
     assert scene.names[scene.canonical_links[scene.index('m')]] == 'm::upper'
 
 
+def test_placement_frame_that_is_renamed_by_the_merge_is_refused(tmp_path):
+    write_files(
+        tmp_path, arm=ARM.replace('1.9', '1.6'),
+        main=in_model('<link name="f"/>' + include('<pose/><placement_frame>f</placement_frame>')
+                      + '<link name="last"/>').replace('1.9', '1.6'))
+    (error,) = errors_of_file(tmp_path / 'main.sdf')
+    assert (error.code, error.line) == ('POSE_RELATIVE_TO_INVALID', 2)
+    assert '"f"' in error.message
+
+
+def test_placement_frame_in_a_cycle_is_reported_as_the_cycle_alone(tmp_path):
+    frame = '<frame name="{}"><pose relative_to="{}"/></frame>'
+    write_files(tmp_path, main=in_model(include('<pose/><placement_frame>f</placement_frame>')),
+                arm=arm(LINK + frame.format('f', 'g') + frame.format('g', 'f')))
+    assert {error.code for error in errors_of_file(tmp_path / 'main.sdf')} == {
+        'POSE_RELATIVE_TO_CYCLE'}
+
+
 def test_other_content_of_the_merged_model_is_dropped(scene_of):
     text = arm('<static>true</static><self_collide>true</self_collide><unknown/>' + LINK)
     assert not scene_of(in_model(include()), arm=text).static_models
