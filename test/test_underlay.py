@@ -15,6 +15,10 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 TF_MESSAGE_HASH = 'RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087'
 SHELL_TOOLS = ('bash', 'dirname', 'env', 'head')
+DISTRO = os.environ.get('ROS_DISTRO', 'jazzy')
+SUFFIX = '' if DISTRO == 'jazzy' else f'-{DISTRO}'
+"""Of the folders of the environment that runs these tests."""
+
 # The interpreter beneath this virtual environment, as the script would be given it.
 PYTHON = Path(sys.base_prefix, f'bin/python3.{sys.version_info.minor}')
 
@@ -161,7 +165,8 @@ def test_lock_files_name_no_index():
     assert [lock.name for lock in locks if re.search('://|--index-url', lock.read_text())] == []
 
 
-@pytest.mark.parametrize('name', ['build', 'requirements', 'tools', 'unresolved'])
+@pytest.mark.parametrize('name', [
+    'build', 'requirements', 'requirements_kilted', 'tools', 'unresolved', 'unresolved_kilted'])
 def test_every_locked_package_is_pinned_with_hashes(name):
     text = (ROOT / f'underlay/{name}.txt').read_text().replace('\\\n', ' ')
     packages = [line for line in text.splitlines() if line and not line.startswith('#')]
@@ -171,7 +176,7 @@ def test_every_locked_package_is_pinned_with_hashes(name):
 
 @pytest.fixture
 def built():
-    if not (ROOT / 'install/local_setup.bash').exists() or not (ROOT / '.underlay/root').exists():
+    if not (ROOT / f'install{SUFFIX}/local_setup.bash').exists():
         pytest.skip('the environment is not made here')
     return f'. {ROOT}/underlay/setup.bash'
 
@@ -189,7 +194,7 @@ def test_setup_bash_adds_nothing_the_second_time(built):
 
 def test_setup_bash_puts_the_environment_first_from_any_folder(built):
     result = shell(f'cd /; PATH=/usr/bin:$PATH; {built}; type -P python')
-    assert result.stdout.strip() == str(ROOT / '.underlay/bin/python')
+    assert result.stdout.strip() == str(ROOT / f'.underlay{SUFFIX}/bin/python')
 
 
 def test_setup_bash_puts_the_command_line_in_the_path(built):
@@ -206,9 +211,20 @@ def test_the_node_is_started_with_words_for_a_second_shell(built, tmp_path):
 
 
 def test_setup_bash_refuses_a_shell_with_another_ros(built):
-    result = shell(built, ROS_DISTRO='humble')
+    other = 'kilted' if DISTRO == 'jazzy' else 'jazzy'
+    result = shell(built, ROS_DISTRO=other, ROS=DISTRO)
     assert result.returncode == 1
+    assert f'already has ROS 2 {other}' in result.stderr
+
+
+def test_setup_bash_refuses_a_ros_that_is_not_supported(checkout):
+    result = shell(f'. {checkout}/underlay/setup.bash', ROS='humble')
+    assert (result.returncode, result.stderr.count('\n')) == (1, 1)
     assert 'humble' in result.stderr
+
+
+def test_a_ros_that_is_not_supported_is_refused(checkout):
+    assert_refused_with(make_underlay(checkout, ROS='humble'), "'humble'", 'jazzy and kilted')
 
 
 def test_tf_message_on_the_wire_has_the_type_hash_of_jazzy():

@@ -21,7 +21,7 @@ def licence_of_ros_package(name: str) -> str:
     :param name: name of the wheel.
     :return: the licences, or an empty string.
     """
-    package = re.sub('^ros-(jazzy-)?', '', name).replace('-', '_')
+    package = re.sub('^ros-(jazzy-|kilted-)?', '', name).replace('-', '_')
     manifest = Path(sys.prefix, 'share', package, 'package.xml')
     if not manifest.exists():
         return ''

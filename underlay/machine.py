@@ -16,8 +16,13 @@ import tempfile
 
 from steps import RefusalError
 
+DISTRO = os.environ.get('ROS') or 'jazzy'
+"""The distribution of ROS 2 that the environment is for."""
+
+TITLE = f'ROS 2 {DISTRO.capitalize()}'
+
 FREE_BYTES_NEEDED = 1500 * 1024 * 1024
-# The wheels of ROS 2 Jazzy are tagged manylinux_2_28.
+# The wheels of ROS 2 are tagged manylinux_2_28.
 GLIBC_NEEDED = (2, 28)
 LONGEST_PATH = 180
 SAFE_CHARACTERS = frozenset(f'{string.ascii_letters}{string.digits}/._-+@~,')
@@ -59,7 +64,7 @@ def check_python() -> None:
     short = f'{sys.version_info.major}.{sys.version_info.minor}'
     if sys.implementation.name != 'cpython' or sysconfig.get_config_var('Py_GIL_DISABLED'):
         msg = (
-            f'{sys.executable} ({sys.implementation.name} {version}) cannot be used: ROS 2 Jazzy '
+            f'{sys.executable} ({sys.implementation.name} {version}) cannot be used: {TITLE} '
             f'needs the ordinary CPython, 3.10 to 3.13; choose one with PYTHON=<command>.')
         raise RefusalError(msg)
     if not (importlib.util.find_spec('venv') and importlib.util.find_spec('ensurepip')):
@@ -77,22 +82,22 @@ def check_python() -> None:
 
 def check_pypi_platform() -> None:
     """
-    Refuse a machine for which there are no wheels of ROS 2 Jazzy.
+    Refuse a machine for which there are no wheels of ROS 2.
 
     :raises RefusalError: if it is not Linux with glibc on a 64-bit x86 processor.
     """
     machine = platform.machine()
     if sys.platform != 'linux' or machine not in {'x86_64', 'AMD64'} or sys.maxsize < 2**32:
         msg = (
-            f'ROS 2 Jazzy comes from PyPI for 64-bit x86 processors on Linux alone, and this is '
-            f'{machine} on {platform.system()}; install ROS 2 Jazzy in /opt/ros/jazzy and run '
+            f'{TITLE} comes from PyPI for 64-bit x86 processors on Linux alone, and this is '
+            f'{machine} on {platform.system()}; install {TITLE} in /opt/ros/{DISTRO} and run '
             f'this again.')
         raise RefusalError(msg)
     name, version = platform.libc_ver()
     numbers = tuple(int(part) for part in version.split('.')[:2] if part.isdigit())
     if name != 'glibc' or numbers < GLIBC_NEEDED:
         msg = (
-            f'ROS 2 Jazzy comes from PyPI for glibc {GLIBC_NEEDED[0]}.{GLIBC_NEEDED[1]} or newer, '
+            f'{TITLE} comes from PyPI for glibc {GLIBC_NEEDED[0]}.{GLIBC_NEEDED[1]} or newer, '
             f'and this system has {name or "no glibc"} {version}; use a newer Linux, such as '
             f'Debian 12 or Ubuntu 24.04.'.replace('  ', ' '))
         raise RefusalError(msg)
@@ -100,7 +105,7 @@ def check_pypi_platform() -> None:
 
 def check_ros(prefix: Path) -> None:
     """
-    Refuse an installation of ROS 2 Jazzy that lacks a package, or is for another Python.
+    Refuse an installation of ROS 2 that lacks a package, or is for another Python.
 
     :param prefix: the installation, normally /opt/ros/jazzy.
     :raises RefusalError: with the packages to install, or the Python to choose.
@@ -108,16 +113,16 @@ def check_ros(prefix: Path) -> None:
     missing = [
         name for name in NEEDED_FROM_ROS if not (prefix / f'share/{name}/package.xml').is_file()]
     if missing:
-        debs = ' '.join(f'ros-jazzy-{name.replace("_", "-")}' for name in missing)
+        debs = ' '.join(f'ros-{DISTRO}-{name.replace("_", "-")}' for name in missing)
         msg = (
-            f'ROS 2 Jazzy in {prefix} lacks {", ".join(missing)}; install what is missing '
+            f'{TITLE} in {prefix} lacks {", ".join(missing)}; install what is missing '
             f'(on Ubuntu: apt install {debs}).')
         raise RefusalError(msg)
     short = f'{sys.version_info.major}.{sys.version_info.minor}'
     if not (prefix / f'lib/python{short}/site-packages/rclpy').is_dir():
         theirs = sorted(path.parts[-3] for path in prefix.glob('lib/python3*/site-packages/rclpy'))
         msg = (
-            f'ROS 2 Jazzy in {prefix} is for {theirs[0] if theirs else "another Python"}, and '
+            f'{TITLE} in {prefix} is for {theirs[0] if theirs else "another Python"}, and '
             f'this is Python {platform.python_version()} ({sys.executable}); leave PYTHON unset '
             f'or name that one.')
         raise RefusalError(msg)

@@ -3,6 +3,8 @@
 """
 Make the environment in .underlay, and build both packages on top of it.
 
+With ROS=kilted all of it is in folders of other names: .underlay-kilted, build-kilted and so on.
+
 Called by the script of the same name, with the Python that the environment shall have. Each step
 leaves a stamp, the hash of everything that it was made from, so that a later run does only what
 has changed; a step that was interrupted has no stamp and is done again.
@@ -35,7 +37,11 @@ from steps import Steps
 FORMAT = 1
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
-UNDERLAY = ROOT / '.underlay'
+SUFFIX = '' if machine.DISTRO == 'jazzy' else f'-{machine.DISTRO}'
+UNDERLAY = ROOT / f'.underlay{SUFFIX}'
+BUILD = ROOT / f'build{SUFFIX}'
+INSTALL = ROOT / f'install{SUFFIX}'
+COLCON_LOG = ROOT / f'log{SUFFIX}'
 LOG = UNDERLAY / 'make_underlay.log'
 TF_MESSAGE_HASH = 'RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087'
 BRIDGE = 'sdf_pose_bridge'
@@ -128,7 +134,7 @@ class Underlay:
     """
     The environment: how each of its parts is made, and from what.
 
-    :param ros_prefix: where ROS 2 Jazzy is; .underlay itself if it is to come from PyPI.
+    :param ros_prefix: where ROS 2 is; .underlay itself if it is to come from PyPI.
     :param lock: file descriptor of the lock that this run holds.
     """
 
@@ -138,8 +144,10 @@ class Underlay:
         self._lock = lock
         self._python = UNDERLAY / 'bin/python'
         # In the order of installation: what the second group needs to be built is in the first.
+        ending = SUFFIX.replace('-', '_')
         groups = (
-            (('build',), ('requirements', 'unresolved')) if self._from_pypi else (('tools',),))
+            (('build',), (f'requirements{ending}', f'unresolved{ending}')) if self._from_pypi
+            else (('tools',),))
         self._locks = [[HERE / f'{name}.txt' for name in group] for group in groups]
         self._env = {
             name: value for name, value in os.environ.items()
@@ -161,7 +169,7 @@ class Underlay:
         interfaces = digest_of_values(tf2_msgs, digest_of_paths(ROOT / INTERFACES))
         bridge = digest_of_values(
             environment, digest_of_paths(*bridge_sources()))
-        source = 'ROS 2 Jazzy and the tools' if self._from_pypi else 'the tools'
+        source = f'{machine.TITLE} and the tools' if self._from_pypi else 'the tools'
         plan = [
             Step('environment', environment, UNDERLAY / 'bin/python',
                  'making an empty environment', 5, self._make_environment),
@@ -229,8 +237,8 @@ class Underlay:
         if self._from_pypi:
             self._repair_cmake_files()
         for package in (INTERFACES, BRIDGE):  # what was built for another environment
-            _remove(ROOT / 'build' / package)
-            _remove(ROOT / 'install' / package)
+            _remove(BUILD / package)
+            _remove(INSTALL / package)
 
     def _repair_cmake_files(self) -> None:
         """Write this Python's paths where the wheels have those of their build machine."""
@@ -247,50 +255,50 @@ class Underlay:
         work = UNDERLAY / 'tf2_msgs'
         _remove(work)
         self._colcon(
-            '--log-base', str(work / 'log'), 'build', '--merge-install',
-            '--base-paths', str(HERE / 'tf2_msgs'), '--build-base', str(work / 'build'),
-            '--install-base', str(UNDERLAY))
+            work / 'log', work / 'build', UNDERLAY, '--merge-install',
+            '--base-paths', str(HERE / 'tf2_msgs'))
         description = json.loads((UNDERLAY / 'share/tf2_msgs/msg/TFMessage.json').read_text())
         hashes = {
             entry['type_name']: entry['hash_string'] for entry in description['type_hashes']}
         if hashes['tf2_msgs/msg/TFMessage'] != TF_MESSAGE_HASH:
             msg = (
                 f'tf2_msgs/msg/TFMessage was built with the type hash '
-                f'{hashes["tf2_msgs/msg/TFMessage"]}, which no other ROS 2 Jazzy understands; '
+                f'{hashes["tf2_msgs/msg/TFMessage"]}, which no other ROS 2 understands; '
                 f'restore underlay/tf2_msgs/msg/TFMessage.msg.')
             raise RefusalError(msg)
 
     def _build_interfaces(self) -> None:
         # An increment would keep the code of a service that is no longer there.
-        _remove(ROOT / 'build' / INTERFACES)
-        _remove(ROOT / 'install' / INTERFACES)
-        self._colcon('build', '--packages-select', INTERFACES)
+        _remove(BUILD / INTERFACES)
+        _remove(INSTALL / INTERFACES)
+        self._colcon(COLCON_LOG, BUILD, INSTALL, '--packages-select', INTERFACES)
 
     def _build_bridge(self) -> None:
         # What is no longer in the source would stay in the build and be installed again.
-        if _has_leftovers(ROOT / 'install' / BRIDGE):
-            _remove(ROOT / 'build' / BRIDGE)
-            _remove(ROOT / 'install' / BRIDGE)
-        self._colcon('build', '--packages-select', BRIDGE)
+        if _has_leftovers(INSTALL / BRIDGE):
+            _remove(BUILD / BRIDGE)
+            _remove(INSTALL / BRIDGE)
+        self._colcon(COLCON_LOG, BUILD, INSTALL, '--packages-select', BRIDGE)
         # The command line in the PATH of setup.bash; the folder it is in has the node's too, whose
         # name is that of a command of the system.
         link = UNDERLAY / 'bin' / COMMAND_LINE
         link.unlink(missing_ok=True)
-        link.symlink_to(ROOT / 'install' / BRIDGE / 'lib' / BRIDGE / COMMAND_LINE)
+        link.symlink_to(INSTALL / BRIDGE / 'lib' / BRIDGE / COMMAND_LINE)
 
-    def _colcon(self, *arguments: str) -> None:
+    def _colcon(self, log: Path, build: Path, install: Path, *arguments: str) -> None:
         cmake = [
             '--cmake-args', f'-DPython3_EXECUTABLE={self._python}', '-DBUILD_TESTING=OFF',
         ] if BRIDGE not in arguments else []
         self._steps.command(
             ['bash', '-c', '. "$1" && shift && exec "$@"', 'bash', str(HERE / 'ros.bash'),
-             str(self._python), '-m', 'colcon', *arguments,
+             str(self._python), '-m', 'colcon', '--log-base', str(log), 'build',
+             '--build-base', str(build), '--install-base', str(install), *arguments,
              '--event-handlers', 'console_direct+', 'desktop_notification-', *cmake],
             self._env, ROOT)
 
 
 def _package_xml_of_installed(package: str) -> Path:
-    return ROOT / 'install' / package / 'share' / package / 'package.xml'
+    return INSTALL / package / 'share' / package / 'package.xml'
 
 
 def _has_leftovers(prefix: Path) -> bool:

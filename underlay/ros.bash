@@ -1,22 +1,32 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# To be sourced in bash: ROS 2 Jazzy and the tools, without this repository's packages.
+# To be sourced in bash: ROS 2 and the tools, without this repository's packages.
 
-_spb_underlay=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.underlay" 2> /dev/null && pwd -P)
+_spb_distro=${ROS:-${ROS_DISTRO:-jazzy}}
+case $_spb_distro in
+  jazzy) _spb_underlay=.underlay ;;
+  kilted) _spb_underlay=.underlay-kilted ;;
+  *)
+    echo "ROS 2 $_spb_distro is not supported, only jazzy and kilted; use a new shell for them." >&2
+    unset _spb_distro
+    return 1
+    ;;
+esac
+_spb_underlay=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../$_spb_underlay" 2> /dev/null && pwd -P)
 if [[ ! -r $_spb_underlay/stamps/packages ]]; then
   echo 'The environment was not made yet; run `make setup` in the repository first.' >&2
-  unset _spb_underlay
+  unset _spb_distro _spb_underlay
   return 1
 fi
 if [[ $(< "$_spb_underlay/root") != "${_spb_underlay%/*}" ]]; then
   echo 'The repository was moved after its environment was made; run `make setup` in it again.' >&2
-  unset _spb_underlay
+  unset _spb_distro _spb_underlay
   return 1
 fi
-if [[ ${ROS_DISTRO:-jazzy} != jazzy ]]; then
-  echo "This shell already has ROS 2 $ROS_DISTRO in it; use a new one for ROS 2 Jazzy." >&2
-  unset _spb_underlay
+if [[ ${ROS_DISTRO:-$_spb_distro} != "$_spb_distro" ]]; then
+  echo "This shell already has ROS 2 $ROS_DISTRO in it; use a new one for $_spb_distro." >&2
+  unset _spb_distro _spb_underlay
   return 1
 fi
 
@@ -36,7 +46,7 @@ if [[ $(< "$_spb_underlay/ros_prefix") == "$_spb_underlay" ]]; then
   done
   _spb_prepend AMENT_PREFIX_PATH "$_spb_underlay"
   _spb_prepend CMAKE_PREFIX_PATH "$_spb_underlay"
-  export ROS_DISTRO=jazzy ROS_VERSION=2 ROS_PYTHON_VERSION=3
+  export ROS_DISTRO=$_spb_distro ROS_VERSION=2 ROS_PYTHON_VERSION=3
   # The only middleware there is on PyPI.
   export RMW_IMPLEMENTATION=rmw_fastrtps_cpp
   # The wheels start Python a second time to set the library path, unless this says it is set.
@@ -57,4 +67,4 @@ PATH=${PATH//":$_spb_underlay/bin:"/:}
 PATH=${PATH#:}
 export PATH=$_spb_underlay/bin:${PATH%:}
 unset -f _spb_prepend
-unset _spb_folder _spb_underlay
+unset _spb_distro _spb_folder _spb_underlay

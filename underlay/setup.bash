@@ -1,21 +1,24 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# To be sourced in bash: ROS 2 Jazzy, the tools, and this repository's packages as last built.
+# To be sourced in bash: ROS 2 Jazzy, the tools, and this repository's packages as last built. With
+# ROS=kilted in the environment, ROS 2 Kilted.
 
 if [ -z "${BASH_VERSION-}" ]; then
   echo 'This is for bash; start bash and source it there.' >&2
   return 1
 fi
 _spb_here=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd -P)
-if [[ ! -r ${_spb_here%/*}/install/local_setup.bash ]]; then
-  echo 'The environment was not made yet; run `make setup` in the repository first.' >&2
-  unset _spb_here
+. "$_spb_here/ros.bash" || { unset _spb_here; return 1; }
+_spb_install=${_spb_here%/*}/install-$ROS_DISTRO
+_spb_install=${_spb_install%-jazzy}
+if [[ ! -r $_spb_install/local_setup.bash ]]; then
+  echo 'The packages were not built yet; run `make setup` in the repository first.' >&2
+  unset _spb_here _spb_install
   return 1
 fi
-. "$_spb_here/ros.bash" || { unset _spb_here; return 1; }
 # The scripts of colcon read variables that need not be set.
 case $- in *u*) _spb_nounset=1; set +u ;; *) _spb_nounset= ;; esac
-. "${_spb_here%/*}/install/local_setup.bash"
+. "$_spb_install/local_setup.bash"
 [[ -z $_spb_nounset ]] || set -u
-unset _spb_here _spb_nounset
+unset _spb_here _spb_install _spb_nounset

@@ -43,8 +43,6 @@ async def run_other_callbacks(node: Node) -> None:
 
     :param node: a node with an executor.
     """
-    await node.executor.create_task(_do_nothing)
-
-
-def _do_nothing() -> None:
-    pass
+    # To wake the executor is what the task is for: releases of rclpy differ in whether it wakes up
+    # by itself to go on with a coroutine when the task that the coroutine awaits has ended.
+    await node.executor.create_task(node.executor.wake)

@@ -20,9 +20,10 @@ MISSING_INTERFACES = (
 """What to do if the interfaces are missing."""
 
 MISSING_MODULE = (
-    'the Python module {module} is missing; the node needs a shell with ROS 2 Jazzy, as after '
-    '". /opt/ros/jazzy/setup.bash", and what "rosdep install --from-paths src --ignore-src" '
-    'installs')
+    'the Python module {module} is missing; the node needs a shell with ROS 2, as after '
+    '". /opt/ros/jazzy/setup.bash", and what "rosdep install --from-paths src '
+    'src/<repo>/sdf_pose_bridge_interfaces --ignore-src" installs (<repo> is the folder of the '
+    'repository)')
 """What to do if another module is missing that the node imports."""
 
 

@@ -1,10 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Choose the profile of Fast DDS, the default middleware of ROS 2 Jazzy.
+Choose the profile of Fast DDS, the default middleware of ROS 2.
 
-With its default settings the first message arrives late in many starts; the profile of this
-package says why.
+With the default settings of the Fast DDS of ROS 2 Jazzy the first message arrives late in many
+starts; the profile of this package says why.
 """
 
 from __future__ import annotations
@@ -26,6 +26,12 @@ NEW_PROFILES_VARIABLE = 'FASTDDS_DEFAULT_PROFILES_FILE'
 
 LOCAL_PROFILES = 'DEFAULT_FASTRTPS_PROFILES.xml'
 """The file that Fast DDS reads from the working directory."""
+
+DISTRO = 'jazzy'
+"""The distribution of ROS 2 whose Fast DDS understands the profile.
+
+Fast DDS 3, which Kilted has, refuses a file with ``<throughputController>``.
+"""
 
 _FAST_DDS = ('', 'rmw_fastrtps_cpp', 'rmw_fastrtps_dynamic_cpp')
 
@@ -60,4 +66,7 @@ def _reason_against_profile(environment: Mapping[str, str]) -> str:
             return f'{variable} is set'
     if Path(LOCAL_PROFILES).exists():
         return f'{LOCAL_PROFILES} is in the working directory'
+    distro = environment.get('ROS_DISTRO', '')
+    if distro != DISTRO:
+        return f'it is for ROS 2 {DISTRO}, and ROS_DISTRO is "{distro}"'
     return ''

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How the process starts, fails and ends, seen from outside."""
 
+import os
 import signal
 
 import pytest
@@ -123,7 +124,8 @@ def test_the_first_line_tells_what_is_published(start_bridge, write_file):
 
 
 @pytest.mark.parametrize(('value', 'text'), [
-    (None, 'config/fastdds_profile.xml is used'),
+    (None, 'config/fastdds_profile.xml is used' if os.environ.get('ROS_DISTRO') == 'jazzy'
+     else 'is not used: it is for ROS 2 jazzy'),
     ('', 'is not used: FASTDDS_DEFAULT_PROFILES_FILE is set'),
 ])
 def test_the_profile_of_the_middleware_is_logged_for_debugging(

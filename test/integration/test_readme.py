@@ -67,7 +67,7 @@ def test_the_demonstration():
 
 
 def test_the_first_line_of_the_node(bridge):
-    shown = shown_after('$ ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=examples/')[0]
+    shown = shown_after('$ ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=src/')[0]
     same = re.compile(r'publishing .* frames|with .* transforms, root frame "world"')
     assert same.findall(shown) == same.findall(bridge.lines[0])
 

@@ -16,6 +16,7 @@ from sdf_pose_bridge.ros.middleware import PROFILES_VARIABLE
 from sdf_pose_bridge.ros.middleware import use_profile
 
 ROOT = Path(__file__).resolve().parents[2]
+JAZZY = {'ROS_DISTRO': 'jazzy'}
 
 
 @pytest.mark.parametrize(('chosen', 'reason'), [
@@ -24,27 +25,28 @@ ROOT = Path(__file__).resolve().parents[2]
     ({NEW_PROFILES_VARIABLE: 'mine.xml'}, f'{NEW_PROFILES_VARIABLE} is set'),
     ({NEW_PROFILES_VARIABLE: ''}, f'{NEW_PROFILES_VARIABLE} is set'),
     ({'RMW_IMPLEMENTATION': 'rmw_cyclonedds_cpp'}, 'the middleware is rmw_cyclonedds_cpp'),
+    ({'ROS_DISTRO': 'kilted'}, 'it is for ROS 2 jazzy, and ROS_DISTRO is "kilted"'),
 ])
 def test_a_choice_of_the_user_is_left_alone(chosen, reason):
-    environment = dict(chosen)
+    environment = {**JAZZY, **chosen}
     assert use_profile(environment).endswith(f'is not used: {reason}')
-    assert environment == chosen
+    assert environment == {**JAZZY, **chosen}
 
 
 def test_profiles_in_the_working_directory_are_left_alone(tmp_path, monkeypatch):
     (tmp_path / LOCAL_PROFILES).touch()
     monkeypatch.chdir(tmp_path)
-    environment = {}
+    environment = dict(JAZZY)
     assert f'{LOCAL_PROFILES} is in the working directory' in use_profile(environment)
-    assert environment == {}
+    assert environment == JAZZY
 
 
 @pytest.mark.parametrize('prefixes', ['', '/nonexistent'])
 def test_without_an_installed_package_there_is_no_profile(monkeypatch, prefixes):
     monkeypatch.setenv('AMENT_PREFIX_PATH', prefixes)
-    environment = {}
+    environment = dict(JAZZY)
     assert 'the package is not installed' in use_profile(environment)
-    assert environment == {}
+    assert environment == JAZZY
 
 
 @pytest.mark.parametrize('chosen', [
@@ -53,7 +55,7 @@ def test_without_an_installed_package_there_is_no_profile(monkeypatch, prefixes)
 ])
 def test_with_fast_dds_and_no_other_choice_it_is_used(tmp_path, monkeypatch, chosen):
     monkeypatch.chdir(tmp_path)
-    environment = dict(chosen)
+    environment = {**JAZZY, **chosen}
     sentence = use_profile(environment)
     profile = Path(environment[PROFILES_VARIABLE])
     assert profile.parts[-2:] == Path(PROFILE).parts
