@@ -114,12 +114,16 @@ class JointBroadcaster:
     goal=TimesAsFast(5.0))
 def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
     from sdf_pose_bridge.ros.joint_states import JointStates
+    from sdf_pose_bridge.ros.published_frames import PublishedFrames
+    from sdf_pose_bridge.ros.publishers import Publishers
     with node() as ros:
         scene = sdf_pose_bridge.load_text(chain_text(100))
         tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
         assert tree.moving is not None
         positions = JointPositions(scene, tree.moving.dofs)
-        follower = JointStates(ros, tree, tree.moving, positions)
+        frames = PublishedFrames(Publishers(ros), tree, positions, {}).moving
+        assert frames is not None
+        follower = JointStates(ros, frames, is_published_later=False)
         broadcaster = JointBroadcaster(ros, 100, '/tf_of_counterpart')
         messages = joint_states(100)
         yield lambda: follower.take(next(messages)), lambda: broadcaster.take(next(messages))

@@ -28,16 +28,18 @@ from benchmarks.bench_publication import node
 from benchmarks.bench_publication import run
 from benchmarks.bench_publication import scene_of
 from geometry_msgs.msg import PoseStamped
-from sdf_pose_bridge.ros.publishers import FramePublishers
-from sdf_pose_bridge.ros.topic_names import topics_from_patterns
+from sdf_pose_bridge.ros.published_frames import PublishedFrames
+from sdf_pose_bridge.ros.publishers import Publishers
+from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 def memory_kb():
     with open('/proc/self/status') as status:
         return next(int(line.split()[1]) for line in status if line.startswith('VmRSS:'))
 
-def publish_as_the_bridge(ros, tree):
-    run(ros, bridge.publish_topics(topics_from_patterns(tree.frame_ids, ['*']).names))
+def publish_as_the_bridge(ros, tree, patterns=('?*',)):
+    topics = pose_topics_from_patterns(tree.frame_ids, patterns, '/benchmark').names
+    run(ros, PublishedFrames(bridge, tree, None, topics).publish_topics())
 
 def publish_as_rclpy(ros, tree):
     stamp = ros.get_clock().now().to_msg()
@@ -55,10 +57,9 @@ publish = publish_as_the_bridge if sys.argv[1] == 'bridge' else publish_as_rclpy
 tree = tf_tree_from_scene(scene_of(int(sys.argv[2]) // 10))
 assert len(tree.frame_ids) == int(sys.argv[2])
 with node() as ros:
-    bridge = FramePublishers(ros)
-    bridge.publish_tf_static(tree)
+    bridge = Publishers(ros)
     # What is needed only once exists after this.
-    run(ros, bridge.publish_topics(topics_from_patterns(tree.frame_ids[:1], ['*']).names))
+    publish_as_the_bridge(ros, tree, tree.frame_ids[:1])
     latched_publisher(ros, PoseStamped, '/first', 1).publish(PoseStamped())
     held = memory_kb()
     begin = time.perf_counter()

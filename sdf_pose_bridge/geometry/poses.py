@@ -19,6 +19,7 @@ from typing import TypeAlias
 import numpy as np
 
 from sdf_pose_bridge.geometry.formulas import row_blocks
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 
 PoseArray: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
 """Poses as rows: shape (n, 7), x y z in metres, unit quaternion x y z w."""
@@ -101,6 +102,21 @@ def relative_poses(references: PoseArray, poses: PoseArray) -> PoseArray:
     :return: poses of frames C in frames B, shape (n, 7).
     """
     return _in_blocks(relative_pose, references, poses)
+
+
+def canonical_relative_poses(references: PoseArray, poses: PoseArray) -> PoseArray:
+    """
+    Return what :func:`relative_poses` does, in the canonical form in which poses are published.
+
+    :param references: poses of frames B in frames A, shape (n, 7).
+    :param poses: poses of frames C in frames A, shape (n, 7).
+    :return: poses of frames C in frames B, shape (n, 7), with canonical quaternions
+        and without negative zeros.
+    """
+    relative = relative_poses(references, poses)
+    relative[:, 3:] = canonical_quaternion(relative[:, 3:])
+    relative += 0.0
+    return relative
 
 
 def _in_blocks(formula: Callable[[Pose, Pose], Pose], a: PoseArray, b: PoseArray) -> PoseArray:

@@ -11,6 +11,7 @@ joints are published where the file puts them.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,18 +22,15 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import JointState
 
 from sdf_pose_bridge.ros.log_lines import names_in_line
-from sdf_pose_bridge.ros.moving_publishers import MovingPublishers
-from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
+from sdf_pose_bridge.ros.publishers import Stamp
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION
 from sdf_pose_bridge.tf.joint_positions import Selection
-from sdf_pose_bridge.tf.moving_frames import MovingFrames
-from sdf_pose_bridge.tf.tree import TfTree
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sdf_pose_bridge.ros.cdr import StampedMessages
-    from sdf_pose_bridge.ros.publishers import FramePublishers
 
 INITIAL_PERIOD_S = 0.1
 """How often ``/tf`` is published before the first message of ``joint_states``."""
@@ -45,26 +43,19 @@ _WARNING_PERIOD_S = 10.0
 _MOST_PLANS = 20
 
 
+@dataclass
 class _Plan:
-    """
-    What messages with the same names change.
+    """What messages with the same names change."""
 
-    :param names: the names.
-    :param selection: the degrees of freedom that they mean.
-    :param rows: the moving transforms to publish.
-    :param message: a message for ``/tf`` with these.
-    """
-
-    def __init__(
-        self, names: Sequence[str], selection: Selection, rows: NDArray[np.intp],
-        message: StampedMessages,
-    ) -> None:
-        self.names = names
-        self.selection = selection
-        self.rows = rows
-        self.message = message
-        self.stamp: tuple[int, int] | None = None
-        """That of the last message."""
+    names: Sequence[str]
+    selection: Selection
+    """The degrees of freedom that the names mean."""
+    rows: NDArray[np.intp]
+    """The moving transforms to publish."""
+    message: StampedMessages
+    """A message for ``/tf`` with these."""
+    stamp: Stamp | None = None
+    """That of the last message."""
 
 
 class JointStates:
@@ -72,27 +63,28 @@ class JointStates:
     Follows ``joint_states``.
 
     :param node: the node.
-    :param tree: the tree to move at first.
-    :param moving: its moving frames.
-    :param positions: the positions of its joints.
+    :param frames: the frames to move.
+    :param is_published_later: whether messages wait for :meth:`publish_waiting` instead of being
+        published at once.
     """
 
     def __init__(
-        self, node: Node, tree: TfTree, moving: MovingFrames, positions: JointPositions,
+        self, node: Node, frames: PublishedMovingFrames, *, is_published_later: bool,
     ) -> None:
-        self.is_published_later = False
-        """Whether messages wait for :meth:`publish_waiting` instead of being published at once."""
+        self.is_published_later = is_published_later
         self._node = node
         self._logger = node.get_logger()
-        self._publishers = MovingPublishers(node)
-        self._stamp: tuple[int, int] | None = None
+        self._frames = frames
+        self._plans: dict[tuple[str, ...], _Plan] = {}
+        self._last_plan: _Plan | None = None
+        self._waiting_rows: set[int] = set()
+        self._periods_at_rest = 0
         # Simulated time may stand still.
         steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._initial_timer = node.create_timer(
-            INITIAL_PERIOD_S, self._publish_all, clock=steady_clock)
+            INITIAL_PERIOD_S, lambda: self._frames.publish_all(), clock=steady_clock)
         self._topics_timer = node.create_timer(
             TOPICS_PERIOD_S, self._publish_topics, clock=steady_clock)
-        self._use(tree, moving, positions)
         self._subscription = node.create_subscription(
             JointState, 'joint_states', self.take, qos_profile_sensor_data)
 
@@ -101,43 +93,24 @@ class JointStates:
         self._node.destroy_subscription(self._subscription)
         self._node.destroy_timer(self._initial_timer)
         self._node.destroy_timer(self._topics_timer)
-        self._publishers.destroy()
 
-    def replace(self, tree: TfTree, moving: MovingFrames, positions: JointPositions) -> None:
+    def replace(self, frames: PublishedMovingFrames) -> None:
         """
-        Move another tree from now on, and publish it on ``/tf``.
+        Move other frames from now on.
 
-        :param tree: the tree.
-        :param moving: its moving frames.
-        :param positions: the positions of its joints. Joints with the same names as before
-            continue where they are.
+        :param frames: the frames.
         """
-        positions.take_over(self._positions)
-        self._use(tree, moving, positions)
-
-    def _use(self, tree: TfTree, moving: MovingFrames, positions: JointPositions) -> None:
-        self._moving, self._positions = moving, positions
-        self._plans: dict[tuple[str, ...], _Plan] = {}
-        self._last_plan: _Plan | None = None
-        self._waiting_rows: set[int] = set()
-        self._publishers.use(tree, moving)
-        self._publish_all()
-
-    def set_pose_publishers(self, publishers: FramePublishers | None) -> None:
-        """
-        Use the publishers of pose topics.
-
-        :param publishers: those of all frames; None to use none while they are replaced.
-        """
-        self._publishers.set_pose_publishers(publishers)
-        self._request_topics()
+        self._frames = frames
+        self._plans.clear()
+        self._last_plan = None
+        self._waiting_rows.clear()
 
     def publish_waiting(self) -> None:
         """Publish on ``/tf`` what messages have changed since the last call."""
-        if self._waiting_rows and self._stamp is not None:
+        if self._waiting_rows and self._frames.stamp is not None:
             rows = np.array(sorted(self._waiting_rows), np.intp)
             self._waiting_rows.clear()
-            self._publish_tf(rows, self._publishers.tf_message(rows), self._stamp)
+            self._frames.publish_tf(rows, self._frames.tf_message(rows), self._frames.stamp)
 
     # Messages
 
@@ -157,7 +130,7 @@ class JointStates:
         plan = self._last_plan
         if plan is None or plan.names != names:
             plan = self._last_plan = self._plan_from_names(names, values)
-        invalid = self._positions.update(plan.selection, values)
+        invalid = self._frames.positions.update(plan.selection, values)
         if invalid:
             self._logger.warning(
                 f'{self._subscription.topic_name} has positions for {names_in_line(invalid)} that '
@@ -167,24 +140,26 @@ class JointStates:
             return
         stamp = message.header.stamp.sec, message.header.stamp.nanosec
         if not any(stamp):
-            stamp = self._now()
-        if self._stamp is None:
+            stamp = self._node.get_clock().now().seconds_nanoseconds()
+        if self._frames.stamp is None:
             self._initial_timer.cancel()
             self._logger.info(f'following {self._subscription.topic_name}')
-        self._stamp = stamp
+        self._frames.stamp = stamp
         # TF takes one transform for each time, and complains about a second one.
         is_repeated, plan.stamp = plan.stamp == stamp, stamp
         if self.is_published_later:
             self._waiting_rows.update(plan.rows.tolist())
         elif not is_repeated:
-            self._publish_tf(plan.rows, plan.message, stamp)
-        self._request_topics()
+            self._frames.publish_tf(plan.rows, plan.message, stamp)
+        self._periods_at_rest = 0
+        if self._topics_timer.is_canceled():
+            self._topics_timer.reset()
 
     def _plan_from_names(self, names: Sequence[str], values: NDArray[np.float64]) -> _Plan:
         key = tuple(names)
         if key in self._plans:
             return self._plans[key]
-        positions = self._positions
+        positions = self._frames.positions
         selection = positions.selection(names)
         if selection.unknown:
             self._logger.warning(
@@ -199,41 +174,15 @@ class JointStates:
         rows = np.array([], np.intp)
         if len(selection.rows):
             unknown = np.flatnonzero(~positions.is_known).tolist()
-            rows = self._moving.rows_moved_by([*selection.changed, *unknown])
-        plan = self._plans[key] = _Plan(
-            names, selection, rows, self._publishers.tf_message(rows))
+            rows = self._frames.frames.rows_moved_by([*selection.changed, *unknown])
+        plan = self._plans[key] = _Plan(names, selection, rows, self._frames.tf_message(rows))
         return plan
-
-    # Publishing
-
-    def _publish_tf(
-        self, rows: NDArray[np.intp], message: StampedMessages, stamp: tuple[int, int],
-    ) -> None:
-        message.set_poses(self._moving.transforms(self._positions.values)[rows])
-        self._publishers.publish_tf(message, stamp)
-
-    def _publish_all(self) -> None:
-        """Publish all moving transforms on ``/tf`` with the time of the node."""
-        rows = np.arange(len(self._moving.indices))
-        if len(rows):
-            self._publish_tf(rows, self._publishers.tf_message(rows), self._now())
-
-    def _request_topics(self) -> None:
-        self._periods_at_rest = -1
-        if self._topics_timer.is_canceled():
-            self._topics_timer.reset()
 
     def _publish_topics(self) -> None:
         """Publish the topics of moving frames; at rest once more, for later listeners."""
-        self._periods_at_rest += 1
         is_at_rest = self._periods_at_rest == _PERIODS_UNTIL_REST
         if is_at_rest:
             self._topics_timer.cancel()
-        elif self._periods_at_rest:
-            return
-        self._publishers.publish_topics(
-            self._positions.values, self._stamp or self._now(), only_listeners=not is_at_rest)
-
-    def _now(self) -> tuple[int, int]:
-        now: tuple[int, int] = self._node.get_clock().now().seconds_nanoseconds()
-        return now
+        if is_at_rest or self._periods_at_rest == 0:
+            self._frames.publish_topics(only_listeners=not is_at_rest)
+        self._periods_at_rest += 1

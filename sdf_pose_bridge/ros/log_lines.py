@@ -5,12 +5,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import compress
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.tf.parents import NO_PARENT
+from sdf_pose_bridge.tf.tree import TfTree
 
 MOST_WARNINGS = 20
 """How many warnings of a load are logged."""
@@ -59,6 +62,38 @@ def names_in_line(names: Sequence[str]) -> str:
     shown = ', '.join(f'"{shortened(name)}"' for name in names[:MOST_WARNINGS])
     rest = len(names) - MOST_WARNINGS
     return printable(f'{shown} and {rest} more' if rest > 0 else shown)
+
+
+def lines_about_lost_frames(before: TfTree, after: TfTree) -> list[str]:
+    """
+    Name the frames that had a transform and have none now, which TF cannot forget.
+
+    :param before: the tree that was published before.
+    :param after: the tree that is published now.
+    :return: a line about those that have vanished, and one about those without a parent, if any.
+    """
+    lost = _children(before) - _children(after)
+    detached = sorted(lost.intersection(after.frame_ids))
+    vanished = sorted(lost.difference(after.frame_ids))
+    lines = []
+    if vanished:
+        lines.append(
+            f'{count_in_words(len(vanished), "frame")} no longer published, which TF listeners '
+            f'keep until they are restarted: {names_in_line(vanished)}')
+    if detached:
+        lines.append(
+            f'{count_in_words(len(detached), "frame")} without a parent now; TF listeners keep '
+            f'the last transform until they are restarted: {names_in_line(detached)}')
+    return lines
+
+
+def count_in_words(number: int, what: str) -> str:
+    """Return a number with a noun in the singular or the plural."""
+    return f'{number} {what}' if number == 1 else f'{number} {what}s'
+
+
+def _children(tree: TfTree) -> set[str]:
+    return set(compress(tree.frame_ids, (tree.parents != NO_PARENT).tolist()))
 
 
 def _first_lines(errors: Sequence[object], hint: str) -> list[str]:

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from collections.abc import Sequence
 import contextlib
 import time
@@ -16,6 +15,7 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock
 from rclpy.clock import ClockType
 from rclpy.exceptions import InvalidHandle
+from rclpy.logging import LoggingSeverity
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.task import Future
@@ -31,46 +31,41 @@ from sdf_pose_bridge.ros.file_watcher import PollingThread
 from sdf_pose_bridge.ros.loaded_scene import files_behind_error
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.loaded_scene import LoadedScene
+from sdf_pose_bridge.ros.log_lines import count_in_words
+from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
-from sdf_pose_bridge.ros.log_lines import names_in_line
-from sdf_pose_bridge.ros.parameter_service import AtomicParameterService
+from sdf_pose_bridge.ros.parameter_service import add_parameter_services
 from sdf_pose_bridge.ros.parameters import changed_settings
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.parameters import SettingsError
-from sdf_pose_bridge.ros.publishers import FramePublishers
+from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.services import add_services
 from sdf_pose_bridge.ros.services import SERVICE_QOS
-from sdf_pose_bridge.ros.topic_names import are_too_many_by_default
-from sdf_pose_bridge.ros.topic_names import LONGEST_FULL_NAME
-from sdf_pose_bridge.ros.topic_names import LONGEST_NAME
-from sdf_pose_bridge.ros.topic_names import MOST_BY_DEFAULT
-from sdf_pose_bridge.ros.topic_names import SHORTEST_LIMIT
-from sdf_pose_bridge.ros.topic_names import Topics
-from sdf_pose_bridge.ros.topic_names import topics_from_patterns
+from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
+from sdf_pose_bridge.ros.topic_names import PoseTopics
 from sdf_pose_bridge.sdformat.include.uris import AddressError
 
 if TYPE_CHECKING:
     from sdf_pose_bridge.ros.joint_states import JointStates
-    from sdf_pose_bridge.ros.visuals import VisualPublisher
 
 
 class SdfPoseBridge:
     """
-    What the node does once ``/tf_static`` is published.
+    What the node does once the first scene is published.
 
-    :param node: the node, with declared parameters.
-    :param publishers: its publishers of frames, which have published the scene on ``/tf_static``.
-    :param settings: its settings.
+    :param node: the node, with declared parameters and an executor.
+    :param frames: the frames of the scene, which are published.
+    :param settings: the settings.
     :param loaded: the scene.
     """
 
     def __init__(
-        self, node: Node, publishers: FramePublishers, settings: Settings, loaded: LoadedScene,
+        self, node: Node, frames: PublishedFrames, settings: Settings, loaded: LoadedScene,
     ) -> None:
         self._node = node
         self._logger = node.get_logger()
-        self._publishers = publishers
+        self._frames = frames
         self._settings = settings
         self._loaded = loaded
         self._failure: list[str] = []
@@ -82,23 +77,17 @@ class SdfPoseBridge:
         self._changes = MutuallyExclusiveCallbackGroup()
         # Simulated time may stand still.
         self._steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
-        self._again_timer: Timer | None = None
         self._joint_states: JointStates | None = None
-        self._visuals: VisualPublisher | None = None
-
-    async def start(self) -> None:
-        """Publish the scene on all other topics, and offer services."""
-        self._follow_joints(self._loaded)
-        await self._serve(self._loaded)
-        self._publish_again_at(self._settings.publish_rate)
-        add_services(self._node, lambda: self._loaded.lookup)
-        self._node.create_service(
+        self._follow_joints()
+        self._again_timer: Timer | None = None
+        self._publish_again_at(settings.publish_rate)
+        add_services(node, lambda: self._loaded.lookup)
+        node.create_service(
             Trigger, '~/reload', self._answer_to_reload, qos_profile=SERVICE_QOS,
             callback_group=self._changes)
-        self._parameter_service = AtomicParameterService(
-            self._node, self._changes, self._set_parameters)
-        self._node.create_timer(PERIOD_S, self._diagnostics.publish, clock=self._steady_clock)
-        guard_condition = self._node.create_guard_condition(
+        add_parameter_services(node, self._changes, self._set_parameters)
+        node.create_timer(PERIOD_S, self._diagnostics.publish, clock=self._steady_clock)
+        guard_condition = node.create_guard_condition(
             self._check_files, callback_group=self._changes)
 
         def trigger() -> None:
@@ -107,100 +96,60 @@ class SdfPoseBridge:
                 guard_condition.trigger()
 
         self._polling = PollingThread(self._has_to_check_files, trigger)
+        self._report_success()
         # Imported here because everything else is more urgent.
         from sdf_pose_bridge.ros.visuals import VisualPublisher
-        self._visuals = VisualPublisher(self._node, self._loaded, self._settings)
+        self._visuals = VisualPublisher(node, loaded, settings)
 
     # Loading
 
     def _load(self, settings: Settings) -> Future:
         return run_in_thread(self._node, lambda: loaded_scene_from_settings(settings))
 
-    async def _replace(self, loaded: LoadedScene) -> None:
-        """Publish another scene; nothing has changed before this call."""
-        self._publishers.publish_tf_static(loaded.tree)
-        self._follow_joints(loaded)
-        await self._serve(loaded)
+    async def _show(self, loaded: LoadedScene) -> None:
+        """Publish a scene, with the topics that the settings ask for."""
+        frames = await _frames_of_scene(self._node, self._settings, loaded, self._frames)
+        before, self._loaded, self._frames = self._loaded, loaded, frames
+        self._follow_joints()
+        if loaded is not before:
+            frames.publish_tf()
+        await frames.publish_topics()
+        if loaded is not before:
+            for line in lines_about_lost_frames(before.tree, loaded.tree):
+                self._logger.warning(line)
+            self._report_success()
+            self._visuals.replace(loaded, self._settings)
 
-    async def _serve(self, loaded: LoadedScene) -> None:
-        """Take a scene into use that is published on ``/tf_static``."""
-        self._loaded = loaded
+    def _follow_joints(self) -> None:
+        """Let ``joint_states`` move the frames, if joints follow it."""
+        moving = self._frames.moving
+        if self._joint_states is not None and moving is not None:
+            self._joint_states.replace(moving)
+        elif self._joint_states is not None:
+            self._joint_states.destroy()
+            self._joint_states = None
+        elif moving is not None:
+            # Imported here because most often joints do not move.
+            from sdf_pose_bridge.ros.joint_states import JointStates
+            self._joint_states = JointStates(
+                self._node, moving, is_published_later=self._settings.publish_rate > 0.0)
+
+    def _report_success(self) -> None:
+        loaded = self._loaded
         self._failure = self._pending_failure = []
         self._watcher.watch(loaded.files, loaded.read_since_ns)
-        await self._publish_topics()
         for line in lines_from_warnings(loaded.warnings):
             self._logger.warning(line)
         self._logger.info(
-            f'publishing {_count(len(loaded.tree.frame_ids), "frame")} of {loaded.path} with '
-            f'{_count(loaded.tree.transform_count, "transform")}, root frame '
+            f'publishing {count_in_words(len(loaded.tree.frame_ids), "frame")} of {loaded.path} '
+            f'with {count_in_words(loaded.tree.transform_count, "transform")}, root frame '
             f'"{loaded.tree.root_frame}" (read in {1e3 * loaded.seconds:.0f} ms)')
         self._diagnostics.update(loaded)
-        if self._visuals is not None:
-            self._visuals.replace(loaded, self._settings)
-
-    def _follow_joints(self, loaded: LoadedScene) -> None:
-        """Publish what joints move on ``/tf``, if they follow ``joint_states``."""
-        tree, positions = loaded.tree, loaded.joint_positions
-        if tree.moving is None or positions is None:
-            if self._joint_states is not None:
-                self._joint_states.destroy()
-                self._joint_states = None
-        elif self._joint_states is not None:
-            self._joint_states.replace(tree, tree.moving, positions)
-        else:
-            # Imported here because most often joints do not move.
-            from sdf_pose_bridge.ros.joint_states import JointStates
-            self._joint_states = JointStates(self._node, tree, tree.moving, positions)
-            self._joint_states.is_published_later = self._settings.publish_rate > 0.0
-
-    async def _publish_topics(self) -> None:
-        frame_ids = set(self._loaded.tree.frame_ids)
-        topics = await self._pose_topics()
-        if self._joint_states is not None:
-            self._joint_states.set_pose_publishers(None)
-        changed = await self._publishers.publish_topics(topics)
-        if self._joint_states is not None:
-            self._joint_states.set_pose_publishers(self._publishers)
-        vanished = [frame_id for frame_id in changed if frame_id not in frame_ids]
-        if vanished:
-            self._logger.warning(
-                f'{_count(len(vanished), "frame")} no longer published, which TF listeners keep '
-                f'until they are restarted: {names_in_line(vanished)}')
-        detached = [frame_id for frame_id in changed if frame_id in frame_ids]
-        if detached:
-            self._logger.warning(
-                f'{_count(len(detached), "frame")} without a parent now; TF listeners keep the '
-                f'last transform until they are restarted: {names_in_line(detached)}')
-
-    async def _pose_topics(self) -> Mapping[str, str]:
-        """Return the names of the pose topics by frame id."""
-        patterns = self._settings.pose_topics
-        frame_ids = self._loaded.tree.frame_ids
-        if are_too_many_by_default(frame_ids, patterns):
-            self._logger.warning(
-                f'no ~/poses/... topics: {len(frame_ids)} frames are more than {MOST_BY_DEFAULT}; '
-                'name those that you want in pose_topics, such as "robot/*", or ask for all with '
-                '"?*"')
-            return {}
-        room = LONGEST_FULL_NAME - len(f'{self._node.get_fully_qualified_name()}/poses/')
-        if room < SHORTEST_LIMIT:
-            self._logger.warning(
-                'no ~/poses/... topics: the name of the node and its namespace are so long that '
-                'the names of topics would be longer than the middleware allows')
-            return {}
-        topics: Topics = await run_in_thread(
-            self._node,
-            lambda: topics_from_patterns(frame_ids, patterns, min(room, LONGEST_NAME)))
-        if topics.unmatched:
-            self._logger.warning(
-                f'no ~/poses/... topics for {names_in_line(topics.unmatched)} in pose_topics: no '
-                'frame id matches')
-        return topics.names
 
     async def _reload(self) -> list[str]:
         """Read the file again; return the errors, which leave everything as it was."""
         try:
-            await self._replace(await self._load(self._settings))
+            await self._show(await self._load(self._settings))
         except Exception as error:  # noqa: BLE001 - includes defects
             self._watcher.watch_also(files_behind_error(error, self._settings))
             return self._lines_from_error(error)
@@ -229,7 +178,7 @@ class SdfPoseBridge:
             self._report_failure(failure)
         response.success = not failure
         response.message = '; '.join(failure) or (
-            f'publishing {_count(len(self._loaded.tree.frame_ids), "frame")} of '
+            f'publishing {count_in_words(len(self._loaded.tree.frame_ids), "frame")} of '
             f'{self._loaded.path}')
         return response
 
@@ -262,7 +211,7 @@ class SdfPoseBridge:
         """Set parameters if all settings, and the file that they name, are valid."""
         try:
             settings = changed_settings(self._settings, parameters)
-            loaded = None
+            loaded = self._loaded
             if settings.needs_load_after(self._settings) or any(
                     parameter.name == 'sdf_file' for parameter in parameters):
                 loaded = await self._load(settings)
@@ -274,16 +223,12 @@ class SdfPoseBridge:
             return SetParametersResult(successful=False, reason=reason)
         return result
 
-    async def _apply(self, settings: Settings, loaded: LoadedScene | None) -> None:
+    async def _apply(self, settings: Settings, loaded: LoadedScene) -> None:
         before, self._settings = self._settings, settings
-        if loaded is not None:
-            await self._replace(loaded)
-        elif settings.pose_topics != before.pose_topics:
-            await self._publish_topics()
         if settings.publish_rate != before.publish_rate:
             self._publish_again_at(settings.publish_rate)
-            if self._joint_states is not None:
-                self._joint_states.is_published_later = settings.publish_rate > 0.0
+        if loaded is not self._loaded or settings.pose_topics != before.pose_topics:
+            await self._show(loaded)
 
     # Publishing again
 
@@ -295,10 +240,12 @@ class SdfPoseBridge:
             self._again_timer = self._node.create_timer(
                 1.0 / rate, self._publish_again, callback_group=self._changes,
                 clock=self._steady_clock)
+        if self._joint_states is not None:
+            self._joint_states.is_published_later = rate > 0.0
 
     async def _publish_again(self) -> None:
         begin = time.perf_counter()
-        await self._publishers.publish_again()
+        await self._frames.publish_fixed_again()
         if self._joint_states is not None:
             self._joint_states.publish_waiting()
         seconds = time.perf_counter() - begin
@@ -308,5 +255,32 @@ class SdfPoseBridge:
                 f'everything takes {1e3 * seconds:.0f} ms', throttle_duration_sec=60.0)
 
 
-def _count(number: int, what: str) -> str:
-    return f'{number} {what}' if number == 1 else f'{number} {what}s'
+async def start_bridge(
+    node: Node, frames: PublishedFrames, settings: Settings, loaded: LoadedScene,
+) -> None:
+    """
+    Publish a scene on all topics that it does not have yet, and serve it.
+
+    :param node: the node, with declared parameters and an executor.
+    :param frames: the frames of the scene, which are published on ``/tf_static``.
+    :param settings: the settings.
+    :param loaded: the scene.
+    """
+    frames = await _frames_of_scene(node, settings, loaded, frames)
+    await frames.publish_topics()
+    SdfPoseBridge(node, frames, settings, loaded)
+
+
+async def _frames_of_scene(
+    node: Node, settings: Settings, loaded: LoadedScene, before: PublishedFrames,
+) -> PublishedFrames:
+    """Return the frames of a scene, with their topics, which are not published yet."""
+    topics: PoseTopics = await run_in_thread(node, lambda: pose_topics_from_patterns(
+        loaded.tree.frame_ids, settings.pose_topics, node.get_fully_qualified_name()))
+    if topics.warning:
+        node.get_logger().warning(topics.warning)
+    if node.get_logger().is_enabled_for(LoggingSeverity.DEBUG):
+        for frame_id, name in topics.names.items():
+            node.get_logger().debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
+    return PublishedFrames(
+        before.publishers, loaded.tree, loaded.joint_positions, topics.names, before)

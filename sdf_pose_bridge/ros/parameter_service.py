@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Awaitable
 from collections.abc import Callable
 from collections.abc import Sequence
-from typing import Any
 
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import SetParametersResult
@@ -26,56 +25,74 @@ from rclpy.parameter_service import ParameterService
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.ros.parameter_types import parameter_with_type
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
+from sdf_pose_bridge.ros.services import SERVICE_QOS
 
 
-class AtomicParameterService(ParameterService):
+def add_parameter_services(
+    node: Node, group: CallbackGroup,
+    set_parameters: Callable[[list[Parameter]], Awaitable[SetParametersResult]],
+) -> None:
     """
-    The parameter services of a node; a call that sets parameters sets all of them or none.
+    Offer the parameter services of a node; a call that sets parameters sets all of them or none.
 
     :param node: the node.
     :param group: callback group of the services that set parameters.
     :param set_parameters: sets declared parameters, and returns what the services answer.
     """
-
-    def __init__(
-        self, node: Node, group: CallbackGroup,
-        set_parameters: Callable[[list[Parameter]], Awaitable[SetParametersResult]],
-    ) -> None:
-        super().__init__(node)
-        self._set_parameters = set_parameters
-        # The parent class makes the services, and takes no group for them.
-        for service in node.services:
-            if service.srv_type in (SetParameters, SetParametersAtomically):
-                service.callback_group = group
-                group.add_entity(service)
-
-    async def _set_parameters_callback(self, request: Any, response: Any) -> Any:
-        result = await self._result(request.parameters)
-        response.results = [result] * len(request.parameters)
-        return response
-
-    async def _set_parameters_atomically_callback(self, request: Any, response: Any) -> Any:
-        response.result = await self._result(request.parameters)
-        return response
-
-    async def _result(self, messages: Sequence[ParameterMessage]) -> SetParametersResult:
-        node = self._get_node()
-        for name in (message.name for message in messages):
-            if not node.has_parameter(name):
-                msg = f'there is no parameter "{name}"{hint_from_names(name, DECLARATIONS)}'
-                return SetParametersResult(successful=False, reason=msg)
+    async def result(messages: Sequence[ParameterMessage]) -> SetParametersResult:
         try:
-            parameters = [_parameter_from_message(message) for message in messages]
-        except (ValueError, TypeError) as error:  # a type that does not exist
+            parameters = _parameters_from_messages(node, messages)
+        except (ValueError, TypeError) as error:
             return SetParametersResult(successful=False, reason=str(error))
-        # "ros2 param load" of a dump also sets read-only parameters, to the values that they have.
-        return await self._set_parameters([
-            each for each in parameters
-            if not node.describe_parameter(each.name).read_only
-            or node.get_parameter(each.name).value != each.value])
+        return await set_parameters(parameters)
+
+    async def answer(
+        request: SetParameters.Request, response: SetParameters.Response,
+    ) -> SetParameters.Response:
+        response.results = [await result(request.parameters)] * len(request.parameters)
+        return response
+
+    async def answer_atomically(
+        request: SetParametersAtomically.Request, response: SetParametersAtomically.Response,
+    ) -> SetParametersAtomically.Response:
+        response.result = await result(request.parameters)
+        return response
+
+    own = [
+        node.create_service(
+            service_type, f'~/{name}', callback, qos_profile=SERVICE_QOS, callback_group=group)
+        for service_type, name, callback in (
+            (SetParameters, 'set_parameters', answer),
+            (SetParametersAtomically, 'set_parameters_atomically', answer_atomically))]
+    # It takes no callbacks for single services. While there are two of a kind, no call is lost.
+    ParameterService(node)
+    for service in list(node.services):
+        if service.srv_type in (SetParameters, SetParametersAtomically) and service not in own:
+            node.destroy_service(service)
 
 
-def _parameter_from_message(message: ParameterMessage) -> Parameter:
-    parameter = Parameter.from_parameter_msg(message)
-    declaration = DECLARATIONS.get(message.name)
-    return parameter_with_type(parameter, declaration.type_) if declaration else parameter
+def _parameters_from_messages(
+    node: Node, messages: Sequence[ParameterMessage],
+) -> list[Parameter]:
+    """
+    Return the parameters that a call wants to set.
+
+    :param node: the node.
+    :param messages: what is in the call.
+    :return: the parameters, without read-only ones that keep their values, which "ros2 param load"
+        of a dump sets too.
+    :raises ValueError: if there is no such parameter, or no such type.
+    """
+    parameters = []
+    for message in messages:
+        if not node.has_parameter(message.name):
+            msg = (f'there is no parameter "{message.name}"'
+                   f'{hint_from_names(message.name, DECLARATIONS)}')
+            raise ValueError(msg)
+        parameter = Parameter.from_parameter_msg(message)
+        if message.name in DECLARATIONS:
+            parameter = parameter_with_type(parameter, DECLARATIONS[message.name].type_)
+        if not (node.describe_parameter(message.name).read_only
+                and node.get_parameter(message.name).value == parameter.value):
+            parameters.append(parameter)
+    return parameters

@@ -158,9 +158,15 @@ class Settings:
         f'some of {", ".join(PUBLISHED_KINDS)}',
         kinds_setting,
     )
+    pose_frame = Declaration(
+        '',
+        'The frame in which the poses on ~/poses/... are given.',
+        'the frame id of a published frame, or of root_frame; root_frame if empty',
+        str,
+    )
     pose_topics = Declaration(
         ['*'],
-        'Which frames get a topic ~/poses/<frame> with their pose in root_frame.',
+        'Which frames get a topic ~/poses/<frame> with their pose in pose_frame.',
         'glob patterns for frame ids, such as robot/* (which matches robot/arm/tool too); '
         'none if empty; at most 1000 of them; * alone means none where there are more than 1000 '
         'frames, ?* means all',

@@ -32,7 +32,8 @@ from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.parameters import settings_from_node
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.parameters import warnings_about_unknown_parameters
-from sdf_pose_bridge.ros.publishers import FramePublishers
+from sdf_pose_bridge.ros.published_frames import PublishedFrames
+from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.sdformat.include.uris import AddressError
 import sdf_pose_bridge_interfaces  # noqa: F401 - if it is missing, say so before anything else
 
@@ -98,15 +99,14 @@ def _exit_code_from_node(node: Node) -> int:
     except (SdfError, SettingsError, AddressError) as error:
         _log_failure(node, error)
         return 1
-    publishers = FramePublishers(node)
-    publishers.publish_tf_static(loaded.tree)
+    frames = PublishedFrames(Publishers(node), loaded.tree, loaded.joint_positions, {})
+    frames.publish_tf()
     # Imported here because others wait for /tf_static, and for nothing else.
-    from sdf_pose_bridge.ros.node import SdfPoseBridge
-    bridge = SdfPoseBridge(node, publishers, settings, loaded)
+    from sdf_pose_bridge.ros.node import start_bridge
     gc.enable()
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    start = executor.create_task(bridge.start)
+    start = executor.create_task(start_bridge, node, frames, settings, loaded)
     _spin_until_signal(executor, node, start)
     executor.shutdown()
     return 0

@@ -26,7 +26,6 @@ name depends on nothing but its frame id and the limit.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from itertools import groupby
@@ -34,6 +33,8 @@ from operator import itemgetter
 import re
 import string
 from typing import NamedTuple
+
+from sdf_pose_bridge.ros.log_lines import names_in_line
 
 LONGEST_FULL_NAME = 246
 """The most characters that the middleware allows in the full name of a topic."""
@@ -55,13 +56,13 @@ _CUT = re.compile(r'_xh[0-9a-f]{32}_$')
 _CUT_LENGTH = len('_xh_') + 32
 
 
-class Topics(NamedTuple):
-    """The topics that patterns choose."""
+class PoseTopics(NamedTuple):
+    """The topics of poses that patterns choose."""
 
     names: dict[str, str]
     """The name of the topic of each chosen frame id, in the order of the frame ids."""
-    unmatched: list[str]
-    """Patterns that match no frame id, probably by mistake; without ``*`` and the empty one."""
+    warning: str = ''
+    """Patterns that match no frame id, or the reason if there are no topics at all."""
 
 
 def topic_name_from_frame_id(frame_id: str, limit: int = LONGEST_NAME) -> str:
@@ -85,30 +86,30 @@ def topic_name_from_frame_id(frame_id: str, limit: int = LONGEST_NAME) -> str:
     return f'{name[:limit - _CUT_LENGTH].rstrip("_/")}_xh{digest}_'
 
 
-def are_too_many_by_default(frame_ids: Sequence[str], patterns: Sequence[str]) -> bool:
-    """
-    Return whether there are too many frames for the default pattern.
-
-    :param frame_ids: all frame ids.
-    :param patterns: glob patterns.
-    :return: True if ``*`` is the only pattern and there are more than ``MOST_BY_DEFAULT`` frames.
-    """
-    return list(patterns) == ['*'] and len(frame_ids) > MOST_BY_DEFAULT
-
-
-def topics_from_patterns(
-    frame_ids: Sequence[str], patterns: Iterable[str], limit: int = LONGEST_NAME,
-) -> Topics:
+def pose_topics_from_patterns(
+    frame_ids: Sequence[str], patterns: Sequence[str], node_name: str,
+) -> PoseTopics:
     """
     Choose the frames that get a topic, and name the topics.
 
     :param frame_ids: all frame ids.
     :param patterns: glob patterns; ``*`` matches any text, slashes included. A frame is chosen if
-        one of them matches the whole of its id.
-    :param limit: as for :func:`topic_name_from_frame_id`.
+        one of them matches the whole of its id. ``*`` alone chooses at most ``MOST_BY_DEFAULT``.
+    :param node_name: full name of the node, which precedes the names.
     :return: the topics.
-    :raises ValueError: if the limit is too low.
     """
+    if list(patterns) == ['*'] and len(frame_ids) > MOST_BY_DEFAULT:
+        return PoseTopics(
+            {},
+            f'no ~/poses/... topics: {len(frame_ids)} frames are more than {MOST_BY_DEFAULT}; '
+            'name those that you want in pose_topics, such as "robot/*", or ask for all with '
+            '"?*"')
+    limit = min(LONGEST_NAME, LONGEST_FULL_NAME - len(f'{node_name}/poses/'))
+    if limit < SHORTEST_LIMIT:
+        return PoseTopics(
+            {},
+            'no ~/poses/... topics: the name of the node and its namespace are so long that '
+            'the names of topics would be longer than the middleware allows')
     chosen: set[str] = set()
     unmatched = []
     for pattern in dict.fromkeys(patterns):
@@ -119,7 +120,10 @@ def topics_from_patterns(
     names = {
         frame_id: topic_name_from_frame_id(frame_id, limit)
         for frame_id in frame_ids if frame_id in chosen}
-    return Topics(names, unmatched)
+    return PoseTopics(
+        names,
+        f'no ~/poses/... topics for {names_in_line(unmatched)} in pose_topics: no frame id matches'
+        if unmatched else '')
 
 
 def _level_from_text(text: str) -> str:

@@ -23,7 +23,8 @@ from sdf_pose_bridge.ros.loaded_scene import LoadedScene
 from sdf_pose_bridge.ros.loaded_scene import scene_with_shapes
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
 from sdf_pose_bridge.ros.parameters import Settings
-from sdf_pose_bridge.ros.publishers import latched_publisher
+from sdf_pose_bridge.ros.publishers import new_publisher
+from sdf_pose_bridge.ros.publishers import Topic
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf.visual_markers import visual_markers_from_scene
 from sdf_pose_bridge.tf.visual_markers import VisualMarker
@@ -45,8 +46,8 @@ class VisualPublisher:
         self._node = node
         self._loaded, self._settings = loaded, settings
         self._is_up_to_date = False
-        self._publisher = latched_publisher(
-            node, MarkerArray, '~/visuals', depth=1, matched=self._on_match)
+        self._publisher = new_publisher(
+            node, Topic('~/visuals', MarkerArray), self._on_match)
 
     def replace(self, loaded: LoadedScene, settings: Settings) -> None:
         """

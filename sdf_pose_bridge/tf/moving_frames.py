@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sdf_pose_bridge.geometry.chains import Indices
+from sdf_pose_bridge.geometry.poses import canonical_relative_poses
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.poses import PoseArray
@@ -31,12 +32,15 @@ class MovingFrames:
 
     :param motion: the motion of the scene.
     :param poses: shape (n, 7): pose of each frame in the root.
-    :param parents: index of the parent of each frame, or one of the two constants.
+    :param parents: index of the parent of each frame, or :data:`ROOT_IS_PARENT`, or
+        :data:`NO_PARENT`.
     :param elements: the element that each frame moves with.
+    :param pose_frame: index of the frame that :meth:`poses` are given in; -1 for the root frame.
     """
 
     def __init__(
         self, motion: JointMotion, poses: PoseArray, parents: Indices, elements: Indices,
+        pose_frame: int = -1,
     ) -> None:
         self._motion = motion
         self.dofs = motion.dofs
@@ -45,8 +49,10 @@ class MovingFrames:
         last_of_parents = np.where(parents < 0, NO_DOF, last[parents])
         self.indices = np.flatnonzero((last != last_of_parents) & (parents != NO_PARENT))
         """Shape (m,), the frames that move in their parents."""
-        self.posed_indices = np.flatnonzero(last != NO_DOF)
-        """The frames that move in the root frame."""
+        self.posed_indices = np.flatnonzero(
+            last != (NO_DOF if pose_frame < 0 else last[pose_frame]))
+        """The frames that move in the frame that poses are given in."""
+        self._pose_frame = pose_frame
         self._poses, self._elements = poses, elements
         self._crossed = [
             _dofs_between(motion.previous, *ends) for ends in zip(
@@ -83,13 +89,17 @@ class MovingFrames:
 
     def poses(self, positions: NDArray[np.float64]) -> PoseArray:
         """
-        Return the poses of the frames that move in the root frame.
+        Return the poses of the frames that move in the frame that poses are given in.
 
         :param positions: the position of each degree of freedom, in radians or metres.
-        :return: pose of each of them in the root; unit quaternions with w >= 0.
+        :return: pose of each of them in that frame; unit quaternions with w >= 0.
         """
-        return self._motion.moved_poses(
+        poses = self._motion.moved_poses(
             self._poses[self.posed_indices], self._elements[self.posed_indices], positions)
+        if self._pose_frame < 0:
+            return poses
+        reference = self.pose_of_frame(self._pose_frame, positions)
+        return canonical_relative_poses(np.broadcast_to(reference, poses.shape), poses)
 
     def pose_of_frame(self, index: int, positions: NDArray[np.float64]) -> Pose:
         """

@@ -18,10 +18,9 @@ from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
 from sdf_pose_bridge.geometry.chains import Indices
+from sdf_pose_bridge.geometry.poses import canonical_relative_poses
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.geometry.poses import relative_poses
-from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
@@ -69,6 +68,8 @@ class TfOptions(NamedTuple):
     """Precedes every frame id but the root's."""
     kinds: frozenset[Kind] = DEFAULT_KINDS
     """The kinds of element that become frames."""
+    pose_frame: str = ''
+    """The frame id of the frame in which poses are published; empty for the root frame."""
     optical_frames: bool = True
     """Whether each camera gets an optical frame besides its own."""
     use_joint_states: bool = False
@@ -87,6 +88,10 @@ class TfTree(NamedTuple):
     """Unique, not empty, without a leading slash."""
     poses: PoseArray
     """Shape (n, 7): pose of each frame in the root frame."""
+    pose_frame: str
+    """The frame id of the frame in which poses are published."""
+    poses_in_pose_frame: PoseArray
+    """Shape (n, 7): pose of each frame in that frame."""
     parents: Indices
     """Index of the parent of each frame, or :data:`ROOT_IS_PARENT`, or :data:`NO_PARENT`."""
     transforms: PoseArray
@@ -173,21 +178,26 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     # The last two poses serve the two negative indices among the parents.
     others = np.array([*(frame.pose for frame in optical_frames), Pose(), Pose()])
     poses = np.concatenate([scene.poses[elements], others])
-    transforms = relative_poses(poses[parents], poses[:-2])
+    transforms = canonical_relative_poses(poses[parents], poses[:-2])
     transforms[parents == NO_PARENT] = Pose()
-    transforms[:, 3:] = canonical_quaternion(transforms[:, 3:])
-    transforms += 0.0  # no negative zeros
+    pose_frame = options.pose_frame or options.root_frame
+    reference = _index_of_pose_frame(pose_frame, frame_ids, options.root_frame, scene)
+    poses_in_pose_frame = poses[:-2] if reference < 0 else canonical_relative_poses(
+        np.broadcast_to(poses[reference], poses[:-2].shape), poses[:-2])
     moving = None
     if options.use_joint_states:
         # Imported here because most trees stand still.
         from sdf_pose_bridge.tf.joint_motion import JointMotion
         from sdf_pose_bridge.tf.moving_frames import MovingFrames
         motion = JointMotion(scene, tf_parents)
-        moving = MovingFrames(motion, poses[:-2], parents, np.array(owners, np.int32))
+        moving = MovingFrames(
+            motion, poses[:-2], parents, np.array(owners, np.int32), reference)
     tree = TfTree(
         root_frame=options.root_frame,
         frame_ids=tuple(frame_ids),
         poses=poses[:-2],
+        pose_frame=pose_frame,
+        poses_in_pose_frame=poses_in_pose_frame,
         parents=parents,
         transforms=transforms,
         elements=np.concatenate([elements, np.full(len(optical_frames), -1, np.int32)]),
@@ -197,7 +207,8 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         warnings=problems.warnings,
     )
     for array in (
-            tree.poses, tree.parents, tree.transforms, tree.elements, tree.nearest_frames):
+            tree.poses, tree.poses_in_pose_frame, tree.parents, tree.transforms, tree.elements,
+            tree.nearest_frames):
         array.setflags(write=False)
     return tree
 
@@ -275,6 +286,18 @@ def _check_frame_ids(
         elif frame_id.split() != [frame_id]:
             msg = f'the frame id "{frame_id}" holds white space, which some tools cannot take'
             problems.warning(msg, scene.place(owner))
+
+
+def _index_of_pose_frame(
+    pose_frame: str, frame_ids: Sequence[str], root_frame: str, scene: Scene,
+) -> int:
+    if pose_frame == root_frame:
+        return ROOT_IS_PARENT
+    if pose_frame not in frame_ids:
+        hint = hint_from_names(pose_frame, [root_frame, *frame_ids])
+        msg = f'there is no frame "{pose_frame}" to be the pose_frame{hint}'
+        raise UnknownFrameError(msg, Place(scene.path))
+    return frame_ids.index(pose_frame)
 
 
 def _description(scene: Scene, element: int) -> str:

@@ -80,6 +80,34 @@ def test_another_file_reaches_an_early_and_a_late_listener(bridge, start_listene
     assert late.poses['/sdf_pose_bridge/poses/crate/body'].pose.position.x == 5.0
 
 
+def test_poses_are_given_in_the_frame_that_is_set(bridge, file, start_listener):
+    file.write_text(world(1, extra='<frame name="desk"><pose>3 0 0 0 0 0</pose></frame>'))
+    listener = start_listener()
+    listener.listen_to_poses(['/sdf_pose_bridge/poses/desk', '/sdf_pose_bridge/poses/crate'])
+
+    def wait_for_poses(frame, **expected):
+        def found():
+            return {
+                topic.rpartition('/')[2]: pose.pose.position.x
+                for topic, pose in listener.poses.items() if pose.header.frame_id == frame}
+        listener.wait(lambda: found() == expected, found)
+
+    wait_for_poses('world', desk=3.0, crate=1.0)
+    (result,) = set_parameters(listener, pose_frame='dsk')
+    assert not result.successful
+    assert 'no frame "dsk" to be the pose_frame; did you mean "desk"?' in result.reason
+    assert value_of(listener, 'pose_frame') == ''
+    (result,) = set_parameters(listener, pose_frame='desk')
+    assert result.successful, result.reason
+    wait_for_poses('desk', desk=0.0, crate=-2.0)
+
+
+def test_an_unknown_frame_of_poses_is_named_at_the_start(start_bridge, file):
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={file}', '-p', 'pose_frame:=crate/bdy')
+    assert 'did you mean "crate/body"?' in bridge.wait_for_line('no frame "crate/bdy"')
+    assert bridge.wait_for_end() == 1
+
+
 def test_parameters_set_in_one_call_take_effect_together(bridge, start_listener):
     listener = start_listener()
     listen_to_tf(listener)

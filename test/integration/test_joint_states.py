@@ -167,6 +167,47 @@ def test_later_listeners_get_the_last_positions(start, file, joints, tf):
     assert poses[-1].pose.position.z == 2.5
 
 
+def listen_to_poses(tf, *frames):
+    poses = {}
+    for frame in frames:
+        tf.listener.node.create_subscription(
+            PoseStamped, f'{BRIDGE}/poses/{frame}',
+            lambda message, frame=frame: poses.update({frame: message}), latched(1))
+    return poses
+
+
+def wait_for_z(tf, poses, pose_frame, **expected):
+    def heights():
+        return {
+            frame: pose.pose.position.z for frame, pose in poses.items()
+            if pose.header.frame_id == pose_frame}
+    tf.listener.wait(lambda: heights() == expected, heights)
+
+
+def test_poses_are_given_in_a_frame_that_moves(start, file, joints, tf):
+    start(file, 'pose_frame:=slide')
+    poses = listen_to_poses(tf, 'base', 'slide', 'tool')
+    wait_for_z(tf, poses, 'slide', base=-2.0, slide=0.0, tool=0.0)
+    assert poses['tool'].pose.position.x == 1.0
+    tf.wait_for('slide', joints.send({'turn': 0.0, 'lift': 0.25}))
+    wait_for_z(tf, poses, 'slide', base=-2.25, slide=0.0, tool=0.0)
+
+
+def test_the_frame_of_poses_can_be_set_while_joints_move(start, file, joints, tf):
+    start(file)
+    poses = listen_to_poses(tf, 'base', 'tool')
+    tf.wait_for('slide', joints.send({'turn': 0.0, 'lift': 0.25}))
+    wait_for_z(tf, poses, 'world', base=0.0, tool=2.25)
+    result, = set_parameters(tf.listener, pose_frame='slide')
+    assert result.successful, result.reason
+    wait_for_z(tf, poses, 'slide', base=-2.25, tool=0.0)
+    tf.wait_for('slide', joints.send({'lift': 0.5}))
+    wait_for_z(tf, poses, 'slide', base=-2.5, tool=0.0)
+    result, = set_parameters(tf.listener, pose_frame='upper')
+    assert result.successful, result.reason
+    wait_for_z(tf, poses, 'upper', base=-1.0, tool=1.5)
+
+
 def test_joints_move_while_the_file_is_read_again(start, tmp_path, joints, tf):
     slow = SlowFile(tmp_path / 'slow.sdf', ARM.format(tool=1))
     start(slow.path, 'watch:=false')

@@ -6,15 +6,21 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from sdf_texts import world_file
+from tf_checks import tree_of
+
 from sdf_pose_bridge.errors import LoadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.problems import MOST_PROBLEMS
+from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
 from sdf_pose_bridge.ros.log_lines import MOST_ERRORS
 from sdf_pose_bridge.ros.log_lines import MOST_WARNINGS
 from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.tree import AnchorModels
 
 
 def test_each_error_of_a_file_has_its_line_with_its_place():
@@ -64,3 +70,20 @@ def test_a_flood_of_warnings_ends_with_its_size():
     lines = lines_from_warnings([f'warning {number}' for number in range(MOST_WARNINGS + 7)])
     assert len(lines) == MOST_WARNINGS + 1
     assert lines[-1] == '7 more warnings are not shown'
+
+
+def test_frames_that_tf_cannot_forget_are_named():
+    def tree(names, anchor_models=AnchorModels.ALL):
+        world = ''.join(
+            f'<model name="{name}"><link name="l"/></model>' for name in names)
+        return tree_of(
+            world_file(world), kinds=frozenset({Kind.LINK}), anchor_models=anchor_models)
+
+    assert lines_about_lost_frames(tree('ab'), tree('abc')) == []
+    vanished, = lines_about_lost_frames(tree('abc'), tree('b'))
+    assert vanished.startswith('2 frames no longer published')
+    assert vanished.endswith('"a/l", "c/l"')
+    detached, = lines_about_lost_frames(tree('a'), tree('a', AnchorModels.NONE))
+    assert detached.startswith('1 frame without a parent now')
+    assert detached.endswith('"a/l"')
+    assert lines_about_lost_frames(tree('a', AnchorModels.NONE), tree('')) == []

@@ -8,11 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 import pytest
 
-from sdf_pose_bridge.ros.topic_names import are_too_many_by_default
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from sdf_pose_bridge.ros.topic_names import LONGEST_FULL_NAME
 from sdf_pose_bridge.ros.topic_names import LONGEST_NAME
+from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
 from sdf_pose_bridge.ros.topic_names import SHORTEST_LIMIT
 from sdf_pose_bridge.ros.topic_names import topic_name_from_frame_id
-from sdf_pose_bridge.ros.topic_names import topics_from_patterns
+
+NODE = '/sdf_pose_bridge'
 
 # Letters that the escapes themselves are made of, so that look-alikes are common.
 ESCAPE_LIKE_TEXT = st.text(alphabet='xab0235_ /-hé', max_size=24)
@@ -89,7 +93,6 @@ def test_every_level_is_legal_and_visible(frame_id):
 
 @given(ANY_TEXT)
 def test_rclpy_takes_every_name_and_shows_it(frame_id):
-    pytest.importorskip('rclpy', reason='needs ROS 2')
     from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
     from rclpy.validate_full_topic_name import validate_full_topic_name
     from rclpy.validate_topic_name import validate_topic_name
@@ -124,16 +127,18 @@ def test_a_frame_id_that_reads_as_a_cut_name_does_not_take_its_place():
     assert topic_name_from_frame_id(cut) != cut
 
 
-@pytest.mark.parametrize(('count', 'patterns', 'too_many'), [
-    (1000, ['*'], False),
-    (1001, ['*'], True),
-    (1001, ['?*'], False),
-    (1001, ['a/*', '*'], False),
-    (1001, [], False),
+@pytest.mark.parametrize(('count', 'patterns', 'chosen'), [
+    (1000, ['*'], 1000),
+    (1001, ['*'], 0),
+    (1001, ['?*'], 1001),
+    (1001, ['a/*', '*'], 1001),
+    (1001, [], 0),
 ])
-def test_the_default_pattern_does_not_mean_thousands_of_topics(count, patterns, too_many):
+def test_the_default_pattern_does_not_mean_thousands_of_topics(count, patterns, chosen):
     frame_ids = [f'f{number}' for number in range(count)]
-    assert are_too_many_by_default(frame_ids, patterns) is too_many
+    topics = pose_topics_from_patterns(frame_ids, patterns, NODE)
+    assert len(topics.names) == chosen
+    assert ('1001 frames are more than 1000' in topics.warning) is (chosen == 0 and patterns != [])
 
 
 @pytest.mark.parametrize(('patterns', 'chosen'), [
@@ -145,19 +150,27 @@ def test_the_default_pattern_does_not_mean_thousands_of_topics(count, patterns, 
     ([], []),
 ])
 def test_patterns_choose_whole_frame_ids_in_their_order(patterns, chosen):
-    names = topics_from_patterns(['a/b c', 'a/d', 'e'], patterns).names
+    names = pose_topics_from_patterns(['a/b c', 'a/d', 'e'], patterns, NODE).names
     assert list(names) == chosen
     assert all(name == topic_name_from_frame_id(frame_id) for frame_id, name in names.items())
 
 
-def test_patterns_that_match_nothing_are_found():
-    assert topics_from_patterns(['a/b', 'c'], ['a::*', 'a/*', '*', 'C']).unmatched == ['a::*', 'C']
+def test_patterns_that_match_nothing_are_named():
+    topics = pose_topics_from_patterns(['a/b', 'c'], ['a::*', 'a/*', '*', 'C'], NODE)
+    assert 'for "a::*", "C" in pose_topics: no frame id matches' in topics.warning
 
 
 def test_an_empty_pattern_is_no_mistake():
-    assert topics_from_patterns(['a'], ['', 'b']).unmatched == ['b']
+    assert pose_topics_from_patterns(['a'], ['', 'a'], NODE).warning == ''
 
 
-def test_a_limit_that_leaves_no_room_is_refused():
-    with pytest.raises(ValueError, match='limit is 9'):
-        topics_from_patterns(['a'], ['*'], 9)
+def test_a_name_leaves_room_for_that_of_the_node():
+    long_name = '/n' * 60
+    (name,) = pose_topics_from_patterns(['a' * 200], ['*'], long_name).names.values()
+    assert len(f'{long_name}/poses/{name}') == LONGEST_FULL_NAME
+
+
+def test_a_node_whose_name_leaves_no_room_has_no_topics():
+    topics = pose_topics_from_patterns(['a'], ['*'], '/n' * 100)
+    assert topics.names == {}
+    assert 'longer than the middleware allows' in topics.warning

@@ -9,6 +9,7 @@ from joint_trees import POSES
 from joint_trees import POSITIONS
 from joint_trees import random_joints
 import numpy as np
+import pytest
 from sdf_texts import fixed_joint
 from sdf_texts import joint
 from sdf_texts import model_file
@@ -75,6 +76,25 @@ def test_rows_moved_by_a_degree_of_freedom():
     assert [moving.rows_moved_by([dof]).tolist() for dof in (0, 1)] == [[0], [1]]
     assert moving.rows_moved_by([0, 1]).tolist() == [0, 1]
     assert not moving.rows_moved_by([]).size
+
+
+def test_frames_that_move_with_the_pose_frame_stay_in_it():
+    tree = moving_tree(model_file(ARM), pose_frame='b')
+    posed = [tree.frame_ids[index] for index in tree.moving.posed_indices]
+    assert posed == ['m', 'a', 'c']
+    assert tree.pose_frame == 'b'
+
+
+@pytest.mark.parametrize('pose_frame', ['m', 'b', 'b/s', 'c'])
+def test_poses_in_the_pose_frame_are_those_that_a_lookup_finds(pose_frame):
+    scene = load_text(model_file(ARM))
+    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True, pose_frame=pose_frame))
+    for positions in (np.zeros(2), np.array([0.5, -1.2])):
+        poses = tree.poses_in_pose_frame.copy()
+        poses[tree.moving.posed_indices] = tree.moving.poses(positions)
+        lookup = PoseLookup(scene, tree, positions)
+        expected = [lookup.pose(frame_id, pose_frame).pose for frame_id in tree.frame_ids]
+        np.testing.assert_allclose(poses, expected, atol=1e-15)
 
 
 def test_a_lookup_follows_the_positions():

@@ -1,0 +1,238 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The frames of a TF tree on their topics.
+
+These are ``/tf_static``, ``/tf``, ``~/transforms`` and ``~/poses/...``. Fixed frames are published
+once; moving frames, whose transforms joints change, again and again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import TransformStamped
+import numpy as np
+from rclpy.publisher import Publisher
+from tf2_msgs.msg import TFMessage
+
+from sdf_pose_bridge.ros.cdr import pose_stamped_messages
+from sdf_pose_bridge.ros.cdr import StampedMessages
+from sdf_pose_bridge.ros.cdr import tf_message
+from sdf_pose_bridge.ros.cdr import transform_stamped_messages
+from sdf_pose_bridge.ros.publishers import Publishers
+from sdf_pose_bridge.ros.publishers import Stamp
+from sdf_pose_bridge.ros.publishers import Topic
+from sdf_pose_bridge.tf.tree import TfTree
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sdf_pose_bridge.tf.joint_positions import JointPositions
+    from sdf_pose_bridge.tf.moving_frames import MovingFrames
+
+TF_STATIC = Topic('/tf_static', TFMessage)
+TF = Topic('/tf', TFMessage, depth=100, is_latched=False)
+"""With the quality of service that it has in tf2_ros."""
+
+
+class PublishedFrames:
+    """
+    The frames of a tree on their topics.
+
+    Messages are made when they are needed first, so that nothing delays ``/tf_static``.
+
+    :param publishers: the publishers of the node. Those of topics that other frames had before
+        are kept, if these frames have the topics too.
+    :param tree: the tree.
+    :param positions: the positions of its joints; None if joints move nothing.
+    :param pose_topics: the names of the topics of poses, by frame id.
+    :param before: the frames that these ones replace. Joints with the same names continue where
+        they are; the stamp stays if the tree does.
+    """
+
+    def __init__(
+        self, publishers: Publishers, tree: TfTree, positions: JointPositions | None,
+        pose_topics: Mapping[str, str], before: PublishedFrames | None = None,
+    ) -> None:
+        self.publishers = publishers
+        self.tree = tree
+        self.stamp: Stamp = publishers.now() if before is None or before.tree is not tree else (
+            before.stamp)
+        self._tf_static = publishers.opened(TF_STATIC)
+        self._transforms_topic = _transforms_topic(len(tree.fixed_indices), 'fixed')
+        self._pose_topics = {
+            frame_id: Topic(f'~/poses/{name}', PoseStamped)
+            for frame_id, name in pose_topics.items()}
+        self.moving: PublishedMovingFrames | None = None
+        """The moving frames; None if joints move nothing."""
+        if tree.moving is not None and positions is not None:
+            self.moving = PublishedMovingFrames(
+                publishers, tree, tree.moving, positions, self._pose_topics,
+                before.moving if before else None)
+
+    def publish_tf(self) -> None:
+        """Publish all fixed frames on ``/tf_static``, and all moving ones on ``/tf``."""
+        self._publish_tf_static()
+        if self.moving is not None:
+            self.moving.publish_all()
+
+    async def publish_topics(self) -> None:
+        """Publish all frames on all other topics; fixed ones with the stamp of ``/tf_static``."""
+        topics = [TF_STATIC, self._transforms_topic, *self._pose_topics.values()]
+        if self.moving is not None:
+            topics += [TF, self.moving.transforms_topic]
+        # All publishers of poses may take a second.
+        self.publishers.opened(self._transforms_topic)
+        await self._send(self._fixed_transforms)
+        await self.publishers.replace(dict.fromkeys(topics))
+        await self._send(self._fixed_poses)
+        if self.moving is not None:
+            self.moving.publish_topics(only_listeners=False)
+
+    async def publish_fixed_again(self) -> None:
+        """Publish all fixed frames on all topics with a new stamp."""
+        self.stamp = self.publishers.now()
+        self._publish_tf_static()
+        await self._send(self._fixed_transforms)
+        await self._send(self._fixed_poses)
+
+    def _publish_tf_static(self) -> None:
+        (message,) = self._tf_static_message.with_stamp(*self.stamp)
+        self._tf_static.publish(message)
+
+    async def _send(self, content: tuple[Sequence[Topic], StampedMessages]) -> None:
+        topics, messages = content
+        await self.publishers.send(topics, messages.with_stamp(*self.stamp))
+
+    @cached_property
+    def _tf_static_message(self) -> StampedMessages:
+        indices = self.tree.fixed_indices
+        return tf_message(*self.tree.ids_of_transforms(indices), self.tree.transforms[indices])
+
+    @cached_property
+    def _fixed_transforms(self) -> tuple[Sequence[Topic], StampedMessages]:
+        indices = self.tree.fixed_indices
+        return [self._transforms_topic] * len(indices), transform_stamped_messages(
+            *self.tree.ids_of_transforms(indices), self.tree.transforms[indices])
+
+    @cached_property
+    def _fixed_poses(self) -> tuple[Sequence[Topic], StampedMessages]:
+        tree = self.tree
+        moving = set() if tree.moving is None else set(tree.moving.posed_indices.tolist())
+        posed = [
+            (index, self._pose_topics[frame_id]) for index, frame_id in enumerate(tree.frame_ids)
+            if frame_id in self._pose_topics and index not in moving]
+        poses = tree.poses_in_pose_frame[[index for index, _ in posed]]
+        return [topic for _, topic in posed], pose_stamped_messages(
+            [tree.pose_frame] * len(posed), poses)
+
+
+class PublishedMovingFrames:
+    """
+    The moving frames of a tree on their topics.
+
+    :param publishers: the publishers of the node.
+    :param tree: the tree.
+    :param moving: its moving frames.
+    :param positions: the positions of its joints.
+    :param pose_topics: the topics of poses, by frame id.
+    :param before: the moving frames that these ones replace. Joints with the same names continue
+        where they are.
+    """
+
+    def __init__(
+        self, publishers: Publishers, tree: TfTree, moving: MovingFrames,
+        positions: JointPositions, pose_topics: Mapping[str, Topic],
+        before: PublishedMovingFrames | None,
+    ) -> None:
+        self._publishers = publishers
+        self._tree = tree
+        self.frames = moving
+        self.positions = positions
+        """The positions of the joints, which others set."""
+        self.stamp: Stamp | None = None if before is None else before.stamp
+        """The stamp of these positions; None before the first message of ``joint_states``."""
+        if before is not None and before.positions is not positions:
+            positions.take_over(before.positions)
+        self._tf = publishers.opened(TF)
+        self.transforms_topic = _transforms_topic(len(moving.indices), 'moving')
+        self._transform_messages = transform_stamped_messages(
+            *tree.ids_of_transforms(moving.indices), tree.transforms[moving.indices])
+        topics = [pose_topics.get(tree.frame_ids[index]) for index in moving.posed_indices]
+        self._posed_rows = [row for row, topic in enumerate(topics) if topic is not None]
+        self._posed_topics = [topic for topic in topics if topic is not None]
+        self._pose_messages = pose_stamped_messages(
+            [tree.pose_frame] * len(self._posed_rows),
+            tree.poses_in_pose_frame[moving.posed_indices[self._posed_rows]])
+
+    def tf_message(self, rows: NDArray[np.intp]) -> StampedMessages:
+        """
+        Prepare a message for ``/tf``.
+
+        :param rows: which of the moving transforms it has.
+        :return: the message, for :meth:`publish_tf`.
+        """
+        indices = self.frames.indices[rows]
+        return tf_message(*self._tree.ids_of_transforms(indices), self._tree.transforms[indices])
+
+    def publish_tf(
+        self, rows: NDArray[np.intp], message: StampedMessages, stamp: Stamp,
+    ) -> None:
+        """
+        Publish on ``/tf``.
+
+        :param rows: which of the moving transforms the message has.
+        :param message: the message, whose transforms are set.
+        :param stamp: its stamp.
+        """
+        message.set_poses(self.frames.transforms(self.positions.values)[rows])
+        (data,) = message.with_stamp(*stamp)
+        self._tf.publish(data)
+
+    def publish_all(self) -> None:
+        """Publish all moving transforms on ``/tf`` with the time of the node."""
+        rows = np.arange(len(self.frames.indices))
+        if len(rows):
+            self.publish_tf(rows, self.tf_message(rows), self._publishers.now())
+
+    def publish_topics(self, *, only_listeners: bool) -> None:
+        """
+        Publish on ``~/transforms`` and ``~/poses/...``.
+
+        :param only_listeners: whether to leave out topics that nobody listens to.
+        """
+        def wanted_publisher(topic: Topic) -> Publisher | None:
+            publisher = self._publishers.get(topic)
+            if publisher is None or (only_listeners and not publisher.get_subscription_count()):
+                return None
+            return publisher
+
+        stamp = self.stamp or self._publishers.now()
+        publisher = wanted_publisher(self.transforms_topic)
+        if publisher is not None:
+            self._transform_messages.set_poses(self.frames.transforms(self.positions.values))
+            for message in self._transform_messages.with_stamp(*stamp):
+                publisher.publish(message)
+        publishers = list(map(wanted_publisher, self._posed_topics))
+        if any(publishers):
+            self._pose_messages.set_poses(
+                self.frames.poses(self.positions.values)[self._posed_rows])
+            for publisher, message in zip(
+                    publishers, self._pose_messages.with_stamp(*stamp), strict=True):
+                if publisher is not None:
+                    publisher.publish(message)
+
+
+def _transforms_topic(count: int, part: str) -> Topic:
+    """
+    Return ``~/transforms`` for a publisher that keeps as many messages as there are transforms.
+
+    New messages replace all old ones then. For another number of transforms there is another
+    publisher, which does not have the old messages.
+    """
+    return Topic('~/transforms', TransformStamped, depth=max(1, count), part=part)
