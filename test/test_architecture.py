@@ -16,7 +16,6 @@ PAGES = [ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').glob('*.md'))]
 
 TESTED_BY_PROCESSES = {
     'ros/joint_states.py': ['test_joint_states.py'],
-    'ros/moving_publishers.py': ['test_joint_states.py'],
     'ros/node.py': [
         'test_bridge_changes.py', 'test_bridge_reload.py', 'test_bridge_background.py'],
     'ros/parameter_service.py': ['test_bridge_changes.py', 'test_bridge_reload.py'],

@@ -1,0 +1,74 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Publishers of a real node: which are made, shared, kept and destroyed."""
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from geometry_msgs.msg import PoseStamped
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import DurabilityPolicy
+
+from sdf_pose_bridge.ros.publishers import Publishers
+from sdf_pose_bridge.ros.publishers import Topic
+
+
+@pytest.fixture(name='node')
+def spinnable_node(make_node):
+    node = make_node('bridge')
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    yield node
+    executor.shutdown()
+
+
+@pytest.fixture(name='publishers')
+def publishers_of_node(node):
+    return Publishers(node)
+
+
+def run(node, coroutine):
+    task = node.executor.create_task(coroutine)
+    node.executor.spin_until_future_complete(task, timeout_sec=20.0)
+    assert task.done()
+    task.result()
+
+
+def topics_of(node):
+    topics = {publisher.topic_name for publisher in node.publishers}
+    return topics - {'/rosout', '/parameter_events'}
+
+
+def test_equal_topics_share_a_publisher(publishers):
+    publisher = publishers.opened(Topic('~/a', PoseStamped))
+    assert publishers.opened(Topic('~/a', PoseStamped)) is publisher
+    assert publishers.get(Topic('~/a', PoseStamped)) is publisher
+
+
+@pytest.mark.parametrize('other', [
+    Topic('~/b', PoseStamped), Topic('~/a', PoseStamped, depth=2),
+    Topic('~/a', PoseStamped, is_latched=False), Topic('~/a', PoseStamped, part='b')])
+def test_topics_that_differ_have_publishers_of_their_own(publishers, other):
+    publisher = publishers.opened(Topic('~/a', PoseStamped))
+    assert publishers.get(other) is None
+    assert publishers.opened(other) is not publisher
+
+
+def test_messages_are_kept_as_the_topic_says(node, publishers):
+    publishers.opened(Topic('~/a', PoseStamped, depth=7))
+    publishers.opened(Topic('~/b', PoseStamped, is_latched=False))
+    found = {
+        name: node.get_publishers_info_by_topic(f'/bridge/{name}')[0].qos_profile for name in 'ab'}
+    assert found['a'].durability is DurabilityPolicy.TRANSIENT_LOCAL
+    assert found['b'].durability is DurabilityPolicy.VOLATILE
+
+
+def test_topics_are_replaced(node, publishers):
+    a, b, c = (Topic(f'~/{name}', PoseStamped) for name in 'abc')
+    kept = publishers.opened(b)
+    publishers.opened(a)
+    run(node, publishers.replace([b, c]))
+    assert topics_of(node) == {'/bridge/b', '/bridge/c'}
+    assert publishers.get(a) is None
+    assert publishers.get(b) is kept
