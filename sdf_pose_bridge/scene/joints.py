@@ -23,12 +23,12 @@ from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.name_scopes import NameScopes
-from sdf_pose_bridge.sdformat.elements import AxisDetails
 from sdf_pose_bridge.sdformat.elements import Elements
-from sdf_pose_bridge.sdformat.elements import MimicDetails
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
-from sdf_pose_bridge.sdformat.elements import Reference
 from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
+from sdf_pose_bridge.sdformat.joints import AxisDetails
+from sdf_pose_bridge.sdformat.joints import MimicDetails
+from sdf_pose_bridge.sdformat.joints import Reference
 
 
 class AxisReferences(NamedTuple):

@@ -38,12 +38,12 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.documents import Document
 from sdf_pose_bridge.sdformat.documents import document_from_file
 from sdf_pose_bridge.sdformat.documents import document_from_text
-from sdf_pose_bridge.sdformat.elements import AxisDetails
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
+from sdf_pose_bridge.sdformat.joints import AxisDetails
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
 from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.reader import elements_from_tree

@@ -17,105 +17,21 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.sdformat.automatic_inertials import CollisionMass
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.joints import JointDetails
+from sdf_pose_bridge.sdformat.models import FrameDetails
+from sdf_pose_bridge.sdformat.models import ModelDetails
+from sdf_pose_bridge.sdformat.poses import PoseFormat
+from sdf_pose_bridge.sdformat.poses import poses_from_texts
+from sdf_pose_bridge.sdformat.sensors import SensorDetails
 from sdf_pose_bridge.sdformat.shapes import Shape
-from sdf_pose_bridge.sdformat.values import PoseFormat
-from sdf_pose_bridge.sdformat.values import poses_from_texts
 from sdf_pose_bridge.sdformat.xml_tree import path_step
 
 NO_ELEMENT = -1
 """Index that means no element."""
 
 _MOST_PATHS_KNOWN = 1000
-
-
-class Reference(NamedTuple):
-    """A name by which an element refers to a frame."""
-
-    name: str
-    """As written; empty for none."""
-    line: int = 0
-
-
-class ModelDetails(NamedTuple):
-    """What only a model has."""
-
-    is_static: bool
-    canonical_link: str
-    """Value of the attribute; empty for the default."""
-    placement_frame: str
-    """The frame that the pose places; empty for the model frame."""
-
-
-class FrameDetails(NamedTuple):
-    """What only an explicit frame has."""
-
-    attached_to: str
-    """Value of the attribute; empty for the frame of its scope."""
-    placement_frame: str = ''
-    """The frame that the pose places; empty for this one. Only proxies of merged models have
-    one."""
-
-
-class MimicDetails(NamedTuple):
-    """The joint axis that an axis follows: ``multiplier * (leader - reference) + offset``."""
-
-    joint: Reference
-    """The joint of the leader."""
-    axis: str
-    """Which axis of it: ``axis`` or ``axis2``."""
-    multiplier: float
-    offset: float
-    reference: float
-
-
-class AxisDetails(NamedTuple):
-    """An axis of a joint."""
-
-    xyz: tuple[float, float, float]
-    """As written; not zero."""
-    expressed_in: Reference
-    """The frame that ``xyz`` is expressed in; empty for the frame of the joint."""
-    lower: float
-    """Lower limit of the position, in radians or metres."""
-    upper: float
-    """Upper limit of the position, in radians or metres."""
-    mimic: MimicDetails | None
-
-
-class JointDetails(NamedTuple):
-    """What only a joint has."""
-
-    type: str
-    """As SDFormat spells it: ``revolute``, ``fixed``, ..."""
-    parent: Reference
-    child: Reference
-    axes: tuple[AxisDetails | None, AxisDetails | None]
-    """``<axis>`` and ``<axis2>``, where they are given."""
-    screw_pitch_m: float
-    """How far a screw joint moves along its axis in one turn; positive for a right-handed
-    thread."""
-
-
-class CollisionMass(NamedTuple):
-    """The mass of a collision that an automatic inertial is computed from."""
-
-    mass_kg: float
-    center_z_m: float
-    """The z of the center of mass in the frame of the collision; its x and y are 0."""
-
-
-class SensorDetails(NamedTuple):
-    """What only a sensor has."""
-
-    type: str
-    """As written: ``camera``, ``gpu_lidar``, ..."""
-    frame_id: str
-    """The frame id of the messages of Gazebo, where the file sets it; else empty."""
-    is_camera: bool
-    """Whether an optical frame belongs to it."""
-    optical_frame_id: str
-    """The id of the optical frame, where the file sets it; else empty."""
 
 
 class Elements(NamedTuple):

@@ -8,7 +8,8 @@ Elements with a pose are members of :class:`Kind`, all others are in
 separated by blanks:
 
 * ``tag``: a child element; its definition is that of ``parent/tag`` or ``tag``, or it is a string.
-* ``tag:type`` or ``tag:type[min,max]``: a child element with a value, see :class:`ValueType`.
+* ``tag:type`` or ``tag:type[min,max]``: a child element with a value. The type is one of
+  :class:`ValueType`, or of :data:`~sdf_pose_bridge.sdformat.specification.CHOICES`.
 * ``tag=name``: a child element that is defined under another name.
 * ``@name`` or ``@name:type``: an attribute.
 * ``:type``: the type of the value of the element itself.
@@ -30,6 +31,8 @@ import re
 from typing import Any
 from typing import NamedTuple
 
+from sdf_pose_bridge.sdformat.specification import Choice
+from sdf_pose_bridge.sdformat.specification import CHOICES
 from sdf_pose_bridge.sdformat.specification import ELEMENTS
 
 
@@ -48,6 +51,7 @@ class ValueType(enum.Enum):
     POSE = 'pose', 'a pose', 6
     FRAME = 'frame', 'a frame that can be named', 0
     """The name of a frame; any but that of the implicit root."""
+    CHOICE = 'choice', 'one of a few texts', 0
 
     description: str
     count: int
@@ -100,7 +104,7 @@ class Kind(enum.IntEnum):
         '@name! pose gravity:bool enable_wind:bool self_collide:bool kinematic:bool '
         'must_be_base_link:bool velocity_decay audio_sink audio_source battery'), True
     JOINT = 'model world', (
-        '@name! @type! pose parent! child! gearbox_ratio:double gearbox_reference_body '
+        '@name! @type!:joint_type pose parent! child! gearbox_ratio:double gearbox_reference_body '
         'thread_pitch:double screw_thread_pitch:double axis axis2 physics'), True
     FRAME = 'model world', '@name! @attached_to:frame pose', True
     VISUAL = 'link', (
@@ -110,20 +114,20 @@ class Kind(enum.IntEnum):
         '@name! pose laser_retro:double max_contacts:int density:double auto_inertia_params '
         'geometry! surface')
     SENSOR = 'link joint', (
-        '@name! @type! pose always_on:bool update_rate:double visualize:bool topic '
+        '@name! @type!:sensor_type pose always_on:bool update_rate:double visualize:bool topic '
         'enable_metrics:bool plugin air_pressure air_speed altimeter camera contact force_torque '
         'gps imu lidar logical_camera magnetometer navsat ray rfid rfidtag sonar transceiver')
     LIGHT = 'sdf world link', (
-        '@name! @type! pose cast_shadows:bool light_on:bool visualize:bool intensity:double '
-        'diffuse:color specular:color attenuation direction!:vector3 spot')
+        '@name! @type!:light_type pose cast_shadows:bool light_on:bool visualize:bool '
+        'intensity:double diffuse:color specular:color attenuation direction!:vector3 spot')
     INERTIAL = 'link', (
         '@auto:bool pose mass:double density:double auto_inertia_params inertia '
         'fluid_added_mass')
     PARTICLE_EMITTER = 'link', (
-        '@name! @type! pose emitting:bool duration:double size:vector3 particle_size:vector3 '
-        'lifetime:double rate:double[0,] min_velocity:double[0,] max_velocity:double[0,] '
-        'scale_rate:double[0,] color_start:color color_end:color color_range_image topic '
-        'particle_scatter_ratio:double material')
+        '@name! @type!:emitter_type pose emitting:bool duration:double size:vector3 '
+        'particle_size:vector3 lifetime:double rate:double[0,] min_velocity:double[0,] '
+        'max_velocity:double[0,] scale_rate:double[0,] color_start:color color_end:color '
+        'color_range_image topic particle_scatter_ratio:double material')
     PROJECTOR = 'link', (
         '@name! pose texture!:string fov:double near_clip:double far_clip:double '
         'visibility_flags:int plugin')
@@ -146,6 +150,9 @@ class Attribute(NamedTuple):
 
     value_type: ValueType
     is_required: bool
+    choice: Choice | None = None
+    """What the value can be, of a choice; None for the type of an element in a state, which is
+    not read."""
 
 
 class Definition:
@@ -155,7 +162,7 @@ class Definition:
     :param identifier: the tag, ``parent/tag`` or another name that tells definitions apart.
     :param content: what the element holds, as this module describes it.
     :param has_frames: whether kinds of elements are frames here, and not parts of a state.
-    :param value_type: type of the value, if the content does not tell.
+    :param value_type: type of the value as definitions name it, if the content does not tell.
     :param minimum: the smallest value that the element may have.
     :param maximum: the largest value that the element may have.
     :param is_required: whether the value may not be blank.
@@ -163,7 +170,7 @@ class Definition:
 
     def __init__(
         self, identifier: str, content: str, *, has_frames: bool = False,
-        value_type: ValueType | None = None, minimum: float = -math.inf,
+        value_type: str = '', minimum: float = -math.inf,
         maximum: float = math.inf, is_required: bool = False,
     ) -> None:
         self.identifier = identifier
@@ -172,13 +179,14 @@ class Definition:
         self.maximum = maximum
         self.kind = _KINDS.get(identifier) if has_frames else None
         """The kind of the element; None for an element that is no frame."""
-        self.value_type = value_type
-        """Type of the value; None for an element that holds others."""
         self._has_frames = has_frames
         self._items = [item for item in map(_ITEM.fullmatch, content.split()) if item]
-        for item in self._items:
-            if not item['name']:
-                self.value_type = ValueType(item['type'])
+        own_types = [item['type'] for item in self._items if not item['name']]
+        type_name = own_types[0] if own_types else value_type
+        self.value_type = _value_type(type_name) if type_name else None
+        """Type of the value; None for an element that holds others."""
+        self.choice = CHOICES.get(type_name)
+        """What the value can be, of a choice."""
         # Python takes longer to look up a member of an Enum than to read an attribute.
         self.is_pose = self.value_type is ValueType.POSE
         self.is_text = self.value_type is ValueType.STRING
@@ -197,8 +205,11 @@ class Definition:
     @cached_property
     def attributes(self) -> Mapping[str, Attribute]:
         """The attributes by name."""
+        is_in_state = self.kind is None and self.identifier in _KINDS
         return {
-            item['name']: Attribute(ValueType(item['type'] or 'string'), bool(item['required']))
+            item['name']: Attribute(
+                _value_type(item['type'] or 'string'), bool(item['required']),
+                None if is_in_state else CHOICES.get(item['type']))
             for item in self._items if item['attribute']}
 
     @cached_property
@@ -241,9 +252,13 @@ class Definition:
                 if identifier in ELEMENTS or (identifier and item['identifier']):
                     return definition_of(identifier, is_required=item['required'] == '!')
         return Definition(
-            tag, '', value_type=ValueType(item['type'] or 'string'),
+            tag, '', value_type=item['type'] or 'string',
             minimum=float(item['minimum'] or -math.inf),
             maximum=float(item['maximum'] or math.inf), is_required=item['required'] == '!')
+
+
+def _value_type(name: str) -> ValueType:
+    return ValueType.CHOICE if name in CHOICES else ValueType(name)
 
 
 @cache

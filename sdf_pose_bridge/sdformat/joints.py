@@ -9,6 +9,7 @@ Source: ``Joint::Load`` and ``JointAxis::Load`` of libsdformat 14.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import JointChildError
@@ -16,10 +17,7 @@ from sdf_pose_bridge.errors import JointParentError
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.elements import AxisDetails
-from sdf_pose_bridge.sdformat.elements import JointDetails
-from sdf_pose_bridge.sdformat.elements import MimicDetails
-from sdf_pose_bridge.sdformat.elements import Reference
+from sdf_pose_bridge.sdformat.joint_types import JOINT_TYPES
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import numbers_of_child
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
@@ -29,6 +27,55 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 AXIS_TAGS = ('axis', 'axis2')
 """The tags of the axes of a joint."""
+
+
+class Reference(NamedTuple):
+    """A name by which an element refers to a frame."""
+
+    name: str
+    """As written; empty for none."""
+    line: int = 0
+
+
+class MimicDetails(NamedTuple):
+    """The joint axis that an axis follows: ``multiplier * (leader - reference) + offset``."""
+
+    joint: Reference
+    """The joint of the leader."""
+    axis: str
+    """Which axis of it: ``axis`` or ``axis2``."""
+    multiplier: float
+    offset: float
+    reference: float
+
+
+class AxisDetails(NamedTuple):
+    """An axis of a joint."""
+
+    xyz: tuple[float, float, float]
+    """As written; not zero."""
+    expressed_in: Reference
+    """The frame that ``xyz`` is expressed in; empty for the frame of the joint."""
+    lower: float
+    """Lower limit of the position, in radians or metres."""
+    upper: float
+    """Upper limit of the position, in radians or metres."""
+    mimic: MimicDetails | None
+
+
+class JointDetails(NamedTuple):
+    """What only a joint has."""
+
+    type: str
+    """As SDFormat spells it: ``revolute``, ``fixed``, ..."""
+    parent: Reference
+    child: Reference
+    axes: tuple[AxisDetails | None, AxisDetails | None]
+    """``<axis>`` and ``<axis2>``, where they are given."""
+    screw_pitch_m: float
+    """How far a screw joint moves along its axis in one turn; positive for a right-handed
+    thread."""
+
 
 _NO_REFERENCE = Reference('')
 
@@ -45,13 +92,14 @@ def joint_details_from_element(
     :return: its details. References are empty where they are missing or reserved.
     """
     joint_type = attribute_of(xml, 'type').lower()
+    has_thread = joint_type in JOINT_TYPES and JOINT_TYPES[joint_type].has_thread
     axis, axis2 = (_axis(xml, tag, sources) for tag in AXIS_TAGS)
     return JointDetails(
         joint_type,
         _end(xml, 'parent', joint_type, sources, problems),
         _end(xml, 'child', joint_type, sources, problems),
         (axis, axis2),
-        _screw_pitch_m(xml) if joint_type == 'screw' else 0.0)
+        _screw_pitch_m(xml) if has_thread else 0.0)
 
 
 def _end(
@@ -59,6 +107,8 @@ def _end(
 ) -> Reference:
     element = first_child(xml, tag)
     if element is None:
+        # The parser of libsdformat gives a ball joint an end with a default name, which no frame
+        # has; any other joint it refuses.
         error = ElementMissingError if joint_type != 'ball' else (
             JointParentError if tag == 'parent' else JointChildError)
         msg = f'the joint has no <{tag}>; it must name a frame'

@@ -18,10 +18,7 @@ from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.details import collision_masses
-from sdf_pose_bridge.sdformat.details import DetailsReader
-from sdf_pose_bridge.sdformat.details import reference_of
-from sdf_pose_bridge.sdformat.details import TYPES
+from sdf_pose_bridge.sdformat.automatic_inertials import collision_masses
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
@@ -29,22 +26,36 @@ from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.joints import joint_details_from_element
+from sdf_pose_bridge.sdformat.models import frame_details_from_element
+from sdf_pose_bridge.sdformat.models import model_details_from_element
+from sdf_pose_bridge.sdformat.poses import pose_from_text
+from sdf_pose_bridge.sdformat.poses import PoseFormat
+from sdf_pose_bridge.sdformat.poses import PoseTextError
+from sdf_pose_bridge.sdformat.sensors import sensor_details_from_element
+from sdf_pose_bridge.sdformat.shapes import check_material
 from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sibling_names import SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.values import boolean_from_text
+from sdf_pose_bridge.sdformat.values import choice_fault
+from sdf_pose_bridge.sdformat.values import frame_of_attribute
 from sdf_pose_bridge.sdformat.values import is_of_type
-from sdf_pose_bridge.sdformat.values import pose_from_text
-from sdf_pose_bridge.sdformat.values import PoseFormat
-from sdf_pose_bridge.sdformat.values import PoseTextError
 from sdf_pose_bridge.sdformat.values import value_fault
 from sdf_pose_bridge.sdformat.versions import allows_scoped_names
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import text_of
+from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+MISSING_NAME = '{sdf_pose_bridge}missing_name'
+"""Attribute of an ``<include>`` that was not replaced: the name that the included model would
+have; empty if any unknown name may come from it."""
+
+MISSING_URI = '{sdf_pose_bridge}missing_uri'
+"""Attribute of such an ``<include>``: the URI that it names."""
 
 _SCOPED_NAMES = ('//*[contains(@name, "::")]'
                  '[not(ancestor-or-self::*[self::plugin or contains(name(), ":")])]')
@@ -112,7 +123,6 @@ class _Reader:
         self._deepest = sources.usage.limits.depth
         self._builder = ElementsBuilder(sources.paths)
         self._names = SiblingNames(self._builder, sources, problems)
-        self._details = DetailsReader(sources, problems)
         self._undefined = UndefinedReporter(sources, problems)
         self._file_indices = {path: index for index, path in enumerate(sources.paths)}
 
@@ -167,10 +177,11 @@ class _Reader:
             self._read_frame(xml, definition, definition.kind, parent, scope, path, depth)
         elif definition.identifier == 'include':
             if parent != NO_ELEMENT:
-                name, uri = self._details.missing_include(xml)
-                self._builder.missing_includes.setdefault(parent, {})[name] = uri
+                self._builder.missing_includes.setdefault(parent, {})[
+                    xml.get(MISSING_NAME, '')] = xml.get(MISSING_URI, '')
         else:
-            self._details.check_content(xml, definition.identifier)
+            if definition.identifier == 'material':
+                check_material(xml, self._sources, self._problems)
             self._read_children(xml, definition, NO_ELEMENT, scope, path, depth)
 
     def _read_frame(
@@ -230,17 +241,15 @@ class _Reader:
                     self._undefined.report_element(grandchild, child_definition)
 
     def _read_details(self, xml: XmlElement, kind: Kind, index: int) -> None:
-        if kind in TYPES:
-            self._details.check_type(xml, kind)
         if kind is Kind.MODEL:
-            self._builder.models[index] = self._details.model(xml)
+            self._builder.models[index] = model_details_from_element(xml)
         elif kind is Kind.FRAME:
-            self._builder.frames[index] = self._details.frame(xml)
+            self._builder.frames[index] = frame_details_from_element(xml)
         elif kind is Kind.JOINT:
             self._builder.joints[index] = joint_details_from_element(
                 xml, self._sources, self._problems)
         elif kind is Kind.SENSOR:
-            self._builder.sensors[index] = self._details.sensor(xml)
+            self._builder.sensors[index] = sensor_details_from_element(xml)
         elif kind is Kind.INERTIAL and boolean_from_text(xml.get('auto', '')):
             masses = collision_masses(xml, self._sources, self._problems)
             if masses:
@@ -269,6 +278,13 @@ class _Reader:
             elif attribute.is_required and not value.strip():
                 msg = f'{name}="{value}" of <{written_tag(xml)}> is empty'
                 self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
+            elif attribute.choice is not None:
+                fault = choice_fault(value.strip(WHITE_SPACE), attribute.choice)
+                if fault:
+                    error = (
+                        ElementInvalidError if definition.kind is None else AttributeInvalidError)
+                    msg = f'{name}="{value.strip(WHITE_SPACE)}" of <{written_tag(xml)}> {fault}'
+                    self._problems.error(error(msg, self._sources.place(xml)))
 
     def _read_pose(self, xml: XmlElement, definition: Definition, index: int) -> None:
         pose_format: PoseFormat | None = _DEFAULT_FORMAT
@@ -296,7 +312,7 @@ class _Reader:
     def _read_relative_to(self, xml: XmlElement, definition: Definition, index: int) -> None:
         builder = self._builder
         kind = Kind(builder.kinds[index])
-        relative_to = reference_of(xml, 'relative_to')
+        relative_to = frame_of_attribute(xml, 'relative_to')
         if not relative_to or 'relative_to' not in definition.attributes:
             return
         reason = ''

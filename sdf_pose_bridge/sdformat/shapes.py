@@ -12,8 +12,13 @@ from collections.abc import Mapping
 import math
 from typing import NamedTuple
 
+from sdf_pose_bridge.errors import ElementInvalidError
+from sdf_pose_bridge.errors import ElementMissingError
+from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import leading_numbers
 from sdf_pose_bridge.sdformat.values import numbers_of_child
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import value_of
@@ -121,3 +126,26 @@ def _color(xml: XmlElement) -> tuple[float, float, float, float] | None:
             (transparency,) = numbers_of_child(xml, 'transparency', (0.0,))
             return red, green, blue, alpha * (1.0 - transparency if 0 < transparency <= 1 else 1.0)
     return None
+
+
+def check_material(xml: XmlElement, sources: Sources, problems: Problems) -> None:
+    """
+    Check that the script and the shader of a material have what they need.
+
+    :param xml: a ``<material>``.
+    :param sources: where elements were written.
+    :param problems: takes what is wrong.
+    """
+    script, shader = first_child(xml, 'script'), first_child(xml, 'shader')
+    if script is not None:
+        for tag, error in (('uri', ElementInvalidError), ('name', ElementMissingError)):
+            element = first_child(script, tag)
+            value = '__default__' if element is None else value_of(element)
+            if value == '__default__' or (tag == 'uri' and not value):
+                msg = f'the <script> of a material has no <{tag}>, or an empty one'
+                problems.error(error(msg, sources.place(script)))
+    if shader is not None and first_child(shader, 'normal_map') is None:
+        shader_type = attribute_of(shader, 'type')
+        if shader_type.startswith('normal_map'):
+            msg = f'a shader of type="{shader_type}" needs a <normal_map>'
+            problems.error(ElementMissingError(msg, sources.place(shader)))

@@ -6,6 +6,44 @@ The elements of SDFormat that have no pose, in the notation of the module ``gram
 Facts of the specification, version 1.11 (http://sdformat.org/spec).
 """
 
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from sdf_pose_bridge.sdformat.joint_types import JOINT_TYPES
+
+
+class Choice(NamedTuple):
+    """The texts that a value can be."""
+
+    texts: tuple[str, ...]
+    ignores_case: bool = False
+
+
+CAMERA_TYPES = (
+    'boundingbox', 'boundingbox_camera', 'camera', 'depth', 'depth_camera', 'multicamera', 'rgbd',
+    'rgbd_camera', 'segmentation', 'segmentation_camera', 'thermal', 'thermal_camera',
+    'wide_angle_camera', 'wideanglecamera')
+"""Types of sensors that take images."""
+
+CHOICES: Mapping[str, Choice] = {
+    'atmosphere_type': Choice(('adiabatic',)),
+    'emitter_type': Choice(('box', 'cylinder', 'ellipsoid', 'point')),
+    'joint_type': Choice(tuple(JOINT_TYPES), ignores_case=True),
+    'light_type': Choice(('directional', 'point', 'spot')),
+    'sensor_type': Choice(tuple(sorted((
+        *CAMERA_TYPES, 'air_pressure', 'air_speed', 'altimeter', 'contact', 'custom',
+        'force_torque', 'gps', 'gpu_lidar', 'gpu_ray', 'imu', 'lidar', 'logical_camera',
+        'magnetometer', 'navsat', 'ray', 'rfid', 'rfidtag', 'sonar', 'wireless_receiver',
+        'wireless_transmitter')))),
+    'shader_type': Choice(
+        ('normal_map_object_space', 'normal_map_tangent_space', 'pixel', 'vertex')),
+    'surface_model': Choice(('EARTH_WGS84', 'MOON_SCS', 'CUSTOM_SURFACE')),
+    'world_frame_orientation': Choice(('ENU',)),
+}
+"""The types of values that are one of a few texts."""
+
 ELEMENTS = {
     'sdf': '@version! include',
     'actor/animation': '@name! filename! scale:double interpolate_x:bool',
@@ -14,7 +52,8 @@ ELEMENTS = {
     'air_speed': 'pressure',
     'altimeter': 'vertical_position vertical_velocity',
     'angular_velocity': 'x y z',
-    'atmosphere': '@type! temperature:double pressure:double temperature_gradient:double',
+    'atmosphere': (
+        '@type!:atmosphere_type temperature:double pressure:double temperature_gradient:double'),
     'attenuation': 'range!:double linear:double constant:double quadratic:double',
     'audio': 'device!',
     'audio_sink': '',
@@ -166,7 +205,7 @@ ELEMENTS = {
     'scan': 'horizontal! vertical',
     'scene': (
         'ambient!:color background!:color sky shadows!:bool fog grid:bool origin_visual:bool'),
-    'shader': '@type! normal_map:string',
+    'shader': '@type!:shader_type normal_map:string',
     'simbody': (
         'min_step_size:double accuracy:double max_transient_velocity:double contact'),
     'simbody/contact': (
@@ -185,9 +224,9 @@ ELEMENTS = {
         'ambient_occlusion_map normal_map emissive_map light_map'),
     'sphere': 'radius!:double',
     'spherical_coordinates': (
-        'surface_model! world_frame_orientation latitude_deg!:double longitude_deg!:double '
-        'elevation!:double surface_axis_equatorial:double surface_axis_polar:double '
-        'heading_deg!:double'),
+        'surface_model!:surface_model world_frame_orientation:world_frame_orientation '
+        'latitude_deg!:double longitude_deg!:double elevation!:double '
+        'surface_axis_equatorial:double surface_axis_polar:double heading_deg!:double'),
     'spot': 'inner_angle!:double outer_angle!:double falloff!:double',
     'state': (
         '@world_name! sim_time wall_time real_time iterations!:int insertions deletions '

@@ -27,6 +27,9 @@ from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.geometry.screws import ScrewMotions
 from sdf_pose_bridge.scene.scene import Joint
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.joint_types import DofType
+from sdf_pose_bridge.sdformat.joint_types import JOINT_TYPES
+from sdf_pose_bridge.sdformat.joint_types import Motion
 from sdf_pose_bridge.tf.parents import TfParents
 
 if TYPE_CHECKING:
@@ -62,21 +65,21 @@ def dofs_from_joint(joint: Joint) -> list[DegreeOfFreedom]:
     :param joint: the joint.
     :return: its degrees of freedom from its parent to its child; none for a fixed joint. A ball
         joint has yaw, pitch and roll of its child in its parent.
+    :raises KeyError: if :data:`JOINT_TYPES` does not have the type of the joint.
     """
-    axis, axis2 = (each.xyz for each in joint.axes)
-    if joint.type == 'fixed':
-        return []
-    if joint.type == 'ball':
-        return [
-            DegreeOfFreedom(joint, None, '_yaw', (0.0, 0.0, 1.0), 1.0, 0.0),
-            DegreeOfFreedom(joint, None, '_pitch', (0.0, 1.0, 0.0), 1.0, 0.0),
-            DegreeOfFreedom(joint, None, '_roll', (1.0, 0.0, 0.0), 1.0, 0.0)]
-    if joint.type == 'prismatic':
-        return [DegreeOfFreedom(joint, 0, '', axis, 0.0, 1.0)]
-    first = DegreeOfFreedom(joint, 0, '', axis, 1.0, joint.screw_pitch_m / _TURN_RAD)
-    if joint.type in ('revolute2', 'universal'):
-        return [first, DegreeOfFreedom(joint, 1, '_axis2', axis2, 1.0, 0.0)]
-    return [first]
+    return [_dof(joint, dof_type) for dof_type in JOINT_TYPES[joint.type].dofs]
+
+
+def _dof(joint: Joint, dof_type: DofType) -> DegreeOfFreedom:
+    motion, axis, suffix = dof_type
+    index, direction = (
+        (axis, joint.axes[axis].xyz) if isinstance(axis, int) else (None, axis))
+    return DegreeOfFreedom(
+        joint, index, suffix, direction,
+        rad_per_unit=0.0 if motion is Motion.SLIDE else 1.0,
+        m_per_unit=(
+            1.0 if motion is Motion.SLIDE else
+            joint.screw_pitch_m / _TURN_RAD if motion is Motion.SCREW else 0.0))
 
 
 class JointMotion:

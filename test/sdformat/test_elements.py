@@ -12,7 +12,7 @@ from sdf_pose_bridge import Kind
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
-from sdf_pose_bridge.sdformat.values import PoseFormat
+from sdf_pose_bridge.sdformat.poses import PoseFormat
 
 
 @pytest.fixture

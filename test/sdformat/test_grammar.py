@@ -22,6 +22,7 @@ from sdf_pose_bridge import Kind
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.grammar import ValueType
+from sdf_pose_bridge.sdformat.specification import CHOICES
 
 PACKAGE = Path(__file__).resolve().parents[2] / 'sdf_pose_bridge'
 
@@ -63,7 +64,9 @@ def test_number_of_a_kind_is_its_position():
 # Definitions
 
 def test_definition_has_attributes():
-    assert definition_of('joint').attributes['type'] == (ValueType.STRING, True)
+    definition = definition_of('joint', has_frames=True)
+    assert definition.attributes['type'] == (
+        ValueType.CHOICE, True, CHOICES['joint_type'])
 
 
 def test_definition_has_children_with_values():

@@ -5,6 +5,7 @@
 import math
 
 import pytest
+from sdf_texts import codes_of
 from sdf_texts import link_with
 
 from sdf_pose_bridge import load_text
@@ -107,3 +108,27 @@ def test_reason_without_a_surface(kind, sizes_m, reason):
 
 def test_capsule_may_have_no_length():
     assert Shape('capsule', (1.0, 0.0), (0, 0, 1), '', '', (1, 1, 1), None).has_extent
+
+
+# Materials
+
+@pytest.mark.parametrize(('content', 'code'), [
+    ('<script><name>n</name></script>', 'ELEMENT_INVALID'),
+    ('<script><uri/><name>n</name></script>', 'ELEMENT_INVALID'),
+    ('<script><uri>__default__</uri><name>n</name></script>', 'ELEMENT_INVALID'),
+    ('<script><uri>u</uri></script>', 'ELEMENT_MISSING'),
+    ('<shader type="round"/>', 'ELEMENT_INVALID'),
+    ('<shader type="normal_map_object_space"/>', 'ELEMENT_MISSING'),
+])
+def test_wrong_material_is_refused(content, code):
+    visual = f'<visual name="v"><material>{content}</material></visual>'
+    assert codes_of(link_with(visual)) == [code]
+
+
+@pytest.mark.parametrize('content', [
+    '<script><uri>u</uri><name>n</name></script>',
+    '<shader type="pixel"/>',
+    '<shader type="normal_map_object_space"><normal_map>m</normal_map></shader>',
+])
+def test_material_is_accepted(content):
+    load_text(link_with(f'<visual name="v"><material>{content}</material></visual>'))

@@ -40,6 +40,8 @@ from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_INCLUDE
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_NAMED_ELEMENT
 from sdf_pose_bridge.sdformat.reader import check_element
+from sdf_pose_bridge.sdformat.reader import MISSING_NAME
+from sdf_pose_bridge.sdformat.reader import MISSING_URI
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.values import boolean_from_text
@@ -98,6 +100,22 @@ class IncludeExpansion:
         for include in list(root.iter('include')):
             if all(map(_may_hold_includes, include.iterancestors())):
                 self._expand_include(include, files)
+                if include.getparent() is not None:
+                    self._mark_missing(include)
+
+    def _mark_missing(self, include: XmlElement) -> None:
+        """Write into an include that stays which name and which URI are missing without it."""
+        uri_element, name_element = first_child(include, 'uri'), first_child(include, 'name')
+        uri = ('' if uri_element is None else value_of(uri_element)) or 'no URI'
+        name = '' if name_element is None else value_of(name_element)
+        if boolean_from_text(include.get('merge', 'false')) is not False:
+            # What is merged has names of its own.
+            name = ''
+        elif not name and not self._problems.errors:
+            # Where the include is an error, nothing is lost by what its file may be called.
+            name = _name_from_uri(uri)
+        include.set(MISSING_NAME, name)
+        include.set(MISSING_URI, uri)
 
     def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
         self._sources.usage.add(
@@ -312,3 +330,11 @@ class IncludeExpansion:
 
 def _may_hold_includes(xml: XmlElement) -> bool:
     return xml.tag in ('model', 'world') or (xml.tag == 'sdf' and xml.getparent() is None)
+
+
+def _name_from_uri(uri: str) -> str:
+    """Return the likely name of a model that was not found: that of its directory."""
+    steps = [part for part in uri.split('/') if part]
+    if len(steps) > 1 and steps[-1].endswith(('.sdf', '.world', '.urdf')):
+        steps.pop()
+    return steps[-1] if steps else ''

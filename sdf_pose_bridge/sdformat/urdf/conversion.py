@@ -27,6 +27,8 @@ from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.sdformat.joint_types import JOINT_TYPES
+from sdf_pose_bridge.sdformat.joint_types import URDF_JOINT_TYPES
 from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.sources import Sources
@@ -48,9 +50,6 @@ from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
-
-_JOINT_TYPES = {
-    'continuous': 'revolute', 'fixed': 'fixed', 'prismatic': 'prismatic', 'revolute': 'revolute'}
 
 _SETTINGS = frozenset({
     'canonicalBody', 'cfmDamping', 'collision', 'dampingFactor', 'disableFixedJointLumping',
@@ -277,21 +276,23 @@ class _Conversion:
         self._add_numbers(shape, geometry, numbers_of(geometry, SHAPES[str(shape.tag)]))
 
     def _add_joint(self, joint: Joint) -> bool:
-        if joint.type not in _JOINT_TYPES:
+        joint_type = URDF_JOINT_TYPES[joint.type].sdformat
+        if not joint_type:
             msg = (f'joint "{joint.name}" is {joint.type}, which SDFormat does not have, so link '
                    f'"{joint.child}" has no place')
             self._problems.error(RelativeToError(msg, self._sources.place(joint.xml)))
             return False
         base = self._bases[joint.parent]
         parent = self._counted(base.link.name, joint.xml)
-        joint_type = 'revolute' if joint.name in self._revolute else _JOINT_TYPES[joint.type]
+        if joint.name in self._revolute:
+            joint_type = 'revolute'
         xml = self._element(self._model, 'joint', joint.xml, name=joint.name, type=joint_type)
         pose = self._add_pose(
             xml, joint.xml, pose_product(base.pose, joint.origin), rpy_by_gz_math)
         pose.set('relative_to', MODEL_FRAME if parent == WORLD_FRAME else parent)
         self._element(xml, 'parent', joint.xml, text=parent)
         self._element(xml, 'child', joint.xml, text=joint.child)
-        if joint_type != 'fixed':
+        if JOINT_TYPES[joint_type].dofs:
             self._add_axis(xml, joint)
         self._add_extensions(xml, joint.name)
         return True
@@ -304,7 +305,7 @@ class _Conversion:
             values, limit = {}, {'lower': [0.0], 'upper': [0.0]}
         elif 'limit' in values:
             ends = sorted((*limit.pop('lower', [0.0]), *limit.pop('upper', [0.0])))
-            if joint.type != 'continuous':
+            if URDF_JOINT_TYPES[joint.type].has_limit:
                 limit.update({'lower': ends[:1], 'upper': ends[1:]})
         axis = self._element(xml, 'axis', joint.xml)
         self._add_numbers(axis, joint.xml, {'xyz': xyz})

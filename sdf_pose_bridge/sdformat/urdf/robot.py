@@ -19,6 +19,7 @@ from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.sdformat.joint_types import URDF_JOINT_TYPES
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.urdf.values import numbers_of
 from sdf_pose_bridge.sdformat.urdf.values import pose_from_numbers
@@ -26,8 +27,6 @@ from sdf_pose_bridge.sdformat.xml_tree import child_elements
 from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
-
-_JOINT_TYPES = ('continuous', 'fixed', 'floating', 'planar', 'prismatic', 'revolute')
 
 _JOINT_PARTS = {
     'axis': 'xyz:3',
@@ -214,17 +213,19 @@ class _RobotReader:
                     xml if end is None else end,
                     f'"{link}" is not a link' if link else f'the joint names no {tag} link')
             ends[tag] = link
-        joint_type = xml.get('type', '')
-        if joint_type not in _JOINT_TYPES:
-            self._error(xml, f'type="{joint_type}" of <joint> must be one of '
-                        f'{", ".join(_JOINT_TYPES)}')
-        if joint_type in ('prismatic', 'revolute') and first_child(xml, 'limit') is None:
-            self._error(xml, f'the {joint_type} joint has no <limit>')
+        type_name = xml.get('type', '')
+        joint_type = URDF_JOINT_TYPES.get(type_name)
+        if joint_type is None:
+            self._error(xml, f'type="{type_name}" of <joint> must be one of '
+                        f'{", ".join(URDF_JOINT_TYPES)}')
+        elif joint_type.has_limit and first_child(xml, 'limit') is None:
+            self._error(xml, f'the {type_name} joint has no <limit>')
         values = {}
         try:
             for tag, attributes in _JOINT_PARTS.items():
                 part = first_child(xml, tag)
-                if part is None or (tag == 'axis' and joint_type in ('fixed', 'floating')):
+                if part is None or (
+                        tag == 'axis' and joint_type is not None and not joint_type.has_axis):
                     continue
                 values[tag] = numbers_of(part, attributes)
                 if tag == 'mimic' and part.get('joint') is None:
@@ -232,7 +233,7 @@ class _RobotReader:
                 if tag == 'dynamics' and not values[tag]:
                     self._error(part, 'the <dynamics> has neither damping nor friction')
             return Joint(
-                xml, name, joint_type, _origin(xml), ends['parent'], ends['child'], values)
+                xml, name, type_name, _origin(xml), ends['parent'], ends['child'], values)
         except ValueError as error:
             self._error(xml, str(error))
             return None

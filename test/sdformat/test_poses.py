@@ -1,0 +1,215 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The text of a pose."""
+
+import math
+import re
+
+from hypothesis import given
+from hypothesis import strategies as st
+from matrices import assert_same_pose
+from matrices import matrix_from_degrees
+from matrices import matrix_from_pose
+from matrices import matrix_from_rpy
+import numpy as np
+import pytest
+
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.sdformat.poses import pose_from_text
+from sdf_pose_bridge.sdformat.poses import PoseFormat
+from sdf_pose_bridge.sdformat.poses import poses_from_texts
+from sdf_pose_bridge.sdformat.poses import PoseTextError
+
+RPY = PoseFormat()
+RPY_DEGREES = PoseFormat(is_degrees=True)
+QUATERNION = PoseFormat(is_quaternion=True)
+FORMATS = st.sampled_from([RPY, RPY_DEGREES, QUATERNION])
+
+NUMBERS = st.floats(-1e3, 1e3, allow_subnormal=False)
+UNUSUAL_WORDS = st.sampled_from([
+    'nan', 'inf', '-inf', '1e999', '1e-320', '1e-400', '-0', '+0.0', '.5', '5.', '1e3', '1E-3',
+    '0x10', '1_0', '1e', '.', '-', 'e5', '--1', '1,', 'abc', '\u0661', '1\u00a02', '1e200',
+])
+WORDS = st.one_of(NUMBERS.map(repr), NUMBERS.map(repr), NUMBERS.map(repr), UNUSUAL_WORDS)
+TEXTS = st.one_of(
+    st.lists(WORDS, max_size=8).map(' '.join),
+    st.lists(NUMBERS.map(repr), min_size=6, max_size=7).map('\n '.join),
+    st.sampled_from(['', ' ', '\n', '0 0 0 0 0 0 0', '0 0 0 1e-10 0 0 0', '0 0 0 0 0 0 1e160']),
+)
+PLAIN_TEXTS = st.lists(
+    st.one_of(NUMBERS.map(repr), st.sampled_from(['1e999', '1e-320', '1e-400', '-0'])),
+    min_size=5, max_size=8).map(' '.join)
+
+
+def rpy(text):
+    return pose_from_text(text, RPY)
+
+
+def quaternion(text):
+    return pose_from_text(text, QUATERNION)
+
+
+# One text
+
+@pytest.mark.parametrize('word', [
+    'nan', 'NaN', 'inf', '-inf', 'infinity', '1e999', '-1e999', '1e-320', '-1e-320', '1e-400',
+    '0x10', '0x1p3', '1.5abc', '1,', '1_000', '1e', '1e+', '1d3', 'true', ',', 'x', '.', '+', '-',
+    '+-1', '--1', '.e1', '1.2.3', '1e1.5', '1/2', '\u0661', '1\u00a0', '\u22121', '1f', '(1)',
+])
+def test_word_that_is_not_a_number_is_refused(word):
+    with pytest.raises(PoseTextError) as caught:
+        rpy(f'0 {word} 0 0 0 0')
+    assert f'"{word}"' in str(caught.value)
+
+
+@pytest.mark.parametrize('count', [1, 2, 3, 4, 5, 7, 8, 12])
+def test_other_count_than_six_is_refused(count):
+    with pytest.raises(PoseTextError, match=f'6 values .x y z roll pitch yaw.*has {count}'):
+        rpy(' '.join(['1'] * count))
+
+
+@pytest.mark.parametrize('count', [1, 3, 4, 6, 8, 14])
+def test_other_count_than_seven_is_refused_with_a_quaternion(count):
+    with pytest.raises(PoseTextError, match=f'7 values .x y z qx qy qz qw.*has {count}'):
+        quaternion(' '.join(['1'] * count))
+
+
+def test_commas_do_not_separate_numbers():
+    with pytest.raises(PoseTextError):
+        rpy('1,2,3,0,0,0')
+
+
+@pytest.mark.parametrize('text', ['1 ' * 10_000, '1' * 2_000_000 + ' 0 0 0 0 0', '1' * 300])
+def test_long_text_is_cut_in_the_message(text):
+    with pytest.raises(PoseTextError) as caught:
+        rpy(text)
+    assert len(str(caught.value)) < 250
+
+
+@pytest.mark.parametrize('text', ['0 0 0 0 0 0 0', '1 2 3 1e-10 0 0 0', '0 0 0 0 -0 0 +0'])
+def test_zero_quaternion_is_refused(text):
+    with pytest.raises(PoseTextError, match='zero'):
+        quaternion(text)
+
+
+def test_quaternion_beyond_the_range_of_a_double_is_refused():
+    with pytest.raises(PoseTextError, match='range of a double'):
+        quaternion('0 0 0 1.7e308 1.7e308 1.7e308 1.7e308')
+
+
+@pytest.mark.parametrize('separator', ['\u00a0', '\u2003', '\u3000', '\u0085', ','])
+def test_only_ascii_white_space_separates_numbers(separator):
+    with pytest.raises(PoseTextError):
+        rpy(separator.join('123000'))
+
+
+@pytest.mark.parametrize(('word', 'value'), [
+    ('1e3', 1000.0), ('-2.5E-1', -0.25), ('+3', 3.0), ('.5', 0.5), ('5.', 5.0), ('-0', 0.0),
+    ('007', 7.0), ('0e-400', 0.0), ('0e999', 0.0), ('1e308', 1e308),
+    ('2.2250738585072014e-308', 2.2250738585072014e-308), ('-.5e+01', -5.0),
+    ('0.1000000000000000055511151231257827021181583404541015625', 0.1),
+])
+def test_decimal_numbers(word, value):
+    assert rpy(f'0 0 {word} 0 0 0')[2] == value
+
+
+@pytest.mark.parametrize('text', ['', ' ', '\n\t\r '])
+def test_blank_text_is_the_identity(text):
+    assert rpy(text) == quaternion(text) == list(Pose())
+
+
+@pytest.mark.parametrize('separator', ['  ', '\t', '\n', '\r\n', ' \n\t '])
+def test_white_space_separates_numbers(separator):
+    assert rpy(separator + separator.join('123000') + separator)[:3] == [1.0, 2.0, 3.0]
+
+
+def test_w_is_the_last_number_of_a_quaternion():
+    assert quaternion('1 2 3 0 0 0 1') == [1, 2, 3, 0, 0, 0, 1]
+
+
+def test_quaternion_is_normalised():
+    assert quaternion('0 0 0 0 0 2 2')[3:] == pytest.approx((0, 0, math.sqrt(0.5), math.sqrt(0.5)))
+
+
+@pytest.mark.parametrize('size', ['1e-8', '1e150', '3e153', '1e200', '1e307'])
+def test_length_of_a_quaternion_does_not_matter(size):
+    assert quaternion(f'0 0 0 0 {size} 0 0')[3:] == pytest.approx((0, 1, 0, 0))
+
+
+def test_roll_comes_first_and_about_fixed_axes():
+    assert_same_pose(rpy('1 2 3 0.3 -0.4 1.2'), matrix_from_rpy(1, 2, 3, 0.3, -0.4, 1.2), 1e-15)
+
+
+def test_formula_of_the_specification():
+    half = [angle / 2 for angle in (0.3, -0.4, 1.2)]
+    cr, cp, cy = map(math.cos, half)
+    sr, sp, sy = map(math.sin, half)
+    assert rpy('0 0 0 0.3 -0.4 1.2')[3:] == pytest.approx((
+        sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy), abs=1e-15)
+
+
+def test_only_angles_are_in_degrees():
+    pose = pose_from_text('10 20 30 10 90 30', RPY_DEGREES)
+    assert_same_pose(pose, matrix_from_degrees(10, 20, 30, 10, 90, 30), 1e-15)
+
+
+@given(st.tuples(*[NUMBERS] * 6))
+def test_any_roll_pitch_yaw(values):
+    matrix = matrix_from_pose(rpy(' '.join(map(repr, values))))
+    np.testing.assert_allclose(matrix, matrix_from_rpy(*values), atol=1e-12)
+
+
+# Many texts
+
+def read_one_by_one(texts, pose_format):
+    """Return what :func:`poses_from_texts` should return."""
+    poses, failures = [], []
+    for index, text in enumerate(texts):
+        try:
+            poses.append(pose_from_text(text, pose_format))
+        except PoseTextError as error:
+            failures.append((index, str(error)))
+            poses.append(Pose())
+    return np.array(poses).reshape(-1, 7), failures
+
+
+@pytest.mark.parametrize('tiny', ['1e-400', '1E-0400', '0.' + 400 * '0' + '1'])
+def test_number_that_is_too_small_is_refused_among_others(tiny):
+    good = '1 2 3 0 0 0'
+    poses, failures, _ = poses_from_texts([good, f'{tiny} 0 0 0 0 0', good], RPY)
+    assert [index for index, _ in failures] == [1]
+    assert poses[2, :3].tolist() == [1, 2, 3]
+
+
+def test_failures_have_index_and_reason():
+    good = '1 2 3 0 0 0'
+    poses, failures, _ = poses_from_texts([good, '1 2', good, '1 2 x 0 0 0'], RPY)
+    assert [index for index, _ in failures] == [1, 3]
+    assert re.search('"1 2".*has 2', failures[0][1])
+    assert '"x"' in failures[1][1]
+    assert poses[1].tolist() == poses[3].tolist() == list(Pose())
+    assert poses[2, :3].tolist() == [1, 2, 3]
+
+
+@pytest.mark.parametrize('pose_format', [RPY, RPY_DEGREES, QUATERNION])
+def test_no_texts(pose_format):
+    poses, failures, _ = poses_from_texts([], pose_format)
+    assert poses.shape == (0, 7)
+    assert failures == []
+
+
+@given(st.lists(TEXTS, max_size=40), FORMATS)
+def test_many_texts_are_read_as_one_by_one(texts, pose_format):
+    poses, failures, _ = poses_from_texts(texts, pose_format)
+    expected, expected_failures = read_one_by_one(texts, pose_format)
+    assert failures == expected_failures
+    np.testing.assert_allclose(poses, expected, rtol=1e-15, atol=1e-15)
+
+
+@given(st.lists(PLAIN_TEXTS, min_size=1, max_size=40), FORMATS)
+def test_many_plain_texts_are_read_as_one_by_one(texts, pose_format):
+    poses, failures, _ = poses_from_texts(texts, pose_format)
+    expected, expected_failures = read_one_by_one(texts, pose_format)
+    assert failures == expected_failures
+    np.testing.assert_allclose(poses, expected, rtol=1e-15, atol=1e-15)
