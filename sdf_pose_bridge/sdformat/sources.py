@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from collections.abc import Mapping
 import contextlib
 import copy
-from itertools import chain
 from itertools import islice
+from typing import NamedTuple
 
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
@@ -21,9 +21,29 @@ from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.versions import Version
 from sdf_pose_bridge.sdformat.xml_tree import described
+from sdf_pose_bridge.sdformat.xml_tree import with_ancestors
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _MOST_PLACES_REMEMBERED = 1000
+
+
+class _Origin(NamedTuple):
+    """Where an element was written, as far as that does not follow from its tree."""
+
+    file: str | None = None
+    """Its file; None for that of its parent."""
+    line: int = 0
+    """Its line; 0 for the line that it was parsed in."""
+    include: Place | None = None
+    """The include that it came from."""
+    is_named_by_include: bool = False
+    """Whether its name is written in the file that includes it."""
+    pose: Place | None = None
+    """Where it is placed, if not in its own file."""
+
+
+_PARSED = _Origin()
+"""The origin of an element that was parsed with the tree in which it is."""
 
 
 class Sources:
@@ -44,11 +64,8 @@ class Sources:
         """The version of each SDFormat file by its path."""
         self.includes: dict[str, Place] = {}
         """The place of the include that first led to each included file, by its path."""
-        self._files: dict[XmlElement, str] = {}
-        self._lines: dict[XmlElement, int] = {}
-        self._includes: dict[XmlElement, Place] = {}
-        self._named_by_includes: set[XmlElement] = set()
-        self._placed_by_includes: dict[XmlElement, tuple[str, int]] = {}
+        self._origins: dict[XmlElement, _Origin] = {}
+        self._parsed_lines: dict[XmlElement, int] = {}
         self._composed_trees: set[XmlElement] = set()
         self._places: dict[XmlElement, Place] = {}
         self._remembers_places = False
@@ -75,8 +92,8 @@ class Sources:
         """
         self.add_path(path)
         self.versions[path] = version
-        self._files[root] = path
-        self._lines.update(lines)
+        self.set_source(root, path)
+        self._parsed_lines.update(lines)
         if lines:
             self.set_composed(root)
 
@@ -96,9 +113,8 @@ class Sources:
         :param path: path of its file.
         :param line: its line; None for the line that it has.
         """
-        self._files[xml] = path
-        if line is not None:
-            self._lines[xml] = line
+        origin = self._origin(xml)
+        self._origins[xml] = origin._replace(file=path, line=origin.line if line is None else line)
 
     def set_include(self, xml: XmlElement, include: XmlElement) -> None:
         """
@@ -107,7 +123,7 @@ class Sources:
         :param xml: the included element.
         :param include: the ``<include>``.
         """
-        self._includes[xml] = self.place(include)
+        self._origins[xml] = self._origin(xml)._replace(include=self.place(include))
 
     def set_named_by_include(self, xml: XmlElement) -> None:
         """
@@ -115,7 +131,7 @@ class Sources:
 
         :param xml: the included element.
         """
-        self._named_by_includes.add(xml)
+        self._origins[xml] = self._origin(xml)._replace(is_named_by_include=True)
 
     def set_placed_by_include(self, xml: XmlElement, include: XmlElement) -> None:
         """
@@ -125,7 +141,8 @@ class Sources:
             not, and its version is that of its own file.
         :param include: the ``<include>``.
         """
-        self._placed_by_includes[xml] = self.path(include), self.line(include)
+        place = Place(self.path(include), self.line(include))
+        self._origins[xml] = self._origin(xml)._replace(pose=place)
 
     def path_at(self, xml: XmlElement, default: str) -> str:
         """
@@ -135,7 +152,8 @@ class Sources:
         :param default: the file of its parent.
         :return: its file.
         """
-        return self._files.get(xml, default)
+        file = self._origin(xml).file
+        return default if file is None else file
 
     def path(self, xml: XmlElement) -> str:
         """
@@ -153,9 +171,8 @@ class Sources:
         :param xml: the element.
         :return: the path of its file, of the file that includes that one, and so on.
         """
-        for element in chain([xml], xml.iterancestors()):
-            if element in self._files:
-                yield self._files[element]
+        files = (self._origin(each).file for each in with_ancestors(xml))
+        return (file for file in files if file is not None)
 
     def enclosing_paths_of_name(self, xml: XmlElement) -> Iterator[str]:
         """
@@ -164,7 +181,8 @@ class Sources:
         :param xml: the element.
         :return: as of :meth:`enclosing_paths`, from the file in which the name is written.
         """
-        return islice(self.enclosing_paths(xml), int(xml in self._named_by_includes), None)
+        return islice(
+            self.enclosing_paths(xml), int(self._origin(xml).is_named_by_include), None)
 
     def path_of_pose(self, xml: XmlElement, default: str) -> str:
         """
@@ -174,7 +192,8 @@ class Sources:
         :param default: its own file.
         :return: the file of its pose.
         """
-        return self._placed_by_includes.get(xml, (default, 0))[0]
+        pose = self._origin(xml).pose
+        return default if pose is None else pose.file
 
     def line(self, xml: XmlElement) -> int:
         """
@@ -183,9 +202,10 @@ class Sources:
         :param xml: the element.
         :return: the line of the end of its start tag, from 1; 0 if it is not known.
         """
-        if xml in self._placed_by_includes:
-            return self._placed_by_includes[xml][1]
-        return self._lines.get(xml) or xml.sourceline or 0
+        origin = self._origin(xml)
+        if origin.pose is not None:
+            return origin.pose.line
+        return origin.line or self._parsed_lines.get(xml) or xml.sourceline or 0
 
     def place(self, xml: XmlElement, part: str = '') -> Place:
         """
@@ -215,7 +235,7 @@ class Sources:
         """Return the file and the path of an element that holds another."""
         file, path = '', ''
         steps: list[str] = []
-        for element in chain([xml], xml.iterancestors()):
+        for element in with_ancestors(xml):
             if element in self._places:
                 outer = self._places[element]
                 file, path = file or outer.file, outer.element
@@ -236,7 +256,7 @@ class Sources:
         :param xml: the element.
         :return: its place; of an included element that of the ``<include>``.
         """
-        return self._includes.get(xml) or self.place(xml)
+        return self._origin(xml).include or self.place(xml)
 
     def copy_of(self, xml: XmlElement) -> XmlElement:
         """
@@ -248,15 +268,12 @@ class Sources:
         result = copy.deepcopy(xml)
         if xml.getroottree().getroot() in self._composed_trees:
             for old, new in zip(xml.iter(), result.iter(), strict=True):
-                if old in self._files:
-                    self._files[new] = self._files[old]
-                if old in self._lines:
-                    self._lines[new] = self._lines[old]
-                if old in self._includes:
-                    self._includes[new] = self._includes[old]
-                if old in self._named_by_includes:
-                    self._named_by_includes.add(new)
-                if old in self._placed_by_includes:
-                    self._placed_by_includes[new] = self._placed_by_includes[old]
-        self._files[result] = self.path(xml)
+                if old in self._origins:
+                    self._origins[new] = self._origins[old]
+                if old in self._parsed_lines:
+                    self._parsed_lines[new] = self._parsed_lines[old]
+        self.set_source(result, self.path(xml))
         return result
+
+    def _origin(self, xml: XmlElement) -> _Origin:
+        return self._origins.get(xml, _PARSED)

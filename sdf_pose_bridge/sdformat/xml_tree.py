@@ -10,6 +10,7 @@ prefix, and everything in a ``<plugin>``, belongs to others and is not read.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 import re
 from typing import TypeAlias
 
@@ -75,7 +76,17 @@ def is_foreign(xml: XmlElement) -> bool:
     """
     return any(
         element.tag == 'plugin' or ':' in written_tag(element)
-        for element in (xml, *xml.iterancestors()))
+        for element in with_ancestors(xml))
+
+
+def with_ancestors(xml: XmlElement) -> Iterator[XmlElement]:
+    """
+    Iterate over an element and all that hold it, from itself to the outermost.
+
+    :param xml: an element.
+    :return: the elements.
+    """
+    return chain([xml], xml.iterancestors())
 
 
 def text_of(xml: XmlElement) -> str:
