@@ -7,8 +7,9 @@ from __future__ import annotations
 from array import array
 from collections.abc import Mapping
 from collections.abc import Sequence
+from dataclasses import dataclass
+from dataclasses import field
 from typing import Any
-from typing import NamedTuple
 
 import numpy as np
 
@@ -34,7 +35,8 @@ NO_ELEMENT = -1
 _MOST_PATHS_KNOWN = 1000
 
 
-class Elements(NamedTuple):
+@dataclass(frozen=True)
+class Elements:
     """
     All elements with a pose, each after its parent element, in the order of the file.
 
@@ -72,7 +74,7 @@ class Elements(NamedTuple):
     missing_includes: Mapping[int, Mapping[str, str]]
     """For each element with includes that were not found: names and URIs of what is missing. An
     empty name is that of a merge, which could have had elements of any name."""
-    known_paths: dict[int, str]
+    _known_paths: dict[int, str] = field(default_factory=dict, init=False, repr=False)
     """Paths of some elements, which :meth:`place` has made."""
 
     def kind(self, index: int) -> Kind:
@@ -103,12 +105,12 @@ class Elements(NamedTuple):
             return '/sdf'
         parent = int(self.parents[index])
         # Many errors may be in one element that is nested deep.
-        parent_path = self.known_paths.get(parent)
+        parent_path = self._known_paths.get(parent)
         if parent_path is None:
             parent_path = self._element_path(parent)
-            if len(self.known_paths) == _MOST_PATHS_KNOWN:
-                self.known_paths.clear()
-            self.known_paths[parent] = parent_path
+            if len(self._known_paths) == _MOST_PATHS_KNOWN:
+                self._known_paths.clear()
+            self._known_paths[parent] = parent_path
         kind = self.kind(index)
         if kind is Kind.ROOT:
             return parent_path
@@ -209,7 +211,7 @@ class ElementsBuilder:
             pose_lines=_indices(self.pose_lines), poses=poses, relative_to=self.relative_to,
             models=self.models, frames=self.frames, joints=self.joints, sensors=self.sensors,
             shapes=self.shapes, automatic_inertials=self.automatic_inertials, paths=self._paths,
-            missing_includes=self.missing_includes, known_paths={})
+            missing_includes=self.missing_includes)
         for index, reason in failures:
             problems.error(ElementInvalidError(reason, table.place_of_pose(index)))
         for index, reason in doubts:
