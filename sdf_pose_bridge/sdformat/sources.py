@@ -152,8 +152,8 @@ class Sources:
         :param default: the file of its parent.
         :return: its file.
         """
-        file = self._origin(xml).file
-        return default if file is None else file
+        origin = self._origins.get(xml)
+        return default if origin is None or origin.file is None else origin.file
 
     def path(self, xml: XmlElement) -> str:
         """
@@ -192,8 +192,8 @@ class Sources:
         :param default: its own file.
         :return: the file of its pose.
         """
-        pose = self._origin(xml).pose
-        return default if pose is None else pose.file
+        origin = self._origins.get(xml)
+        return default if origin is None or origin.pose is None else origin.pose.file
 
     def line(self, xml: XmlElement) -> int:
         """
@@ -202,10 +202,12 @@ class Sources:
         :param xml: the element.
         :return: the line of the end of its start tag, from 1; 0 if it is not known.
         """
-        origin = self._origin(xml)
-        if origin.pose is not None:
+        origin = self._origins.get(xml)
+        if origin is not None and origin.pose is not None:
             return origin.pose.line
-        return origin.line or self._parsed_lines.get(xml) or xml.sourceline or 0
+        if origin is not None and origin.line:
+            return origin.line
+        return self._parsed_lines.get(xml) or xml.sourceline or 0
 
     def place(self, xml: XmlElement, part: str = '') -> Place:
         """
