@@ -44,7 +44,6 @@ def collision_masses(
     Return the masses of the collisions of a link.
 
     :param inertial: an ``<inertial auto="true">`` in its link.
-    :param sources: where elements were written.
     :param problems: takes collisions whose mass cannot be computed.
     :return: the mass of each collision in file order; empty if one cannot be computed.
     """

@@ -81,7 +81,6 @@ class Elements:
         """
         Return the kind of an element.
 
-        :param index: index of the element.
         :return: its kind.
         """
         return Kind(int(self.kinds[index]))
@@ -90,7 +89,6 @@ class Elements:
         """
         Return the place of an element, or of a part of it.
 
-        :param index: index of the element.
         :param line: line of the part; 0 for that of the element.
         :param part: path of the part in the element, such as ``pose``.
         :return: file, line and path.
@@ -121,18 +119,13 @@ class Elements:
         """
         Return the place of the pose of an element.
 
-        :param index: index of the element.
         :return: file, line and path.
         """
         return self.place(index, int(self.pose_lines[index]), 'pose')
 
 
 class ElementsBuilder:
-    """
-    The table while it grows.
-
-    :param paths: the files of the load.
-    """
+    """The table while it grows."""
 
     def __init__(self, paths: Sequence[str]) -> None:
         self.kinds = array('B')
@@ -176,10 +169,8 @@ class ElementsBuilder:
         """
         Set the pose of an element.
 
-        :param index: index of the element.
         :param text: the pose as written.
         :param pose_format: how it is to be read.
-        :param line: its line.
         """
         self.pose_lines[index] = line
         if pose_format not in self._texts:

@@ -89,9 +89,6 @@ class Kind(enum.IntEnum):
         member.is_frame = is_frame
         return member
 
-    # An Enum's own hash is a function in Python, and kinds are keys wherever elements are read.
-    __hash__ = int.__hash__
-
     ROOT = '', ''
     """The implicit root of a model file, in which its poses are resolved. No file writes it."""
     WORLD = 'sdf', (
@@ -163,8 +160,6 @@ class Definition:
     :param content: what the element holds, as this module describes it.
     :param has_frames: whether kinds of elements are frames here, and not parts of a state.
     :param value_type: type of the value as definitions name it, if the content does not tell.
-    :param minimum: the smallest value that the element may have.
-    :param maximum: the largest value that the element may have.
     :param is_required: whether the value may not be blank.
     """
 

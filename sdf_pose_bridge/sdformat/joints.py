@@ -86,9 +86,6 @@ def joint_details_from_element(
     """
     Read a joint.
 
-    :param xml: a ``<joint>``.
-    :param sources: where elements were written.
-    :param problems: takes what is wrong.
     :return: its details. References are empty where they are missing or reserved.
     """
     joint_type = attribute_of(xml, 'type').lower()

@@ -40,7 +40,6 @@ def model_details_from_element(xml: XmlElement) -> ModelDetails:
     """
     Read a model.
 
-    :param xml: a ``<model>``.
     :return: its details.
     """
     static = first_child(xml, 'static')
@@ -53,7 +52,6 @@ def frame_details_from_element(xml: XmlElement) -> FrameDetails:
     """
     Read an explicit frame.
 
-    :param xml: a ``<frame>``.
     :return: its details.
     """
     return FrameDetails(

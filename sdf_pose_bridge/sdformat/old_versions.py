@@ -48,8 +48,6 @@ def convert(
     Convert a file to the newest version, in place.
 
     :param root: the ``sdf`` element.
-    :param version: the version that the file declares.
-    :param sources: where its elements were written.
     :param may_hold_scoped_names: False if no name in the file can hold ``::``.
     :raises ConversionError: if names in it cannot be converted.
     """

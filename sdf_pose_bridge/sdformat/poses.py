@@ -104,7 +104,6 @@ def pose_from_text(text: str, pose_format: PoseFormat) -> Sequence[float]:
     Convert one text.
 
     :param text: a pose as written; a blank text is the identity.
-    :param pose_format: its format.
     :return: x y z in metres, unit quaternion x y z w.
     :raises PoseTextError: if it is not a pose.
     """
@@ -174,7 +173,6 @@ def _numbers_from_texts(texts: Sequence[str], count: int) -> npt.NDArray[np.floa
     """
     Read the numbers of many texts at once, which takes a tenth of the time.
 
-    :param texts: n texts.
     :param count: how many numbers each should have.
     :return: shape (n, count); None if any text needs a closer look.
     """

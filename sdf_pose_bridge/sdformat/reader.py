@@ -59,7 +59,7 @@ MISSING_URI = '{sdf_pose_bridge}missing_uri'
 
 _SCOPED_NAMES = ('//*[contains(@name, "::")]'
                  '[not(ancestor-or-self::*[self::plugin or contains(name(), ":")])]')
-"""Finds names with ``::`` in what does not belong to others than SDFormat."""
+"""Finds names with ``::``, but for those in plugins and in elements with a prefix."""
 
 _DEFAULT_FORMAT = PoseFormat()
 
@@ -73,7 +73,6 @@ def elements_from_tree(
 
     :param root: the ``sdf`` element of a tree in the newest version. An ``<include>`` in it is
         one that was not found.
-    :param sources: where its elements were written.
     :param problems: takes what is wrong with structure, names, attributes and values; references
         are not looked up here.
     :param may_hold_scoped_names: False if no name in the tree can hold ``::``.
@@ -90,14 +89,7 @@ def elements_from_tree(
 def check_element(
     xml: XmlElement, definition: Definition, sources: Sources, problems: Problems,
 ) -> None:
-    """
-    Check the attributes and values of an element that is no part of the tree.
-
-    :param xml: the element.
-    :param definition: its definition.
-    :param sources: where it was written.
-    :param problems: takes what is wrong.
-    """
+    """Check the attributes and values of an element that is no part of the tree."""
     _Reader(sources, problems).check(xml, definition)
 
 

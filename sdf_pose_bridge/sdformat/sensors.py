@@ -32,7 +32,6 @@ def sensor_details_from_element(xml: XmlElement) -> SensorDetails:
     """
     Read a sensor.
 
-    :param xml: a ``<sensor>``.
     :return: its details.
     """
     frame_ids = chain(

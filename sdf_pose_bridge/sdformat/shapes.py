@@ -129,13 +129,7 @@ def _color(xml: XmlElement) -> tuple[float, float, float, float] | None:
 
 
 def check_material(xml: XmlElement, sources: Sources, problems: Problems) -> None:
-    """
-    Check that the script and the shader of a material have what they need.
-
-    :param xml: a ``<material>``.
-    :param sources: where elements were written.
-    :param problems: takes what is wrong.
-    """
+    """Check that the script and the shader of a material have what they need."""
     script, shader = first_child(xml, 'script'), first_child(xml, 'shader')
     if script is not None:
         for tag, error in (('uri', ElementInvalidError), ('name', ElementMissingError)):

@@ -35,10 +35,6 @@ class SiblingNames:
     The names that are in use, by parent element and kind.
 
     Links, joints, frames and models of one parent share a name space. Each other kind has its own.
-
-    :param builder: the table of elements.
-    :param sources: where elements were written.
-    :param problems: takes what is wrong with names.
     """
 
     def __init__(self, builder: ElementsBuilder, sources: Sources, problems: Problems) -> None:
@@ -53,8 +49,6 @@ class SiblingNames:
         """
         Add the name of the element that is added to the table next.
 
-        :param kind: kind of the element.
-        :param xml: the element.
         :param parent: index of its parent element; -1 for the file.
         :param parent_path: file of the parent element.
         :return: its name. Below version 1.7 that is a new one if another kind of element has the

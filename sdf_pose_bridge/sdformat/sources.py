@@ -71,11 +71,7 @@ class Sources:
         self._remembers_places = False
 
     def add_path(self, path: str) -> None:
-        """
-        Add a file, unless it is known already.
-
-        :param path: its path.
-        """
+        """Add a file, unless it is known already."""
         if path not in self.paths:
             self.paths.append(path)
 
@@ -85,9 +81,6 @@ class Sources:
         """
         Add a file that was read.
 
-        :param path: its path.
-        :param root: its outermost element.
-        :param version: the version that it declares.
         :param lines: the lines of those of its elements whose lines lxml does not know.
         """
         self.add_path(path)
@@ -109,28 +102,17 @@ class Sources:
         """
         Set where an element was written, with the elements in it that have no other source.
 
-        :param xml: the element.
-        :param path: path of its file.
         :param line: its line; None for the line that it has.
         """
         origin = self._origin(xml)
         self._origins[xml] = origin._replace(file=path, line=origin.line if line is None else line)
 
     def set_include(self, xml: XmlElement, include: XmlElement) -> None:
-        """
-        Set which include an element came from. The include has to be in its tree still.
-
-        :param xml: the included element.
-        :param include: the ``<include>``.
-        """
+        """Set which include an element came from. The include has to be in its tree still."""
         self._origins[xml] = self._origin(xml)._replace(include=self.place(include))
 
     def set_named_by_include(self, xml: XmlElement) -> None:
-        """
-        Set that the name of an included element is written in the file that includes it.
-
-        :param xml: the included element.
-        """
+        """Set that the name of an included element is written in the file that includes it."""
         self._origins[xml] = self._origin(xml)._replace(is_named_by_include=True)
 
     def set_placed_by_include(self, xml: XmlElement, include: XmlElement) -> None:
@@ -139,7 +121,6 @@ class Sources:
 
         :param xml: the included element. It stands where its pose is written; what it holds does
             not, and its version is that of its own file.
-        :param include: the ``<include>``.
         """
         place = Place(self.path(include), self.line(include))
         self._origins[xml] = self._origin(xml)._replace(pose=place)
@@ -148,7 +129,6 @@ class Sources:
         """
         Return the file of an element whose parent's file is known.
 
-        :param xml: the element.
         :param default: the file of its parent.
         :return: its file.
         """
@@ -159,7 +139,6 @@ class Sources:
         """
         Return the file of an element.
 
-        :param xml: the element.
         :return: the path of its file.
         """
         return next(self.enclosing_paths(xml))
@@ -168,7 +147,6 @@ class Sources:
         """
         Iterate over the files that lead to an element, from its own to the outermost.
 
-        :param xml: the element.
         :return: the path of its file, of the file that includes that one, and so on.
         """
         files = (self._origin(each).file for each in with_ancestors(xml))
@@ -178,7 +156,6 @@ class Sources:
         """
         Iterate over the files that lead to the name of an element.
 
-        :param xml: the element.
         :return: as of :meth:`enclosing_paths`, from the file in which the name is written.
         """
         return islice(
@@ -188,7 +165,6 @@ class Sources:
         """
         Return the file in which an element is placed.
 
-        :param xml: the element.
         :param default: its own file.
         :return: the file of its pose.
         """
@@ -199,7 +175,6 @@ class Sources:
         """
         Return the line of an element.
 
-        :param xml: the element.
         :return: the line of the end of its start tag, from 1; 0 if it is not known.
         """
         origin = self._origins.get(xml)
@@ -213,7 +188,6 @@ class Sources:
         """
         Return where an element was written.
 
-        :param xml: the element.
         :param part: path of a missing element in it; empty for the element itself.
         :return: its file, its line and its path in the tree.
         """
@@ -255,7 +229,6 @@ class Sources:
         """
         Return where the name of an element was decided.
 
-        :param xml: the element.
         :return: its place; of an included element that of the ``<include>``.
         """
         return self._origin(xml).include or self.place(xml)
@@ -264,7 +237,6 @@ class Sources:
         """
         Copy an element with all that it holds.
 
-        :param xml: the element.
         :return: the copy, in a tree of its own, written where the original was.
         """
         result = copy.deepcopy(xml)

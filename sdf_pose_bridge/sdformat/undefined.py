@@ -3,8 +3,8 @@
 """
 Warn of elements and attributes that SDFormat does not define; most of them are misspelt.
 
-libsdformat warns of the same ones (``readXml`` and ``readAttributes`` in ``parser.cc``). What has
-a prefix, and what a plugin holds, belongs to others.
+libsdformat warns of the same ones (``readXml`` and ``readAttributes`` in ``parser.cc``). Nobody is
+warned of names with a prefix, and of the content of plugins.
 """
 
 from __future__ import annotations
@@ -37,12 +37,7 @@ _ATTRIBUTE_HINTS = {
 
 
 class UndefinedReporter:
-    """
-    Warns of what is not defined.
-
-    :param sources: where elements were written.
-    :param problems: takes the warnings.
-    """
+    """Warns of what is not defined."""
 
     def __init__(self, sources: Sources, problems: Problems) -> None:
         self._sources = sources
@@ -50,12 +45,7 @@ class UndefinedReporter:
         self._nearest: dict[tuple[str, str, str], str] = {}
 
     def report_content(self, xml: XmlElement, definition: Definition) -> None:
-        """
-        Warn of the attributes and child elements of an element that are not defined.
-
-        :param xml: an element.
-        :param definition: its definition.
-        """
+        """Warn of the attributes and child elements of an element that are not defined."""
         names = xml.keys()
         for name in names:
             if name not in definition.attributes:
@@ -89,9 +79,7 @@ class UndefinedReporter:
         """
         Warn of an attribute.
 
-        :param xml: an element.
         :param name: name of an attribute that its definition does not know.
-        :param definition: its definition.
         """
         # lxml writes the namespace of a prefix in braces.
         if ':' in name or '{' in name:

@@ -36,9 +36,6 @@ LONGEST_PLAIN = 200
 """A number with fewer characters, and without an exponent, is in the range of a double."""
 _NOT_ZERO = re.compile(r'[^eE]*[1-9]')
 _FEWEST_COLOR_NUMBERS = 3
-# Python takes longer to look up a member of an Enum than a global variable.
-_AXIS, _BOOLEAN, _COLOR = ValueType.AXIS, ValueType.BOOLEAN, ValueType.COLOR
-_FRAME, _INTEGER, _NUMBER = ValueType.FRAME, ValueType.INTEGER, ValueType.NUMBER
 
 
 def boolean_from_text(text: str) -> bool | None:
@@ -60,8 +57,6 @@ def frame_of_attribute(xml: XmlElement, attribute: str) -> str:
     """
     Return the frame that an attribute names.
 
-    :param xml: an element.
-    :param attribute: name of the attribute.
     :return: the name; empty if there is none, and for the implicit root, which is an error that
         the check of attributes reports.
     """
@@ -104,7 +99,7 @@ def value_fault(text: str, definition: Definition) -> str:
     numbers = leading_numbers(stripped, value_type.count)
     if not _is_of_type(stripped, numbers, value_type):
         return f'"{stripped[:80]}" is not {value_type.description}'
-    if value_type is _AXIS and math.hypot(*numbers) <= _SHORTEST_AXIS:
+    if value_type is ValueType.AXIS and math.hypot(*numbers) <= _SHORTEST_AXIS:
         return f'"{stripped}" is not a valid axis: its length is zero'
     minimum, maximum = definition.minimum, definition.maximum
     # Like libsdformat, this accepts what is not a number.
@@ -141,17 +136,17 @@ def is_of_type(text: str, value_type: ValueType) -> bool:
 
 
 def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> bool:
-    if value_type is _COLOR:
+    if value_type is ValueType.COLOR:
         return len(numbers) == len(text.split()) >= _FEWEST_COLOR_NUMBERS and all(
             not (number < 0.0 or number > 1.0) for number in numbers)
-    if value_type is _NUMBER:
+    if value_type is ValueType.NUMBER:
         return (bool(numbers) and is_representable(text, numbers[0])) or (
             _LEADING_BOOLEAN.match(text) is not None)
-    if value_type is _INTEGER:
+    if value_type is ValueType.INTEGER:
         return _LEADING_INTEGER_OR_BOOLEAN.match(text) is not None
-    if value_type is _BOOLEAN:
+    if value_type is ValueType.BOOLEAN:
         return boolean_from_text(text) is not None
-    if value_type is _FRAME:
+    if value_type is ValueType.FRAME:
         return text != ROOT_FRAME
     return len(numbers) == value_type.count  # 0 for a text
 
@@ -181,8 +176,6 @@ def numbers_of_child(
     """
     Return the numbers in a child element.
 
-    :param parent: an element.
-    :param tag: tag of the child.
     :param default: the numbers if there is no child, or if it has fewer numbers than these.
     :return: as many numbers as there are in the default.
     """

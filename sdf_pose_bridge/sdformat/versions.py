@@ -46,7 +46,6 @@ def version_from_text(text: str, place: Place) -> Version:
     Read a version.
 
     :param text: such as ``1.10``.
-    :param place: where it stands.
     :return: the version.
     :raises ConversionError: if it is older than :data:`OLDEST`, or newer than :data:`NEWEST`.
     """
@@ -63,7 +62,6 @@ def allows_scoped_names(version: Version) -> bool:
     """
     Return whether names in a file may hold ``::``.
 
-    :param version: the version that the file declares.
     :return: True below 1.8, where old libraries wrote such names.
     """
     return version < Version(1, 8)
@@ -73,7 +71,6 @@ def renames_duplicates(version: Version) -> bool:
     """
     Return whether an element is renamed that shares its name with one of another kind.
 
-    :param version: the version that the file declares.
     :return: True below 1.7; in later files it is an error.
     """
     return version < Version(1, 7)

@@ -3,8 +3,8 @@
 """
 Read values from XML elements as SDFormat does.
 
-libsdformat reads XML with TinyXML-2, which knows prefixes but no namespaces. An element with a
-prefix, and everything in a ``<plugin>``, belongs to others and is not read.
+libsdformat reads XML with TinyXML-2, which knows prefixes but no namespaces. Elements with a
+prefix and the content of a ``<plugin>`` are not SDFormat, and are not read.
 """
 
 from __future__ import annotations
@@ -31,7 +31,6 @@ def child_elements(xml: XmlElement, *tags: str) -> Iterator[XmlElement]:
     """
     Iterate over the child elements.
 
-    :param xml: an element.
     :param tags: the tags to find; all if none is given.
     :return: the children in file order, without comments.
     """
@@ -42,8 +41,6 @@ def first_child(xml: XmlElement, tag: str) -> XmlElement | None:
     """
     Return the first child element with a tag.
 
-    :param xml: an element.
-    :param tag: the tag.
     :return: the child, or None.
     """
     # For the few children that most elements have, this is faster than iterchildren.
@@ -57,7 +54,6 @@ def written_tag(xml: XmlElement) -> str:
     """
     Return the tag of an element as it is written.
 
-    :param xml: an element.
     :return: the tag, with its prefix where it has one.
     """
     tag = str(xml.tag)
@@ -69,9 +65,8 @@ def written_tag(xml: XmlElement) -> str:
 
 def is_foreign(xml: XmlElement) -> bool:
     """
-    Return whether an element belongs to others than SDFormat.
+    Return whether an element is not SDFormat.
 
-    :param xml: an element.
     :return: True in a ``<plugin>`` and in an element with a prefix.
     """
     return any(
@@ -83,7 +78,6 @@ def with_ancestors(xml: XmlElement) -> Iterator[XmlElement]:
     """
     Iterate over an element and all that hold it, from itself to the outermost.
 
-    :param xml: an element.
     :return: the elements.
     """
     return chain([xml], xml.iterancestors())
@@ -96,7 +90,6 @@ def text_of(xml: XmlElement) -> str:
     The value is the first run of character data. Comments before it are skipped. A comment or an
     element in it ends it.
 
-    :param xml: an element.
     :return: the text with its white space; empty if there is none.
     """
     text = xml.text
@@ -115,7 +108,6 @@ def value_of(xml: XmlElement) -> str:
     """
     Return the value of an element that holds a single word or name.
 
-    :param xml: an element.
     :return: its text, stripped, each run of white space in it as one blank.
     """
     text = text_of(xml)
@@ -127,8 +119,6 @@ def attribute_of(xml: XmlElement, name: str) -> str:
     """
     Return the value of an attribute.
 
-    :param xml: an element.
-    :param name: name of the attribute.
     :return: its value, stripped; empty if there is none.
     """
     value = xml.get(name)
@@ -139,7 +129,6 @@ def described(xml: XmlElement) -> str:
     """
     Return an element as one step of a path.
 
-    :param xml: an element.
     :return: such as ``link[@name="l"]``, or the tag alone where it has no name.
     """
     return path_step(written_tag(xml), attribute_of(xml, 'name'))
@@ -149,7 +138,6 @@ def path_step(tag: str, name: str) -> str:
     """
     Return one step of the path of an element.
 
-    :param tag: the tag.
     :param name: the name; empty for none.
     :return: such as ``link[@name="l"]``; a long name is shortened.
     """

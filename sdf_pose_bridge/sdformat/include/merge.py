@@ -45,7 +45,6 @@ def merge(
 
     :param include: the ``<include merge="true">``.
     :param model: the included element, with what the include overrides.
-    :param sources: where elements were written.
     :param problems: takes what cannot be merged.
     :param canonical_link_of: as for
         :class:`~sdf_pose_bridge.sdformat.include.expansion.IncludeExpansion`.

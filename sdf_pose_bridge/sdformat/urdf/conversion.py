@@ -87,7 +87,6 @@ def sdf_from_urdf(
 
     :param root: the ``robot`` element; what ``<gazebo>`` elements hold is taken out of it.
     :param lines: the lines of those of its elements whose lines lxml does not know.
-    :param sources: where its elements were written.
     :param problems: takes what is wrong but does not keep the file from being read.
     :return: the ``sdf`` element, and the lines of its elements as in ``lines``.
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.

@@ -105,8 +105,6 @@ def robot_from_tree(root: XmlElement, sources: Sources, problems: Problems) -> R
     Read a robot.
 
     :param root: the ``robot`` element.
-    :param sources: where its elements were written.
-    :param problems: takes the warnings.
     :return: the robot.
     :raises SdfError: if it is not valid; ``errors`` on it has all errors.
     """

@@ -37,7 +37,6 @@ def numbers_of(xml: XmlElement, attributes: str) -> dict[str, list[float]]:
     """
     Read the attributes of an element that are numbers.
 
-    :param xml: the element.
     :param attributes: names, with ``!`` for a required one, and ``:3`` for three numbers.
     :return: the numbers of those that it has.
     :raises ValueError: if one is missing or is not numbers.
@@ -88,7 +87,6 @@ def text_from_numbers(numbers: Sequence[float], digits: int = 16) -> str:
     """
     Write numbers.
 
-    :param numbers: the numbers.
     :param digits: how many significant digits they have.
     :return: the text.
     """
@@ -99,7 +97,6 @@ def rpy_by_gz_math(pose: Pose) -> Sequence[float]:
     """
     Return the rotation of a pose as ``gz::math::Quaternion::Euler`` does.
 
-    :param pose: the pose.
     :return: roll, pitch and yaw in radians.
     """
     _, _, _, x, y, z, w = pose
@@ -114,7 +111,6 @@ def rpy_by_urdfdom(pose: Pose) -> Sequence[float]:
     """
     Return the rotation of a pose as ``urdf::Rotation::getRPY`` does.
 
-    :param pose: the pose.
     :return: roll, pitch and yaw in radians.
     """
     _, _, _, x, y, z, w = pose
