@@ -3,7 +3,7 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test run lint bench differential fuzz soak licenses audit docs clean
+.PHONY: help setup demo test test_long run lint bench differential fuzz soak licenses audit docs clean
 
 # The distribution of ROS 2, also for the scripts in underlay.
 ROS ?= jazzy
@@ -26,6 +26,7 @@ in_shell := . underlay/setup.bash && exec
 help:
 	@echo 'make demo           the node on an example, and what a listener receives from it'
 	@echo 'make test           all tests; ARGS="-k name" hands arguments to pytest'
+	@echo 'make test_long      all tests, some with many more calls, frames or rotations'
 	@echo 'make run FILE=...   the node on an SDFormat file; ARGS="-p name:=value" sets parameters'
 	@echo 'make lint           ruff, mypy and import-linter'
 	@echo 'make bench          benchmarks; ARGS="..." hands arguments to them'
@@ -49,7 +50,11 @@ demo: setup
 	@$(in_shell) python examples/demo.py $(ARGS)
 
 test: setup
-	@$(in_shell) python -m pytest $(ARGS)
+	@$(in_shell) python -m pytest --numprocesses auto --dist worksteal $(ARGS)
+
+# One after the other, as each of them loads the machine.
+test_long: setup
+	@. underlay/setup.bash && LONG=1 exec python -m pytest $(ARGS)
 
 # PWD is the caller's directory, also with make -C.
 run: export CALLER := $(PWD)

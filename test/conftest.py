@@ -1,6 +1,9 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Fixtures of tests with ROS, and settings of property tests."""
+"""Fixtures of tests with ROS, settings of property tests, and the number of parallel processes."""
+
+import contextlib
+import os
 
 from hypothesis import HealthCheck
 from hypothesis import settings
@@ -13,13 +16,32 @@ settings.register_profile(
 settings.load_profile('untimed')
 
 
-@pytest.fixture
-def ros_domain(monkeypatch, tmp_path):
-    """Number of a ROS domain that this test has to itself, on this machine alone."""
-    with claimed_domain() as domain:
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers():
+    """Return the number of processes for ``-n auto``: most tests wait for other processes."""
+    return min(2 * len(os.sched_getaffinity(0)), 16)
+
+
+@contextlib.contextmanager
+def environment_with_domain(log_folder):
+    with claimed_domain() as domain, pytest.MonkeyPatch.context() as monkeypatch:
         monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
         monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-        monkeypatch.setenv('ROS_LOG_DIR', str(tmp_path / 'ros_log'))
+        monkeypatch.setenv('ROS_LOG_DIR', str(log_folder))
+        yield domain
+
+
+@pytest.fixture
+def ros_domain(tmp_path):
+    """Number of a ROS domain that this test has to itself, on this machine alone."""
+    with environment_with_domain(tmp_path / 'ros_log') as domain:
+        yield domain
+
+
+@pytest.fixture(scope='module')
+def shared_ros_domain(tmp_path_factory):
+    """Number of a ROS domain for all tests of a module, on this machine alone."""
+    with environment_with_domain(tmp_path_factory.mktemp('ros_log')) as domain:
         yield domain
 
 

@@ -1,35 +1,61 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Fixtures that start real processes in a ROS domain of the test's own."""
+"""
+Fixtures that start real processes in a ROS domain of the test's own.
+
+Tests of a module that only read share a bridge and a listener.
+"""
+
+import contextlib
 
 from bridge_process import BridgeProcess
 import pytest
 
 
+@contextlib.contextmanager
+def ended_later(make):
+    """Give a function that makes processes or listeners, which all end with the context."""
+    made = []
+
+    def start(*arguments):
+        made.append(make(*arguments))
+        return made[-1]
+
+    try:
+        yield start
+    finally:
+        for each in made:
+            each.end()
+
+
+def listener_in(domain):
+    from listener import Listener
+    return Listener(domain)
+
+
 @pytest.fixture
 def start_bridge(ros_domain):
     """Starts the installed executable; ``start_bridge(*arguments)``."""
-    processes = []
-
-    def start(*arguments):
-        processes.append(BridgeProcess(*arguments))
-        return processes[-1]
-
-    yield start
-    for process in processes:
-        process.end()
+    with ended_later(BridgeProcess) as start:
+        yield start
 
 
 @pytest.fixture
 def start_listener(ros_domain):
     """Starts to listen from this process; ``start_listener()``."""
-    from listener import Listener
-    listeners = []
+    with ended_later(lambda: listener_in(ros_domain)) as start:
+        yield start
 
-    def start():
-        listeners.append(Listener(ros_domain))
-        return listeners[-1]
 
-    yield start
-    for listener in listeners:
-        listener.end()
+@pytest.fixture(scope='module')
+def start_shared_bridge(shared_ros_domain):
+    """Starts a bridge that all tests of a module use; ``start_shared_bridge(*arguments)``."""
+    with ended_later(BridgeProcess) as start:
+        yield start
+
+
+@pytest.fixture(scope='module')
+def start_shared_listener(shared_ros_domain):
+    """Starts a listener that all tests of a module use; ``start_shared_listener()``."""
+    with ended_later(lambda: listener_in(shared_ros_domain)) as start:
+        yield start

@@ -13,10 +13,10 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
 
 
-@pytest.fixture(name='ask')
-def ask_running_bridge(start_bridge):
+@pytest.fixture(name='ask', scope='module')
+def ask_running_bridge(start_shared_bridge):
     """Asks a bridge; ``ask(*arguments)`` returns the ended process."""
-    start_bridge(
+    start_shared_bridge(
         '--ros-args', '-p', f'sdf_file:={EXAMPLES / "work_cell.sdf"}').wait_until_started()
 
     def ask(*arguments):

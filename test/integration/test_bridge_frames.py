@@ -73,36 +73,35 @@ TOPICS = {
 TF_MESSAGE_HASH = 'RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087'
 
 
-@pytest.fixture
-def sdf_file(tmp_path):
-    path = tmp_path / 'hall.sdf'
+@pytest.fixture(scope='module')
+def sdf_file(tmp_path_factory):
+    path = tmp_path_factory.mktemp('frames') / 'hall.sdf'
     path.write_text(FILE, encoding='utf-8')
     return path
 
 
-@pytest.fixture
-def early_listener(start_bridge, start_listener, sdf_file):
-    """A listener that was there before the bridge."""
-    listener = start_listener()
-    listener.listen_to_frames()
-    listener.listen_to_poses(TOPICS.values())
-    start_bridge('--ros-args', '-p', f'sdf_file:={sdf_file}')
-    return listener
+@pytest.fixture(scope='module')
+def listeners(start_shared_bridge, start_shared_listener, sdf_file):
+    """A listener that was there before the bridge, and one that comes when it has published."""
+    def start():
+        listener = start_shared_listener()
+        listener.listen_to_frames()
+        listener.listen_to_poses(TOPICS.values())
+        return listener
+
+    early = start()
+    start_shared_bridge('--ros-args', '-p', f'sdf_file:={sdf_file}').wait_until_started()
+    return {'early': early, 'late': start()}
+
+
+@pytest.fixture(params=['early', 'late'])
+def listener(request, listeners):
+    return listeners[request.param]
 
 
 @pytest.fixture
-def late_listener(start_bridge, start_listener, sdf_file):
-    """A listener that comes when the bridge has published everything."""
-    start_bridge('--ros-args', '-p', f'sdf_file:={sdf_file}').wait_until_started()
-    listener = start_listener()
-    listener.listen_to_frames()
-    listener.listen_to_poses(TOPICS.values())
-    return listener
-
-
-@pytest.fixture(params=['early_listener', 'late_listener'])
-def listener(request):
-    return request.getfixturevalue(request.param)
+def late_listener(listeners):
+    return listeners['late']
 
 
 def assert_expected_transforms(transforms):

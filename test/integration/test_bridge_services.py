@@ -4,30 +4,33 @@
 
 import array
 import math
-import signal
 
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from changes import world
+from sizes import size
+
 from sdf_pose_bridge_interfaces.srv import ConvertPoses
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
+from sdf_pose_bridge_interfaces.srv import LookupPose
 
 ROTATION = '/sdf_pose_bridge/convert_rotation'
 POSES = '/sdf_pose_bridge/convert_poses'
-FILE = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
+LOOKUP = '/sdf_pose_bridge/lookup_pose'
 
 
-@pytest.fixture
-def bridge(start_bridge, tmp_path):
-    path = tmp_path / 'm.sdf'
-    path.write_text(FILE, encoding='utf-8')
-    return start_bridge('--ros-args', '-p', f'sdf_file:={path}')
+@pytest.fixture(scope='module')
+def bridge(start_shared_bridge, tmp_path_factory):
+    path = tmp_path_factory.mktemp('services') / 'cell.sdf'
+    path.write_text(world(1), encoding='utf-8')
+    return start_shared_bridge('--ros-args', '-p', f'sdf_file:={path}')
 
 
-@pytest.fixture
-def listener(bridge, start_listener):
-    return start_listener()
+@pytest.fixture(scope='module')
+def listener(bridge, start_shared_listener):
+    return start_shared_listener()
 
 
 def rotation_request(given, numbers, *, degrees=False):
@@ -86,12 +89,30 @@ def test_bad_input_is_answered_and_the_node_lives_on(bridge, listener):
     assert not [answer for answer in answers if answer.success]
     assert not [answer for answer in answers if not answer.message]
     assert not [answer for answer in answers if 'internal' in answer.message]
-    bridge.send(signal.SIGINT)
-    assert bridge.wait_for_end() == 0
+    assert not [line for line in bridge.lines if line.startswith('[ERROR]')]
 
 
-def test_a_batch_of_a_hundred_thousand_poses(listener):
-    count = 100_000
+@pytest.mark.parametrize(('frame', 'relative_to', 'x', 'frame_id'), [
+    ('crate::body', '', 1.0, 'world'),
+    ('crate/body', 'world', 1.0, 'world'),
+    ('world', 'crate::body', -1.0, 'crate/body'),
+])
+def test_poses_are_looked_up_by_either_name(listener, frame, relative_to, x, frame_id):
+    request = LookupPose.Request(frame=frame, relative_to=relative_to)
+    answer = listener.call(LookupPose, LOOKUP, request)
+    assert answer.success, answer.message
+    assert (answer.pose.pose.position.x, answer.pose.header.frame_id) == (x, frame_id)
+
+
+def test_a_name_that_means_nothing_is_answered(listener):
+    request = LookupPose.Request(frame='crate::bodi')
+    answer = listener.call(LookupPose, LOOKUP, request)
+    assert not answer.success
+    assert answer.message == '"crate::bodi" is the name of nothing; did you mean "crate::body"?'
+
+
+def test_a_large_batch_of_poses(listener):
+    count = size(10_000, 100_000)
     request = ConvertPoses.Request(from_format='franka_measured', to_format='sdf_quat_xyzw')
     request.values = array.array('d', [1000.0, 2000.0, -500.0, 0.0, 0.0, 180.0] * count)
     answer = listener.call(ConvertPoses, POSES, request)

@@ -1,14 +1,9 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Callers that ask for anything, in any number, and leave when they like.
-
-``CALLS=100000`` makes so many calls with anything in them, and one with 100 times as many numbers.
-"""
+"""Callers that ask for anything, in any number, and leave when they like."""
 
 import array
 import math
-import os
 import sys
 
 from hypothesis import given
@@ -34,6 +29,7 @@ from rcl_interfaces.srv import ListParameters
 from rcl_interfaces.srv import SetParameters
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.qos import qos_profile_parameters
+from sizes import size
 from slow_file import SlowFile
 from std_srvs.srv import Trigger
 
@@ -43,9 +39,9 @@ from sdf_pose_bridge_interfaces.srv import ConvertPoses
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
 from sdf_pose_bridge_interfaces.srv import LookupPose
 
-CALLS = int(os.environ.get('CALLS', '300'))
-CLIENTS = 100
-NUMBERS = 100 * CALLS
+CALLS = size(200, 100_000)
+CLIENTS = size(50, 100)
+NUMBERS = size(16_000, 10_000_000)
 
 # Messages hold UTF-8, which has no surrogates.
 TEXTS = st.text(st.characters(exclude_categories=['Cs']), max_size=20) | st.sampled_from(

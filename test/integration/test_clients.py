@@ -42,7 +42,7 @@ def python_client():
 
 
 @pytest.fixture(params=['python_client', 'cpp_client'])
-def start_client(request, ros_domain):
+def start_client(request, shared_ros_domain):
     """Starts a client; ``start_client(**parameters)``."""
     command = request.getfixturevalue(request.param)
     processes = []
@@ -59,9 +59,9 @@ def start_client(request, ros_domain):
         process.end()
 
 
-@pytest.fixture(name='bridge')
-def bridge_of_work_cell(start_bridge):
-    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={EXAMPLES / "work_cell.sdf"}')
+@pytest.fixture(name='bridge', scope='module')
+def bridge_of_work_cell(start_shared_bridge):
+    bridge = start_shared_bridge('--ros-args', '-p', f'sdf_file:={EXAMPLES / "work_cell.sdf"}')
     return bridge.wait_until_started()
 
 
@@ -80,6 +80,7 @@ def test_it_logs_why_a_lookup_was_refused(start_client):
     start_client(frame='fixture', relative_to='tabel').wait_for_line('"tabel"')
 
 
+@pytest.mark.usefixtures('ros_domain')  # without the bridge
 def test_it_ends_while_it_waits_for_the_bridge(start_client):
     client = start_client()
     client.wait_for_line(': waiting for ')

@@ -47,15 +47,6 @@ def write_file(tmp_path):
     return path
 
 
-@pytest.fixture(name='start')
-def make_start(start_bridge):
-    def start(file, *parameters):
-        arguments = [f'sdf_file:={file}', 'use_joint_states:=true', *parameters]
-        return start_bridge('--ros-args', *(
-            word for each in arguments for word in ('-p', each))).wait_until_started()
-    return start
-
-
 @pytest.fixture(name='joints')
 def joint_publisher(ros_domain):
     publisher = JointPublisher()
@@ -89,14 +80,34 @@ def listen_to_moving_frames(start_listener):
     return TfListener(start_listener())
 
 
+@pytest.fixture(name='start')
+def make_start(start_bridge, joints, tf):
+    """Starts a bridge, and returns when the publisher of joints and the listener are connected."""
+    def start(file, *parameters):
+        arguments = [f'sdf_file:={file}', 'use_joint_states:=true', *parameters]
+        bridge = start_bridge('--ros-args', *(
+            word for each in arguments for word in ('-p', each))).wait_until_started()
+        tf.listener.wait(lambda: tf.last.keys() >= MOVED, lambda: 'all moving frames')
+        stamps = set()
+
+        def is_connected():
+            # The first messages are lost, until the bridge has discovered the publisher.
+            stamps.add(joints.send({'turn': 0.0}))
+            return tf.last['upper'].header.stamp.sec in stamps
+
+        tf.listener.wait(is_connected, lambda: 'the first message')
+        return bridge
+    return start
+
+
 def pose_of(tf, frame):
     answer = tf.listener.call(LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(frame=frame))
     assert answer.success, answer.message
     return answer.pose.pose.position
 
 
-def test_before_the_first_message_all_joints_are_at_zero(start, file, tf):
-    start(file)
+def test_before_the_first_message_all_joints_are_at_zero(start_bridge, file, tf):
+    start_bridge('--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true')
     tf.listener.wait(lambda: tf.last.keys() >= MOVED, lambda: 'all moving frames')
     assert tf.last['slide'].transform.translation.z == 1.0
     listen_to_tf(tf.listener)

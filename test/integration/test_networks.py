@@ -19,12 +19,13 @@ from bridge_process import LoggedProcess
 from bridge_process import STARTED
 from changes import replace
 from changes import world
+from sizes import size
 
 ADDRESSES = {'a': '10.211.7.1', 'b': '10.211.7.2'}
 LEASE = '<leaseDuration><sec>3</sec></leaseDuration>'
 """How long Fast DDS waits for a silent participant; 20 s by default."""
 
-FRAMES = 2_000
+FRAMES = size(500, 10_000)
 LOSE_5_PERCENT = '4,32 0 0 4294963256,53 1 0 214748365,6 0 0 2,6 0 0 0'
 """Classic BPF: a random number; if it is below 5 % of 2**32, drop the packet."""
 
@@ -172,7 +173,7 @@ def test_a_link_that_is_cut_for_longer_than_the_lease_and_restored(
     listener.wait_for_line('all transforms', 3)
 
 
-def test_thousands_of_frames_arrive_whole_where_packets_are_lost(
+def test_many_frames_arrive_whole_where_packets_are_lost(
         hosts, start_bridge_on, start_listener_on, file, monkeypatch):
     # Else Fast DDS sends pieces of 64 kB, each of which is lost if one of its 45 packets is.
     monkeypatch.setenv('FASTDDS_BUILTIN_TRANSPORTS', 'DEFAULT?max_msg_size=1400')

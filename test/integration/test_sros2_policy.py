@@ -15,18 +15,22 @@ from changes import BRIDGE
 from changes import world
 
 
+@pytest.fixture(scope='module')
+def listener(start_shared_bridge, start_shared_listener, tmp_path_factory):
+    """Start a bridge, and a listener beside it."""
+    path = tmp_path_factory.mktemp('policy') / 'cell.sdf'
+    path.write_text(world(1), encoding='utf-8')
+    start_shared_bridge(
+        '--ros-args', '-p', f'sdf_file:={path}', '-p', 'use_sim_time:=true').wait_until_started()
+    return start_shared_listener()
+
+
 @pytest.mark.parametrize(('what', 'action', 'kind', 'last'), [
     ('topic', 'publish', 'publisher', '/diagnostics'),
     ('topic', 'subscribe', 'subscriber', '/clock'),
     ('service', 'reply', 'service', f'{BRIDGE}/set_parameters_atomically'),
 ])
-def test_the_policy_allows_what_the_node_offers(
-        start_bridge, start_listener, tmp_path, what, action, kind, last):
-    path = tmp_path / 'cell.sdf'
-    path.write_text(world(1), encoding='utf-8')
-    start_bridge('--ros-args', '-p', f'sdf_file:={path}', '-p', 'use_sim_time:=true'
-                 ).wait_until_started()
-    listener = start_listener()
+def test_the_policy_allows_what_the_node_offers(listener, what, action, kind, last):
     names_and_types = getattr(listener.node, f'get_{kind}_names_and_types_by_node')
 
     def names():

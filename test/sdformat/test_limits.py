@@ -123,7 +123,8 @@ MISSING = '<include><uri>none.sdf</uri><name>x</name></include>'
 ], ids=['chain to a missing file', 'long path to a missing file', 'attributes', 'not UTF-8',
         'long tag', 'placement frames at the end of a chain', 'errors in deep models'])
 def test_time_grows_with_the_size_of_a_file_and_not_faster(text):
-    begin = time.perf_counter()
+    begin = time.thread_time()
     with contextlib.suppress(SdfError):
         load_text(text)
-    assert time.perf_counter() - begin < 5.0  # 8 to 100 s where it is quadratic
+    # Of the processor, which may have other work to do; 8 to 100 s where it is quadratic.
+    assert time.thread_time() - begin < 5.0
