@@ -32,11 +32,7 @@ class LoadedFile(NamedTuple):
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """
-    Add the command.
-
-    :param subparsers: the commands of the command line.
-    """
+    """Add the command."""
     parser = subparsers.add_parser(
         'check', help='print the errors and warnings of files',
         description='Print every error and warning of files, one per line: FILE:LINE: CODE: '
@@ -51,7 +47,6 @@ def run(options: argparse.Namespace) -> int:
     """
     Check files.
 
-    :param options: the parsed arguments.
     :return: exit code: 0 if all files are valid, else 1; if strict, 1 for warnings too.
     """
     are_valid = True
@@ -67,7 +62,6 @@ def add_file_arguments(parser: argparse.ArgumentParser, *, takes_many: bool = Tr
     """
     Add the arguments of :func:`load_file`.
 
-    :param parser: the parser of a command.
     :param takes_many: whether the command takes several files.
     """
     parser.add_argument(
@@ -85,9 +79,6 @@ def load_file(path: str, options: argparse.Namespace, *, shapes: bool = False) -
     """
     Load a file, or what a pipe such as that of the shell's ``<(command)`` holds.
 
-    :param path: path of the file.
-    :param options: the parsed arguments.
-    :param shapes: whether to read the shapes of visuals and collisions.
     :return: the scene with its warnings, or the errors of the file.
     """
     missing = MissingInclude.SKIP if options.skip_missing else MissingInclude.ERROR
@@ -114,13 +105,7 @@ def is_colored(stream: TextIO) -> bool:
 def print_problems(
     errors: tuple[SdfError, ...], warnings: tuple[SdfWarning, ...], stream: TextIO,
 ) -> None:
-    """
-    Print errors and warnings, one per line; in color on a terminal.
-
-    :param errors: the errors of a file.
-    :param warnings: the warnings of a file.
-    :param stream: where they are printed.
-    """
+    """Print errors and warnings, one per line; in color on a terminal."""
     has_colors = is_colored(stream)
     bold, plain = (_BOLD, _PLAIN) if has_colors else ('', '')
     problems: list[SdfError | SdfWarning] = [*errors, *warnings]

@@ -39,11 +39,7 @@ class _Line(NamedTuple):
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """
-    Add the command.
-
-    :param subparsers: the commands of the command line.
-    """
+    """Add the command."""
     parser = subparsers.add_parser(
         'convert',
         help='convert a pose or a rotation between formats',
@@ -72,7 +68,6 @@ def run(options: argparse.Namespace) -> int:
     """
     Convert the numbers of the arguments or the lines of standard input.
 
-    :param options: the parsed arguments.
     :return: exit code: 0, 1 if anything was not converted, 2 for a pose and a rotation format.
     """
     formats = POSE_FORMATS if options.from_format in POSE_FORMATS else ROTATION_FORMATS

@@ -53,7 +53,6 @@ def drawn_shapes_from_scene(
     Make the surfaces of the shapes beside a TF tree.
 
     :param scene: the scene, loaded with its shapes.
-    :param tree: its TF tree.
     :param model: scoped name of the only model to draw; empty for everything.
     :param finder: finds the files of meshes.
     :return: the surfaces, and markers for shapes that cannot be drawn.
@@ -90,11 +89,7 @@ def _size_m(tree: TfTree, drawn: list[DrawnShape]) -> float:
 
 
 class _MeshBoxes:
-    """
-    Finds the bounding boxes of meshes.
-
-    :param finder: finds their files.
-    """
+    """Finds the bounding boxes of meshes."""
 
     def __init__(self, finder: ResourceFinder) -> None:
         self._finder = finder
@@ -104,7 +99,6 @@ class _MeshBoxes:
         """
         Return the box around a mesh; that of the whole mesh if only a part of it is meant.
 
-        :param shape: the shape of a mesh.
         :param file: path of the file that names it.
         :return: its surface, or why there is none.
         """

@@ -53,10 +53,6 @@ def figure_from_scene(
     """
     Describe a picture of a scene.
 
-    :param scene: the scene.
-    :param tree: its TF tree.
-    :param shapes: the surfaces to draw.
-    :param markers: what is drawn as a marker.
     :param units: units of the poses that are shown at frames.
     :return: a figure of plotly, as a dictionary.
     """

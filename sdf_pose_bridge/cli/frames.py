@@ -57,7 +57,6 @@ class Units(NamedTuple):
         """
         Write a pose in these units.
 
-        :param pose: a pose.
         :return: x, y, z, roll, pitch and yaw, rounded.
         """
         length, length_digits = (1000.0, 1) if self.is_mm else (1.0, 4)
@@ -76,7 +75,6 @@ def add_kinds_argument(
     """
     Add the argument ``--kinds``, a list of kinds.
 
-    :param parser: the parser of a command.
     :param default: the kinds without the argument.
     :param what: what the command does with the kinds.
     """
@@ -91,7 +89,6 @@ def add_frame_arguments(
     """
     Add the arguments of :func:`tf_tree_of`, which are named like the parameters of the node.
 
-    :param parser: the parser of a command.
     :param default_kinds: the kinds of element that become frames without ``--kinds``.
     """
     names = ','.join(kind.label for kind in SHOWN_KINDS if kind in default_kinds)
@@ -105,11 +102,7 @@ def add_frame_arguments(
 
 
 def add_model_argument(parser: argparse.ArgumentParser) -> None:
-    """
-    Add the argument ``--model``.
-
-    :param parser: the parser of a command.
-    """
+    """Add the argument ``--model``."""
     parser.add_argument(
         '--model', metavar='NAME', default='', help='show only this model, such as robot::arm')
 
@@ -120,7 +113,6 @@ def add_output_argument(
     """
     Add the argument ``-o``, a path whose ending says the format.
 
-    :param parser: the parser of a command.
     :param formats: the endings, such as ``.svg``.
     :param what: what is written there.
     """
@@ -136,11 +128,7 @@ def add_output_argument(
 
 
 def add_unit_arguments(parser: argparse.ArgumentParser) -> None:
-    """
-    Add the arguments of :func:`units_from_arguments`.
-
-    :param parser: the parser of a command.
-    """
+    """Add the arguments of :func:`units_from_arguments`."""
     parser.add_argument('--degrees', action='store_true', help='angles in degrees, not radians')
     parser.add_argument('--mm', action='store_true', help='lengths in millimetres, not metres')
 
@@ -149,7 +137,6 @@ def units_from_arguments(options: argparse.Namespace) -> Units:
     """
     Return the units to show poses in.
 
-    :param options: the parsed arguments.
     :return: the units.
     """
     return Units(options.mm, options.degrees)
@@ -159,9 +146,6 @@ def scene_of(path: str, options: argparse.Namespace, *, shapes: bool = False) ->
     """
     Load a file and print its errors and warnings to standard error.
 
-    :param path: path of the file.
-    :param options: the parsed arguments.
-    :param shapes: whether to read the shapes of visuals and collisions.
     :return: the scene; None if the file is not valid.
     """
     loaded = load_file(path, options, shapes=shapes)
@@ -183,8 +167,6 @@ def tf_tree_of(scene: Scene, options: argparse.Namespace) -> TfTree:
     """
     Make the TF tree of a scene and print its warnings to standard error.
 
-    :param scene: the scene.
-    :param options: the parsed arguments.
     :return: the tree.
     :raises SdfError: if there is none.
     """
@@ -199,8 +181,6 @@ def kind_labels_of(scene: Scene, tree: TfTree) -> list[str]:
     """
     Return the kind of each frame in words.
 
-    :param scene: the scene.
-    :param tree: its TF tree.
     :return: the labels of their kinds; ``optical frame`` for those of cameras.
     """
     return [
@@ -212,7 +192,6 @@ def default_references_of(scene: Scene) -> list[int]:
     """
     Return the frame that the pose of each element would be relative to without ``relative_to``.
 
-    :param scene: the scene.
     :return: of a joint its child, of an explicit frame what it is attached to, of another element
         the one that holds it; -1 for worlds and implicit roots.
     """

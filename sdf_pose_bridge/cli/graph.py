@@ -55,11 +55,7 @@ _DEFAULT, _RELATIVE_TO, _ATTACHED_TO, _JOINT = 'gray70', 'royalblue', 'forestgre
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """
-    Add the command.
-
-    :param subparsers: the commands of the command line.
-    """
+    """Add the command."""
     parser = subparsers.add_parser(
         'graph', help='draw what poses are relative to, attachments and joints',
         description='Draw the frames of a file: what each pose is relative to, what frames are '
@@ -79,7 +75,6 @@ def run(options: argparse.Namespace) -> int:
     """
     Draw the graph of a file.
 
-    :param options: the parsed arguments.
     :return: exit code: 0 if it is drawn, else 1.
     """
     scene = scene_of(options.files[0], options)
@@ -99,8 +94,6 @@ def dot_from_scene(scene: Scene, kinds: Sequence[Kind] = _KINDS, model: str = ''
     """
     Write the graph of a scene in the language DOT.
 
-    :param scene: the scene.
-    :param kinds: the kinds of element to draw.
     :param model: scoped name of the only model to draw; empty for everything.
     :return: the text, one node or arrow in a line.
     :raises UnknownFrameError: if there is no such model.

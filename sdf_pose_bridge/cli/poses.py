@@ -27,11 +27,7 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """
-    Add the command.
-
-    :param subparsers: the commands of the command line.
-    """
+    """Add the command."""
     parser = subparsers.add_parser(
         'poses', help='print the poses of files',
         description='Print the pose of every element of files: x y z in metres and the quaternion '
@@ -56,7 +52,6 @@ def run(options: argparse.Namespace) -> int:
     """
     Print the poses of files; after an invalid file the next one follows.
 
-    :param options: the parsed arguments.
     :return: exit code: 0 if all files are valid, else 1.
     """
     are_valid = True

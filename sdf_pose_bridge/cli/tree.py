@@ -64,11 +64,7 @@ class _Line(NamedTuple):
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """
-    Add the command.
-
-    :param subparsers: the commands of the command line.
-    """
+    """Add the command."""
     parser = subparsers.add_parser(
         'tree', help='print the TF tree of files, or their elements by scope',
         description='Print the TF tree of files: each frame below its parent, with its kind and '
@@ -95,7 +91,6 @@ def run(options: argparse.Namespace) -> int:
     """
     Print the trees of files; after an invalid file the next one follows.
 
-    :param options: the parsed arguments.
     :return: exit code: 0 if all files are valid, else 1.
     """
     exit_code = 0

@@ -54,11 +54,7 @@ _NEEDS_KALEIDO = ('a picture needs the library kaleido (pip install kaleido) and
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """
-    Add the command.
-
-    :param subparsers: the commands of the command line.
-    """
+    """Add the command."""
     parser = subparsers.add_parser(
         'view', help='show frames and shapes in 3D',
         description='Show the frames of a file as triads (x red, y green, z blue) and the shapes '
@@ -77,7 +73,6 @@ def run(options: argparse.Namespace) -> int:
     """
     Show a file.
 
-    :param options: the parsed arguments.
     :return: exit code: 0 if it is shown or written, else 1.
     """
     plotly = _imported('plotly.io')

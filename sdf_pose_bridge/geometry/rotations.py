@@ -240,8 +240,6 @@ def _converted(
 
     :param formula: takes numpy or floats, and the components of a rotation.
     :param values: one rotation as a tuple or list, or an array of shape (..., *given.shape).
-    :param given: what the values are.
-    :param shape: shape of what the formula returns.
     :return: what the formula returns, or an array of shape (..., *shape).
     :raises RotationError: wrong shape or invalid numbers; names the first row that has them.
     """

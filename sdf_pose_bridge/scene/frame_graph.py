@@ -74,7 +74,6 @@ def frame_graph_from_elements(
     """
     Look up and check every reference.
 
-    :param elements: the elements.
     :param usage: counts the work.
     :param problems: takes what is wrong with references.
     :return: the graph; a wrong reference in it is replaced by the default of its kind.

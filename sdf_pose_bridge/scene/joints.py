@@ -57,11 +57,7 @@ def valid_joints(
     """
     Check the ends and the axes of joints.
 
-    :param elements: the elements.
-    :param scopes: their names.
-    :param joints: the joints to check.
     :param bodies: for each frame the link, static model or root that it is attached to.
-    :param problems: takes what is wrong.
     :return: the joints that join two bodies, with the references of their axes.
     """
     checks = _JointChecks(elements, scopes, bodies.tolist(), problems)

@@ -172,7 +172,6 @@ def _canonical_link(root: XmlElement, sources: Sources, problems: Problems) -> s
     """
     Check a model file by itself.
 
-    :param root: its ``sdf`` element.
     :param sources: where its elements were written.
     :param problems: takes the errors of the file.
     :return: name of the canonical link in the model; empty if it has none; None if there are

@@ -41,7 +41,6 @@ class NameScopes:
     """
     The absolute names of all elements, and the frames that they name.
 
-    :param elements: the elements.
     :param usage: counts the work of joining them.
     :raises LimitError: if there are too many.
 

@@ -48,7 +48,6 @@ def set_automatic_inertials(root_poses: PoseArray, elements: Elements) -> None:
     Move automatic inertials to the centers of mass of their links' collisions.
 
     :param root_poses: shape (n, 7), pose of each element in its root; changed in place.
-    :param elements: the elements.
     """
     collisions: dict[int, list[int]] = {}
     if elements.automatic_inertials:
@@ -72,7 +71,6 @@ def axis_in_joint(
 
     :param xyz: the axis as written; not zero.
     :param expressed_in: the frame that it is expressed in.
-    :param joint: the joint.
     :param root_poses: shape (n, 7), pose of each element in its root.
     :return: unit vector in the frame of the joint.
     """

@@ -173,7 +173,6 @@ class Scene:
         """
         Return the pose of an element in its root.
 
-        :param index: its index.
         :return: its pose in its world or implicit root.
         """
         return Pose(*self.poses[index].tolist())
@@ -182,7 +181,6 @@ class Scene:
         """
         Return the pose of an element in the frame of another.
 
-        :param index: its index.
         :param reference: index of the other, of the same root.
         :return: pose of the first in the second; unit quaternion with w >= 0.
         """
@@ -196,7 +194,6 @@ class Scene:
         """
         Return the world of an element.
 
-        :param index: its index.
         :return: the world's name; empty in a model file.
         """
         return self.world_names.get(self._root_of[index], '')
@@ -205,8 +202,6 @@ class Scene:
         """
         Return a scene with the same elements at other poses.
 
-        :param poses: as :attr:`poses`.
-        :param warnings: as :attr:`warnings`.
         :return: the scene.
         """
         values = {name: value for name, value in vars(self).items() if not name.startswith('_')}
@@ -247,7 +242,6 @@ class Scene:
         """
         Return the name of an element without its scope.
 
-        :param index: its index.
         :return: such as ``hand``; for a world its name.
         """
         parent = int(self.parents[index])
@@ -260,7 +254,6 @@ class Scene:
         """
         Return the place of an element.
 
-        :param index: its index.
         :return: its file and line.
         """
         return Place(self.files[self.file_indices[index]], int(self.lines[index]))

@@ -38,7 +38,6 @@ def triangles_from_shape(shape: Shape, largest_m: float) -> Triangles | None:
     """
     Make the surface of a shape.
 
-    :param shape: the shape.
     :param largest_m: no side of a plane is longer, because planes are often much larger than
         what stands on them.
     :return: the surface in the frame of the shape; None for a shape without an extent, a mesh and

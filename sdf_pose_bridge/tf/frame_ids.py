@@ -69,7 +69,6 @@ class FrameNaming(NamedTuple):
         """
         Make the frame ids of elements; frame ids that the file sets for sensors are not used.
 
-        :param scene: the scene.
         :param elements: indices of elements, all of the same world or model file; not the index
             of a world or an implicit root.
         :return: a frame id for each element; empty if its name consists of slashes only.
@@ -132,9 +131,6 @@ def with_ids_of_sensors(
 
     :param elements: the published elements.
     :param frame_ids: the frame id of each, made of its name.
-    :param scene: the scene.
-    :param naming: how frame ids are made of names.
-    :param root_frame: frame id of the root.
     :return: the elements and frame ids without those of sensors whose id is that of another kind
         of element, or of a sensor in the same place; and the frame id of each published sensor.
     """
@@ -176,8 +172,6 @@ def optical_frames_of_cameras(
     :param elements: the elements that have a frame.
     :param frame_ids: the frame id of each.
     :param sensor_ids: the frame id of each published sensor.
-    :param scene: the scene.
-    :param naming: how frame ids are made of names.
     :return: the optical frames, without those that the file has already.
     """
     cameras = [sensor for sensor in sensor_ids if scene.sensors[sensor].is_camera]

@@ -62,7 +62,6 @@ def dofs_from_joint(joint: Joint) -> list[DegreeOfFreedom]:
     """
     List the ways in which a joint can move.
 
-    :param joint: the joint.
     :return: its degrees of freedom from its parent to its child; none for a fixed joint. A ball
         joint has yaw, pitch and roll of its child in its parent.
     :raises KeyError: if :data:`JOINT_TYPES` does not have the type of the joint.
@@ -87,9 +86,6 @@ class JointMotion:
     The degrees of freedom of a scene, and the elements that they move.
 
     Joints that close a loop move nothing, and nothing moves a link of a static model.
-
-    :param scene: the scene.
-    :param tf_parents: the TF parents of its elements.
     """
 
     def __init__(self, scene: Scene, tf_parents: TfParents) -> None:

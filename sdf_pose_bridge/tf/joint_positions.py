@@ -68,8 +68,6 @@ class JointPositions:
     """
     The positions of the degrees of freedom of a scene; all are zero at first.
 
-    :param scene: the scene.
-    :param dofs: its degrees of freedom.
     :param frame_names: how much of a scoped name goes into the name of a joint.
     :param model: the scoped name of the only model whose joints have names; empty for all.
     """
@@ -101,7 +99,6 @@ class JointPositions:
         """
         Look up names.
 
-        :param names: names of degrees of freedom.
         :return: what they mean.
         """
         found = [self._indices.get(name) for name in names]
@@ -123,7 +120,6 @@ class JointPositions:
         """
         Return the end of a message about a name that means nothing, or several things.
 
-        :param name: the name.
         :return: the nearest name that exists, or those that can be meant; else an empty string.
         """
         return hint_from_names(name, self._indices)

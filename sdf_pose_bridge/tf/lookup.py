@@ -39,8 +39,6 @@ class PoseLookup:
     (``robot/arm/tool``), including those of optical frames. A name that is both is taken as a name
     of SDF.
 
-    :param scene: the scene.
-    :param tree: the TF tree of the scene.
     :param positions: the current position of each degree of freedom of the joints, in radians or
         metres; not copied. None for all joints where the file puts them.
     """

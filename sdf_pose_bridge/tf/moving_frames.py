@@ -30,7 +30,6 @@ class MovingFrames:
     The way from the parent of a frame to the frame crosses degrees of freedom: most often one,
     more for joints with several, and where frames between both are not published.
 
-    :param motion: the motion of the scene.
     :param poses: shape (n, 7): pose of each frame in the root.
     :param parents: index of the parent of each frame, or :data:`ROOT_IS_PARENT`, or
         :data:`NO_PARENT`.
@@ -105,7 +104,6 @@ class MovingFrames:
         """
         Return the pose of one frame.
 
-        :param index: index of the frame.
         :param positions: the position of each degree of freedom, in radians or metres.
         :return: its pose in the root.
         """
@@ -116,7 +114,6 @@ class MovingFrames:
         """
         Return the pose of an element, which need not have a frame.
 
-        :param element: index of the element in the scene.
         :param pose: its pose in the root where the file puts it.
         :param positions: the position of each degree of freedom, in radians or metres.
         :return: its pose in the root.
@@ -129,7 +126,6 @@ class MovingFrames:
         """
         Find the transforms that depend on some degrees of freedom.
 
-        :param dofs: indices of degrees of freedom.
         :return: their rows in :meth:`transforms`.
         """
         chosen = set(dofs)

@@ -66,7 +66,6 @@ def tf_parents_from_scene(scene: Scene) -> TfParents:
     world if a joint connects it to the world, else at a static model, else at the canonical link
     of a model.
 
-    :param scene: the scene.
     :return: the parents; they form one tree for each world or implicit root.
     """
     kinds = scene.kinds
@@ -106,7 +105,6 @@ def _elements_by_rank(scene: Scene, children: Sequence[int]) -> Indices:
     """
     Order elements by how much a tree of joints should start at them.
 
-    :param scene: the scene.
     :param children: the bodies that are the child of a joint.
     :return: all roots, models and links.
     """
@@ -133,7 +131,6 @@ def _steps_along_joints(
     Walk along joints, in both directions, from one start after the other.
 
     :param ends: the two bodies that each joint connects, parent and child.
-    :param starts: bodies.
     :param left_out: joints not to walk along.
     :return: for each body that a joint led to: that joint, and whether it led from its child.
     """

@@ -126,7 +126,6 @@ class TfTree(NamedTuple):
         """
         Return the frame ids of transforms.
 
-        :param indices: frames.
         :return: the frame id of the parent of each, and its own.
         """
         parent_ids = self.parent_ids
@@ -230,7 +229,6 @@ def elements_in_model(scene: Scene, name: str) -> NDArray[np.bool_]:
     """
     Find a model with all that it holds.
 
-    :param scene: the scene.
     :param name: scoped name of the model; empty for everything.
     :return: shape (n,), True for the model and the elements in it.
     :raises UnknownFrameError: if there is no such model.
@@ -263,9 +261,6 @@ def _check_frame_ids(
 
     :param frame_ids: the ids of all frames.
     :param owners: the element of each frame; the camera of an optical frame.
-    :param scene: the scene.
-    :param root_frame: frame id of the root.
-    :param problems: takes what is wrong.
     """
     first: dict[str, int] = {}
     for index, (frame_id, owner) in enumerate(zip(frame_ids, owners, strict=True)):
@@ -312,8 +307,6 @@ def _nearest_frames_and_parents(
 
     The parent is the nearest TF ancestor of the frame's element that has a frame.
 
-    :param scene: the scene.
-    :param tf_parents: the TF parents of all elements.
     :param anchor_models: which top-level models get a transform from the root frame.
     :param elements: the elements that have a frame.
     :return: for each element of the scene the index of the frame of the nearest element, itself

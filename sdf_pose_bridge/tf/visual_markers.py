@@ -75,7 +75,6 @@ def visual_markers_from_scene(
     ``MOST_MARKERS`` and ``MOST_POINTS``.
 
     :param scene: the scene, loaded with its shapes.
-    :param tree: its TF tree.
     :param model: scoped name of the only model to show; empty for everything.
     :param finder: finds the files of meshes.
     :return: the markers in file order, and warnings about visuals that cannot be shown.
