@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from collections.abc import Iterable
+import difflib
 import re
 
 SEPARATOR = '::'
@@ -121,8 +122,6 @@ def nearest_name(wanted: str, names: Iterable[str]) -> str:
     # The comparison takes the product of the lengths.
     if len(wanted) > _LONGEST_COMPARED:
         return ''
-    # The import takes a millisecond, and most processes do not need it.
-    import difflib
     near = difflib.get_close_matches(wanted, _likely_names(wanted, list(names)), n=1, cutoff=0.6)
     return near[0] if near else ''
 

@@ -17,8 +17,8 @@ import numpy as np
 
 from sdf_pose_bridge.cli.drawn_shapes import DrawnShape
 from sdf_pose_bridge.cli.drawn_shapes import Marker
-from sdf_pose_bridge.cli.frames import kind_labels_of
-from sdf_pose_bridge.cli.frames import Units
+from sdf_pose_bridge.cli.printing import kind_labels_of
+from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
@@ -130,7 +130,7 @@ def _layout_of_axes(lowest: Points, highest: Points, origins: Points) -> dict[st
     """
     size_m = float((highest - lowest).max()) or 1.0
     middle = 0.5 * (lowest + highest)
-    # What is right at the limit of an axis would be cut off here and there.
+    # plotly cuts off parts of what lies at the very limit of an axis.
     sides_m = np.maximum(1.02 * (highest - lowest), 0.1 * size_m)
     first, last = origins.min(axis=0), origins.max(axis=0)
     # For the camera the largest side has the length 1.
@@ -241,7 +241,7 @@ def _markers(markers: Sequence[Marker]) -> dict[str, Any]:
 
 
 def _segments(starts: Points, ends: Points) -> dict[str, Any]:
-    """Return the coordinates of lines; what is not a number separates them."""
+    """Return the coordinates of lines, with NaN between them."""
     gaps = np.full_like(starts, np.nan)
     return _columns(np.stack([starts, ends, gaps], axis=1).reshape(-1, 3), 'xyz')
 

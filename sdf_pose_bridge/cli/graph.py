@@ -14,17 +14,18 @@ from collections.abc import Iterator
 from collections.abc import Sequence
 import os
 from pathlib import Path
+import shutil
+import subprocess
 import sys
 
 import numpy as np
 
-from sdf_pose_bridge.cli.check import add_file_arguments
-from sdf_pose_bridge.cli.frames import add_kinds_argument
-from sdf_pose_bridge.cli.frames import add_model_argument
-from sdf_pose_bridge.cli.frames import add_output_argument
-from sdf_pose_bridge.cli.frames import default_references_of
-from sdf_pose_bridge.cli.frames import printed_errors
-from sdf_pose_bridge.cli.frames import scene_of
+from sdf_pose_bridge.cli.loading import add_file_arguments
+from sdf_pose_bridge.cli.loading import add_kinds_argument
+from sdf_pose_bridge.cli.loading import add_model_argument
+from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.printing import add_output_argument
+from sdf_pose_bridge.cli.printing import printed_errors
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.scene import Scene
@@ -101,7 +102,7 @@ def dot_from_scene(scene: Scene, kinds: Sequence[Kind] = _KINDS, model: str = ''
     chosen = np.flatnonzero(
         elements_in_model(scene, model) & np.isin(scene.kinds, kinds)).tolist()
     edges = _edges(scene, set(chosen))
-    # What an arrow starts at or leads to is drawn too, such as the world.
+    # Both ends of each arrow are drawn too, such as the world.
     shown = sorted({*chosen, *(end for ends in edges for end in ends)})
     lines = [f'  label="{_LEGEND}"', *_nodes(scene, shown)]
     for (start, end), colors in edges.items():
@@ -119,7 +120,7 @@ def _edges(scene: Scene, chosen: Container[int]) -> dict[tuple[int, int], list[s
         if joint.element in chosen:
             edges[joint.parent, joint.element] = [_JOINT]
             edges[joint.element, joint.child] = [_JOINT]
-    defaults = default_references_of(scene)
+    defaults = scene.default_references.tolist()
     for element, (reference, default, parent) in enumerate(zip(
             scene.references.tolist(), defaults, scene.parents.tolist(), strict=True)):
         if element not in chosen or reference < 0:
@@ -141,7 +142,7 @@ def _nodes(scene: Scene, shown: Sequence[int]) -> Iterator[str]:
     boxes: list[int] = []
     for element in shown:
         kind = Kind(scene.kinds[element])
-        models_around = _models_around(scene, element)
+        models_around = set(scene.with_ancestors(element))
         while boxes and boxes[-1] not in models_around:
             boxes.pop()
             yield f'{"  " * len(boxes)}  }}'
@@ -156,23 +157,12 @@ def _nodes(scene: Scene, shown: Sequence[int]) -> Iterator[str]:
     yield from (f'{"  " * depth}}}' for depth in range(len(boxes), 0, -1))
 
 
-def _models_around(scene: Scene, element: int) -> set[int]:
-    models = set()
-    while element >= 0:
-        models.add(element)
-        element = int(scene.parents[element])
-    return models
-
-
 def _escaped(name: str) -> str:
     return printable(shortened(name)).replace('\\', '\\\\').replace('"', '\\"')
 
 
 def _write(text: str, path: Path) -> int:
     """Write a graph in the format that the path says; return the exit code."""
-    # The other commands need not wait for these.
-    import shutil
-    import subprocess
     error = ''
     if path.suffix.lower() == '.dot':
         try:

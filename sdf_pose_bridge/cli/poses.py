@@ -10,12 +10,12 @@ import json
 import sys
 from typing import Any
 
-from sdf_pose_bridge.cli.check import add_file_arguments
-from sdf_pose_bridge.cli.check import load_file
-from sdf_pose_bridge.cli.check import LoadedFile
-from sdf_pose_bridge.cli.check import print_problems
-from sdf_pose_bridge.cli.frames import add_kinds_argument
-from sdf_pose_bridge.cli.frames import SHOWN_KINDS
+from sdf_pose_bridge.cli.loading import add_file_arguments
+from sdf_pose_bridge.cli.loading import add_kinds_argument
+from sdf_pose_bridge.cli.loading import load_file
+from sdf_pose_bridge.cli.loading import LoadedFile
+from sdf_pose_bridge.cli.loading import SHOWN_KINDS
+from sdf_pose_bridge.cli.printing import print_problems
 from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
@@ -24,6 +24,7 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.joint_positions import scene_at_positions
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -94,8 +95,6 @@ def _load_at_positions(path: str, options: argparse.Namespace) -> LoadedFile:
     loaded = load_file(path, options)
     if loaded.scene is None or not options.positions:
         return loaded
-    # Imported here because most often joints stay where they are.
-    from sdf_pose_bridge.tf.joint_positions import scene_at_positions
     try:
         scene = scene_at_positions(loaded.scene, dict(options.positions))
     except JointPositionError as error:

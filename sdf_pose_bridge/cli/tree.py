@@ -12,18 +12,17 @@ from fnmatch import fnmatchcase
 import sys
 from typing import NamedTuple
 
-from sdf_pose_bridge.cli.check import add_file_arguments
-from sdf_pose_bridge.cli.check import is_colored
-from sdf_pose_bridge.cli.frames import add_frame_arguments
-from sdf_pose_bridge.cli.frames import add_unit_arguments
-from sdf_pose_bridge.cli.frames import default_references_of
-from sdf_pose_bridge.cli.frames import kind_labels_of
-from sdf_pose_bridge.cli.frames import printed_errors
-from sdf_pose_bridge.cli.frames import scene_of
-from sdf_pose_bridge.cli.frames import SHOWN_KINDS
-from sdf_pose_bridge.cli.frames import tf_tree_of
-from sdf_pose_bridge.cli.frames import Units
-from sdf_pose_bridge.cli.frames import units_from_arguments
+from sdf_pose_bridge.cli.loading import add_file_arguments
+from sdf_pose_bridge.cli.loading import add_frame_arguments
+from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.loading import SHOWN_KINDS
+from sdf_pose_bridge.cli.loading import tf_tree_of
+from sdf_pose_bridge.cli.printing import add_unit_arguments
+from sdf_pose_bridge.cli.printing import is_colored
+from sdf_pose_bridge.cli.printing import kind_labels_of
+from sdf_pose_bridge.cli.printing import printed_errors
+from sdf_pose_bridge.cli.printing import Units
+from sdf_pose_bridge.cli.printing import units_from_arguments
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.scene import Scene
@@ -142,7 +141,8 @@ def _rows_by_scope(scene: Scene, options: argparse.Namespace) -> list[_Row]:
         for element, (kind, parent) in enumerate(zip(
             scene.kinds.tolist(), scene.parents.tolist(), strict=True))]
     rows: list[_Row] = []
-    # What a hidden element holds is below the next one around it. The last entry is that of -1.
+    # The elements in a hidden one are shown below the next one around it. The last entry is for
+    # the parent -1.
     indices = [-1] * (len(is_shown) + 1)
     for element, parent in enumerate(scene.parents.tolist()):
         indices[element] = indices[parent]
@@ -162,7 +162,7 @@ def _notes(scene: Scene) -> list[str]:
     names, joints = scene.names, {joint.element: joint for joint in scene.joints}
     notes = []
     for element, (reference, default) in enumerate(zip(
-            scene.references.tolist(), default_references_of(scene), strict=True)):
+            scene.references.tolist(), scene.default_references.tolist(), strict=True)):
         parts = []
         if element in joints:
             joint = joints[element]

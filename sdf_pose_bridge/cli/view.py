@@ -14,16 +14,16 @@ import sys
 from types import ModuleType
 from typing import Any
 
-from sdf_pose_bridge.cli.check import add_file_arguments
 from sdf_pose_bridge.cli.drawn_shapes import drawn_shapes_from_scene
 from sdf_pose_bridge.cli.figure import figure_from_scene
-from sdf_pose_bridge.cli.frames import add_frame_arguments
-from sdf_pose_bridge.cli.frames import add_output_argument
-from sdf_pose_bridge.cli.frames import add_unit_arguments
-from sdf_pose_bridge.cli.frames import printed_errors
-from sdf_pose_bridge.cli.frames import scene_of
-from sdf_pose_bridge.cli.frames import tf_tree_of
-from sdf_pose_bridge.cli.frames import units_from_arguments
+from sdf_pose_bridge.cli.loading import add_file_arguments
+from sdf_pose_bridge.cli.loading import add_frame_arguments
+from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.loading import tf_tree_of
+from sdf_pose_bridge.cli.printing import add_output_argument
+from sdf_pose_bridge.cli.printing import add_unit_arguments
+from sdf_pose_bridge.cli.printing import printed_errors
+from sdf_pose_bridge.cli.printing import units_from_arguments
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS

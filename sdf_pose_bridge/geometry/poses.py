@@ -26,7 +26,11 @@ PoseArray: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
 
 
 class Pose(NamedTuple):
-    """Pose of a child frame in a parent frame: metres, and a unit quaternion."""
+    """
+    Pose of a child frame in a parent frame: metres, and a unit quaternion.
+
+    ``Pose()`` is the identity.
+    """
 
     x: float = 0.0
     y: float = 0.0
@@ -80,6 +84,20 @@ def relative_pose(reference: Pose, pose: Pose) -> Pose:
     :return: pose of frame C in frame B.
     """
     return pose_product(pose_inverse(reference), pose)
+
+
+def canonical_relative_pose(reference: Pose, pose: Pose) -> Pose:
+    """
+    Return a pose in another frame, in the form in which poses are shown and published.
+
+    :param reference: pose of frame B in frame A.
+    :param pose: pose of frame C in frame A.
+    :return: pose of frame C in frame B; its quaternion is canonical as that of
+        :func:`~sdf_pose_bridge.geometry.rotations.canonical_quaternion`, and no zero is negative.
+    """
+    relative = relative_pose(reference, pose)
+    x, y, z = (value + 0.0 for value in relative[:3])
+    return Pose(x, y, z, *canonical_quaternion(relative[3:]))
 
 
 def pose_products(a: PoseArray, b: PoseArray) -> PoseArray:

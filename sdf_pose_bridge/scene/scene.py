@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The scene: all elements of a file with their resolved poses, as arrays."""
 
+from collections.abc import Iterator
 from collections.abc import Mapping
+from dataclasses import dataclass
+from dataclasses import replace
 from functools import cached_property
 import math
 from typing import NamedTuple
@@ -14,9 +17,9 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.geometry.chains import Indices
+from sdf_pose_bridge.geometry.poses import canonical_relative_pose
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -72,6 +75,7 @@ class Joint(NamedTuple):
     thread."""
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class Scene:
     """
     All elements of a file that have a pose.
@@ -79,8 +83,6 @@ class Scene:
     Entry i of each sequence and array is about element i. Elements stand in file order, each after
     its parent element. A scene is immutable, and its arrays are read-only.
     """
-
-    # Not a dataclass, because the import of dataclasses delays the start of the node.
 
     path: str
     """Path of the file, as it was opened."""
@@ -121,30 +123,6 @@ class Scene:
     warnings: tuple[SdfWarning, ...]
     """What libsdformat accepts, but the author of the file should know of, in file order."""
 
-    def __init__(
-        self, *,
-        path: str, files: tuple[str, ...], names: tuple[str, ...], kinds: 'npt.NDArray[np.uint8]',
-        parents: Indices, roots: Indices, poses: PoseArray, references: Indices,
-        attachments: Indices, bodies: Indices, canonical_links: Indices,
-        static_models: frozenset[int], joints: tuple[Joint, ...],
-        sensors: Mapping[int, SensorDetails], shapes: Mapping[int, Shape], lines: Indices,
-        file_indices: Indices, world_names: Mapping[int, str], warnings: tuple[SdfWarning, ...],
-    ) -> None:
-        vars(self).update(
-            path=path, files=files, names=names, kinds=kinds, parents=parents, roots=roots,
-            poses=poses, references=references, attachments=attachments, bodies=bodies,
-            canonical_links=canonical_links, static_models=static_models, joints=joints,
-            sensors=sensors, shapes=shapes, lines=lines, file_indices=file_indices,
-            world_names=world_names, warnings=warnings)
-
-    def __setattr__(self, name: str, value: object) -> None:
-        msg = f'{name} cannot be set: a scene is immutable'
-        raise AttributeError(msg)
-
-    def __delattr__(self, name: str) -> None:
-        msg = f'{name} cannot be deleted: a scene is immutable'
-        raise AttributeError(msg)
-
     def __repr__(self) -> str:
         return f'<Scene of {self.path}: {len(self.names)} elements>'
 
@@ -184,11 +162,7 @@ class Scene:
         :param reference: index of the other, of the same root.
         :return: pose of the first in the second; unit quaternion with w >= 0.
         """
-        x, y, z, qx, qy, qz, qw = relative_pose(self.pose_of(reference), self.pose_of(index))
-        sign = -1.0 if qw < 0.0 else 1.0
-        # To add zero leaves no negative zeros.
-        return Pose(
-            x, y, z, sign * qx + 0.0, sign * qy + 0.0, sign * qz + 0.0, sign * qw + 0.0)
+        return canonical_relative_pose(self.pose_of(reference), self.pose_of(index))
 
     def world_of(self, index: int) -> str:
         """
@@ -204,8 +178,7 @@ class Scene:
 
         :return: the scene.
         """
-        values = {name: value for name, value in vars(self).items() if not name.startswith('_')}
-        return Scene(**values | {'poses': poses, 'warnings': warnings})
+        return replace(self, poses=poses, warnings=warnings)
 
     def has(self, name: str) -> bool:
         """
@@ -257,6 +230,30 @@ class Scene:
         :return: its file and line.
         """
         return Place(self.files[self.file_indices[index]], int(self.lines[index]))
+
+    def with_ancestors(self, index: int) -> Iterator[int]:
+        """
+        Walk from an element to its root.
+
+        :return: the element itself, then each time the element that holds the last one.
+        """
+        while index >= 0:
+            yield index
+            index = int(self.parents[index])
+
+    @cached_property
+    def default_references(self) -> Indices:
+        """
+        The frame that the pose of each element is relative to where the file does not say it.
+
+        Of a joint it is its child, of an explicit frame what it is attached to, of another element
+        the one that holds it; -1 for worlds and implicit roots.
+        """
+        references = np.where(
+            self.kinds == int(Kind.FRAME), self.attachments, self.parents)
+        for joint in self.joints:
+            references[joint.element] = joint.child
+        return references
 
     @cached_property
     def _root_of(self) -> list[int]:

@@ -164,8 +164,4 @@ class JointMotion:
 
 
 def _is_in_static_model(scene: Scene, element: int) -> bool:
-    while element >= 0:
-        if element in scene.static_models:
-            return True
-        element = int(scene.parents[element])
-    return False
+    return any(model in scene.static_models for model in scene.with_ancestors(element))

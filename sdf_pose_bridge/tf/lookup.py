@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING
 
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import UnknownFrameError
+from sdf_pose_bridge.geometry.poses import canonical_relative_pose
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_inverse
-from sdf_pose_bridge.geometry.poses import pose_product
-from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.tree import TfTree
@@ -65,10 +63,7 @@ class PoseLookup:
         if not relative_to:
             return FoundPose(pose, self._tree.root_frame)
         reference, frame_id = self._pose_in_root(relative_to)
-        relative = pose_product(pose_inverse(reference), pose)
-        # Adding zero leaves no negative zeros.
-        x, y, z = (value + 0.0 for value in relative[:3])
-        return FoundPose(Pose(x, y, z, *canonical_quaternion(relative[3:])), frame_id)
+        return FoundPose(canonical_relative_pose(reference, pose), frame_id)
 
     def _pose_in_root(self, name: str) -> tuple[Pose, str]:
         """Return the pose of a frame in the root frame, and its frame id or else its name."""

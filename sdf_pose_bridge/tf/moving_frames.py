@@ -45,7 +45,8 @@ class MovingFrames:
         self.dofs = motion.dofs
         """The degrees of freedom, in the order of positions."""
         last = motion.last_dofs[elements]
-        last_of_parents = np.where(parents < 0, NO_DOF, last[parents])
+        # The last two entries are for ROOT_IS_PARENT and NO_PARENT, which are negative.
+        last_of_parents = np.append(last, [NO_DOF, NO_DOF])[parents]
         self.indices = np.flatnonzero((last != last_of_parents) & (parents != NO_PARENT))
         """Shape (m,), the frames that move in their parents."""
         self.posed_indices = np.flatnonzero(

@@ -3,8 +3,8 @@
 """
 Choose the TF parent of every element: what it is fixed to, or what a joint connects it to.
 
-``relative_to`` says only where things start. What moves with what is said by ``attached_to`` and
-by joints. So the parent of a frame is what it is attached to, that of a model its canonical link,
+``relative_to`` says only where things start. ``attached_to`` and joints say which things move
+together. So the parent of a frame is what it is attached to, that of a model its canonical link,
 and that of a link the link on the other side of a joint.
 """
 

@@ -5,7 +5,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 import enum
+from functools import cached_property
 from typing import NamedTuple
 from typing import TYPE_CHECKING
 
@@ -29,6 +31,8 @@ from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.frame_ids import optical_frames_of_cameras
 from sdf_pose_bridge.tf.frame_ids import with_ids_of_sensors
+from sdf_pose_bridge.tf.joint_motion import JointMotion
+from sdf_pose_bridge.tf.moving_frames import MovingFrames
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
@@ -36,8 +40,6 @@ from sdf_pose_bridge.tf.parents import TfParents
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from sdf_pose_bridge.tf.moving_frames import MovingFrames
 
 DEFAULT_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.FRAME, Kind.SENSOR})
 """The kinds of element that become frames unless the options say otherwise."""
@@ -76,7 +78,8 @@ class TfOptions(NamedTuple):
     """Whether moving joints follow ``joint_states``."""
 
 
-class TfTree(NamedTuple):
+@dataclass(frozen=True, eq=False, repr=False)
+class TfTree:
     """
     The frames to publish, in the order of the file; optical frames follow all others.
 
@@ -107,14 +110,14 @@ class TfTree(NamedTuple):
     """The name of the world that the frames belong to; empty for a model file."""
     warnings: tuple[SdfWarning, ...]
 
-    @property
+    @cached_property
     def parent_ids(self) -> tuple[str, ...]:
         """Frame id of the parent of each frame; empty for a frame without a transform."""
         # The last two entries serve the two negative indices.
         ids = (*self.frame_ids, '', self.root_frame)
         return tuple(map(ids.__getitem__, self.parents.tolist()))
 
-    @property
+    @cached_property
     def fixed_indices(self) -> NDArray[np.intp]:
         """The frames with a transform that no joint changes."""
         is_fixed = self.parents != NO_PARENT
@@ -185,9 +188,6 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         np.broadcast_to(poses[reference], poses[:-2].shape), poses[:-2])
     moving = None
     if options.use_joint_states:
-        # Imported here because most trees stand still.
-        from sdf_pose_bridge.tf.joint_motion import JointMotion
-        from sdf_pose_bridge.tf.moving_frames import MovingFrames
         motion = JointMotion(scene, tf_parents)
         moving = MovingFrames(
             motion, poses[:-2], parents, np.array(owners, np.int32), reference)
@@ -310,8 +310,8 @@ def _nearest_frames_and_parents(
     :param anchor_models: which top-level models get a transform from the root frame.
     :param elements: the elements that have a frame.
     :return: for each element of the scene the index of the frame of the nearest element, itself
-        included, that has one; for each frame the index of its parent. Both may be one of the two
-        constants instead.
+        included, that has one; for each frame the index of its parent. Instead of an index both
+        may be :data:`ROOT_IS_PARENT` or :data:`NO_PARENT`.
     """
     is_root = scene.parents < 0
     is_detached = np.zeros(len(is_root), np.bool_)
@@ -338,7 +338,5 @@ def _is_anchored(
         return True
     if anchor_models is AnchorModels.NONE:
         return False
-    model = element
-    while scene.parents[model] != scene.roots[model]:
-        model = int(scene.parents[model])
-    return element not in tf_parents.free_bodies or model in scene.static_models
+    *_, top_level_model, _ = scene.with_ancestors(element)
+    return element not in tf_parents.free_bodies or top_level_model in scene.static_models

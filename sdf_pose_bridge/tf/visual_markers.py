@@ -136,7 +136,7 @@ def _forms_from_shape(
         triangles = triangles_from_shape(shape, largest_m=math.inf)
         assert triangles is not None
         return (Form('TRIANGLE_LIST', points=triangles.points[triangles.faces.reshape(-1)]),)
-    # What remains is round. A capsule that is not longer than its ends is a sphere.
+    # The other shapes are round. A capsule that is not longer than its ends is a sphere.
     diameter_m, length_m = 2.0 * sizes_m[0], max((*sizes_m, 0.0)[1], 0.0)
     sphere = Form('SPHERE', (diameter_m, diameter_m, diameter_m))
     if not length_m:

@@ -12,7 +12,7 @@ from sdf_pose_bridge import load_text
 from sdf_pose_bridge.cli.drawn_shapes import DrawnShape
 from sdf_pose_bridge.cli.drawn_shapes import Marker
 from sdf_pose_bridge.cli.figure import figure_from_scene
-from sdf_pose_bridge.cli.frames import Units
+from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.triangles import triangles_of_box
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene

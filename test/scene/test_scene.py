@@ -19,6 +19,8 @@ from sdf_texts import world_file
 import sdf_pose_bridge
 from sdf_pose_bridge import SdfError
 from sdf_pose_bridge import UnknownFrameError
+from sdf_pose_bridge.tf.lookup import PoseLookup
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 TABLE = ('<model name="{}"><pose>1 2 0 0 0 {}</pose><link name="top"><pose>0 0 1 0 0 0</pose>'
          '</link></model>')
@@ -207,6 +209,48 @@ def test_scene_has_its_files(scene):
     assert not scene.file_indices.any()
 
 
+# Default references and ancestors
+
+def test_default_reference_depends_on_the_kind():
+    scene = sdf_pose_bridge.load_text(model_file(
+        '<link name="a"><visual name="v"><geometry><empty/></geometry></visual></link>'
+        '<link name="b"><pose relative_to="a"/></link><frame name="f" attached_to="a"/>'
+        '<frame name="g"/>'
+        '<joint name="j" type="fixed"><parent>a</parent><child>b</child></joint>'))
+    defaults = {
+        scene.own_name(element): None if reference < 0 else scene.own_name(reference)
+        for element, reference in enumerate(scene.default_references.tolist())}
+    assert defaults == {
+        '__root__': None, 'm': '__root__', 'a': 'm', 'v': 'a', 'b': 'm', 'f': 'a', 'g': 'm',
+        'j': 'b'}
+
+
+def test_elements_around_an_element(scene):
+    index = int(np.argmax(scene.parents))
+    around = list(scene.with_ancestors(index))
+    assert around[0] == index
+    assert around[-1] == scene.roots[index]
+    assert [int(scene.parents[each]) for each in around] == [*around[1:], -1]
+
+
+# Half turns
+
+@pytest.mark.parametrize('quat_xyzw', [
+    (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0.6, 0.8, 0, 0), (0.6, -0.8, 0, 0),
+    (0, 0.6, -0.8, 0),
+])
+@pytest.mark.parametrize('sign', [1, -1])
+def test_half_turn_between_elements_has_the_canonical_sign(quat_xyzw, sign):
+    written = ' '.join(str(sign * component) for component in quat_xyzw)
+    scene = sdf_pose_bridge.load_text(model_file(
+        '<link name="a"/><frame name="f">'
+        f'<pose rotation_format="quat_xyzw">0 0 0 {written}</pose></frame>'))
+    lookup = PoseLookup(scene, tf_tree_from_scene(scene))
+    for names in (('m::f', 'm::a'), ('m::a', 'm::f')):
+        assert scene.pose(*names)[3:] == quat_xyzw
+        assert lookup.pose(*names).pose == scene.pose(*names)
+
+
 # Immutability
 
 @pytest.mark.parametrize('name', [
@@ -220,12 +264,12 @@ def test_arrays_cannot_be_written(scene, name):
 
 @pytest.mark.parametrize('name', ['poses', 'names', 'warnings', 'anything'])
 def test_fields_cannot_be_set(scene, name):
-    with pytest.raises(AttributeError, match=f'{name} cannot be set'):
+    with pytest.raises(AttributeError, match=f"cannot assign to field '{name}'"):
         setattr(scene, name, ())
 
 
 def test_fields_cannot_be_deleted(scene):
-    with pytest.raises(AttributeError, match='poses cannot be deleted'):
+    with pytest.raises(AttributeError, match="cannot delete field 'poses'"):
         del scene.poses
 
 

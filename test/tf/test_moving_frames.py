@@ -66,6 +66,12 @@ def test_a_model_that_is_not_anchored_has_no_transform_to_move():
     assert not moving_ids(moving_tree(text, anchor_models=AnchorModels.NONE))
 
 
+def test_a_single_frame_that_is_not_anchored():
+    tree = moving_tree(model_file('<link name="a"/>'), anchor_models=AnchorModels.NONE,
+                       kinds=frozenset({Kind.LINK}))
+    assert (tree.frame_ids, tree.parents.tolist(), moving_ids(tree)) == (('a',), [NO_PARENT], [])
+
+
 def test_fixed_joints_move_nothing():
     links = '<link name="a"/><link name="b"/>'
     assert not moving_ids(moving_tree(model_file(links + fixed_joint('j', 'a', 'b'))))

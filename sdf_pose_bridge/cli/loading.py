@@ -1,0 +1,147 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Load the files of a command as its arguments say, and choose their frames."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Collection
+import sys
+from typing import NamedTuple
+
+from sdf_pose_bridge.cli.printing import print_problems
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.scene.loading import MissingInclude
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
+from sdf_pose_bridge.tf.frame_ids import FrameNames
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.tree import TfTree
+
+SHOWN_KINDS = tuple(kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD))
+"""The kinds that ``--kinds`` takes."""
+
+_SHOWN_BY_NAME = {kind.label: kind for kind in SHOWN_KINDS}
+_KIND_NAMES = ', '.join(_SHOWN_BY_NAME)
+
+
+class LoadedFile(NamedTuple):
+    """Result of loading a file."""
+
+    scene: Scene | None
+    """None if the file is not valid."""
+    errors: tuple[SdfError, ...]
+    warnings: tuple[SdfWarning, ...]
+
+
+def add_file_arguments(parser: argparse.ArgumentParser, *, takes_many: bool = True) -> None:
+    """
+    Add the arguments of :func:`load_file`.
+
+    :param takes_many: whether the command takes several files.
+    """
+    parser.add_argument(
+        'files', metavar='FILE', nargs='+' if takes_many else 1, help='an SDFormat file')
+    parser.add_argument(
+        '-I', dest='resource_paths', metavar='DIR', action='append', default=[],
+        help='a directory to search for included models, before those of GZ_SIM_RESOURCE_PATH '
+             'and SDF_PATH; may be given more than once')
+    parser.add_argument(
+        '--skip-missing', action='store_true',
+        help='leave out includes that are not found, with a warning')
+
+
+def load_file(path: str, options: argparse.Namespace, *, shapes: bool = False) -> LoadedFile:
+    """
+    Load a file, or what a pipe such as that of the shell's ``<(command)`` holds.
+
+    :return: the scene with its warnings, or the errors of the file.
+    """
+    missing = MissingInclude.SKIP if options.skip_missing else MissingInclude.ERROR
+    try:
+        text = bytes_from_file(path, Usage(), allows_pipe=True)
+        scene = load_text(
+            text, path, resource_paths=options.resource_paths, on_missing_include=missing,
+            shapes=shapes)
+    except SdfError as error:
+        return LoadedFile(None, error.errors, error.warnings)
+    return LoadedFile(scene, (), scene.warnings)
+
+
+def scene_of(path: str, options: argparse.Namespace, *, shapes: bool = False) -> Scene | None:
+    """
+    Load a file and print its errors and warnings to standard error.
+
+    :return: the scene; None if the file is not valid.
+    """
+    loaded = load_file(path, options, shapes=shapes)
+    sys.stdout.flush()
+    print_problems(loaded.errors, loaded.warnings, sys.stderr)
+    return loaded.scene
+
+
+def add_kinds_argument(
+    parser: argparse.ArgumentParser, default: Collection[Kind], what: str = 'show only',
+) -> None:
+    """
+    Add the argument ``--kinds``, a list of kinds.
+
+    :param default: the kinds without the argument.
+    :param what: what the command does with the kinds.
+    """
+    parser.add_argument(
+        '--kinds', metavar='KIND[,KIND...]', type=_kinds_from_text, default=tuple(default),
+        help=f'{what} these kinds: {_KIND_NAMES}')
+
+
+def add_frame_arguments(
+    parser: argparse.ArgumentParser, default_kinds: Collection[Kind],
+) -> None:
+    """
+    Add the arguments of :func:`tf_tree_of`, which are named like the parameters of the node.
+
+    :param default_kinds: the kinds of element that become frames without ``--kinds``.
+    """
+    names = ','.join(kind.label for kind in SHOWN_KINDS if kind in default_kinds)
+    add_kinds_argument(parser, default_kinds, f'instead of {names} show frames of')
+    add_model_argument(parser)
+    parser.add_argument(
+        '--frame-names', choices=[names.value for names in FrameNames],
+        default=FrameNames.AUTO.value,
+        help='scoped: the names of all models around an element are in its frame id; relative: '
+             'all but that of the top-level model; auto: relative for a model file')
+
+
+def add_model_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the argument ``--model``."""
+    parser.add_argument(
+        '--model', metavar='NAME', default='', help='show only this model, such as robot::arm')
+
+
+def tf_tree_of(scene: Scene, options: argparse.Namespace) -> TfTree:
+    """
+    Make the TF tree of a scene and print its warnings to standard error.
+
+    :return: the tree.
+    :raises SdfError: if there is none.
+    """
+    tree = tf_tree_from_scene(scene, TfOptions(
+        model=options.model, kinds=frozenset(options.kinds),
+        frame_names=FrameNames(options.frame_names)))
+    print_problems((), tree.warnings, sys.stderr)
+    return tree
+
+
+def _kinds_from_text(text: str) -> tuple[Kind, ...]:
+    kinds = []
+    for name in text.split(','):
+        if name not in _SHOWN_BY_NAME:
+            msg = f'"{name}" is not a kind of element; known are {_KIND_NAMES}'
+            raise argparse.ArgumentTypeError(msg)
+        kinds.append(_SHOWN_BY_NAME[name])
+    return tuple(kinds)

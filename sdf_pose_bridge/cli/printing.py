@@ -1,0 +1,141 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Print problems and poses: colors, units and places of output."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from collections.abc import Sequence
+import contextlib
+import os
+from pathlib import Path
+import sys
+from typing import NamedTuple
+from typing import TextIO
+
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.tree import TfTree
+
+_RED, _YELLOW, _BOLD, _PLAIN = '\x1b[31m', '\x1b[33m', '\x1b[1m', '\x1b[0m'
+_DEGREES_PER_RADIAN = 57.29577951308232
+
+
+def is_colored(stream: TextIO) -> bool:
+    """
+    Return whether to print colors.
+
+    :param stream: where they would be printed.
+    :return: True for a terminal, unless the variable ``NO_COLOR`` is set (https://no-color.org).
+    """
+    return stream.isatty() and not os.environ.get('NO_COLOR')
+
+
+def print_problems(
+    errors: tuple[SdfError, ...], warnings: tuple[SdfWarning, ...], stream: TextIO,
+) -> None:
+    """Print errors and warnings, one per line; in color on a terminal."""
+    has_colors = is_colored(stream)
+    bold, plain = (_BOLD, _PLAIN) if has_colors else ('', '')
+    problems: list[SdfError | SdfWarning] = [*errors, *warnings]
+    for problem in problems:
+        is_error = isinstance(problem, SdfError)
+        color = '' if not has_colors else _RED if is_error else _YELLOW
+        kind = '' if is_error or problem.code == 'WARNING' else 'WARNING: '
+        place, message = printable(str(problem.place)), printable(problem.message)
+        print(f'{bold}{place}:{plain} {color}{kind}{problem.code}:{plain} {message}', file=stream)
+
+
+@contextlib.contextmanager
+def printed_errors() -> Iterator[None]:
+    """Print errors that are raised to standard error."""
+    try:
+        yield
+    except SdfError as error:
+        print_problems(error.errors, error.warnings, sys.stderr)
+
+
+class Units(NamedTuple):
+    """Units of the poses that a command shows."""
+
+    is_mm: bool
+    """Whether lengths are in millimetres, not metres."""
+    is_degrees: bool
+    """Whether angles are in degrees, not radians."""
+
+    @property
+    def length(self) -> str:
+        """Name of the unit of lengths."""
+        return 'mm' if self.is_mm else 'm'
+
+    @property
+    def angle(self) -> str:
+        """Name of the unit of angles."""
+        return 'deg' if self.is_degrees else 'rad'
+
+    def texts(self, pose: Pose) -> list[str]:
+        """
+        Write a pose in these units.
+
+        :return: x, y, z, roll, pitch and yaw, rounded.
+        """
+        length, length_digits = (1000.0, 1) if self.is_mm else (1.0, 4)
+        angle, angle_digits = (_DEGREES_PER_RADIAN, 2) if self.is_degrees else (1.0, 4)
+        # To add zero leaves no negative zeros.
+        return [
+            *(f'{round(value * length, length_digits) + 0.0:.{length_digits}f}'
+              for value in pose[:3]),
+            *(f'{round(value * angle, angle_digits) + 0.0:.{angle_digits}f}'
+              for value in rpy_from_quaternion(pose[3:]))]
+
+
+def add_unit_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of :func:`units_from_arguments`."""
+    parser.add_argument('--degrees', action='store_true', help='angles in degrees, not radians')
+    parser.add_argument('--mm', action='store_true', help='lengths in millimetres, not metres')
+
+
+def units_from_arguments(options: argparse.Namespace) -> Units:
+    """
+    Return the units to show poses in.
+
+    :return: the units.
+    """
+    return Units(options.mm, options.degrees)
+
+
+def add_output_argument(
+    parser: argparse.ArgumentParser, formats: Sequence[str], what: str,
+) -> None:
+    """
+    Add the argument ``-o``, a path whose ending says the format.
+
+    :param formats: the endings, such as ``.svg``.
+    :param what: what is written there.
+    """
+    def path_from_text(text: str) -> Path:
+        path = Path(text)
+        if path.suffix.lower() not in formats:
+            msg = f'"{text}" must end with one of {", ".join(formats)}'
+            raise argparse.ArgumentTypeError(msg)
+        return path
+
+    parser.add_argument(
+        '-o', dest='output', metavar='PATH', type=path_from_text, help=f'where to write {what}')
+
+
+def kind_labels_of(scene: Scene, tree: TfTree) -> list[str]:
+    """
+    Return the kind of each frame in words.
+
+    :return: the labels of their kinds; ``optical frame`` for those of cameras.
+    """
+    return [
+        'optical frame' if element < 0 else Kind(scene.kinds[element]).label
+        for element in tree.elements.tolist()]
