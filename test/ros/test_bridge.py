@@ -64,7 +64,7 @@ def test_the_readme_says_the_same_words():
 WAITS_FOR_THE_FIRST_MESSAGE = (
     'sdf_pose_bridge.ros.node', 'sdf_pose_bridge.ros.services', 'sdf_pose_bridge.ros.diagnostics',
     'sdf_pose_bridge.ros.topic_names', 'sdf_pose_bridge.ros.log_lines',
-    'diagnostic_msgs', 'std_srvs', 'difflib', 'hashlib', 'importlib.metadata', 'numpy.ma')
+    'diagnostic_msgs', 'std_srvs', 'hashlib', 'importlib.metadata', 'numpy.ma')
 
 
 def test_what_can_wait_for_the_first_message_is_not_imported_before():
