@@ -5,10 +5,10 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
 import json
 import sys
 from typing import Any
+from typing import NamedTuple
 
 from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import add_kinds_argument
@@ -27,6 +27,15 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.joint_positions import scene_at_positions
 
 
+class _FileResult(NamedTuple):
+    path: str
+    errors: tuple[SdfError, ...]
+    warnings: tuple[SdfWarning, ...]
+    elements: list[dict[str, Any]]
+    """Kind, name, world and pose of each; empty if there is an error."""
+    is_only_file: bool
+
+
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command."""
     parser = subparsers.add_parser(
@@ -36,7 +45,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
                     'is 1 if a file has an error.')
     add_file_arguments(parser)
     parser.add_argument(
-        '--json', action='store_true', help='print one JSON object for each file, one per line')
+        '--json', dest='print_file', action='store_const', const=_print_json,
+        default=_print_table, help='print one JSON object for each file, one per line')
     parser.add_argument(
         '--relative-to', metavar='FRAME', default='',
         help='print poses relative to this frame, such as robot::arm::hand')
@@ -66,19 +76,8 @@ def run(options: argparse.Namespace) -> int:
             except UnknownFrameError as error:
                 errors = error.errors
         are_valid = are_valid and not errors
-        if options.json:
-            print(json.dumps({
-                'file': path,
-                'ok': not errors,
-                'errors': [_problem(error) for error in errors],
-                'warnings': [_problem(warning) for warning in loaded.warnings],
-                'elements': elements,
-            }))
-            continue
-        sys.stdout.flush()
-        print_problems(errors, loaded.warnings, sys.stderr)
-        if not errors:
-            _print_table(elements, path if len(options.files) > 1 else '')
+        options.print_file(_FileResult(
+            path, errors, loaded.warnings, elements, is_only_file=len(options.files) == 1))
     return 0 if are_valid else 1
 
 
@@ -124,6 +123,19 @@ def _pose(scene: Scene, index: int, relative_to: str) -> Pose:
     return scene.relative_pose_of(index, reference)
 
 
+# Formats
+
+
+def _print_json(result: _FileResult) -> None:
+    print(json.dumps({
+        'file': result.path,
+        'ok': not result.errors,
+        'errors': [_problem(error) for error in result.errors],
+        'warnings': [_problem(warning) for warning in result.warnings],
+        'elements': result.elements,
+    }))
+
+
 def _problem(problem: SdfError | SdfWarning) -> dict[str, Any]:
     return {
         'code': problem.code,
@@ -134,9 +146,14 @@ def _problem(problem: SdfError | SdfWarning) -> dict[str, Any]:
     }
 
 
-def _print_table(elements: Sequence[dict[str, Any]], title: str) -> None:
-    if title:
-        print(printable(title))
+def _print_table(result: _FileResult) -> None:
+    sys.stdout.flush()
+    print_problems(result.errors, result.warnings, sys.stderr)
+    if result.errors:
+        return
+    if not result.is_only_file:
+        print(printable(result.path))
+    elements = result.elements
     has_worlds = len({element['world'] for element in elements}) > 1
     names = [
         printable(f'{element["world"]}: {element["name"]}' if has_worlds else element['name'])
