@@ -1,0 +1,50 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The files of a command and the frames that its arguments choose."""
+
+import argparse
+
+import pytest
+
+from sdf_pose_bridge import Kind
+from sdf_pose_bridge.cli.loading import add_file_arguments
+from sdf_pose_bridge.cli.loading import add_frame_arguments
+from sdf_pose_bridge.cli.loading import load_file
+from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.loading import tf_tree_of
+
+
+@pytest.fixture(name='options')
+def make_options(files, monkeypatch):
+    monkeypatch.chdir(files)
+
+    def parsed(*arguments):
+        parser = argparse.ArgumentParser()
+        add_file_arguments(parser)
+        add_frame_arguments(parser, [Kind.LINK])
+        return parser.parse_args(arguments)
+    return parsed
+
+
+def test_an_invalid_file_has_errors_and_no_scene(options):
+    loaded = load_file('bad.sdf', options('bad.sdf'))
+    assert loaded.scene is None
+    assert [error.line for error in loaded.errors] == [3, 4]
+
+
+def test_problems_of_a_file_are_printed(options, capsys):
+    assert scene_of('bad.sdf', options('bad.sdf')) is None
+    assert capsys.readouterr().err.startswith('bad.sdf:3: ELEMENT_INVALID: ')
+
+
+def test_frames_are_those_of_the_chosen_kinds(options):
+    chosen = options('--kinds', 'model,link', 'good.sdf')
+    scene = scene_of('good.sdf', chosen)
+    kinds = {Kind(scene.kinds[element]) for element in tf_tree_of(scene, chosen).elements}
+    assert kinds == {Kind.MODEL, Kind.LINK}
+
+
+def test_an_unknown_kind_names_those_that_exist(options, capsys):
+    with pytest.raises(SystemExit):
+        options('--kinds', 'lnk', 'good.sdf')
+    assert '"lnk" is not a kind of element; known are model' in capsys.readouterr().err
