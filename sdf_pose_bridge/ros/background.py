@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Keep callbacks that take long from delaying the other callbacks of a node."""
+"""Run long work beside the other callbacks of a node."""
 
 from __future__ import annotations
 

@@ -56,12 +56,7 @@ def main(args: Sequence[str] | None = None) -> int:
 
 
 def sentence_from_import_error(error: ImportError) -> str:
-    """
-    Explain what to do about a failed import.
-
-    :param error: what the import raised.
-    :return: one sentence.
-    """
+    """Explain what to do about a failed import."""
     module = (error.name or '').partition('.')[0]
     if module == 'sdf_pose_bridge_interfaces':
         return MISSING_INTERFACES

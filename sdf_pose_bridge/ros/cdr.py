@@ -31,7 +31,7 @@ _STAMP = 8
 _NUMBERS = 7 * 8
 _BYTES_AT_A_TIME = 100_000
 _HEADER = 8
-"""Room before the fields of a message: the four bytes, behind four that keep it aligned."""
+"""Room before the fields of a message: four bytes of padding, then the four fixed ones."""
 
 
 class StampedMessages:
@@ -60,9 +60,7 @@ class StampedMessages:
         """
         Return the messages with a stamp.
 
-        :param sec: seconds of the stamp.
         :param nanosec: nanoseconds of the stamp, from 0 to 999,999,999.
-        :return: the bytes of each message.
         """
         words = self._buffer.view('<i4')
         words[self._stamps // 4] = sec
@@ -90,7 +88,6 @@ def tf_message(
     :param child_ids: the child frame of each transform.
     :param transforms: shape (n, 7): pose of each child in its parent, in metres, quaternion
         x y z w.
-    :return: the message.
     :raises ValueError: if a frame id contains a zero character.
     """
     # The length of the sequence is before the first transform.
@@ -114,7 +111,6 @@ def transform_stamped_messages(
     :param child_ids: the child frame of each transform.
     :param transforms: shape (n, 7): pose of each child in its parent, in metres, quaternion
         x y z w.
-    :return: the messages.
     :raises ValueError: if a frame id contains a zero character.
     """
     return _messages([parent_ids, child_ids], transforms)
@@ -126,7 +122,6 @@ def pose_stamped_messages(frame_ids: Sequence[str], poses: PoseArray) -> Stamped
 
     :param frame_ids: the frame that each pose is given in.
     :param poses: shape (n, 7), in metres, quaternion x y z w.
-    :return: the messages.
     :raises ValueError: if a frame id contains a zero character.
     """
     return _messages([frame_ids], poses)

@@ -28,11 +28,7 @@ costs.
 
 
 class Diagnostics:
-    """
-    The publisher of the diagnostics of a node.
-
-    :param node: the node.
-    """
+    """The publisher of the diagnostics of a node."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -43,7 +39,6 @@ class Diagnostics:
         """
         Publish another status from now on.
 
-        :param loaded: what is served.
         :param failure: what was wrong at the last load, one line for each error; empty if the
             last load succeeded.
         """
@@ -63,9 +58,7 @@ def status_from_scene(
     """
     Describe what is served in a status.
 
-    :param loaded: what is served.
     :param failure: what was wrong at the last load; empty if it succeeded.
-    :param name: name of the node.
     :return: ERROR if the last load failed, while what was loaded before is still served; WARN if
         what is served has warnings; otherwise OK.
     """

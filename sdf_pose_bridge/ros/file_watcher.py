@@ -29,7 +29,7 @@ _CHANGED: Signature = ()
 """A signature that no file has."""
 
 _TICK_NS = 20_000_000
-"""The file system may be so much behind the clock in the times that it gives to files."""
+"""How far the times of files may be behind the clock."""
 
 
 class FileWatcher:
@@ -50,7 +50,6 @@ class FileWatcher:
 
         A file that has changed since reading began counts as changed, once.
 
-        :param paths: paths of files, which need not exist.
         :param read_since_ns: when reading began, in nanoseconds since 1970.
         """
         signatures = _signatures(paths)
@@ -72,9 +71,9 @@ class FileWatcher:
 
     def has_changed(self) -> bool:
         """
-        Look at the files and remember what they are now; from another thread use :meth:`differs`.
+        Look at the files, remember them as they are now, and return whether any has changed.
 
-        :return: whether any of them has changed.
+        Other threads use :meth:`differs`.
         """
         now = _signatures(self._signatures)
         has_changed = now != self._signatures

@@ -21,6 +21,7 @@ from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import JointState
 
+from sdf_pose_bridge.ros.cdr import StampedMessages
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.publishers import Stamp
@@ -29,8 +30,6 @@ from sdf_pose_bridge.tf.joint_positions import Selection
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from sdf_pose_bridge.ros.cdr import StampedMessages
 
 INITIAL_PERIOD_S = 0.1
 """How often ``/tf`` is published before the first message of ``joint_states``."""
@@ -62,8 +61,6 @@ class JointStates:
     """
     Follows ``joint_states``.
 
-    :param node: the node.
-    :param frames: the frames to move.
     :param is_published_later: whether messages wait for :meth:`publish_waiting` instead of being
         published at once.
     """
@@ -95,11 +92,7 @@ class JointStates:
         self._node.destroy_timer(self._topics_timer)
 
     def replace(self, frames: PublishedMovingFrames) -> None:
-        """
-        Move other frames from now on.
-
-        :param frames: the frames.
-        """
+        """Move other frames from now on."""
         self._frames = frames
         self._plans.clear()
         self._last_plan = None
@@ -115,11 +108,7 @@ class JointStates:
     # Messages
 
     def take(self, message: JointState) -> None:
-        """
-        Take positions of joints, and publish what they move.
-
-        :param message: a message of ``joint_states``.
-        """
+        """Take positions of joints, and publish what they move."""
         names, values = message.name, np.asarray(message.position)
         if len(values) != len(names):
             self._logger.warning(

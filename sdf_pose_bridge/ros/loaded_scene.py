@@ -8,7 +8,6 @@ import os
 from pathlib import Path
 import time
 from typing import NamedTuple
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,16 +16,15 @@ from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UriLookupError
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.scene.loading import load
+from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import AddressError
+from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfTree
-
-if TYPE_CHECKING:
-    from sdf_pose_bridge.scene.scene import Scene
-    from sdf_pose_bridge.tf.joint_positions import JointPositions
 
 
 class LoadedScene(NamedTuple):
@@ -51,8 +49,6 @@ def loaded_scene_from_settings(settings: Settings) -> LoadedScene:
     """
     Read the file that the settings name.
 
-    :param settings: the settings of the node.
-    :return: the loaded scene.
     :raises AddressError: if ``sdf_file`` is a URI of a file that is not found.
     :raises SdfError: if the file is not valid, or cannot be published with these settings.
     """
@@ -83,8 +79,6 @@ def scene_with_shapes(loaded: LoadedScene, settings: Settings) -> Scene | None:
     Shapes are not read with the rest because that would make each load a quarter longer, or more,
     and few nodes need them.
 
-    :param loaded: the loaded scene.
-    :param settings: the settings that it was loaded with.
     :return: the scene with shapes; None if the file is not valid, or has other elements or poses.
     """
     try:
@@ -105,8 +99,6 @@ def _scene_from_file(path: Path, settings: Settings, *, shapes: bool = False) ->
 def _joint_positions(scene: Scene, tree: TfTree, settings: Settings) -> JointPositions | None:
     if tree.moving is None:
         return None
-    # Imported here because most often joints do not move.
-    from sdf_pose_bridge.tf.joint_positions import JointPositions
     return JointPositions(
         scene, tree.moving.dofs, settings.frame_names, settings.model)
 
@@ -116,7 +108,6 @@ def files_behind_error(error: Exception, settings: Settings) -> list[str]:
     Return the files that have to change before loading can succeed.
 
     :param error: what :func:`loaded_scene_from_settings` raised.
-    :param settings: its argument.
     :return: the files with errors; if something was not found, also the directories in which it
         was looked for.
     """
@@ -140,7 +131,5 @@ def _file_from_settings(
     # Path.is_dir raises for a path that is too long; reading the file gives a better message.
     if not os.path.isdir(path):  # noqa: PTH112
         return path, (), ()
-    # Imported here because most often it is a file.
-    from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
     chosen = model_file_from_directory(str(path), Usage())
     return Path(chosen.path), (chosen.manifest,), chosen.warnings

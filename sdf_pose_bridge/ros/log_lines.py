@@ -56,7 +56,6 @@ def names_in_line(names: Sequence[str]) -> str:
     """
     Return names separated by commas.
 
-    :param names: at least one name.
     :return: at most ``MOST_WARNINGS`` names, and how many more there are.
     """
     shown = ', '.join(f'"{shortened(name)}"' for name in names[:MOST_WARNINGS])

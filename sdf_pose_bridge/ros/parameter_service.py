@@ -35,7 +35,6 @@ def add_parameter_services(
     """
     Offer the parameter services of a node; a call that sets parameters sets all of them or none.
 
-    :param node: the node.
     :param group: callback group of the services that set parameters.
     :param set_parameters: sets declared parameters, and returns what the services answer.
     """
@@ -77,8 +76,6 @@ def _parameters_from_messages(
     """
     Return the parameters that a call wants to set.
 
-    :param node: the node.
-    :param messages: what is in the call.
     :return: the parameters, without read-only ones that keep their values, which "ros2 param load"
         of a dump sets too.
     :raises ValueError: if there is no such parameter, or no such type.

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The types of parameters: which values have the same meaning, and what to say about others."""
+"""The types of parameters: which values mean the same, and messages about wrong types."""
 
 from __future__ import annotations
 
@@ -29,8 +29,6 @@ def parameter_with_type(given: Parameter, wanted: Parameter.Type) -> Parameter:
     """
     Give a value another type in which it has the same meaning.
 
-    :param given: a value of any type.
-    :param wanted: the type that its parameter has.
     :return: an integer as a number, or an empty list of any type as a list of strings, if that is
         the wanted type; otherwise the value as it was given.
     """
@@ -47,8 +45,6 @@ def parameter_of_any_type(node: Node, name: str) -> Parameter:
     Return a parameter as it was given when the node was started.
 
     :param node: the node, which has not declared the parameter.
-    :param name: name of the parameter.
-    :return: the parameter, with the type of the given value.
     """
     given = node.declare_parameter(name, None, ParameterDescriptor(dynamic_typing=True))
     node.undeclare_parameter(name)
@@ -59,8 +55,6 @@ def words_about_wrong_type(given: Parameter, wanted: Parameter.Type) -> str:
     """
     Explain that a value has the wrong type.
 
-    :param given: the value.
-    :param wanted: the type that its parameter has.
     :return: the words that follow "parameter <name>" in a sentence.
     """
     return (f'is {_shown_value(given)}, which is {_NAMES[given.type_]}; it must be '
@@ -71,8 +65,6 @@ def hint_about_command_line(given: Parameter, wanted: Parameter.Type) -> str:
     """
     Show how to write a value of the wrong type on the command line.
 
-    :param given: the value.
-    :param wanted: the type that its parameter has.
     :return: the end of a sentence; empty if there is nothing to show.
     """
     if wanted is Parameter.Type.STRING:

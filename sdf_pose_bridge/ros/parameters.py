@@ -96,11 +96,7 @@ class Declaration(Generic[Setting]):
 
 
 class Settings:
-    """
-    The settings of the node.
-
-    :param values: the setting of each parameter, by its name.
-    """
+    """The settings of the node."""
 
     def __init__(self, values: Mapping[str, Any]) -> None:
         self.values = values
@@ -244,8 +240,6 @@ def settings_from_node(node: Node) -> Settings:
     """
     Declare all parameters on a node and convert their values.
 
-    :param node: the node.
-    :return: its settings.
     :raises SettingsError: if a value has the wrong type or is not allowed.
     """
     values = {}
@@ -264,9 +258,7 @@ def changed_settings(settings: Settings, parameters: Iterable[Parameter]) -> Set
     """
     Convert new values of parameters.
 
-    :param settings: the settings until now.
     :param parameters: the new values; parameters that are not declared here are ignored.
-    :return: the settings with the new values.
     :raises SettingsError: if a value has the wrong type or is not allowed.
     """
     values = dict(settings.values)
@@ -283,12 +275,7 @@ def changed_settings(settings: Settings, parameters: Iterable[Parameter]) -> Set
 
 
 def warnings_about_unknown_parameters(node: Node) -> list[str]:
-    """
-    Find parameters that were given when the node was started, but that it does not have.
-
-    :param node: the node.
-    :return: one sentence for each of them.
-    """
+    """Find parameters that were given when the node was started, but that it does not have."""
     # rclpy shows this in no public way but to declare all of it, with any type and unexplained.
     given = node._parameter_overrides  # noqa: SLF001
     return [

@@ -27,13 +27,12 @@ from sdf_pose_bridge.ros.cdr import transform_stamped_messages
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.publishers import Stamp
 from sdf_pose_bridge.ros.publishers import Topic
+from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.moving_frames import MovingFrames
 from sdf_pose_bridge.tf.tree import TfTree
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from sdf_pose_bridge.tf.joint_positions import JointPositions
-    from sdf_pose_bridge.tf.moving_frames import MovingFrames
 
 TF_STATIC = Topic('/tf_static', TFMessage)
 TF = Topic('/tf', TFMessage, depth=100, is_latched=False)
@@ -48,7 +47,6 @@ class PublishedFrames:
 
     :param publishers: the publishers of the node. Those of topics that other frames had before
         are kept, if these frames have the topics too.
-    :param tree: the tree.
     :param positions: the positions of its joints; None if joints move nothing.
     :param pose_topics: the names of the topics of poses, by frame id.
     :param before: the frames that these ones replace. Joints with the same names continue where
@@ -136,10 +134,6 @@ class PublishedMovingFrames:
     """
     The moving frames of a tree on their topics.
 
-    :param publishers: the publishers of the node.
-    :param tree: the tree.
-    :param moving: its moving frames.
-    :param positions: the positions of its joints.
     :param pose_topics: the topics of poses, by frame id.
     :param before: the moving frames that these ones replace. Joints with the same names continue
         where they are.
@@ -188,7 +182,6 @@ class PublishedMovingFrames:
 
         :param rows: which of the moving transforms the message has.
         :param message: the message, whose transforms are set.
-        :param stamp: its stamp.
         """
         message.set_poses(self.frames.transforms(self.positions.values)[rows])
         (data,) = message.with_stamp(*stamp)

@@ -21,7 +21,7 @@ from rclpy.qos import ReliabilityPolicy
 
 from sdf_pose_bridge.ros.background import run_other_callbacks
 
-# How many can be published, or made, in the milliseconds that other callbacks can wait.
+# How many are published, or made, before other callbacks run: in a few milliseconds.
 MESSAGES_AT_ONCE = 500
 PUBLISHERS_AT_ONCE = 40
 
@@ -43,11 +43,7 @@ class Topic(NamedTuple):
 
 
 class Publishers:
-    """
-    The publishers of a node, by their topics.
-
-    :param node: the node.
-    """
+    """The publishers of a node, by their topics."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -74,8 +70,6 @@ class Publishers:
         Have publishers of these topics and of no others.
 
         Other callbacks of the node run meanwhile.
-
-        :param topics: the topics.
         """
         unwanted = self._publishers.keys() - topics
         missing = [topic for topic in topics if topic not in self._publishers]
@@ -108,10 +102,7 @@ def new_publisher(
     """
     Make a publisher, which is reliable.
 
-    :param node: the node that it belongs to.
-    :param topic: its topic.
     :param matched: called when a listener comes or goes.
-    :return: the publisher.
     """
     quality = QoSProfile(
         history=HistoryPolicy.KEEP_LAST, depth=topic.depth, reliability=ReliabilityPolicy.RELIABLE,

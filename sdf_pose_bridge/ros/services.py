@@ -12,7 +12,6 @@ from typing import TypeAlias
 
 import numpy as np
 from rclpy.clock import Clock
-from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.node import Node
 from rclpy.qos import qos_profile_parameters
 
@@ -37,7 +36,6 @@ def add_services(node: Node, lookup: Callable[[], PoseLookup]) -> None:
     """
     Offer ``~/convert_rotation``, ``~/convert_poses`` and ``~/lookup_pose``.
 
-    :param node: the node that offers them.
     :param lookup: returns what poses are looked up in.
     """
     def answer_to_lookup(
@@ -52,19 +50,13 @@ def add_services(node: Node, lookup: Callable[[], PoseLookup]) -> None:
         (LookupPose, '~/lookup_pose', answer_to_lookup),
     ):
         node.create_service(
-            service_type, name, never_raising(answer, logger), qos_profile=SERVICE_QOS)
+            service_type, name, never_raising(answer, logger.error), qos_profile=SERVICE_QOS)
 
 
 def answer_to_convert_rotation(
     request: ConvertRotation.Request, response: ConvertRotation.Response,
 ) -> ConvertRotation.Response:
-    """
-    Convert one rotation.
-
-    :param request: the request.
-    :param response: an empty response, which is filled.
-    :return: that response.
-    """
+    """Convert one rotation."""
     rpy, quaternion = request.rpy, request.quaternion
     try:
         answer = converted_rotation(
@@ -84,13 +76,7 @@ def answer_to_convert_rotation(
 def answer_to_convert_poses(
     request: ConvertPoses.Request, response: ConvertPoses.Response,
 ) -> ConvertPoses.Response:
-    """
-    Convert any number of poses.
-
-    :param request: the request.
-    :param response: an empty response, which is filled.
-    :return: that response.
-    """
+    """Convert any number of poses."""
     try:
         converted = converted_poses(
             np.asarray(request.values), request.from_format, request.to_format)
@@ -108,21 +94,13 @@ def answer_to_convert_poses(
 def answer_to_lookup_pose(
     request: LookupPose.Request, response: LookupPose.Response, lookup: PoseLookup, clock: Clock,
 ) -> LookupPose.Response:
-    """
-    Look up a pose.
-
-    :param request: the request.
-    :param response: an empty response, which is filled.
-    :param lookup: what the pose is looked up in.
-    :param clock: the clock that stamps the pose.
-    :return: that response.
-    """
+    """Look up a pose."""
     try:
         found = lookup.pose(request.frame, request.relative_to)
     except UnknownFrameError as error:
         response.message = error.message
         return response
-    # Filling the messages that are there is faster than making others.
+    # To fill the existing messages is faster than to make new ones.
     pose = response.pose.pose
     position, orientation = pose.position, pose.orientation
     position.x, position.y, position.z = found.pose[:3]
@@ -133,19 +111,19 @@ def answer_to_lookup_pose(
     return response
 
 
-def never_raising(answer: Answer, logger: RcutilsLogger) -> Answer:
+def never_raising(answer: Answer, log_error: Callable[[str], object]) -> Answer:
     """
     Answer the client also when there is a defect; an exception in a callback would end the node.
 
     :param answer: answers a request.
-    :param logger: gets the traceback of what was raised.
+    :param log_error: takes the traceback of what was raised.
     :return: a callback that answers ``success: false`` instead of raising.
     """
     def callback(request: Any, response: Any) -> Any:
         try:
             return answer(request, response)
         except Exception as error:  # noqa: BLE001 - whatever it is, the client must be answered
-            logger.error(f'internal error in a service:\n{traceback.format_exc()}')
+            log_error(f'internal error in a service:\n{traceback.format_exc()}')
             refusal = type(response)()
             refusal.message = f'internal error, see the log of the node: {error!r}'
             return refusal

@@ -92,11 +92,9 @@ def pose_topics_from_patterns(
     """
     Choose the frames that get a topic, and name the topics.
 
-    :param frame_ids: all frame ids.
     :param patterns: glob patterns; ``*`` matches any text, slashes included. A frame is chosen if
         one of them matches the whole of its id. ``*`` alone chooses at most ``MOST_BY_DEFAULT``.
     :param node_name: full name of the node, which precedes the names.
-    :return: the topics.
     """
     if list(patterns) == ['*'] and len(frame_ids) > MOST_BY_DEFAULT:
         return PoseTopics(

@@ -36,10 +36,6 @@ class VisualPublisher:
 
     Shapes are read and markers made when somebody listens for the first time, and again for each
     scene that replaces another one while somebody listens.
-
-    :param node: the node that it belongs to.
-    :param loaded: the scene.
-    :param settings: the settings that it was loaded with.
     """
 
     def __init__(self, node: Node, loaded: LoadedScene, settings: Settings) -> None:
@@ -50,12 +46,7 @@ class VisualPublisher:
             node, Topic('~/visuals', MarkerArray), self._on_match)
 
     def replace(self, loaded: LoadedScene, settings: Settings) -> None:
-        """
-        Show another scene from now on.
-
-        :param loaded: the scene.
-        :param settings: the settings that it was loaded with.
-        """
+        """Show another scene from now on."""
         self._loaded, self._settings = loaded, settings
         self._is_up_to_date = False
         self._publish_to_listeners()
@@ -94,7 +85,6 @@ def message_from_markers(markers: Iterable[VisualMarker], root_frame: str) -> Ma
     """
     Make the message of all markers.
 
-    :param markers: the markers.
     :param root_frame: frame id of the root.
     :return: the message, which deletes all markers of earlier messages first. Stamps are zero, for
         which RViz takes the latest transforms.

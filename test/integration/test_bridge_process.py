@@ -100,7 +100,7 @@ def test_a_wrong_value_of_a_parameter_of_rclpy_is_one_line(start_bridge, write_f
 
 @pytest.mark.parametrize(('arguments', 'text'), [
     (['cell.sdf'], 'the argument "cell.sdf" is not understood'),
-    (['--ros-args', '--no-such-flag'], '--no-such-flag'),
+    (['--ros-args', '--no-such-flag'], 'unknown arguments after --ros-args: '),
     (['--ros-args', '--params-file', 'missing.yaml'], 'missing.yaml'),
 ])
 def test_a_wrong_command_line_is_explained(start_bridge, arguments, text):

@@ -130,7 +130,7 @@ def test_a_defect_is_answered_and_logged(capfd):
         msg = 'the moon is full'
         raise KeyError(msg)
 
-    callback = never_raising(defective, get_logger('bridge'))
+    callback = never_raising(defective, get_logger('bridge').error)
     response = callback(ConvertPoses.Request(), ConvertPoses.Response())
     assert not response.success
     assert response.message.startswith('internal error')
