@@ -26,7 +26,7 @@ def values_in_file():
 
 
 def test_there_is_every_parameter_that_has_a_default_and_no_other():
-    assert values_in_file().keys() == DEFAULTS.keys() - {'sdf_file'}
+    assert values_in_file().keys() == DEFAULTS.keys() - {'sdf_file', 'robot_description'}
 
 
 def test_a_running_node_keeps_its_file():

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Find the file that the settings name, read it, and make its TF tree."""
+"""Read the file or the text that the settings name, and make its TF tree."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UriLookupError
 from sdf_pose_bridge.ros.parameters import Settings
-from sdf_pose_bridge.scene.loading import load
+from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import AddressError
 from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
@@ -28,9 +29,12 @@ from sdf_pose_bridge.tf.tree import TfTree
 
 
 class LoadedScene(NamedTuple):
-    """A file that was read."""
+    """A file, or a text, that was read."""
 
     path: Path
+    """The path of the file; of a text, the name of its parameter."""
+    text: str | bytes
+    """What was read; bytes are in the encoding that they declare."""
     scene: Scene
     tree: TfTree
     lookup: PoseLookup
@@ -47,26 +51,28 @@ class LoadedScene(NamedTuple):
 
 def loaded_scene_from_settings(settings: Settings) -> LoadedScene:
     """
-    Read the file that the settings name.
+    Read the file or the text that the settings name.
 
     :raises AddressError: if ``sdf_file`` is a URI of a file that is not found.
-    :raises SdfError: if the file is not valid, or cannot be published with these settings.
+    :raises SdfError: if it is not valid, or cannot be published with these settings.
     """
     read_since_ns = time.time_ns()
     begin = time.perf_counter()
     path, manifests, warnings = _file_from_settings(settings)
-    scene = _scene_from_file(path, settings)
+    text = bytes_from_file(str(path), Usage()) if settings.sdf_file else settings.robot_description
+    scene = _scene_from_text(text, path, settings)
     tree = tf_tree_from_scene(scene, settings.tf_options)
     joint_positions = _joint_positions(scene, tree, settings)
     return LoadedScene(
         path=path,
+        text=text,
         scene=scene,
         tree=tree,
         lookup=PoseLookup(
             scene, tree, None if joint_positions is None else joint_positions.values),
         joint_positions=joint_positions,
         warnings=(*warnings, *scene.warnings, *tree.warnings),
-        files=(*manifests, *scene.files),
+        files=(*manifests, *(scene.files if settings.sdf_file else scene.files[1:])),
         read_since_ns=read_since_ns,
         seconds=time.perf_counter() - begin,
     )
@@ -74,15 +80,17 @@ def loaded_scene_from_settings(settings: Settings) -> LoadedScene:
 
 def scene_with_shapes(loaded: LoadedScene, settings: Settings) -> Scene | None:
     """
-    Read the file of a loaded scene again, with its shapes.
+    Resolve the text of a loaded scene again, with its shapes.
 
     Shapes are not read with the rest because that would make each load a quarter longer, or more,
     and few nodes need them.
 
-    :return: the scene with shapes; None if the file is not valid, or has other elements or poses.
+    :param settings: the settings that it was loaded with.
+    :return: the scene with shapes; None if a file that it includes has changed, so that it is not
+        valid or has other elements or poses.
     """
     try:
-        scene = _scene_from_file(loaded.path, settings, shapes=True)
+        scene = _scene_from_text(loaded.text, loaded.path, settings, shapes=True)
     except SdfError:
         return None
     is_same = scene.names == loaded.scene.names and np.array_equal(
@@ -90,9 +98,11 @@ def scene_with_shapes(loaded: LoadedScene, settings: Settings) -> Scene | None:
     return scene if is_same else None
 
 
-def _scene_from_file(path: Path, settings: Settings, *, shapes: bool = False) -> Scene:
-    return load(
-        path, resource_paths=settings.resource_paths,
+def _scene_from_text(
+    text: str | bytes, path: Path, settings: Settings, *, shapes: bool = False,
+) -> Scene:
+    return load_text(
+        text, str(path), resource_paths=settings.resource_paths,
         on_missing_include=settings.on_missing_include, shapes=shapes)
 
 
@@ -125,7 +135,13 @@ def files_behind_error(error: Exception, settings: Settings) -> list[str]:
 def _file_from_settings(
     settings: Settings,
 ) -> tuple[Path, tuple[str, ...], tuple[SdfWarning, ...]]:
-    """Return the path of the file, and the manifests and warnings met on the way to it."""
+    """
+    Return the path of the file, and the manifests and warnings met on the way to it.
+
+    A text has the name of its parameter for a path.
+    """
+    if not settings.sdf_file:
+        return Path(settings.source), (), ()
     finder = resource_finder(settings.resource_paths, os.environ)
     path = finder.path_from_address(settings.sdf_file)
     # Path.is_dir raises for a path that is too long; reading the file gives a better message.

@@ -96,7 +96,10 @@ class SdfPoseBridge:
         self._polling = PollingThread(self._has_to_check_files, trigger)
         self._report_success()
         # Imported here because it takes 10 ms, and everything else is more urgent.
+        from sdf_pose_bridge.ros.robot_description import RobotDescription
         from sdf_pose_bridge.ros.visuals import VisualPublisher
+        self._robot_description = RobotDescription(node)
+        self._publish_robot_description()
         self._visuals = VisualPublisher(node, loaded, settings)
 
     # Loading
@@ -116,6 +119,7 @@ class SdfPoseBridge:
             for line in lines_about_lost_frames(before.tree, loaded.tree):
                 self._logger.warning(line)
             self._report_success()
+            self._publish_robot_description()
             self._visuals.replace(loaded, self._settings)
 
     def _follow_joints(self) -> None:
@@ -131,6 +135,10 @@ class SdfPoseBridge:
             from sdf_pose_bridge.ros.joint_states import JointStates
             self._joint_states = JointStates(
                 self._node, moving, is_published_later=self._settings.publish_rate > 0.0)
+
+    def _publish_robot_description(self) -> None:
+        self._robot_description.update(
+            self._loaded if self._settings.publish_robot_description else None)
 
     def _report_success(self) -> None:
         loaded = self._loaded
@@ -162,7 +170,7 @@ class SdfPoseBridge:
     def _report_failure(self, lines: list[str]) -> None:
         if lines != self._failure:
             self._logger.error(
-                f'{self._settings.sdf_file} is not taken; what was published before stays')
+                f'{self._settings.source} is not taken; what was published before stays')
             for line in lines:
                 self._logger.error(line)
         self._failure, self._pending_failure = lines, []
@@ -211,7 +219,8 @@ class SdfPoseBridge:
             settings = changed_settings(self._settings, parameters)
             loaded = self._loaded
             if settings.needs_load_after(self._settings) or any(
-                    parameter.name == 'sdf_file' for parameter in parameters):
+                    parameter.name in ('sdf_file', 'robot_description')
+                    for parameter in parameters):
                 loaded = await self._load(settings)
             result = self._node.set_parameters_atomically(parameters)
             if result.successful:
@@ -227,6 +236,7 @@ class SdfPoseBridge:
             self._publish_again_at(settings.publish_rate)
         if loaded is not self._loaded or settings.pose_topics != before.pose_topics:
             await self._show(loaded)
+        self._publish_robot_description()
 
     # Publishing again
 

@@ -31,15 +31,6 @@ MOST_PATTERNS = 1000
 """How many patterns a parameter may have."""
 
 
-def file_setting(value: str) -> str:
-    """Refuse an empty name of a file."""
-    if not value:
-        msg = ('is not set; name the SDFormat file to publish: --ros-args -p sdf_file:=cell.sdf '
-               'after "ros2 run ...", sdf_file:=cell.sdf after "ros2 launch ..."')
-        raise ValueError(msg)
-    return value
-
-
 def root_frame_setting(value: str) -> str:
     """Refuse what cannot be the frame id of the root."""
     if not value:

@@ -22,7 +22,6 @@ from rclpy.parameter import Parameter
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.ros.parameter_rules import choice_setting
 from sdf_pose_bridge.ros.parameter_rules import directories_setting
-from sdf_pose_bridge.ros.parameter_rules import file_setting
 from sdf_pose_bridge.ros.parameter_rules import HIGHEST_RATE
 from sdf_pose_bridge.ros.parameter_rules import kinds_setting
 from sdf_pose_bridge.ros.parameter_rules import LOWEST_RATE
@@ -103,10 +102,25 @@ class Settings:
 
     sdf_file = Declaration(
         '',
-        'The SDFormat file to publish.',
-        'required: the path of a file or of a model directory, or a file://, package:// or '
-        'model:// URI, such as package://name/worlds/cell.sdf',
-        file_setting,
+        'The file to publish, of SDFormat or URDF.',
+        'the path of a file or of a model directory, or a file://, package:// or model:// URI, '
+        'such as package://name/worlds/cell.sdf; either this or robot_description is required',
+        str,
+    )
+    robot_description = Declaration(
+        '',
+        'The text to publish, of SDFormat or URDF, instead of that of sdf_file. Relative includes '
+        'are searched in resource_paths.',
+        'the text of a file; either this or sdf_file is required',
+        str,
+    )
+    publish_robot_description = Declaration(
+        True,
+        'Publishes the text of sdf_file, or that of robot_description, on the topic '
+        'robot_description, unless it is a world.',
+        'true or false',
+        bool,
+        needs_load=False,
     )
     root_frame = Declaration(
         'world',
@@ -215,6 +229,11 @@ class Settings:
     )
 
     @property
+    def source(self) -> str:
+        """The name of what is published, for people: that of the file or of the parameter."""
+        return self.sdf_file or 'robot_description'
+
+    @property
     def tf_options(self) -> TfOptions:
         """The settings of the TF tree; parameters and options have the same names."""
         return TfOptions(**{name: self.values[name] for name in TfOptions._fields})
@@ -249,9 +268,7 @@ def settings_from_node(node: Node) -> Settings:
             values[name] = declaration.convert(_declared_value(node, declaration))
         except ValueError as error:
             sentences.append(f'parameter {name} {error}')
-    if sentences:
-        raise SettingsError(sentences)
-    return Settings(values)
+    return _checked_settings(values, sentences)
 
 
 def changed_settings(settings: Settings, parameters: Iterable[Parameter]) -> Settings:
@@ -269,9 +286,7 @@ def changed_settings(settings: Settings, parameters: Iterable[Parameter]) -> Set
                 values[given.name] = _converted(given, DECLARATIONS[given.name])
             except ValueError as error:
                 sentences.append(f'parameter {given.name} {error}')
-    if sentences:
-        raise SettingsError(sentences)
-    return Settings(values)
+    return _checked_settings(values, sentences)
 
 
 def warnings_about_unknown_parameters(node: Node) -> list[str]:
@@ -281,6 +296,22 @@ def warnings_about_unknown_parameters(node: Node) -> list[str]:
     return [
         f'there is no parameter "{name}", so it has no effect{hint_from_names(name, DECLARATIONS)}'
         for name in given if name not in DECLARATIONS and not node.has_parameter(name)]
+
+
+def _checked_settings(values: Mapping[str, Any], sentences: Sequence[str]) -> Settings:
+    sources = [values.get(name) for name in ('sdf_file', 'robot_description')]
+    if all(sources):
+        msg = ('parameters sdf_file and robot_description are both set; set one of them, and the '
+               'other one to an empty string')
+        sentences = [msg, *sentences]
+    elif sources == ['', '']:
+        msg = ('parameter sdf_file is not set; name the file to publish: --ros-args -p '
+               'sdf_file:=cell.sdf after "ros2 run ...", sdf_file:=cell.sdf after "ros2 launch '
+               '..."; or set robot_description to its text')
+        sentences = [msg, *sentences]
+    if sentences:
+        raise SettingsError(sentences)
+    return Settings(values)
 
 
 def _declared_value(node: Node, declaration: Declaration[Any]) -> Any:

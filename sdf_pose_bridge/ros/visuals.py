@@ -75,7 +75,8 @@ def _message_and_warnings(
 ) -> tuple[MarkerArray | None, list[str]]:
     scene = scene_with_shapes(loaded, settings)
     if scene is None:
-        return None, [f'~/visuals stays as it is: {loaded.path} has changed since it was read']
+        return None, [
+            f'~/visuals stays as it is: what {loaded.path} includes has changed since it was read']
     markers, warnings = visual_markers_from_scene(
         scene, loaded.tree, settings.model, resource_finder(settings.resource_paths, os.environ))
     return message_from_markers(markers, loaded.tree.root_frame), lines_from_warnings(warnings)

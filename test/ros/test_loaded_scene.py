@@ -8,11 +8,14 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from rclpy.parameter import Parameter
+from sdf_texts import model_file
 from sdf_texts import world_file
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.loaded_scene import scene_with_shapes
+from sdf_pose_bridge.ros.parameters import changed_settings
 from sdf_pose_bridge.ros.parameters import settings_from_node
 
 GOOD = '<model name="m"><link name="l"><pose>1 0 0 0 0 0</pose></link><frame name="f"/></model>'
@@ -48,32 +51,55 @@ def test_a_path_that_is_too_long_is_said_to_be(make_node):
 
 
 VISUAL = '<visual name="v"><geometry><box/></geometry></visual>'
-WITH_SHAPE = world_file(f'<model name="m"><link name="l">{VISUAL}</link></model>')
+WITH_SHAPE = model_file(f'<link name="l">{VISUAL}</link>')
 
 
 @pytest.fixture(name='reread')
 def make_reread(make_node, tmp_path):
-    """Loads a file, changes it and reads it with its shapes; ``reread(text)``."""
+    """Loads a file, changes what it includes and reads shapes; ``reread(text)``."""
     path = tmp_path / 'cell.sdf'
-    path.write_text(WITH_SHAPE, encoding='utf-8')
+    included = tmp_path / 'included.sdf'
+    path.write_text(
+        world_file('<include><uri>included.sdf</uri></include>'), encoding='utf-8')
+    included.write_text(WITH_SHAPE, encoding='utf-8')
     settings = settings_from_node(make_node('bridge', '-p', f'sdf_file:={path}'))
     loaded = loaded_scene_from_settings(settings)
     assert not loaded.scene.shapes
 
     def reread(text):
-        path.write_text(text, encoding='utf-8')
+        included.write_text(text, encoding='utf-8')
         return scene_with_shapes(loaded, settings)
 
     return reread
 
 
 @pytest.mark.parametrize('text', [
-    '', world_file(BAD), world_file(GOOD),
+    '', model_file('<link name="l"><pose relative_to="x"/></link>'),
+    model_file('<link name="k"/>'),
     WITH_SHAPE.replace('"l">', '"l"><pose>1 0 0 0 0 0</pose>'),
     WITH_SHAPE.replace('"v"', '"w"'),
 ], ids=['empty', 'bad', 'other elements', 'other pose', 'other name'])
-def test_shapes_of_a_file_that_has_changed_are_refused(reread, text):
+def test_shapes_with_an_include_that_has_changed_are_refused(reread, text):
     assert reread(text) is None
+
+
+def test_shapes_are_those_of_the_text_that_was_read(make_node, tmp_path):
+    path = tmp_path / 'cell.sdf'
+    path.write_text(WITH_SHAPE, encoding='utf-8')
+    settings = settings_from_node(make_node('bridge', '-p', f'sdf_file:={path}'))
+    loaded = loaded_scene_from_settings(settings)
+    path.write_text('something else', encoding='utf-8')
+    (shape,) = scene_with_shapes(loaded, settings).shapes.values()
+    assert shape.type == 'box'
+
+
+def test_a_text_has_the_name_of_its_parameter_and_no_file(make_node):
+    settings = settings_from_node(make_node('bridge', '-p', f'robot_description:={WITH_SHAPE}'))
+    loaded = loaded_scene_from_settings(settings)
+    assert (str(loaded.path), loaded.text, loaded.files) == ('robot_description', WITH_SHAPE, ())
+    bad = changed_settings(settings, [Parameter('robot_description', value='<sdf>\n<')])
+    with pytest.raises(SdfError, match='robot_description:2: FILE_READ'):
+        loaded_scene_from_settings(bad)
 
 
 def test_shapes_are_read_again(reread):

@@ -106,6 +106,14 @@ def test_without_a_file_the_sentence_says_how_to_name_one(make_node):
     assert 'sdf_file:=cell.sdf after "ros2 launch' in str(refusal.value)
 
 
+def test_a_file_and_a_text_together_are_refused(settings):
+    with pytest.raises(SettingsError, match='sdf_file and robot_description are both set'):
+        changed_settings(settings, [Parameter('robot_description', value='<sdf/>')])
+    both = [Parameter('robot_description', value='<sdf/>'), Parameter('sdf_file', value='')]
+    changed = changed_settings(settings, both)
+    assert (changed.source, changed.robot_description) == ('robot_description', '<sdf/>')
+
+
 @pytest.mark.parametrize(('name', 'value', 'sentence'), [
     ('sdf_file', '', 'is not set'),
     ('root_frame', '', 'is ""; it must be a frame id'),

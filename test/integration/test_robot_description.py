@@ -1,0 +1,121 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Text instead of a file, and the topic that has it, seen by listeners in another process."""
+
+import json
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from changes import listen_to_tf
+from changes import reload
+from changes import replace
+from changes import set_parameters
+from changes import wait_for_x
+from changes import world
+from listener import latched
+from std_msgs.msg import String
+
+
+def model(x):
+    return (
+        '<sdf version="1.10">\n<model name="crate"><static>true</static>\n'
+        f'<link name="body"><pose>{x} 0 0 0 0 0</pose></link></model></sdf>')
+
+
+@pytest.fixture(name='file')
+def write_file(tmp_path):
+    path = tmp_path / 'crate.sdf'
+    path.write_text(model(1), encoding='utf-8')
+    return path
+
+
+def texts_of(listener):
+    texts = []
+    listener.node.create_subscription(
+        String, '/robot_description', lambda message: texts.append(message.data), latched(1))
+    return texts
+
+
+def wait_for_text(listener, texts, text):
+    listener.wait(lambda: texts[-1:] == [text], lambda: texts)
+
+
+def start_with_text(start_bridge, text):
+    return start_bridge(
+        '--ros-args', '-p', f'robot_description:={json.dumps(text)}').wait_until_started()
+
+
+def topics_of(listener):
+    return [name for name, _ in listener.node.get_topic_names_and_types()]
+
+
+def test_the_text_of_a_file_is_published_again_after_a_reload(start_bridge, start_listener, file):
+    start_bridge('--ros-args', '-p', f'sdf_file:={file}', '-p', 'watch:=false')
+    listener = start_listener()
+    texts = texts_of(listener)
+    wait_for_text(listener, texts, model(1))
+    replace(file, model(2))
+    assert reload(listener).success
+    wait_for_text(listener, texts, model(2))
+    late = start_listener()
+    wait_for_text(late, texts_of(late), model(2))
+
+
+def test_a_text_is_published_as_a_file_is(start_bridge, start_listener):
+    bridge = start_with_text(start_bridge, model(3))
+    bridge.wait_for_line('publishing 2 frames of robot_description with')
+    listener = start_listener()
+    listen_to_tf(listener)
+    wait_for_x(listener, 3.0, 'body')
+    wait_for_text(listener, texts_of(listener), model(3))
+
+
+def test_a_text_can_be_set_and_is_judged_before(start_bridge, start_listener):
+    start_with_text(start_bridge, model(1))
+    listener = start_listener()
+    texts = texts_of(listener)
+    listen_to_tf(listener)
+    wait_for_x(listener, 1.0, 'body')
+    wrong = model(2).replace('<pose>', '<pose relative_to="x">')
+    (result,) = set_parameters(listener, robot_description=wrong)
+    assert not result.successful
+    assert result.reason.startswith('robot_description:3: POSE_RELATIVE_TO_INVALID')
+    (result,) = set_parameters(listener, robot_description=model(2))
+    assert result.successful, result.reason
+    wait_for_x(listener, 2.0, 'body')
+    wait_for_text(listener, texts, model(2))
+    assert wrong not in texts
+
+
+def test_a_file_takes_the_place_of_a_text_in_one_call(start_bridge, start_listener, file):
+    start_with_text(start_bridge, model(5))
+    listener = start_listener()
+    listen_to_tf(listener)
+    (result,) = set_parameters(listener, sdf_file=str(file))
+    assert 'sdf_file and robot_description are both set' in result.reason
+    results = set_parameters(listener, sdf_file=str(file), robot_description='')
+    assert all(result.successful for result in results), results
+    wait_for_x(listener, 1.0, 'body')
+    wait_for_text(listener, texts_of(listener), model(1))
+
+
+def test_there_is_no_topic_for_a_world_or_if_it_is_switched_off(
+        start_bridge, start_listener, file):
+    start_bridge('--ros-args', '-p', f'sdf_file:={file}')
+    listener = start_listener()
+    wait_for_text(listener, texts_of(listener), model(1))
+    listener.node.destroy_subscription(next(
+        each for each in listener.node.subscriptions
+        if each.topic_name == '/robot_description'))
+
+    def has_topic():
+        return '/robot_description' in topics_of(listener)
+
+    set_parameters(listener, publish_robot_description=False)
+    listener.wait(lambda: not has_topic(), lambda: topics_of(listener))
+    set_parameters(listener, publish_robot_description=True)
+    listener.wait(has_topic, lambda: topics_of(listener))
+    replace(file, world(1))
+    listener.wait(lambda: not has_topic(), lambda: topics_of(listener))
