@@ -13,7 +13,6 @@ from sdf_pose_bridge.tf.tree import AnchorModels
 
 
 @pytest.mark.parametrize(('rule', 'value', 'words'), [
-    (rules.file_setting, '', 'is not set; name the SDFormat file'),
     (rules.root_frame_setting, '', 'is ""; it must be a frame id'),
     (rules.root_frame_setting, '/map', 'is "/map"; it must be without a leading slash'),
     (rules.root_frame_setting, 'ma\np', 'it must be without control characters'),
@@ -39,7 +38,6 @@ def test_refused(rule, value, words):
 
 
 @pytest.mark.parametrize(('rule', 'value', 'setting'), [
-    (rules.file_setting, 'cell.sdf', 'cell.sdf'),
     (rules.root_frame_setting, 'map', 'map'),
     (rules.prefix_setting, '', ''),
     (rules.prefix_setting, 'r1/', 'r1/'),
