@@ -34,13 +34,16 @@ class Document(NamedTuple):
     """False if no name in the file can hold ``::``."""
 
 
-def document_from_file(path: str, sources: Sources, problems: Problems) -> Document:
+def document_from_file(
+    path: str, sources: Sources, problems: Problems, *, is_included: bool = False,
+) -> Document:
     """
     Read a file.
 
     :param path: path of an SDFormat file.
     :param sources: takes the file and the places of its elements.
     :param problems: takes what is wrong with the file but does not keep it from being read.
+    :param is_included: whether another file includes it, which matters to URDF.
     :return: the file, in the newest version.
     :raises FileReadError: if it is missing, unreadable or not XML, or declares no version.
     :raises LimitError: if it is too large.
@@ -49,7 +52,7 @@ def document_from_file(path: str, sources: Sources, problems: Problems) -> Docum
     """
     sources.add_path(path)
     text = bytes_from_file(path, sources.usage)
-    return _document_from_bytes(text, path, None, sources, problems)
+    return _document_from_bytes(text, path, None, sources, problems, is_included=is_included)
 
 
 def document_from_text(
@@ -69,11 +72,12 @@ def document_from_text(
     if isinstance(text, str):
         text, encoding = text.encode(errors='surrogatepass'), 'utf-8'
     sources.usage.add('bytes_read', len(text), Place(path))
-    return _document_from_bytes(text, path, encoding, sources, problems)
+    return _document_from_bytes(text, path, encoding, sources, problems, is_included=False)
 
 
 def _document_from_bytes(
-    text: bytes, path: str, encoding: str | None, sources: Sources, problems: Problems,
+    text: bytes, path: str, encoding: str | None, sources: Sources, problems: Problems, *,
+    is_included: bool,
 ) -> Document:
     sources.usage.add_elements_of(text, Place(path))
     root, warnings, lines = xml_from_bytes(text, path, encoding)
@@ -82,7 +86,7 @@ def _document_from_bytes(
         # Most files are not URDF and need not wait for this import.
         from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
         sources.add_tree(path, root, NEWEST, lines)
-        root, lines = sdf_from_urdf(root, lines, sources, problems)
+        root, lines = sdf_from_urdf(root, lines, sources, problems, is_included=is_included)
     version = version_from_text(_declared_version(root, path), Place(path, root.sourceline or 0))
     document = Document(path, root, _may_hold_scoped_names(text))
     sources.add_tree(path, root, version, lines)

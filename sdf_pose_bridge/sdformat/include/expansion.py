@@ -200,7 +200,8 @@ class IncludeExpansion:
 
     def _read(self, path: str, files: tuple[str, ...]) -> Document | None:
         try:
-            document = document_from_file(path, self._sources, self._problems)
+            document = document_from_file(
+                path, self._sources, self._problems, is_included=True)
         except LimitError:
             raise
         except SdfError as error:

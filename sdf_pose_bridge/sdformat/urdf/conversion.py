@@ -3,6 +3,9 @@
 """
 Convert URDF to SDFormat as libsdformat does, so that a robot has the poses that Gazebo gives it.
 
+A file that is not included is read as ROS reads it: every link has its frame, also where Gazebo
+leaves the link out because it has no mass, and a joint may have the name of a link.
+
 A link that a fixed joint holds is lumped into its parent link: what it has moves there, and two
 frames with the names of the joint and of the link remain. ``<gazebo>`` elements hold SDFormat for
 the link or joint that they refer to, or for the model. Source: libsdformat's ``parser_urdf.cc``.
@@ -32,13 +35,14 @@ from sdf_pose_bridge.sdformat.joint_types import URDF_JOINT_TYPES
 from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.urdf.gazebo_elements import settings_and_extensions_from_robot
+from sdf_pose_bridge.sdformat.urdf.joint_names import robot_with_different_names
 from sdf_pose_bridge.sdformat.urdf.robot import Inertial
 from sdf_pose_bridge.sdformat.urdf.robot import Joint
 from sdf_pose_bridge.sdformat.urdf.robot import Link
 from sdf_pose_bridge.sdformat.urdf.robot import Robot
 from sdf_pose_bridge.sdformat.urdf.robot import robot_from_tree
 from sdf_pose_bridge.sdformat.urdf.robot import SHAPES
-from sdf_pose_bridge.sdformat.urdf.values import is_true
 from sdf_pose_bridge.sdformat.urdf.values import numbers_of
 from sdf_pose_bridge.sdformat.urdf.values import pose_from_numbers
 from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math
@@ -51,14 +55,6 @@ from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-_SETTINGS = frozenset({
-    'canonicalBody', 'cfmDamping', 'collision', 'dampingFactor', 'disableFixedJointLumping',
-    'fdir1', 'fudgeFactor', 'implicitSpringDamper', 'kd', 'kp', 'laserRetro', 'material',
-    'maxContacts', 'maxVel', 'minDepth', 'mu1', 'mu2', 'preserveFixedJoint', 'provideFeedback',
-    'selfCollide', 'springReference', 'springStiffness', 'static', 'stopCfm', 'stopErp',
-    'turnGravityOff', 'visual',
-})
-"""Children of ``<gazebo>`` that are not SDFormat."""
 
 _MOVED_TAGS = ('light', 'projector', 'sensor')
 """Children of ``<gazebo>`` whose poses change when their link is lumped."""
@@ -80,7 +76,8 @@ class _Base(NamedTuple):
 
 
 def sdf_from_urdf(
-    root: XmlElement, lines: Mapping[XmlElement, int], sources: Sources, problems: Problems,
+    root: XmlElement, lines: Mapping[XmlElement, int], sources: Sources, problems: Problems, *,
+    is_included: bool,
 ) -> tuple[XmlElement, Mapping[XmlElement, int]]:
     """
     Convert a file.
@@ -88,11 +85,15 @@ def sdf_from_urdf(
     :param root: the ``robot`` element; what ``<gazebo>`` elements hold is taken out of it.
     :param lines: the lines of those of its elements whose lines lxml does not know.
     :param problems: takes what is wrong but does not keep the file from being read.
+    :param is_included: whether to convert as libsdformat does, and not to read as ROS does.
     :return: the ``sdf`` element, and the lines of its elements as in ``lines``.
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
     """
     robot = robot_from_tree(root, sources, problems)
-    return _Conversion(root, robot, lines, sources, problems).result()
+    if not is_included:
+        robot = robot_with_different_names(robot, sources, problems)
+    return _Conversion(
+        root, robot, lines, sources, problems, for_ros=not is_included).result()
 
 
 class _Conversion:
@@ -100,8 +101,9 @@ class _Conversion:
 
     def __init__(
         self, root: XmlElement, robot: Robot, lines: Mapping[XmlElement, int], sources: Sources,
-        problems: Problems,
+        problems: Problems, *, for_ros: bool,
     ) -> None:
+        self._for_ros = for_ros
         self._root = root
         self._robot = robot
         self._lines = dict(lines)
@@ -111,10 +113,7 @@ class _Conversion:
         self._sdf = etree.Element('sdf', version='1.11')
         self._sdf.sourceline = root.sourceline  # type: ignore[misc]  # it can be set
         self._model = self._element(self._sdf, 'model', root, name=robot.name)
-        self._static: str | None = None
-        self._preserved: set[str] = set()
-        self._revolute: set[str] = set()
-        self._extensions = self._read_extensions()
+        self._settings, self._extensions = settings_and_extensions_from_robot(root)
         self._links = self._links_in_order()
         self._bases: dict[str, _Base] = {}
         self._find_bases()
@@ -125,8 +124,8 @@ class _Conversion:
     def result(self) -> tuple[XmlElement, Mapping[XmlElement, int]]:
         self._replace_lumped_ends_of_joints()
         self._add_links()
-        if self._static is not None:
-            self._element(self._model, 'static', self._root, text=self._static)
+        if self._settings.static is not None:
+            self._element(self._model, 'static', self._root, text=self._settings.static)
         self._add_extensions(self._model, '')
         self._add_frames()
         self._add_robot_origin()
@@ -134,23 +133,6 @@ class _Conversion:
         return self._sdf, self._lines
 
     # Reading
-
-    def _read_extensions(self) -> dict[str, list[XmlElement]]:
-        """Find what ``<gazebo>`` elements hold, by the name that they refer to."""
-        extensions: dict[str, list[XmlElement]] = {}
-        for gazebo in child_elements(self._root, 'gazebo'):
-            reference = gazebo.get('reference', '')
-            for child in child_elements(gazebo):
-                if child.tag not in _SETTINGS:
-                    extensions.setdefault(reference, []).append(child)
-                elif child.tag == 'static' and not reference:
-                    self._static = str(is_true(child)).lower()
-                elif child.tag == 'preserveFixedJoint' and is_true(child):
-                    self._preserved.add(reference)
-                elif child.tag == 'disableFixedJointLumping' and is_true(child):
-                    self._revolute.add(reference)
-        self._revolute -= self._preserved
-        return extensions
 
     def _links_in_order(self) -> list[Link]:
         """Return the links, each before its children; those are in the order of their joints."""
@@ -163,8 +145,7 @@ class _Conversion:
         return links
 
     def _is_reducible(self, joint: Joint) -> bool:
-        return (joint.type == 'fixed' and joint.name not in self._preserved
-                and joint.name not in self._revolute)
+        return joint.type == 'fixed' and joint.name not in self._settings.kept_joints
 
     def _is_lumped(self, link: Link) -> bool:
         joint = self._robot.parent_joints.get(link.name)
@@ -190,6 +171,8 @@ class _Conversion:
         joint_pose = pose_from_numbers([*joint.origin[:3], *rpy_by_urdfdom(joint.origin)])
         center = pose_product(joint_pose, inertial.origin)
         mass = old.mass + inertial.mass
+        if self._for_ros and not mass:
+            return
         x, y, z = (
             (a * old.mass + b * inertial.mass) / mass if mass else math.nan
             for a, b in zip(old.origin[:3], center[:3], strict=True))
@@ -228,21 +211,24 @@ class _Conversion:
             elif is_massless and name != WORLD_FRAME and not (
                     joint is not None and self._is_reducible(joint)):
                 left_out.add(name)
-                self._warning('the link is left out with all links and joints below it, as '
-                              'libsdformat leaves them out: it has no mass', link.xml,
-                              'LINK_INERTIA_INVALID')
-            elif inertial is not None and not is_massless and not self._is_lumped(link) and (
+                self._warning(
+                    'the link has no mass, so Gazebo leaves it out with all links and joints '
+                    f'below it{"" if self._for_ros else "; here, too"}',
+                    link.xml, 'LINK_INERTIA_INVALID')
+            is_kept = self._for_ros or not (is_massless or name in left_out)
+            if is_kept and not self._is_lumped(link) and (
                     joint is not None or name != WORLD_FRAME):
-                self._add_link(link, inertial, joint)
+                self._add_link(link, None if is_massless else inertial, joint)
 
-    def _add_link(self, link: Link, inertial: Inertial, joint: Joint | None) -> None:
+    def _add_link(self, link: Link, inertial: Inertial | None, joint: Joint | None) -> None:
         is_joined = joint is not None and self._add_joint(joint)
         xml = self._element(self._model, 'link', link.xml, name=link.name)
         if joint is not None and is_joined:
             self._element(xml, 'pose', joint.xml, relative_to=joint.name)
-        inertial_xml = self._element(xml, 'inertial', link.xml)
-        self._add_pose(inertial_xml, link.xml, inertial.origin, rpy_by_gz_math)
-        self._element(inertial_xml, 'mass', link.xml, text=text_from_numbers([inertial.mass]))
+        if inertial is not None:
+            inertial_xml = self._element(xml, 'inertial', link.xml)
+            self._add_pose(inertial_xml, link.xml, inertial.origin, rpy_by_gz_math)
+            self._element(inertial_xml, 'mass', link.xml, text=text_from_numbers([inertial.mass]))
         members = self._bases[link.name].members
         for tag in ('collision', 'visual'):
             self._add_shapes(xml, tag, link, members)
@@ -277,14 +263,17 @@ class _Conversion:
     def _add_joint(self, joint: Joint) -> bool:
         joint_type = URDF_JOINT_TYPES[joint.type].sdformat
         if not joint_type:
-            msg = (f'joint "{joint.name}" is {joint.type}, which SDFormat does not have, so link '
-                   f'"{joint.child}" has no place')
-            self._problems.error(RelativeToError(msg, self._sources.place(joint.xml)))
-            return False
+            msg = f'joint "{joint.name}" is {joint.type}, which SDFormat does not have'
+            if not self._for_ros:
+                msg += f', so link "{joint.child}" has no place'
+                self._problems.error(RelativeToError(msg, self._sources.place(joint.xml)))
+                return False
+            self._warning(f'{msg}; it is fixed here', joint.xml)
+            joint_type = 'fixed'
+        elif joint.name in self._settings.revolute_joints and not self._for_ros:
+            joint_type = 'revolute'
         base = self._bases[joint.parent]
         parent = self._counted(base.link.name, joint.xml)
-        if joint.name in self._revolute:
-            joint_type = 'revolute'
         xml = self._element(self._model, 'joint', joint.xml, name=joint.name, type=joint_type)
         pose = self._add_pose(
             xml, joint.xml, pose_product(base.pose, joint.origin), rpy_by_gz_math)
@@ -314,8 +303,13 @@ class _Conversion:
             self._add_numbers(dynamics, joint.xml, values['dynamics'])
         mimic = first_child(joint.xml, 'mimic')
         if mimic is not None and 'mimic' in values:
+            name = mimic.get('joint', '')
+            leader = self._robot.joint_names.get(name)
+            if leader is None and self._for_ros:
+                self._warning(f'the mimic is left out: there is no joint "{name}"', mimic)
+                return
             self._add_numbers(
-                self._element(axis, 'mimic', mimic, joint=mimic.get('joint', '')), mimic,
+                self._element(axis, 'mimic', mimic, joint=leader or name), mimic,
                 {'multiplier': [1.0], 'offset': [0.0], **values['mimic']})
 
     def _add_frames(self) -> None:
@@ -349,6 +343,10 @@ class _Conversion:
         self, xml: XmlElement, source: XmlElement, pose: Pose,
         rpy_from_pose: Callable[[Pose], Sequence[float]],
     ) -> XmlElement:
+        if self._for_ros:  # angles would lose digits near gimbal lock
+            return self._element(
+                xml, 'pose', source, text=text_from_numbers(pose, 17),
+                rotation_format='quat_xyzw')
         text = text_from_numbers([*pose[:3], *rpy_from_pose(pose)])
         return self._element(xml, 'pose', source, text=text)
 

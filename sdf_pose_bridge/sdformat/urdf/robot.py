@@ -98,6 +98,8 @@ class Robot(NamedTuple):
     """By the name of the child link."""
     child_joints: Mapping[str, Sequence[Joint]]
     """By the name of the parent link, ordered by their own names."""
+    joint_names: Mapping[str, str]
+    """The name of each joint by its name in the file."""
 
 
 def robot_from_tree(root: XmlElement, sources: Sources, problems: Problems) -> Robot:
@@ -144,7 +146,9 @@ class _RobotReader:
             self._error(self._root, 'the links must be one tree, in which one link has no parent; '
                         f'here these have none: {names or "no link"}')
         self._raise_errors()
-        robot = Robot(self._root.get('name', ''), roots[0], links, parent_joints, child_joints)
+        robot = Robot(
+            self._root.get('name', ''), roots[0], links, parent_joints, child_joints,
+            {joint.name: joint.name for joint in parent_joints.values()})
         self._warn_of_cycles(robot)
         return robot
 
