@@ -21,6 +21,9 @@ ROOT_FRAME = '__root__'
 MODEL_FRAME = '__model__'
 """The name by which references in a model mean the frame of the model."""
 
+JOINT_SUFFIX = '_joint'
+"""Appended to the name of a joint if another element has the name."""
+
 _LONGEST_VALUE = 80
 _LONGEST_MESSAGE = 2000
 _QUOTED = re.compile(r'"([^"]*)"')

@@ -4,11 +4,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from collections.abc import Iterable
 from collections.abc import Iterator
 from collections.abc import Sequence
 import contextlib
 import enum
+from functools import partial
 import gc
 from itertools import compress
 import os
@@ -20,6 +22,7 @@ import numpy as np
 
 from sdf_pose_bridge.errors import LimitError
 from sdf_pose_bridge.errors import LoadError
+from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.names import SEPARATOR
@@ -85,13 +88,9 @@ def load(
     :return: the scene.
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
     """
-    sources = Sources(limits)
-    problems = Problems(sources.paths, sources.includes)
-    with _without_garbage_collection(), _limit_error_last(problems):
-        document = document_from_file(os.fspath(path), sources, problems)
-        return _scene(
-            document, sources, problems, resource_paths, MissingInclude(on_missing_include),
-            shapes=shapes)
+    return _scene_from_document(
+        partial(document_from_file, os.fspath(path)), resource_paths,
+        MissingInclude(on_missing_include), limits, shapes=shapes)
 
 
 def load_text(
@@ -115,13 +114,40 @@ def load_text(
     :return: the scene.
     :raises SdfError: as for :func:`load`.
     """
+    return _scene_from_document(
+        partial(document_from_text, text, name), resource_paths,
+        MissingInclude(on_missing_include), limits, shapes=shapes)
+
+
+def _scene_from_document(
+    read: Callable[..., Document], resource_paths: Iterable[str | os.PathLike[str]],
+    on_missing_include: MissingInclude, limits: Limits, *, shapes: bool,
+    gazebo_errors: Sequence[SdfError] = (),
+) -> Scene:
+    """
+    Read a file and make the scene.
+
+    :param read: reads the file.
+    :param gazebo_errors: what is wrong with ``<gazebo>`` elements, which are left out then.
+    """
     sources = Sources(limits)
     problems = Problems(sources.paths, sources.includes)
+    for error in gazebo_errors:
+        problems.warning(
+            f'{error.message}; so what <gazebo> elements hold is left out', error.place,
+            error.code)
     with _without_garbage_collection(), _limit_error_last(problems):
-        document = document_from_text(text, name, sources, problems)
-        return _scene(
-            document, sources, problems, resource_paths, MissingInclude(on_missing_include),
-            shapes=shapes)
+        document = read(sources, problems, reads_gazebo_elements=not gazebo_errors)
+        try:
+            return _scene(
+                document, sources, problems, resource_paths, on_missing_include, shapes=shapes)
+        except LoadError as error:
+            if gazebo_errors or not document.has_gazebo_elements:
+                raise
+            errors = error.errors
+    # ROS does not read what <gazebo> elements hold, so that must not keep a robot from being read.
+    return _scene_from_document(
+        read, resource_paths, on_missing_include, limits, shapes=shapes, gazebo_errors=errors)
 
 
 @contextlib.contextmanager

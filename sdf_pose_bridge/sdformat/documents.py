@@ -32,10 +32,13 @@ class Document(NamedTuple):
     """The ``sdf`` element."""
     may_hold_scoped_names: bool
     """False if no name in the file can hold ``::``."""
+    has_gazebo_elements: bool = False
+    """Whether it is URDF with ``<gazebo>`` elements."""
 
 
 def document_from_file(
     path: str, sources: Sources, problems: Problems, *, is_included: bool = False,
+    reads_gazebo_elements: bool = True,
 ) -> Document:
     """
     Read a file.
@@ -43,7 +46,9 @@ def document_from_file(
     :param path: path of an SDFormat file.
     :param sources: takes the file and the places of its elements.
     :param problems: takes what is wrong with the file but does not keep it from being read.
-    :param is_included: whether another file includes it, which matters to URDF.
+    :param is_included: whether another file includes it, so that URDF is converted as libsdformat
+        does it.
+    :param reads_gazebo_elements: whether to read what is SDFormat in URDF.
     :return: the file, in the newest version.
     :raises FileReadError: if it is missing, unreadable or not XML, or declares no version.
     :raises LimitError: if it is too large.
@@ -52,11 +57,14 @@ def document_from_file(
     """
     sources.add_path(path)
     text = bytes_from_file(path, sources.usage)
-    return _document_from_bytes(text, path, None, sources, problems, is_included=is_included)
+    return _document_from_bytes(
+        text, path, None, sources, problems, is_included=is_included,
+        reads_gazebo_elements=reads_gazebo_elements)
 
 
 def document_from_text(
-    text: bytes | str, path: str, sources: Sources, problems: Problems,
+    text: bytes | str, path: str, sources: Sources, problems: Problems, *,
+    reads_gazebo_elements: bool = True,
 ) -> Document:
     """
     Read the content of a file.
@@ -65,6 +73,7 @@ def document_from_text(
     :param path: the name to use in errors.
     :param sources: as for :func:`document_from_file`.
     :param problems: as for :func:`document_from_file`.
+    :param reads_gazebo_elements: as for :func:`document_from_file`.
     :return: as for :func:`document_from_file`.
     :raises SdfError: as for :func:`document_from_file`.
     """
@@ -72,23 +81,31 @@ def document_from_text(
     if isinstance(text, str):
         text, encoding = text.encode(errors='surrogatepass'), 'utf-8'
     sources.usage.add('bytes_read', len(text), Place(path))
-    return _document_from_bytes(text, path, encoding, sources, problems, is_included=False)
+    return _document_from_bytes(
+        text, path, encoding, sources, problems, is_included=False,
+        reads_gazebo_elements=reads_gazebo_elements)
 
 
 def _document_from_bytes(
     text: bytes, path: str, encoding: str | None, sources: Sources, problems: Problems, *,
-    is_included: bool,
+    is_included: bool, reads_gazebo_elements: bool,
 ) -> Document:
     sources.usage.add_elements_of(text, Place(path))
     root, warnings, lines = xml_from_bytes(text, path, encoding)
     problems.extend(warnings)
+    has_gazebo_elements = False
     if root.tag == 'robot':
         # Most files are not URDF and need not wait for this import.
         from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
         sources.add_tree(path, root, NEWEST, lines)
+        gazebo_elements = root.findall('gazebo')
+        has_gazebo_elements = bool(gazebo_elements)
+        if not reads_gazebo_elements:
+            for element in gazebo_elements:
+                root.remove(element)
         root, lines = sdf_from_urdf(root, lines, sources, problems, is_included=is_included)
     version = version_from_text(_declared_version(root, path), Place(path, root.sourceline or 0))
-    document = Document(path, root, _may_hold_scoped_names(text))
+    document = Document(path, root, _may_hold_scoped_names(text), has_gazebo_elements)
     sources.add_tree(path, root, version, lines)
     convert(root, version, sources, may_hold_scoped_names=document.may_hold_scoped_names)
     _check_top_model(root, sources, problems)

@@ -10,6 +10,7 @@ called ``<joint>_axis2``; a ball joint has ``<joint>_roll``, ``<joint>_pitch`` a
 
 from __future__ import annotations
 
+from collections.abc import Container
 from collections.abc import Iterable
 from collections.abc import Mapping
 from collections.abc import Sequence
@@ -22,6 +23,7 @@ from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.names import JOINT_SUFFIX
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene.scene import Mimic
 from sdf_pose_bridge.scene.scene import Scene
@@ -92,7 +94,7 @@ class JointPositions:
         """The name of each degree of freedom."""
         self._indices = _indices_from_names(
             self.names, [scene.names[joint] for joint in joints.tolist()],
-            [each.suffix for each in dofs], is_named)
+            [each.suffix for each in dofs], is_named, frozenset(scene.names))
         self._followers = _followers(dofs)
 
     def selection(self, names: Sequence[str]) -> Selection:
@@ -198,9 +200,14 @@ def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
 
 def _indices_from_names(
     names: Iterable[str], scoped_names: Iterable[str], suffixes: Iterable[str],
-    is_named: Iterable[bool],
+    is_named: Iterable[bool], all_names: Container[str],
 ) -> dict[str, int]:
-    """Return all names by which a degree of freedom can be meant."""
+    """
+    Return all names by which a degree of freedom can be meant.
+
+    In URDF and in old SDFormat a joint may have the name of a link, and has another one here. Its
+    own name is still understood.
+    """
     own: dict[str, int] = {}
     shorter: dict[str, set[int]] = {}
     for index, (name, scoped, suffix, is_visible) in enumerate(
@@ -208,11 +215,13 @@ def _indices_from_names(
         if not is_visible:
             continue
         own.setdefault(name, index)
-        steps = scoped.split(SEPARATOR)
-        for count in range(len(steps)):
-            for separator in (SEPARATOR, '/'):
-                alias = separator.join(steps[count:]) + suffix
-                shorter.setdefault(alias, set()).add(index)
+        before = scoped.removesuffix(JOINT_SUFFIX)
+        for each in {scoped, before} if before in all_names else {scoped}:
+            steps = each.split(SEPARATOR)
+            for count in range(len(steps)):
+                for separator in (SEPARATOR, '/'):
+                    alias = separator.join(steps[count:]) + suffix
+                    shorter.setdefault(alias, set()).add(index)
     return {name: min(found) for name, found in shorter.items() if len(found) == 1} | own
 
 

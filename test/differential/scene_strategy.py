@@ -429,9 +429,6 @@ def scenes(draw: Draw, features: frozenset[Feature] = frozenset(Feature)) -> Sce
     :param features: what it may hold. With DEFECTS, one scene in five at most is broken.
     """
     builder = SceneBuilder(draw, features)
-    if Feature.URDF in features and builder.chance(12):
-        robot = builder.robot(set())
-        return SceneFiles({'scene.sdf': text_from_robot(robot.element)}, frozenset(builder.traits))
     content = [builder.scene()]
     if Feature.WORLDS in features and content[0].tag == 'world' and builder.chance(8):
         content.append(builder.world(content[0].get('name', '') + ' too'))

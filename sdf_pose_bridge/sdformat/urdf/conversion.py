@@ -55,7 +55,6 @@ from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-
 _MOVED_TAGS = ('light', 'projector', 'sensor')
 """Children of ``<gazebo>`` whose poses change when their link is lumped."""
 
@@ -114,7 +113,7 @@ class _Conversion:
         self._sdf.sourceline = root.sourceline  # type: ignore[misc]  # it can be set
         self._model = self._element(self._sdf, 'model', root, name=robot.name)
         self._settings, self._extensions = settings_and_extensions_from_robot(root)
-        self._links = self._links_in_order()
+        self._links = robot.links_in_order()
         self._bases: dict[str, _Base] = {}
         self._find_bases()
         self._inertials = {link.name: link.inertial for link in self._links}
@@ -133,16 +132,6 @@ class _Conversion:
         return self._sdf, self._lines
 
     # Reading
-
-    def _links_in_order(self) -> list[Link]:
-        """Return the links, each before its children; those are in the order of their joints."""
-        links = []
-        names = [self._robot.root.name]
-        while names:
-            name = names.pop()
-            links.append(self._robot.links[name])
-            names += [joint.child for joint in reversed(self._robot.child_joints.get(name, ()))]
-        return links
 
     def _is_reducible(self, joint: Joint) -> bool:
         return joint.type == 'fixed' and joint.name not in self._settings.kept_joints

@@ -10,13 +10,11 @@ from __future__ import annotations
 
 from itertools import count
 
+from sdf_pose_bridge.names import JOINT_SUFFIX
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.urdf.robot import Joint
 from sdf_pose_bridge.sdformat.urdf.robot import Robot
-
-JOINT_SUFFIX = '_joint'
-"""Appended to the name of a joint that a link has."""
 
 
 def robot_with_different_names(robot: Robot, sources: Sources, problems: Problems) -> Robot:

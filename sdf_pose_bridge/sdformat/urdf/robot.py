@@ -101,6 +101,16 @@ class Robot(NamedTuple):
     joint_names: Mapping[str, str]
     """The name of each joint by its name in the file."""
 
+    def links_in_order(self) -> list[Link]:
+        """Return the links, each before its children; those are in the order of their joints."""
+        links = []
+        names = [self.root.name]
+        while names:
+            name = names.pop()
+            links.append(self.links[name])
+            names += [joint.child for joint in reversed(self.child_joints.get(name, ()))]
+        return links
+
 
 def robot_from_tree(root: XmlElement, sources: Sources, problems: Problems) -> Robot:
     """

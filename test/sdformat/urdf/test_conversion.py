@@ -1,6 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Converted robots: names, poses and joints as libsdformat 14.9 has them."""
+"""
+Converted robots: names, poses and joints as libsdformat 14.9 has them in an include.
+
+Where that differs from what ROS makes of a robot there are tests of both.
+"""
 
 import math
 
@@ -20,19 +24,26 @@ from sdf_pose_bridge import load
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge import SdfError
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.documents import document_from_text
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
+from sdf_pose_bridge.sdformat.versions import NEWEST
+from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 
 FIXED = joint('j', 'a', 'b', 'fixed', origin('1 0 0', f'0 0 {math.pi / 2}'))
 TWO = link('a') + link('b')
 SENSOR = '<sensor name="s" type="imu">{}</sensor>'
 
 
-def converted(text):
+def converted(text, *, is_included=True):
     """Return the ``model`` that a robot becomes."""
-    return document_from_text(text, 'f', Sources(), Problems(['f'])).root.find('model')
+    sources = Sources()
+    sources.add_path('f')
+    root, _, lines = xml_from_bytes(text.encode(), 'f')
+    sources.add_tree('f', root, NEWEST, lines)
+    root, _ = sdf_from_urdf(root, lines, sources, Problems(['f']), is_included=is_included)
+    return root.find('model')
 
 
 def kinds_of(scene):
@@ -67,9 +78,18 @@ def test_type_of_a_joint(joint_type, expected):
 
 
 @pytest.mark.parametrize('joint_type', ['floating', 'planar'])
-def test_joint_that_sdformat_does_not_have_is_refused(joint_type):
-    error = only_error(robot(TWO + '\n' + joint('j', 'a', 'b', joint_type)))
+def test_joint_that_sdformat_does_not_have_is_refused_in_an_include(tmp_path, joint_type):
+    (error,) = errors_of_file(write(tmp_path, TWO + '\n' + joint('j', 'a', 'b', joint_type)))
     assert (error.code, error.line) == ('POSE_RELATIVE_TO_INVALID', 2)
+
+
+@pytest.mark.parametrize('joint_type', ['floating', 'planar'])
+def test_joint_that_sdformat_does_not_have_is_fixed_for_ros(joint_type):
+    scene = load_text(robot(TWO + joint('j', 'a', 'b', joint_type, origin('1 0 0'))))
+    assert scene.pose('r::b').x == 1.0
+    assert [each.type for each in scene.joints] == ['fixed']
+    (warning,) = scene.warnings
+    assert f'is {joint_type}, which SDFormat does not have' in warning.message
 
 
 def test_axis_limits_and_mimic_are_converted():
@@ -80,6 +100,12 @@ def test_axis_limits_and_mimic_are_converted():
     assert texts == {'xyz': '0 1 0', 'lower': '-1', 'upper': '2', 'effort': '3', 'velocity': '4',
                      'multiplier': '5', 'offset': '0'}
     assert axis.find('mimic').get('joint') == 'k'
+
+
+def test_mimic_of_a_joint_that_does_not_exist_is_left_out_for_ros():
+    scene = load_text(robot(TWO + joint('j', 'a', 'b', 'continuous', '<mimic joint="k"/>')))
+    assert scene.joints[0].axes[0].mimic is None
+    assert 'there is no joint "k"' in scene.warnings[0].message
 
 
 def test_axis_is_x_where_none_is_given():
@@ -106,15 +132,44 @@ def test_link_world_is_the_world():
     assert len(scene.joints) == 1
 
 
-def test_link_without_mass_is_left_out_with_what_is_below_it():
-    scene = load_text(robot(
-        TWO + '<link name="c"/>' + link('d') + joint('j', 'a', 'b', 'continuous')
-        + joint('k', 'b', 'c', 'continuous') + joint('l', 'c', 'd', 'continuous')))
-    assert 'r::b' in scene.names
-    assert not {'r::c', 'r::d', 'r::k', 'r::l'} & set(scene.names)
+MASSLESS = (TWO + '<link name="c"/>' + link('d') + joint('j', 'a', 'b', 'continuous')
+            + joint('k', 'b', 'c', 'continuous', origin('1 0 0'))
+            + joint('l', 'c', 'd', 'continuous', origin('0 1 0')))
+
+
+def test_link_without_mass_is_left_out_with_what_is_below_it_in_an_include(tmp_path):
+    scene = load(write(tmp_path, MASSLESS))
+    assert 'n::b' in scene.names
+    assert not {'n::c', 'n::d', 'n::k', 'n::l'} & set(scene.names)
     (warning,) = scene.warnings
     assert warning.code == 'LINK_INERTIA_INVALID'
     assert warning.place.element == '/robot[@name="r"]/link[@name="c"]'
+
+
+def test_link_without_mass_stays_for_ros_with_a_warning():
+    scene = load_text(robot(MASSLESS))
+    assert scene.pose('r::d')[:3] == (1.0, 1.0, 0.0)
+    (warning,) = scene.warnings
+    assert (warning.code, warning.place.element) == (
+        'LINK_INERTIA_INVALID', '/robot[@name="r"]/link[@name="c"]')
+    assert 'Gazebo leaves it out' in warning.message
+
+
+def test_robot_without_any_mass_is_read_for_ros():
+    scene = load_text(robot('<link name="a"/><link name="b"/>' + FIXED))
+    assert scene.pose('r::b')[:3] == (1.0, 0.0, 0.0)
+
+
+def test_masses_of_zero_are_added_for_ros():
+    scene = load_text(robot(link('a', mass=0.0) + link('b', mass=0.0) + FIXED))
+    assert scene.pose('r::b')[:3] == (1.0, 0.0, 0.0)
+
+
+def test_world_holds_a_link_without_mass_for_ros():
+    scene = load_text(robot(
+        '<link name="world"/><link name="b"/>'
+        + joint('j', 'world', 'b', 'fixed', origin('1 0 0'))))
+    assert scene.pose('r::b').x == 1.0
 
 
 # Fixed joints
@@ -135,8 +190,9 @@ def test_fixed_joint_leaves_two_frames():
      'fixed'),
 ])
 def test_fixed_joint_is_kept_on_demand(option, expected):
-    model = converted(robot(TWO + FIXED + gazebo(option, 'j')))
-    assert model.find('joint').get('type') == expected
+    text = robot(TWO + FIXED + gazebo(option, 'j'))
+    assert converted(text).find('joint').get('type') == expected
+    assert converted(text, is_included=False).find('joint').get('type') == 'fixed'
 
 
 @pytest.mark.parametrize(('tag', 'expected'), [
@@ -173,11 +229,12 @@ def test_link_without_mass_gets_that_of_a_lumped_link():
     assert scene.pose('r::a::inertial')[:3] == (1.0, 0.0, 0.0)
 
 
-def test_pitch_near_a_right_angle_is_rounded_as_by_libsdformat():
-    pose = '<origin rpy="0 1.57 0"/>'
-    scene = load_text(robot(link('a', shape('visual', pose))))
+def test_pitch_near_a_right_angle_is_rounded_as_by_libsdformat_in_an_include(tmp_path):
+    robot_file = link('a', shape('visual', '<origin rpy="0 1.57 0"/>'))
     right_angle = (0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5))
-    assert scene.pose('r::a::a_visual')[3:] == pytest.approx(right_angle)
+    included, alone = load(write(tmp_path, robot_file)), load_text(robot(robot_file))
+    assert included.pose('n::a::a_visual')[3:] == pytest.approx(right_angle)
+    assert alone.pose('r::a::a_visual').qy == pytest.approx(math.sin(0.785), abs=1e-15)
 
 
 # What <gazebo> elements hold
@@ -209,9 +266,25 @@ def test_degrees_are_ignored_with_a_warning_where_a_fixed_joint_is_removed():
 
 
 @pytest.mark.parametrize('number', ['x', 'inf', '1e999'])
-def test_pose_that_is_not_one_is_refused(number):
+def test_pose_that_is_not_one_is_refused_in_an_include(tmp_path, number):
     text = SENSOR.format(f'<pose>{number} 0 0 0 0 0</pose>')
-    assert only_error(robot(TWO + FIXED + gazebo(text, 'b'))).code == 'ELEMENT_INVALID'
+    (error,) = errors_of_file(write(tmp_path, TWO + FIXED + gazebo(text, 'b')))
+    assert error.code == 'ELEMENT_INVALID'
+
+
+def test_wrong_gazebo_elements_are_left_out_for_ros_with_a_warning():
+    text = gazebo(SENSOR.format('') + SENSOR.format(''), 'b')
+    scene = load_text(robot(TWO + FIXED + text))
+    assert 'r::b' in scene.names
+    assert 'r::a::s' not in scene.names
+    (warning,) = scene.warnings
+    assert warning.code == 'DUPLICATE_NAME'
+    assert warning.message.endswith('what <gazebo> elements hold is left out')
+
+
+def test_an_error_outside_gazebo_elements_is_reported_once():
+    text = robot(TWO + joint('j', 'a', 'b', 'continuous', '<axis/>') + gazebo(SENSOR.format('')))
+    assert only_error(text).code == 'ELEMENT_INVALID'
 
 
 def test_sensor_of_a_joint():
