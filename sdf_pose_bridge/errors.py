@@ -273,6 +273,18 @@ class MergeIncludeError(SdfError):
     code = 'MERGE_INCLUDE_UNSUPPORTED'
 
 
+class PoseNotSetError(SdfError):
+    """A pose cannot be set in the file as it was asked for."""
+
+    code = 'POSE_NOT_SET'
+
+
+class FileWriteError(SdfError):
+    """A file cannot be written; it is as before."""
+
+    code = 'FILE_WRITE'
+
+
 class JointPositionError(SdfError, ValueError):
     """A query names a joint that does not exist, or gives a joint a value that is no position."""
 

@@ -31,7 +31,9 @@ LINES_AT_A_TIME = 10_000
 NEGATIVE_NUMBER = re.compile(r'^-(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$|^-(inf|nan)', re.IGNORECASE)
 
 
-class _Line(NamedTuple):
+class Line(NamedTuple):
+    """A pose or a rotation as read."""
+
     number: int
     """Number of the line in standard input; 0 for the arguments."""
     values: list[float]
@@ -85,7 +87,7 @@ def run(options: argparse.Namespace) -> int:
     source = formats[options.from_format]
     has_labels = options.to_format is None
     if options.numbers:
-        line = _line_from_text(0, ' '.join(options.numbers), source)
+        line = line_from_text(0, ' '.join(options.numbers), source)
         return _print_converted([line], source, targets, has_labels=has_labels)
     exit_code = 0
     if isinstance(sys.stdin, io.TextIOWrapper):
@@ -107,14 +109,21 @@ def _formats_help() -> str:
     return '\n'.join(lines)
 
 
-def _lines_from_texts(texts: Iterable[str], source: Format) -> Iterator[_Line]:
+def _lines_from_texts(texts: Iterable[str], source: Format) -> Iterator[Line]:
     for number, text in enumerate(texts, start=1):
         stripped = text.strip()
         if stripped and not stripped.startswith('#'):
-            yield _line_from_text(number, stripped, source)
+            yield line_from_text(number, stripped, source)
 
 
-def _line_from_text(number: int, text: str, source: Format) -> _Line:
+def line_from_text(number: int, text: str, source: Format) -> Line:
+    """
+    Read the numbers of a pose or a rotation.
+
+    :param number: the number of the line; 0 for the arguments.
+    :param source: the format of the numbers.
+    :return: the numbers, or what is wrong.
+    """
     values = []
     for word in text.split():
         try:
@@ -122,17 +131,17 @@ def _line_from_text(number: int, text: str, source: Format) -> _Line:
                 raise ValueError  # float() takes 1_000, which other readers of poses do not
             values.append(float(word))
         except ValueError:
-            return _Line(number, [], f'{shortened(word)!r} is not a number')
+            return Line(number, [], f'{shortened(word)!r} is not a number')
     if len(values) != source.row_length:
         error = (
             f'{source.name} has {source.row_length} numbers ({source.meaning}), but {len(values)}'
             f' {"is" if len(values) == 1 else "are"} given')
-        return _Line(number, [], error)
-    return _Line(number, values, '')
+        return Line(number, [], error)
+    return Line(number, values, '')
 
 
 def _print_converted(
-    lines: Sequence[_Line], source: Format, targets: Sequence[Format], *, has_labels: bool,
+    lines: Sequence[Line], source: Format, targets: Sequence[Format], *, has_labels: bool,
 ) -> int:
     """Print the result or the error of each line and return the exit code."""
     valid = [line for line in lines if not line.error]
@@ -162,7 +171,7 @@ def _print_converted(
 
 
 def _converted(
-    lines: Sequence[_Line], source: Format, target: Format,
+    lines: Sequence[Line], source: Format, target: Format,
 ) -> list[list[float] | str]:
     """Return the numbers of each line in another format, or the error."""
     if not lines:

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from collections.abc import Iterable
 from collections.abc import Iterator
+from collections.abc import Mapping
 from collections.abc import Sequence
 import contextlib
 import enum
@@ -75,6 +76,7 @@ def load(
     on_missing_include: MissingInclude | str = MissingInclude.ERROR,
     limits: Limits = DEFAULT_LIMITS,
     shapes: bool = False,
+    texts: Mapping[str, bytes] | None = None,
 ) -> Scene:
     """
     Read a file and resolve every pose in it.
@@ -85,12 +87,14 @@ def load(
     :param on_missing_include: ``error``, or ``skip`` to leave out includes that are not found.
     :param limits: what the load may use; hostile files that need more are refused.
     :param shapes: whether to read the shapes of visuals and collisions too.
+    :param texts: what to read instead of some files, by their paths as in ``Scene.files``: to see
+        what a change would mean before it is made.
     :return: the scene.
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
     """
     return _scene_from_document(
         partial(document_from_file, os.fspath(path)), resource_paths,
-        MissingInclude(on_missing_include), limits, shapes=shapes)
+        MissingInclude(on_missing_include), limits, shapes=shapes, texts=texts or {})
 
 
 def load_text(
@@ -101,6 +105,7 @@ def load_text(
     on_missing_include: MissingInclude | str = MissingInclude.ERROR,
     limits: Limits = DEFAULT_LIMITS,
     shapes: bool = False,
+    texts: Mapping[str, bytes] | None = None,
 ) -> Scene:
     """
     Resolve every pose in SDFormat text, as :func:`load` does for a file.
@@ -111,18 +116,19 @@ def load_text(
     :param on_missing_include: as for :func:`load`.
     :param limits: as for :func:`load`.
     :param shapes: as for :func:`load`.
+    :param texts: as for :func:`load`.
     :return: the scene.
     :raises SdfError: as for :func:`load`.
     """
     return _scene_from_document(
-        partial(document_from_text, text, name), resource_paths,
-        MissingInclude(on_missing_include), limits, shapes=shapes)
+        partial(document_from_text, (texts or {}).get(name, text), name), resource_paths,
+        MissingInclude(on_missing_include), limits, shapes=shapes, texts=texts or {})
 
 
 def _scene_from_document(
     read: Callable[..., Document], resource_paths: Iterable[str | os.PathLike[str]],
     on_missing_include: MissingInclude, limits: Limits, *, shapes: bool,
-    gazebo_errors: Sequence[SdfError] = (),
+    texts: Mapping[str, bytes], gazebo_errors: Sequence[SdfError] = (),
 ) -> Scene:
     """
     Read a file and make the scene.
@@ -130,7 +136,7 @@ def _scene_from_document(
     :param read: reads the file.
     :param gazebo_errors: what is wrong with ``<gazebo>`` elements, which are left out then.
     """
-    sources = Sources(limits)
+    sources = Sources(limits, texts)
     problems = Problems(sources.paths, sources.includes)
     for error in gazebo_errors:
         problems.warning(
@@ -147,7 +153,8 @@ def _scene_from_document(
             errors = error.errors
     # ROS does not read what <gazebo> elements hold, so that must not keep a robot from being read.
     return _scene_from_document(
-        read, resource_paths, on_missing_include, limits, shapes=shapes, gazebo_errors=errors)
+        read, resource_paths, on_missing_include, limits, shapes=shapes, texts=texts,
+        gazebo_errors=errors)
 
 
 @contextlib.contextmanager
@@ -257,6 +264,12 @@ def _scene_from_graph(
             new_index_of[index]: shape for index, shape in elements.shapes.items()
             if is_kept[index]}),
         lines=_frozen(elements.lines[is_kept]),
+        pose_lines=_frozen(elements.pose_lines[is_kept]),
+        includes=MappingProxyType({
+            new_index_of[index]: place for index, place in elements.includes.items()
+            if is_kept[index]}),
+        automatic_inertials=frozenset(
+            new_index_of[index] for index in elements.automatic_inertials if is_kept[index]),
         file_indices=_frozen(elements.file_indices[is_kept]),
         world_names=MappingProxyType({
             new_index_of[index]: elements.names[index]

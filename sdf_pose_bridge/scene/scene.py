@@ -116,6 +116,12 @@ class Scene:
     """The shapes of visuals and collisions, by index; empty unless the load was to read them."""
     lines: Indices
     """The line of each element; 0 where it is not known."""
+    pose_lines: Indices
+    """The line of the ``<pose>`` of each element; 0 for an element without one."""
+    includes: Mapping[int, Place]
+    """The place of the ``<include>`` of each included element, by its index."""
+    automatic_inertials: frozenset[int]
+    """The inertials whose poses are computed, not written."""
     file_indices: Indices
     """The file of each element, as an index into ``files``."""
     world_names: Mapping[int, str]

@@ -56,6 +56,9 @@ def document_from_file(
     :raises ConversionError: if its version is not supported, or names in it cannot be converted.
     """
     sources.add_path(path)
+    text = sources.texts.get(path)
+    if text is not None:
+        return document_from_text(text, path, sources, problems)
     text = bytes_from_file(path, sources.usage)
     return _document_from_bytes(
         text, path, None, sources, problems, is_included=is_included,

@@ -71,6 +71,8 @@ class Elements:
     """For each inertial that is computed: the masses of its link's collisions in their order."""
     paths: Sequence[str]
     """The files of the load."""
+    includes: Mapping[int, Place]
+    """For each element that an include is about: the place of the ``<include>``."""
     missing_includes: Mapping[int, Mapping[str, str]]
     """For each element with includes that were not found: names and URIs of what is missing. An
     empty name is that of a merge, which could have had elements of any name."""
@@ -141,6 +143,7 @@ class ElementsBuilder:
         self.sensors: dict[int, SensorDetails] = {}
         self.shapes: dict[int, Shape] = {}
         self.automatic_inertials: dict[int, tuple[CollisionMass, ...]] = {}
+        self.includes: dict[int, Place] = {}
         self.missing_includes: dict[int, dict[str, str]] = {}
         self._scopes = array('i')
         self._paths = paths
@@ -202,7 +205,7 @@ class ElementsBuilder:
             pose_lines=_indices(self.pose_lines), poses=poses, relative_to=self.relative_to,
             models=self.models, frames=self.frames, joints=self.joints, sensors=self.sensors,
             shapes=self.shapes, automatic_inertials=self.automatic_inertials, paths=self._paths,
-            missing_includes=self.missing_includes)
+            includes=self.includes, missing_includes=self.missing_includes)
         for index, reason in failures:
             problems.error(ElementInvalidError(reason, table.place_of_pose(index)))
         for index, reason in doubts:

@@ -21,9 +21,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
+from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.values import is_representable
 from sdf_pose_bridge.sdformat.values import LONGEST_PLAIN
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -62,6 +65,25 @@ class PoseFormat(NamedTuple):
 
 class PoseTextError(ValueError):
     """The text is not a pose; the message has the value and the rule."""
+
+
+def pose_format_of(xml: XmlElement) -> PoseFormat:
+    """
+    Read how the numbers of a ``<pose>`` are to be read.
+
+    :return: the format.
+    :raises PoseTextError: if ``rotation_format`` and ``degrees`` do not say it.
+    """
+    rotation_format = attribute_of(xml, 'rotation_format')
+    pose_format = PoseFormat(
+        rotation_format == 'quat_xyzw', boolean_from_text(xml.get('degrees', '')) is True)
+    if rotation_format not in ('', 'euler_rpy', 'quat_xyzw'):
+        msg = f'rotation_format="{rotation_format}" must be euler_rpy or quat_xyzw'
+        raise PoseTextError(msg)
+    if pose_format.is_quaternion and pose_format.is_degrees:
+        msg = 'degrees="true" cannot be combined with rotation_format="quat_xyzw"'
+        raise PoseTextError(msg)
+    return pose_format
 
 
 class PosesFromTexts(NamedTuple):

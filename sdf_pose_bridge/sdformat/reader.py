@@ -28,6 +28,7 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.joints import joint_details_from_element
 from sdf_pose_bridge.sdformat.models import frame_details_from_element
 from sdf_pose_bridge.sdformat.models import model_details_from_element
+from sdf_pose_bridge.sdformat.poses import pose_format_of
 from sdf_pose_bridge.sdformat.poses import pose_from_text
 from sdf_pose_bridge.sdformat.poses import PoseFormat
 from sdf_pose_bridge.sdformat.poses import PoseTextError
@@ -43,7 +44,6 @@ from sdf_pose_bridge.sdformat.values import frame_of_attribute
 from sdf_pose_bridge.sdformat.values import is_of_type
 from sdf_pose_bridge.sdformat.values import value_fault
 from sdf_pose_bridge.sdformat.versions import allows_scoped_names
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
@@ -191,6 +191,9 @@ class _Reader:
         index = self._builder.add(
             kind, name, parent, scope,
             self._file_indices[self._sources.path_of_pose(xml, path)], self._sources.line(xml))
+        include = self._sources.include_of(xml)
+        if include is not None:
+            self._builder.includes[index] = include
         if kind is Kind.WORLD or kind is Kind.MODEL:
             scope = index
         self._read_details(xml, kind, index)
@@ -289,16 +292,10 @@ class _Reader:
 
     def _pose_format(self, xml: XmlElement) -> PoseFormat | None:
         """Read the attributes about the format of a pose; report them if they are not valid."""
-        rotation_format = attribute_of(xml, 'rotation_format')
-        pose_format = PoseFormat(
-            rotation_format == 'quat_xyzw', boolean_from_text(xml.get('degrees', '')) is True)
-        if rotation_format not in ('', 'euler_rpy', 'quat_xyzw'):
-            fault = f'rotation_format="{rotation_format}" must be euler_rpy or quat_xyzw'
-        elif pose_format.is_quaternion and pose_format.is_degrees:
-            fault = 'degrees="true" cannot be combined with rotation_format="quat_xyzw"'
-        else:
-            return pose_format
-        self._problems.error(ElementInvalidError(fault, self._sources.place(xml)))
+        try:
+            return pose_format_of(xml)
+        except PoseTextError as error:
+            self._problems.error(ElementInvalidError(str(error), self._sources.place(xml)))
         return None
 
     def _read_relative_to(self, xml: XmlElement, definition: Definition, index: int) -> None:

@@ -53,11 +53,16 @@ class Sources:
     An element stands in the file that :meth:`set_source` gave to it or to its nearest ancestor.
 
     :param limits: what the load may use.
+    :param texts: what to read instead of the files at some paths.
     """
 
-    def __init__(self, limits: Limits = DEFAULT_LIMITS) -> None:
+    def __init__(
+        self, limits: Limits = DEFAULT_LIMITS, texts: Mapping[str, bytes] | None = None,
+    ) -> None:
         self.usage = Usage(limits)
         """What the load has used so far."""
+        self.texts = texts or {}
+        """What to read instead of the files at some paths."""
         self.paths: list[str] = []
         """All files that were read, in the order of reading."""
         self.versions: dict[str, Version] = {}
@@ -110,6 +115,15 @@ class Sources:
     def set_include(self, xml: XmlElement, include: XmlElement) -> None:
         """Set which include an element came from. The include has to be in its tree still."""
         self._origins[xml] = self._origin(xml)._replace(include=self.place(include))
+
+    def include_of(self, xml: XmlElement) -> Place | None:
+        """
+        Return the include that an element came from.
+
+        :param xml: the included element itself, not one in it.
+        :return: the place of the ``<include>``; None for other elements.
+        """
+        return self._origin(xml).include
 
     def set_named_by_include(self, xml: XmlElement) -> None:
         """Set that the name of an included element is written in the file that includes it."""

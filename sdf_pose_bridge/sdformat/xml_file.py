@@ -39,10 +39,10 @@ _MOST_ERRORS = 100
 _LAST_LINE = 65_535
 """libxml2 reports this line for all elements in later lines."""
 
-_START_TAG = re.compile(
+START_TAG = re.compile(
     rb'<(?:([^/!?][^"\'>]*(?:"[^"]*"[^"\'>]*|\'[^\']*\'[^"\'>]*)*)>'
     rb'|!--.*?-->|!\[CDATA\[.*?\]\]>|![A-Z](?:[^"\'>]|"[^"]*"|\'[^\']*\')*>|\?.*?\?>)', re.DOTALL)
-"""A start tag, or what may hold something that looks like one."""
+"""A start tag, its inside as group 1, or what may hold something that looks like one."""
 
 _INTERNAL_SUBSET = re.compile(rb'<!DOCTYPE(?:[^"\'\[>]|"[^"]*"|\'[^\']*\')*\[')
 
@@ -220,7 +220,7 @@ def _lines_beyond_last(root: XmlElement, text: bytes) -> dict[XmlElement, int]:
         encoding = 'utf-16'
     with contextlib.suppress(LookupError, UnicodeDecodeError):
         text = text.decode(encoding).encode()
-    ends = [tag.end(1) for tag in _START_TAG.finditer(text) if tag[1]]
+    ends = [tag.end(1) for tag in START_TAG.finditer(text) if tag[1]]
     line_ends = np.flatnonzero(np.frombuffer(text, np.uint8) == ord('\n'))
     lines = np.searchsorted(line_ends, ends) + 1
     first = int(np.searchsorted(lines, _LAST_LINE))

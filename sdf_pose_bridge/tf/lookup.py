@@ -65,27 +65,64 @@ class PoseLookup:
         reference, frame_id = self._pose_in_root(relative_to)
         return FoundPose(canonical_relative_pose(reference, pose), frame_id)
 
+    def pose_of_element(self, element: int, relative_to: str = '') -> Pose:
+        """
+        Look up the pose of an element of the scene in a frame.
+
+        :param relative_to: as for :meth:`pose`.
+        :return: the pose.
+        :raises UnknownFrameError: if the name is unknown or ambiguous.
+        """
+        reference = self._pose_in_root(relative_to)[0] if relative_to else Pose()
+        return canonical_relative_pose(reference, self._pose_of(element))
+
+    def element(self, name: str) -> int:
+        """
+        Find an element.
+
+        :param name: a name of SDF or of TF.
+        :return: its index in the scene.
+        :raises UnknownFrameError: if the name is unknown or ambiguous, or that of a frame without
+            an element of its own.
+        """
+        if not self._scene.has(name) and name in self._indices:
+            element = int(self._tree.elements[self._indices[name]])
+            if element < 0:
+                msg = f'"{name}" is an optical frame, which moves with its camera'
+                raise UnknownFrameError(msg, Place(self._scene.path))
+            return element
+        return self._element(name)
+
     def _pose_in_root(self, name: str) -> tuple[Pose, str]:
         """Return the pose of a frame in the root frame, and its frame id or else its name."""
         scene, tree, positions = self._scene, self._tree, self._positions
         if name == tree.root_frame:
             return Pose(), name
-        if not scene.has(name):
-            if name not in self._indices:
-                hint = hint_from_names(name, [*self._indices, *scene.names])
-                msg = f'"{name}" is the name of nothing{hint}'
-                raise UnknownFrameError(msg, Place(scene.path))
+        if not scene.has(name) and name in self._indices:
             index = self._indices[name]
             if positions is not None and tree.moving is not None:
                 return tree.moving.pose_of_frame(index, positions), name
             return Pose(*tree.poses[index].tolist()), name
-        element = scene.index(name, world=tree.world)
+        element = self._element(name)
+        frame_id = tree.root_frame if element == 0 else self._frame_ids.get(element, name)
+        return self._pose_of(element), frame_id
+
+    def _element(self, name: str) -> int:
+        """Find an element by its name in SDF."""
+        scene = self._scene
+        if not scene.has(name):
+            hint = hint_from_names(name, [*self._indices, *scene.names])
+            msg = f'"{name}" is the name of nothing{hint}'
+            raise UnknownFrameError(msg, Place(scene.path))
+        element = scene.index(name, world=self._tree.world)
         if scene.roots[element]:
             msg = f'"{name}" is in world "{scene.world_of(element)}", which is not published'
             raise UnknownFrameError(msg, Place(scene.path))
-        if element == 0:
-            return Pose(), tree.root_frame
-        pose = scene.pose_of(element)
-        if positions is not None and tree.moving is not None:
-            pose = tree.moving.pose_of_element(element, pose, positions)
-        return pose, self._frame_ids.get(element, name)
+        return element
+
+    def _pose_of(self, element: int) -> Pose:
+        """Return the pose of an element in the root frame."""
+        pose = self._scene.pose_of(element)
+        if element and self._positions is not None and self._tree.moving is not None:
+            return self._tree.moving.pose_of_element(element, pose, self._positions)
+        return pose

@@ -1,0 +1,127 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``sdf_pose set``: put a measured pose into the file that places a frame."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+import sys
+
+from sdf_pose_bridge.cli.convert import line_from_text
+from sdf_pose_bridge.cli.convert import NEGATIVE_NUMBER
+from sdf_pose_bridge.cli.loading import add_file_arguments
+from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.printing import printed_errors
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.formats import converted_poses
+from sdf_pose_bridge.geometry.formats import converted_rotations
+from sdf_pose_bridge.geometry.formats import POSE_FORMATS
+from sdf_pose_bridge.geometry.formats import PoseFormatError
+from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.scene.comparison import Change
+from sdf_pose_bridge.scene.comparison import differences_of_scenes
+from sdf_pose_bridge.scene.loading import load
+from sdf_pose_bridge.scene.loading import MissingInclude
+from sdf_pose_bridge.scene.pose_setting import pose_change
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.file_replacement import replace_file
+from sdf_pose_bridge.tf.lookup import PoseLookup
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command."""
+    parser = subparsers.add_parser(
+        'set', help='put a measured pose into a file',
+        description='Change the numbers of the <pose> that places a frame, in the file where it '
+                    'stands, so that the frame is where it was measured. Nothing else in the file '
+                    'changes. The change is printed, and which other frames move with it.')
+    # By default argparse parses -1e-3 as an option.
+    parser._negative_number_matcher = NEGATIVE_NUMBER  # noqa: SLF001
+    add_file_arguments(parser, takes_many=False)
+    parser.add_argument(
+        'frame', metavar='FRAME', help='a name as in SDF (robot::camera) or TF (robot/camera)')
+    parser.add_argument('numbers', metavar='NUMBER', nargs='+', help='the pose')
+    parser.add_argument(
+        '--relative-to', metavar='OTHER', default='',
+        help='the frame in which the pose was measured; by default the world, or the implicit '
+             'root of a model file')
+    parser.add_argument(
+        '--format', choices=(*POSE_FORMATS, *ROTATION_FORMATS), default='sdf_rpy',
+        help='format of the numbers, as of "sdf_pose convert"; by default sdf_rpy: x y z roll '
+             'pitch yaw in metres and radians. With a format of rotations the position stays')
+    parser.add_argument(
+        '--dry-run', action='store_true', help='print what would change, and write nothing')
+    parser.add_argument(
+        '--all-instances', action='store_true',
+        help='accept that what else the same <pose> places moves too, in a file that is included '
+             'more than once')
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """
+    Set a pose.
+
+    :return: exit code: 0 if the file says it now, else 1.
+    """
+    source = {**POSE_FORMATS, **ROTATION_FORMATS}[options.format]
+    line = line_from_text(0, ' '.join(options.numbers), source)
+    if line.error:
+        return _fail(line.error)
+    scene = scene_of(options.files[0], options)
+    if scene is None:
+        return 1
+    with printed_errors():
+        try:
+            return _set(scene, line.values, options)
+        except PoseFormatError as error:
+            return _fail(str(error))
+    return 1
+
+
+def _set(scene: Scene, numbers: list[float], options: argparse.Namespace) -> int:
+    def loaded(texts: Mapping[str, bytes]) -> Scene:
+        return load(
+            options.files[0], resource_paths=options.resource_paths, texts=texts,
+            on_missing_include=MissingInclude.SKIP if options.skip_missing else (
+                MissingInclude.ERROR))
+
+    def measured(scene: Scene, element: int) -> Pose:
+        return _lookup(scene).pose_of_element(element, options.relative_to)
+
+    element = _lookup(scene).element(options.frame)
+    if options.format in POSE_FORMATS:
+        asked = Pose(*converted_poses(numbers, options.format, 'sdf_quat_xyzw').tolist())
+    else:
+        quat_xyzw = converted_rotations(numbers, options.format, 'quaternion').tolist()
+        asked = Pose(*measured(scene, element)[:3], *quat_xyzw)
+    change = pose_change(
+        scene, element, asked, measured, loaded, all_instances=options.all_instances)
+    if not options.dry_run:
+        replace_file(change.path, change.old_text, change.new_text)
+    sys.stdout.write(change.diff)
+    moved = [
+        printable(difference.name) for difference in differences_of_scenes(scene, change.scene)
+        if difference.change is Change.MOVED and difference.name != scene.names[element]]
+    if moved:
+        print(f'moved with it: {", ".join(moved)}')
+    return 0
+
+
+def _lookup(scene: Scene) -> PoseLookup:
+    try:
+        tree = tf_tree_from_scene(scene)
+    except SdfError:
+        # Frames that would share an id have their names in SDF.
+        tree = tf_tree_from_scene(scene, TfOptions(kinds=frozenset()))
+    return PoseLookup(scene, tree)
+
+
+def _fail(message: str) -> int:
+    print(f'sdf_pose set: {printable(message)}', file=sys.stderr)
+    return 1

@@ -1,0 +1,125 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Compare two scenes: which elements were added, removed, renamed and moved."""
+
+from __future__ import annotations
+
+import enum
+from typing import NamedTuple
+
+import numpy as np
+
+from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.geometry.poses import relative_poses
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.grammar import Kind
+
+TOLERANCE = 1e-9
+"""A smaller difference of poses, in metres and radians, comes from rounding."""
+
+
+class Change(enum.Enum):
+    """What happened to an element."""
+
+    ADDED = 'added'
+    REMOVED = 'removed'
+    RENAMED = 'renamed'
+    MOVED = 'moved'
+
+
+class Difference(NamedTuple):
+    """A difference between two scenes."""
+
+    change: Change
+    kind: Kind
+    name: str
+    """Absolute name in the new scene; in the old one if it was removed."""
+    old_name: str
+    """Absolute name in the old scene; empty if it was added."""
+    distance_m: float = 0.0
+    angle_rad: float = 0.0
+
+
+def differences_of_scenes(
+    old: Scene, new: Scene, *, relative_to: str = '', tolerance: float = TOLERANCE,
+) -> list[Difference]:
+    """
+    List what is different.
+
+    An element counts as renamed if it is the only one of its kind in its scope that went, or came,
+    with just that pose. An element may be renamed and moved with others that hold it.
+
+    :param relative_to: the frame in which poses are compared; empty for the world or the implicit
+        root.
+    :param tolerance: what counts as no movement, in metres and radians.
+    :return: what was removed, in the order of the old scene, then the rest in that of the new one.
+    :raises UnknownFrameError: if there is no such frame in one of the scenes.
+    """
+    old_poses, new_poses = _poses(old, relative_to), _poses(new, relative_to)
+    old_keys = {_key(old, index): index for index in range(len(old.names))}
+    new_keys = {_key(new, index): index for index in range(len(new.names))}
+    gone = [index for key, index in old_keys.items() if key not in new_keys]
+    come = [index for key, index in new_keys.items() if key not in old_keys]
+    renamed = _renamed(old, new, gone, come)
+    differences = [
+        Difference(Change.REMOVED, Kind(old.kinds[index]), old.names[index], old.names[index])
+        for index in gone if index not in renamed]
+    old_of_new = {new_keys[key]: index for key, index in old_keys.items() if key in new_keys}
+    old_of_new |= {after: before for before, after in renamed.items()}
+    pairs = sorted(old_of_new)
+    before = old_poses[[old_of_new[index] for index in pairs]]
+    distances, angles = _distances_and_angles(before, new_poses[pairs])
+    movements = dict(zip(pairs, zip(distances, angles, strict=True), strict=True))
+    for index, name in enumerate(new.names):
+        kind = Kind(new.kinds[index])
+        if index not in old_of_new:
+            differences.append(Difference(Change.ADDED, kind, name, ''))
+            continue
+        old_name = old.names[old_of_new[index]]
+        if index in renamed.values():
+            differences.append(Difference(Change.RENAMED, kind, name, old_name))
+        if max(movements[index]) > tolerance:
+            differences.append(Difference(Change.MOVED, kind, name, old_name, *movements[index]))
+    return differences
+
+
+def _key(scene: Scene, index: int) -> tuple[str, int, str]:
+    return scene.world_of(index), int(scene.kinds[index]), scene.names[index]
+
+
+def _poses(scene: Scene, relative_to: str) -> PoseArray:
+    if not relative_to:
+        return scene.poses
+    reference = scene.poses[scene.index(relative_to)]
+    return relative_poses(np.tile(reference, (len(scene.poses), 1)), scene.poses)
+
+
+def _distances_and_angles(
+    before: PoseArray, after: PoseArray,
+) -> tuple[list[float], list[float]]:
+    between = relative_poses(before, after)
+    angles = 2.0 * np.arctan2(
+        np.linalg.norm(between[:, 3:6], axis=1), np.abs(between[:, 6]))
+    return np.linalg.norm(between[:, :3], axis=1).tolist(), angles.tolist()
+
+
+def _renamed(old: Scene, new: Scene, gone: list[int], come: list[int]) -> dict[int, int]:
+    """Return the new index of each element that has another name now."""
+    renamed: dict[int, int] = {}
+    new_names: dict[str, str] = {}
+    places: dict[tuple[object, ...], list[int]] = {}
+    for index in come:
+        places.setdefault(_place(new, index, new.names[new.parents[index]]), []).append(index)
+    for index in gone:
+        scope = old.names[old.parents[index]]
+        place = _place(old, index, new_names.get(scope, scope))
+        same = [other for other in gone if other not in renamed and _place(
+            old, other, new_names.get(scope := old.names[old.parents[other]], scope)) == place]
+        if len(same) == 1 and len(places.get(place, ())) == 1:
+            renamed[index] = places[place][0]
+            new_names[old.names[index]] = new.names[places[place][0]]
+    return renamed
+
+
+def _place(scene: Scene, index: int, scope: str) -> tuple[object, ...]:
+    return scene.world_of(index), int(scene.kinds[index]), scope, scene.poses[index].tobytes()

@@ -1,0 +1,188 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Find what a file must say so that an element is at a pose.
+
+No rule of SDFormat is stated again here. A scene says which ``<pose>`` places the element and what
+it is relative to, and whether a new number is right is seen by reading the changed file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from collections.abc import Mapping
+import difflib
+import math
+import os
+from pathlib import Path
+from typing import NamedTuple
+from typing import TypeAlias
+
+import numpy as np
+
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import PoseNotSetError
+from sdf_pose_bridge.geometry.poses import canonical_relative_pose
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import pose_inverse
+from sdf_pose_bridge.geometry.poses import pose_product
+from sdf_pose_bridge.geometry.poses import relative_pose
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion
+from sdf_pose_bridge.scene.comparison import TOLERANCE
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.include.uris import resource_finder
+from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.pose_text import PoseText
+from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
+
+_MOST_ATTEMPTS = 4
+_MOST_NAMES_SHOWN = 10
+
+Load: TypeAlias = Callable[[Mapping[str, bytes]], Scene]
+"""Reads the scene with other texts instead of some of its files."""
+
+Measure: TypeAlias = Callable[[Scene, int], Pose]
+"""Returns the pose of an element in the frame that was asked for."""
+
+
+class PoseChange(NamedTuple):
+    """What a file must say."""
+
+    path: str
+    """The file."""
+    line: int
+    """The line of the pose, or of the element in which it is inserted."""
+    old_text: bytes
+    new_text: bytes
+    scene: Scene
+    """The scene with the new text."""
+
+    @property
+    def diff(self) -> str:
+        """The change as a unified diff; empty if there is none."""
+        old, new = (
+            [line.decode(errors='backslashreplace') for line in text.splitlines(keepends=True)]
+            for text in (self.old_text, self.new_text))
+        return ''.join(
+            line if line.endswith('\n') else f'{line}\n\\ No newline at end of file\n'
+            for line in difflib.unified_diff(old, new, self.path, self.path))
+
+
+def pose_change(
+    scene: Scene, element: int, asked: Pose, measure: Measure, load: Load, *,
+    all_instances: bool = False,
+) -> PoseChange:
+    """
+    Find what a file must say so that an element is at a pose. Nothing is written.
+
+    :param asked: the pose, as ``measure`` shall return it.
+    :param measure: says where elements are, in a frame of the caller's choice. Joints may be
+        anywhere, but always at the same positions.
+    :param load: loads the scene.
+    :param all_instances: whether elements that the same ``<pose>`` places may move too.
+    :return: the text of one file in which one pose is different. The pose in it is right to 1e-9
+        metres and radians.
+    :raises PoseNotSetError: if no single ``<pose>`` can say this.
+    :raises SdfError: if a file cannot be read any more.
+    """
+    _check_kind(scene, element)
+    path = _place_of_pose(scene, element)[0]
+    cache = resource_finder((), os.environ).fuel_cache
+    if Path(os.path.realpath(cache)) in Path(os.path.realpath(path)).parents:
+        msg = 'the file is in the cache of Gazebo Fuel; copy the model and include the copy'
+        raise PoseNotSetError(msg, Place(path))
+    content = bytes_from_file(path, Usage())
+    text = PoseText(content, path)
+    marked = load({path: text.with_a_line_for_each_tag()})
+    if marked.names != scene.names or not np.array_equal(marked.poses, scene.poses):
+        msg = 'the file has changed since it was read'
+        raise PoseNotSetError(msg, Place(path))
+    place = _place_of_pose(marked, element)
+    target = text.element_at_line(place[1])
+    at = Place(path, text.line(target))
+    if not all_instances:
+        _check_instances(marked, element, place, at)
+    is_written = place[2]
+    reference = int(scene.references[element])
+    in_asked, old = measure(scene, reference), measure(scene, element)
+    _check_joints(scene, element, relative_pose(in_asked, old), at)
+    written = text.pose(target) if is_written else relative_pose(in_asked, old)
+    new, current, tolerance = scene, old, TOLERANCE
+    for _ in range(_MOST_ATTEMPTS):
+        # What is at the pose that was asked for is C in the frame that the pose in the file
+        # places, most often the element itself. So asked = R written C before and after, and the
+        # unknown C follows from what is there now.
+        there = pose_product(pose_product(asked, pose_inverse(current)), in_asked)
+        written = pose_product(relative_pose(in_asked, there), written)
+        written = Pose(*written[:3], *canonical_quaternion(written[3:]))
+        new_text = text.with_pose(target, written, tolerance) if is_written else (
+            text.with_new_pose(target, written, tolerance))
+        new = load({path: new_text})
+        current, in_asked = measure(new, element), measure(new, reference)
+        if _distance(current, asked) <= TOLERANCE:
+            return PoseChange(path, at.line, content, new_text, new)
+        tolerance /= 10.0
+    msg = (f'no pose of "{scene.names[element]}" in the file puts it there: the frame that the '
+           'pose is measured in moves with it')
+    raise PoseNotSetError(msg, at)
+
+
+def _check_kind(scene: Scene, element: int) -> None:
+    kind = Kind(scene.kinds[element])
+    reason = ''
+    if scene.parents[element] < 0:
+        reason = 'the frame in which all others are placed'
+    elif kind is Kind.ACTOR:
+        reason = 'an actor, which moves along its trajectory'
+    elif element in scene.automatic_inertials:
+        reason = 'an inertial that is computed from the collisions of its link'
+    if reason:
+        msg = f'the pose of "{scene.names[element]}" cannot be set: it is {reason}'
+        raise PoseNotSetError(msg, scene.place(element))
+
+
+def _place_of_pose(scene: Scene, element: int) -> tuple[str, int, bool]:
+    """Return file and line of the pose, or of what it is to be inserted in; and which of both."""
+    path, line = scene.place(element)[:2]
+    include = scene.includes.get(element)
+    if include is not None and include.file != path:
+        # The include does not place the element yet, but its pose counts.
+        return include.file, include.line, False
+    pose_line = int(scene.pose_lines[element])
+    return path, pose_line or line, bool(pose_line)
+
+
+def _check_instances(
+    scene: Scene, element: int, place: tuple[str, int, bool], at: Place,
+) -> None:
+    others = [
+        scene.names[other] for other in range(len(scene.names))
+        if other != element and scene.parents[other] >= 0
+        and _place_of_pose(scene, other) == place]
+    if others:
+        shown = ', '.join(f'"{name}"' for name in others[:_MOST_NAMES_SHOWN])
+        rest = len(others) - _MOST_NAMES_SHOWN
+        msg = (f'the same pose in the file also places {shown}'
+               f'{f" and {rest} more" if rest > 0 else ""}, which would move too')
+        raise PoseNotSetError(msg, at)
+
+
+def _check_joints(scene: Scene, element: int, in_reference: Pose, at: Place) -> None:
+    reference = int(scene.references[element])
+    expected = scene.relative_pose_of(element, reference)
+    if _distance(in_reference, expected) > TOLERANCE * (1.0 + _size(scene)):
+        msg = (f'a joint has moved "{scene.names[element]}" away from "{scene.names[reference]}", '
+               'which its pose in the file is relative to; move the joint back, or set the pose '
+               'of another frame')
+        raise PoseNotSetError(msg, at)
+
+
+def _distance(a: Pose, b: Pose) -> float:
+    """Return the distance of two poses in metres, or their angle in radians if that is larger."""
+    between = canonical_relative_pose(a, b)
+    return max(math.hypot(*between[:3]), 2.0 * math.atan2(math.hypot(*between[3:6]), between.qw))
+
+
+def _size(scene: Scene) -> float:
+    return float(np.abs(scene.poses[:, :3]).max(initial=0.0))

@@ -1,0 +1,78 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Replace the content of a file: all of it or nothing, whatever happens meanwhile.
+
+The new content is written to a file without a name, which vanishes with the process. It gets a
+name beside the old file only when it is on the disk, and takes the place of the old one at once.
+"""
+
+from __future__ import annotations
+
+import errno
+import fcntl
+import os
+from pathlib import Path
+import stat
+from typing import BinaryIO
+
+from sdf_pose_bridge.errors import FileWriteError
+from sdf_pose_bridge.errors import Place
+
+
+def replace_file(path: str, old: bytes, new: bytes) -> None:
+    """
+    Replace the content of a file, which keeps its mode and owner; links to it stay links.
+
+    :param path: path of the file.
+    :param old: what it holds, as far as the caller knows.
+    :param new: what it shall hold.
+    :raises FileWriteError: if it cannot be written, or does not hold ``old``, or another process
+        replaces it now; it is as before then.
+    """
+    try:
+        real_path = Path(path).resolve(strict=True)
+        with real_path.open('rb') as file:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if not os.access(real_path, os.W_OK):
+                raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+            status = os.fstat(file.fileno())
+            with _nameless_file(real_path.parent) as target:
+                target.write(new)
+                os.fchown(target.fileno(), status.st_uid, status.st_gid)
+                os.fchmod(target.fileno(), stat.S_IMODE(status.st_mode))
+                target.flush()
+                os.fsync(target.fileno())
+                if file.read() != old or not os.path.samestat(real_path.stat(), status):
+                    msg = 'the file has changed since it was read, so it is not overwritten'
+                    raise FileWriteError(msg, Place(path))
+                _put_in_place(target.fileno(), real_path)
+    except BlockingIOError as error:
+        msg = 'another process is writing the file'
+        raise FileWriteError(msg, Place(path)) from error
+    except OSError as error:
+        msg = f'the file cannot be written: {(error.strerror or str(error)).lower()}'
+        raise FileWriteError(msg, Place(path)) from error
+
+
+def _nameless_file(directory: Path) -> BinaryIO:
+    descriptor = os.open(directory, os.O_TMPFILE | os.O_WRONLY, 0o600)
+    return os.fdopen(descriptor, 'wb')
+
+
+def _put_in_place(descriptor: int, path: Path) -> None:
+    folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY)
+    # Linux has no call that gives a file a name that is in use, so it gets this one first. If a
+    # process is killed between both calls, the next one that writes the file removes the rest.
+    temporary = path.with_name(f'.{path.name}.sdf_pose')
+    try:
+        temporary.unlink(missing_ok=True)
+        # With a descriptor of a directory os.link follows the link in /proc.
+        os.link(f'/proc/self/fd/{descriptor}', temporary, src_dir_fd=folder)
+        temporary.replace(path)
+        os.fsync(folder)
+    except OSError:
+        temporary.unlink(missing_ok=True)
+        raise
+    finally:
+        os.close(folder)

@@ -1,0 +1,246 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Change one pose in the text of a file, and no other byte.
+
+The reader says where a pose stands by the line in which its start tag ends. Several tags can end
+in one line. So the place is read from the same text with a line for each tag.
+"""
+
+from __future__ import annotations
+
+import codecs
+from collections.abc import Sequence
+from itertools import count
+import re
+
+from lxml import etree
+import numpy as np
+
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import PoseNotSetError
+from sdf_pose_bridge.geometry.formulas import degrees_from_radians
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import relative_pose
+from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
+from sdf_pose_bridge.sdformat.poses import pose_format_of
+from sdf_pose_bridge.sdformat.poses import pose_from_text
+from sdf_pose_bridge.sdformat.poses import PoseFormat
+from sdf_pose_bridge.sdformat.poses import PoseTextError
+from sdf_pose_bridge.sdformat.xml_file import START_TAG
+from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
+from sdf_pose_bridge.sdformat.xml_tree import text_of
+from sdf_pose_bridge.sdformat.xml_tree import written_tag
+
+_COMMENTS = re.compile(rb'(?:\s*<!--.*?-->)*', re.DOTALL)
+_RUN = re.compile(rb'[^<]*')
+_WORD = re.compile(rb'[^ \t\n\r]+')
+_INDENTATION = re.compile(rb'\s*?(\r?\n[ \t]*)?(?=<)')
+_TAG_NAME = re.compile(rb'[^\s/>]+')
+_SAME_ROTATION = 1e-12
+
+
+class PoseText:
+    """
+    The text of a file, in which poses can be changed.
+
+    Elements are counted in the order of their start tags, from 0.
+
+    :param content: the bytes of the file.
+    :param path: its path, for errors.
+    :raises SdfError: if it is not SDFormat as it stands: no XML, XML that has to be repaired, or
+        URDF.
+    """
+
+    def __init__(self, content: bytes, path: str) -> None:
+        self._path = path
+        root, warnings, _ = xml_from_bytes(content, path)
+        if warnings:
+            msg = f'{warnings[0].message}; correct this before a pose is set in the file'
+            raise PoseNotSetError(msg, warnings[0].place)
+        if root.tag == 'robot':
+            msg = 'this is URDF, in which no pose can be set; convert the file to SDFormat first'
+            raise PoseNotSetError(msg, Place(path))
+        self._encoding = _encoding_of(content, root.getroottree().docinfo.encoding)
+        try:
+            self._text = content.decode(self._encoding).encode()
+        except (LookupError, UnicodeDecodeError):
+            self._text = b''
+        self._elements = list(root.iter(etree.Element))
+        self._tags = [
+            (tag.start(), tag.end(1)) for tag in START_TAG.finditer(self._text) if tag[1]]
+        if len(self._tags) != len(self._elements) or self._encoded(self._text) != content:
+            msg = f'the text cannot be changed in its encoding, {self._encoding}'
+            raise PoseNotSetError(msg, Place(path))
+
+    def with_a_line_for_each_tag(self) -> bytes:
+        """Return a text of the same meaning, in which no two start tags end in one line."""
+        parts = []
+        position = 0
+        for _, end in self._tags:
+            cut = end - self._is_closed(end)
+            parts.append(self._text[position:cut])
+            position = cut
+        return self._encoded(b'\n'.join([*parts, self._text[position:]]))
+
+    def element_at_line(self, line: int) -> int:
+        """
+        Find an element.
+
+        :param line: its line in :meth:`with_a_line_for_each_tag`.
+        :return: the number of the element.
+        :raises PoseNotSetError: if no start tag ends there.
+        """
+        breaks = np.flatnonzero(np.frombuffer(self._text, np.uint8) == ord('\n'))
+        ends = np.array([end for _, end in self._tags])
+        lines = np.searchsorted(breaks, ends) + np.arange(len(ends)) + 2
+        element = int(np.searchsorted(lines, line))
+        if element == len(lines) or lines[element] != line:
+            msg = 'the file does not say by itself where this element is'
+            raise PoseNotSetError(msg, Place(self._path))
+        return element
+
+    def line(self, element: int) -> int:
+        """Return the line in which the start tag of an element ends, in the text as it stands."""
+        return self._text.count(b'\n', 0, self._tags[element][1]) + 1
+
+    def pose(self, element: int) -> Pose:
+        """
+        Read a pose.
+
+        :param element: the number of a ``<pose>``.
+        :return: the pose as written.
+        :raises PoseNotSetError: if it is not a ``<pose>``, or not written in plain numbers.
+        """
+        pose_format, words = self._format(element), self._words(element)
+        text = ' '.join(word[0].decode() for word in words)
+        try:
+            return Pose(*pose_from_text(text, pose_format))
+        except PoseTextError as error:
+            raise PoseNotSetError(str(error), self._place(element)) from error
+
+    def with_pose(self, element: int, pose: Pose, tolerance: float) -> bytes:
+        """
+        Change a pose.
+
+        :param element: the number of a ``<pose>``.
+        :param pose: the new pose, in the frame that this pose is relative to.
+        :param tolerance: how much the written pose may differ from it, in metres and radians.
+        :return: the text of the file with other numbers in this pose.
+        :raises PoseNotSetError: as :meth:`pose`.
+        """
+        words = self._words(element)
+        old_words = [word[0].decode() for word in words]
+        pose_format = self._format(element)
+        turn = relative_pose(self.pose(element), pose)
+        keeps_rotation = max(map(abs, turn[3:6])) < _SAME_ROTATION
+        new_words = _words_from_pose(
+            pose, pose_format, tolerance, old_words, keeps_rotation=keeps_rotation)
+        if words:
+            text = bytearray(self._text)
+            for word, new in reversed(list(zip(words, new_words, strict=True))):
+                text[slice(*word.span())] = new.encode()
+            return self._encoded(bytes(text))
+        return self._with_content(element, ' '.join(new_words).encode())
+
+    def with_new_pose(self, element: int, pose: Pose, tolerance: float) -> bytes:
+        """
+        Insert a pose, indented like what follows it.
+
+        :param element: the number of the element that it places.
+        :param pose: as for :meth:`with_pose`.
+        :param tolerance: as for :meth:`with_pose`.
+        :return: the text of the file with a ``<pose>`` more.
+        """
+        words = _words_from_pose(pose, PoseFormat(), tolerance)
+        new = b'<pose>%s</pose>' % ' '.join(words).encode()
+        end = self._tags[element][1]
+        indentation = _INDENTATION.match(self._text, end + 1)
+        if not self._is_closed(end) and indentation is not None:
+            new = (indentation[1] or b'') + new
+        return self._with_content(element, new)
+
+    def _with_content(self, element: int, content: bytes) -> bytes:
+        """Return the text of the file with content behind the start tag of an element."""
+        start, end = self._tags[element]
+        text = self._text
+        if self._is_closed(end):
+            name = _TAG_NAME.match(text, start + 1)
+            assert name is not None
+            return self._encoded(
+                text[:end - 1] + b'>' + content + b'</%s>' % name[0] + text[end + 1:])
+        return self._encoded(text[:end + 1] + content + text[end + 1:])
+
+    def _format(self, element: int) -> PoseFormat:
+        xml = self._elements[element]
+        if written_tag(xml) != 'pose':
+            msg = f'the pose is not written as <pose>, but in <{written_tag(xml)}>'
+            raise PoseNotSetError(msg, self._place(element))
+        try:
+            return pose_format_of(xml)
+        except PoseTextError as error:
+            raise PoseNotSetError(str(error), self._place(element)) from error
+
+    def _words(self, element: int) -> Sequence[re.Match[bytes]]:
+        """Find the numbers of a pose; none if it is blank."""
+        end = self._tags[element][1]
+        words: list[re.Match[bytes]] = []
+        if not self._is_closed(end):
+            comments = _COMMENTS.match(self._text, end + 1)
+            assert comments is not None
+            run = _RUN.match(self._text, comments.end())
+            assert run is not None
+            words = list(_WORD.finditer(self._text, *run.span()))
+        if [word[0].decode() for word in words] != text_of(self._elements[element]).split():
+            msg = 'the numbers of the pose are not written as plain text'
+            raise PoseNotSetError(msg, self._place(element))
+        return words
+
+    def _is_closed(self, end: int) -> bool:
+        return self._text[end - 1:end] == b'/'
+
+    def _place(self, element: int) -> Place:
+        return Place(self._path, self.line(element))
+
+    def _encoded(self, text: bytes) -> bytes:
+        return text.decode().encode(self._encoding)
+
+
+def _encoding_of(content: bytes, declared: str | None) -> str:
+    for mark, encoding in (
+            (codecs.BOM_UTF16_LE, 'utf-16-le'), (codecs.BOM_UTF16_BE, 'utf-16-be')):
+        if content.startswith(mark):
+            return encoding
+    return declared or 'utf-8'
+
+
+def _words_from_pose(
+    pose: Pose, pose_format: PoseFormat, tolerance: float, old_words: Sequence[str] = (), *,
+    keeps_rotation: bool = False,
+) -> list[str]:
+    """Write a pose in the shortest numbers; those that are right already stay."""
+    numbers = [*pose[:3]]
+    # An error of each number contributes to that of the pose at most as much as this divides.
+    tolerances = [tolerance / 2.0] * 3
+    if pose_format.is_quaternion:
+        numbers += pose[3:]
+        tolerances += [tolerance / 8.0] * 4
+    else:
+        rpy = rpy_from_quaternion(pose[3:])
+        unit = degrees_from_radians(1.0) if pose_format.is_degrees else 1.0
+        numbers += [angle * unit for angle in rpy]
+        tolerances += [tolerance / 4.0 * unit] * 3
+    words = [_shortest(number, each) for number, each in zip(numbers, tolerances, strict=True)]
+    for index, old in enumerate(old_words):
+        if abs(float(old) - numbers[index]) <= tolerances[index] or (
+                keeps_rotation and index >= 3):
+            words[index] = old
+    return words
+
+
+def _shortest(number: float, tolerance: float) -> str:
+    """Return the decimal with the fewest digits that differs by no more than a tolerance."""
+    text = next(
+        text for digits in count()
+        if abs(float(text := f'{number:.{digits}f}') - number) <= tolerance)
+    return '0' if float(text) == 0.0 else text
