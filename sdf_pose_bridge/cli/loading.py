@@ -41,12 +41,17 @@ class LoadedFile(NamedTuple):
 
 def add_file_arguments(parser: argparse.ArgumentParser, *, takes_many: bool = True) -> None:
     """
-    Add the arguments of :func:`load_file`.
+    Add the files of a command, and how :func:`load_file` loads them.
 
     :param takes_many: whether the command takes several files.
     """
     parser.add_argument(
         'files', metavar='FILE', nargs='+' if takes_many else 1, help='an SDFormat file')
+    add_loading_arguments(parser)
+
+
+def add_loading_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of :func:`load_file`."""
     parser.add_argument(
         '-I', dest='resource_paths', metavar='DIR', action='append', default=[],
         help='a directory to search for included models, before those of GZ_SIM_RESOURCE_PATH '

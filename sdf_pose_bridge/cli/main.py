@@ -12,6 +12,7 @@ import sys
 
 from sdf_pose_bridge.cli import check
 from sdf_pose_bridge.cli import convert
+from sdf_pose_bridge.cli import diff
 from sdf_pose_bridge.cli import graph
 from sdf_pose_bridge.cli import poses
 from sdf_pose_bridge.cli import set as set_command
@@ -32,7 +33,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         description='Poses and frames of SDFormat files, exactly as libsdformat resolves them.')
     subparsers = parser.add_subparsers(
         dest='command', required=True, metavar='COMMAND', title='commands')
-    for command in (check, poses, tree, graph, view, convert, set_command):
+    for command in (check, poses, tree, graph, view, convert, diff, set_command):
         command.add_parser(subparsers)
     options = parser.parse_args(arguments)
     if isinstance(sys.stdout, io.TextIOWrapper):

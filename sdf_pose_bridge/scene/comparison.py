@@ -56,8 +56,7 @@ def differences_of_scenes(
     :raises UnknownFrameError: if there is no such frame in one of the scenes.
     """
     old_poses, new_poses = _poses(old, relative_to), _poses(new, relative_to)
-    old_keys = {_key(old, index): index for index in range(len(old.names))}
-    new_keys = {_key(new, index): index for index in range(len(new.names))}
+    old_keys, new_keys = _indices(old), _indices(new)
     gone = [index for key, index in old_keys.items() if key not in new_keys]
     come = [index for key, index in new_keys.items() if key not in old_keys]
     renamed = _renamed(old, new, gone, come)
@@ -70,8 +69,8 @@ def differences_of_scenes(
     before = old_poses[[old_of_new[index] for index in pairs]]
     distances, angles = _distances_and_angles(before, new_poses[pairs])
     movements = dict(zip(pairs, zip(distances, angles, strict=True), strict=True))
-    for index, name in enumerate(new.names):
-        kind = Kind(new.kinds[index])
+    for index in new_keys.values():
+        kind, name = Kind(new.kinds[index]), new.names[index]
         if index not in old_of_new:
             differences.append(Difference(Change.ADDED, kind, name, ''))
             continue
@@ -83,8 +82,11 @@ def differences_of_scenes(
     return differences
 
 
-def _key(scene: Scene, index: int) -> tuple[str, int, str]:
-    return scene.world_of(index), int(scene.kinds[index]), scene.names[index]
+def _indices(scene: Scene) -> dict[tuple[str, int, str], int]:
+    """Return the elements, without worlds and implicit roots, by what identifies them."""
+    return {
+        (scene.world_of(index), int(scene.kinds[index]), scene.names[index]): index
+        for index in np.flatnonzero(scene.parents >= 0).tolist()}
 
 
 def _poses(scene: Scene, relative_to: str) -> PoseArray:

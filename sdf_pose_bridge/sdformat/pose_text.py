@@ -27,11 +27,14 @@ from sdf_pose_bridge.sdformat.poses import pose_format_of
 from sdf_pose_bridge.sdformat.poses import pose_from_text
 from sdf_pose_bridge.sdformat.poses import PoseFormat
 from sdf_pose_bridge.sdformat.poses import PoseTextError
+from sdf_pose_bridge.sdformat.versions import Version
+from sdf_pose_bridge.sdformat.versions import version_from_text
 from sdf_pose_bridge.sdformat.xml_file import START_TAG
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 
+_FIRST_WITH_POSE = Version(1, 4)
 _COMMENTS = re.compile(rb'(?:\s*<!--.*?-->)*', re.DOTALL)
 _RUN = re.compile(rb'[^<]*')
 _WORD = re.compile(rb'[^ \t\n\r]+')
@@ -48,8 +51,8 @@ class PoseText:
 
     :param content: the bytes of the file.
     :param path: its path, for errors.
-    :raises SdfError: if it is not SDFormat as it stands: no XML, XML that has to be repaired, or
-        URDF.
+    :raises SdfError: if it is not SDFormat 1.4 or newer as it stands: no XML, XML that has to be
+        repaired, URDF, or an older version.
     """
 
     def __init__(self, content: bytes, path: str) -> None:
@@ -60,6 +63,10 @@ class PoseText:
             raise PoseNotSetError(msg, warnings[0].place)
         if root.tag == 'robot':
             msg = 'this is URDF, in which no pose can be set; convert the file to SDFormat first'
+            raise PoseNotSetError(msg, Place(path))
+        if version_from_text(root.get('version', ''), Place(path)) < _FIRST_WITH_POSE:
+            msg = (f'this is SDFormat {root.get("version")}, which writes poses in another way; '
+                   f'convert the file to {_FIRST_WITH_POSE} or newer first')
             raise PoseNotSetError(msg, Place(path))
         self._encoding = _encoding_of(content, root.getroottree().docinfo.encoding)
         try:

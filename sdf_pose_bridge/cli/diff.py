@@ -1,0 +1,77 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``sdf_pose diff``: which frames of two files were added, removed, renamed and moved."""
+
+from __future__ import annotations
+
+import argparse
+import math
+
+from sdf_pose_bridge.cli.loading import add_kinds_argument
+from sdf_pose_bridge.cli.loading import add_loading_arguments
+from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.loading import SHOWN_KINDS
+from sdf_pose_bridge.cli.printing import printed_errors
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.scene.comparison import Change
+from sdf_pose_bridge.scene.comparison import Difference
+from sdf_pose_bridge.scene.comparison import differences_of_scenes
+from sdf_pose_bridge.scene.comparison import TOLERANCE
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command."""
+    parser = subparsers.add_parser(
+        'diff', help='print which frames of two files were added, removed, renamed and moved',
+        description='Compare two files: print which elements were added, removed, renamed and '
+                    'moved, one per line, with the distance and the angle. The exit code is 1 if '
+                    'there is a difference, 2 if a file has an error.')
+    parser.add_argument('old', metavar='OLD', help='an SDFormat file')
+    parser.add_argument('new', metavar='NEW', help='the file to compare it with')
+    add_loading_arguments(parser)
+    parser.add_argument(
+        '--relative-to', metavar='FRAME', default='',
+        help='compare poses relative to this frame, such as robot::arm::hand')
+    parser.add_argument(
+        '--tolerance', metavar='T', type=_tolerance_from_text, default=TOLERANCE,
+        help='a frame has not moved if it is as near as this, in metres and radians; by default '
+             f'{TOLERANCE:g}')
+    add_kinds_argument(parser, SHOWN_KINDS, 'compare only')
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """
+    Compare two files.
+
+    :return: exit code: 0 if there is no difference, 1 if there is one, 2 if a file has an error.
+    """
+    old, new = scene_of(options.old, options), scene_of(options.new, options)
+    if old is None or new is None:
+        return 2
+    with printed_errors():
+        differences = [
+            difference for difference in differences_of_scenes(
+                old, new, relative_to=options.relative_to, tolerance=options.tolerance)
+            if difference.kind in options.kinds]
+        for difference in differences:
+            print(_line(difference))
+        return 1 if differences else 0
+    return 2
+
+
+def _tolerance_from_text(text: str) -> float:
+    tolerance = float(text)
+    if not 0.0 <= tolerance < math.inf:
+        msg = f'"{text}" is not a distance'
+        raise argparse.ArgumentTypeError(msg)
+    return tolerance
+
+
+def _line(difference: Difference) -> str:
+    text = f'{difference.change.value:7}  {difference.kind.label}  {printable(difference.name)}'
+    if difference.change is Change.RENAMED:
+        return f'{text}  was {printable(difference.old_name)}'
+    if difference.change is Change.MOVED:
+        return f'{text}  {difference.distance_m:.6g} m  {difference.angle_rad:.6g} rad'
+    return text

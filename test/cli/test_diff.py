@@ -1,0 +1,51 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``sdf_pose diff``: the frames that changed, and the exit code."""
+
+import pytest
+
+
+@pytest.fixture(name='diff')
+def make_diff(run_main, files):
+    text = (files / 'good.sdf').read_text()
+
+    def diff(old, new, *arguments):
+        (files / 'new.sdf').write_text(text.replace(old, new))
+        return run_main('diff', 'good.sdf', 'new.sdf', *arguments)
+    return diff
+
+
+def test_the_same_file_is_not_different(diff):
+    done = diff('', '')
+    assert (done.returncode, done.stdout, done.stderr) == (0, '', '')
+
+
+def test_moved_frames_have_distance_and_angle(diff):
+    done = diff('1 2 3 0 0 0', '1 2 3.5 0 0 0.1')
+    assert done.returncode == 1
+    assert done.stdout.splitlines() == [
+        'moved    frame  f  0.5 m  0.1 rad', 'moved    model  m  0.509894 m  0.1 rad',
+        'moved    link  m::l  0.509894 m  0.1 rad']
+
+
+def test_relative_to_a_frame_and_with_a_tolerance(diff):
+    assert diff('1 2 3', '1 2 4', '--relative-to', 'f').returncode == 0
+    assert diff('1 2 3', '1 2 4', '--tolerance', '2').returncode == 0
+    assert diff('1 2 3', '1 2 4', '--kinds', 'light').returncode == 0
+
+
+def test_added_removed_and_renamed(diff):
+    done = diff('<link name="l"/>', '<link name="k"/><frame name="g"/>')
+    assert done.stdout.splitlines() == [
+        'renamed  link  m::k  was m::l', 'added    frame  m::g']
+
+
+def test_an_invalid_file_is_an_error(diff, run_main):
+    assert diff('relative_to="f"', 'relative_to="g"').returncode == 2
+    assert diff('', '', '--relative-to', 'g').returncode == 2
+    assert run_main('diff', 'good.sdf', 'missing.sdf').returncode == 2
+
+
+@pytest.mark.parametrize('text', ['-1', 'inf', 'x'])
+def test_a_tolerance_is_a_distance(diff, text):
+    assert diff('', '', '--tolerance', text).returncode == 2

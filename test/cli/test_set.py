@@ -1,0 +1,73 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``sdf_pose set``: the file, what is printed, and the exit code."""
+
+import pytest
+
+from sdf_pose_bridge import load
+
+
+@pytest.fixture(name='path')
+def make_path(files):
+    return files / 'good.sdf'
+
+
+def test_the_file_says_the_pose(run_main, path):
+    text = path.read_text()
+    done = run_main('set', 'good.sdf', 'f', '-1e-3', '0', '0', '0', '0', '0')
+    assert done.returncode == 0, done.stderr
+    assert path.read_text() == text.replace('1 2 3 0 0 0', '-0.001 0 0 0 0 0')
+    assert done.stdout.splitlines()[:2] == ['--- good.sdf', '+++ good.sdf']
+    assert '+    <frame name="f"><pose>-0.001 0 0 0 0 0</pose></frame>' in done.stdout
+    assert done.stdout.endswith('moved with it: m, m::l\n')
+
+
+def test_a_dry_run_writes_nothing(run_main, path):
+    text = path.read_text()
+    done = run_main('set', '--dry-run', 'good.sdf', 'f', *'000000')
+    assert (done.returncode, path.read_text()) == (0, text)
+    assert '+    <frame name="f"><pose>0 0 0 0 0 0</pose></frame>' in done.stdout
+
+
+def test_a_frame_can_be_named_as_in_tf_and_measured_in_any_other(run_main, path):
+    done = run_main(
+        'set', 'good.sdf', 'm/l', '--relative-to', 'f', '--format', 'franka_measured',
+        '500', '0', '0', '0', '0', '90')
+    assert done.returncode == 0, done.stderr
+    x, *_, qz, qw = load(path).pose('m::l', 'f')
+    assert (x, qz, qw) == pytest.approx((0.5, 0.5 ** 0.5, 0.5 ** 0.5), abs=1e-9)
+
+
+def test_a_rotation_leaves_the_position(run_main, path):
+    done = run_main('set', 'good.sdf', 'f', '--format', 'rpy_degrees', '0', '0', '90')
+    assert done.returncode == 0
+    assert '<pose>1 2 3 0 0 1.570796327</pose>' in path.read_text()
+
+
+def test_a_pose_that_is_there_already_changes_nothing(run_main, path):
+    text = path.read_text()
+    done = run_main('set', 'good.sdf', 'f', *'123000')
+    assert (done.returncode, done.stdout, path.read_text()) == (0, '', text)
+
+
+@pytest.mark.parametrize(('arguments', 'message'), [
+    (['f', *'00000'], 'sdf_rpy has 6 numbers'),
+    (['f', *'00000', 'x'], "'x' is not a number"),
+    (['f', *'00000', 'nan'], 'it must be a finite number'),
+    (['f', '--format', 'sdf_quat_xyzw', *'0000000'], 'is zero, which is not a rotation'),
+    (['g', *'000000'], '"g" is the name of nothing'),
+    (['f', '--relative-to', 'm', *'000000'], 'good.sdf:3: POSE_NOT_SET: '),
+    (['f', '--relative-to', 'g', *'000000'], '"g" is the name of nothing'),
+])
+def test_what_cannot_be_set_is_one_error(run_main, path, arguments, message):
+    text = path.read_text()
+    done = run_main('set', 'good.sdf', *arguments)
+    assert (done.returncode, done.stdout, path.read_text()) == (1, '', text)
+    assert message in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_an_invalid_file_is_not_written(run_main, files):
+    text = (files / 'bad.sdf').read_text()
+    assert run_main('set', 'bad.sdf', 'f', *'000000').returncode == 1
+    assert (files / 'bad.sdf').read_text() == text

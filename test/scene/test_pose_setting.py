@@ -1,0 +1,141 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a file must say so that an element is at a pose."""
+
+import numpy as np
+import pytest
+from sdf_texts import fixed_joint
+from sdf_texts import model_file
+from sdf_texts import posed
+from sdf_texts import world_file
+from sdf_texts import write_files
+import urdf_texts
+
+from sdf_pose_bridge import load
+from sdf_pose_bridge import Pose
+from sdf_pose_bridge.errors import PoseNotSetError
+from sdf_pose_bridge.geometry.poses import canonical_relative_pose
+from sdf_pose_bridge.scene.pose_setting import pose_change
+
+ASKED = Pose(0.5, -1.0, 2.0, 0.5, 0.5, 0.5, 0.5)
+MODEL = model_file(posed('link', 'a', '1 0 0 0 0 0') + posed('frame', 'f', '0 1 0 0 0 1', 'a'))
+TWICE = world_file(
+    '<include><uri>m.sdf</uri><name>x</name><pose>5 0 0 0 0 0</pose></include>\n'
+    '<include><uri>m.sdf</uri><name>y</name></include>')
+
+
+@pytest.fixture(name='change')
+def make_change(tmp_path):
+    def change(name, relative_to='', *, file='m', **options):
+        path = str(tmp_path / f'{file}.sdf')
+
+        def loaded(texts):
+            return load(path, texts=texts)
+
+        def measured(scene, element):
+            return scene.pose(scene.names[element], relative_to)
+
+        scene = loaded({})
+        made = pose_change(scene, scene.index(name), ASKED, measured, loaded, **options)
+        assert_at(made.scene.pose(name, relative_to), ASKED)
+        return made
+    return change
+
+
+def assert_at(pose, expected):
+    between = canonical_relative_pose(pose, expected)
+    np.testing.assert_allclose(between[:6], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize(('text', 'name', 'relative_to'), [
+    (MODEL, 'm::f', ''),
+    (MODEL, 'm::f', 'm::a'),
+    (MODEL, 'm::a', ''),
+    (MODEL, 'm', ''),
+    (model_file('<link name="a"/><link name="b"/>' + fixed_joint('j', 'a', 'b')), 'm::j', 'm::a'),
+    (model_file('<link name="a"><sensor name="s" type="camera"/></link>'), 'm::a::s', 'm'),
+    # The pose of the model is that of its placement frame.
+    (model_file('<pose>1 2 3 0 1 0</pose>' + posed('link', 'a', '0 0 1 0 0 2'),
+                attributes='placement_frame="a"'), 'm', ''),
+    (model_file('<pose>1 2 3 0 1 0</pose>' + posed('link', 'a', '0 0 1 0 0 2'),
+                attributes='placement_frame="a"'), 'm::a', 'm'),
+    (MODEL.replace('1.9', '1.4').replace('relative_to="a"', ''), 'm::a', ''),
+])
+def test_the_pose_is_what_was_asked_for(change, tmp_path, text, name, relative_to):
+    write_files(tmp_path, m=text)
+    made = change(name, relative_to)
+    assert made.path == str(tmp_path / 'm.sdf')
+    assert made.old_text == text.encode()
+
+
+def test_what_does_not_depend_on_it_stays_to_the_last_bit(change, tmp_path):
+    write_files(tmp_path, m=MODEL)
+    before = load(tmp_path / 'm.sdf')
+    after = change('m::f').scene
+    assert before.pose('m::a') == after.pose('m::a')
+
+
+def test_the_pose_of_an_included_model_is_set_in_the_include(change, tmp_path):
+    write_files(tmp_path, m=MODEL, w=TWICE)
+    made = change('x', file='w')
+    assert (made.path, made.line) == (str(tmp_path / 'w.sdf'), 1)
+    assert made.new_text == TWICE.encode().replace(
+        b'5 0 0 0 0 0', b'0.5 -1 2 1.570796327 0 1.570796327')
+
+
+def test_an_include_without_a_pose_gets_one(change, tmp_path):
+    write_files(tmp_path, m=MODEL.replace('<link', '<pose>7 0 0 0 0 0</pose><link', 1), w=TWICE)
+    made = change('y', file='w')
+    assert b'<include><pose>0.5 -1 2 1.570796327 0 1.570796327</pose><uri>m.sdf</uri><name>y' in (
+        made.new_text)
+
+
+def test_an_element_of_a_file_that_is_included_twice(change, tmp_path):
+    write_files(tmp_path, m=MODEL, w=TWICE)
+    with pytest.raises(PoseNotSetError, match='also places "y::a"') as caught:
+        change('x::a', file='w')
+    assert caught.value.place == (str(tmp_path / 'm.sdf'), 1, '')
+    assert change('x::a', file='w', all_instances=True).path == str(tmp_path / 'm.sdf')
+
+
+def test_a_merged_model_and_what_was_in_it(change, tmp_path):
+    merged = model_file('<link name="base"/>\n<include merge="true"><uri>m.sdf</uri></include>')
+    write_files(tmp_path, m=MODEL, w=merged)
+    assert change('m::_merged__m__model__', file='w').path == str(tmp_path / 'w.sdf')
+    assert change('m::f', 'm::base', file='w').path == str(tmp_path / 'm.sdf')
+
+
+def test_a_pose_that_parameters_set_is_set_there(change, tmp_path):
+    write_files(tmp_path, m=MODEL.replace('"f"', '"grip"'), w=world_file(
+        '<include><uri>m.sdf</uri><experimental:params>\n<frame element_id="grip" action="modify">'
+        '<pose>9 0 0 0 0 0</pose></frame></experimental:params></include>'))
+    made = change('m::grip', file='w')
+    assert (made.path, made.line) == (str(tmp_path / 'w.sdf'), 2)
+
+
+@pytest.mark.parametrize(('text', 'name', 'relative_to', 'reason'), [
+    (MODEL, 'm::a', 'm::f', 'moves with it'),
+    (MODEL, '__root__', '', 'all others are placed'),
+    (world_file('<actor name="a"><skin><filename>a.dae</filename></skin></actor>'), 'a', '',
+     'it is an actor'),
+    (f'<robot name="m">{urdf_texts.link("a")}</robot>', 'm::a', '', 'URDF'),
+    (MODEL.replace('1.9', '1.3').replace('relative_to="a"', ''), 'm::a', '', 'SDFormat 1.3'),
+])
+def test_what_no_pose_can_say_is_refused(change, tmp_path, text, name, relative_to, reason):
+    write_files(tmp_path, m=text)
+    with pytest.raises(PoseNotSetError, match=reason):
+        change(name, relative_to)
+
+
+def test_a_file_of_the_cache_of_fuel_is_refused(change, tmp_path, monkeypatch):
+    write_files(tmp_path, m=MODEL)
+    monkeypatch.setenv('GZ_FUEL_CACHE_PATH', str(tmp_path))
+    with pytest.raises(PoseNotSetError, match='cache of Gazebo Fuel'):
+        change('m::a')
+
+
+def test_the_difference_is_one_line(change, tmp_path):
+    write_files(tmp_path, m=MODEL.replace('><', '>\n<'))
+    added = [line for line in change('m::a').diff.splitlines() if line[:2] in ('+<', '-<')]
+    assert added == [
+        '-<pose>1 0 0 0 0 0</pose>', '+<pose>0.5 -1 2 1.570796327 0 1.570796327</pose>']

@@ -1,0 +1,106 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Poses in the text of a file are changed, and nothing else is."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+import pytest
+from sdf_texts import model_file
+
+from sdf_pose_bridge import Pose
+from sdf_pose_bridge.errors import PoseNotSetError
+from sdf_pose_bridge.geometry.poses import canonical_relative_pose
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion
+from sdf_pose_bridge.sdformat.pose_text import PoseText
+
+HALF = 0.5 ** 0.5
+NEW = Pose(1.5, -2.0, 0.25, 0.0, 0.0, HALF, HALF)
+
+
+def changed(text):
+    """Set the pose of the link, which comes third, behind sdf and model."""
+    return PoseText(text.encode(), 'file.sdf').with_pose(3, NEW, 1e-9).decode()
+
+
+@pytest.mark.parametrize(('old', 'new'), [
+    ('<pose>0 0 0 0 0 0</pose>', '<pose>1.5 -2 0.25 0 0 1.570796327</pose>'),
+    ('<pose>\n\t0  0\t0\r\n0 0 0 </pose>', '<pose>\n\t1.5  -2\t0.25\r\n0 0 1.570796327 </pose>'),
+    ("<pose degrees='true' >0 0 0 0 0 0</pose >",
+     "<pose degrees='true' >1.5 -2 0.25 0 0 90</pose >"),
+    ('<pose rotation_format="quat_xyzw">0 0 0 0 0 0 1</pose>',
+     '<pose rotation_format="quat_xyzw">1.5 -2 0.25 0 0 0.7071067812 0.7071067812</pose>'),
+    ('<pose/>', '<pose>1.5 -2 0.25 0 0 1.570796327</pose>'),
+    ('<pose relative_to="l" />', '<pose relative_to="l" >1.5 -2 0.25 0 0 1.570796327</pose>'),
+    ('<pose></pose>', '<pose>1.5 -2 0.25 0 0 1.570796327</pose>'),
+    ('<pose><!-- <pose> x y --> 0 0 0 0 0 0<!-- end --></pose>',
+     '<pose><!-- <pose> x y --> 1.5 -2 0.25 0 0 1.570796327<!-- end --></pose>'),
+    ('<pose>1.50 -2.0 2.5e-1 0.0 -0 0</pose>',
+     '<pose>1.50 -2.0 2.5e-1 0.0 -0 1.570796327</pose>'),
+    ('<pose>9 9 9 0 0 7.853981633974483</pose>', '<pose>1.5 -2 0.25 0 0 7.853981633974483</pose>'),
+])
+def test_only_the_numbers_change(old, new):
+    text = model_file('<!-- <pose> é --><link name="l">{}</link ><frame name="f"/>\n')
+    assert changed(text.replace('{}', old)) == text.replace('{}', new)
+
+
+@pytest.mark.parametrize('encoding', [
+    'utf-8', 'utf-8-sig', 'iso-8859-1', 'utf-16-le', 'utf-16-be'])
+def test_encoding_stays(encoding):
+    mark = '\ufeff' if encoding.startswith('utf-16') else ''
+    declared = 'utf-8' if encoding == 'utf-8-sig' else encoding[:6] if mark else encoding
+    text = f'{mark}<?xml version="1.0" encoding="{declared}"?>\r\n' + model_file(
+        '<link name="é"><pose>0 0 0 0 0 0</pose></link>')
+    pose_text = PoseText(text.encode(encoding), 'file.sdf')
+    # The elements are sdf, model, link, pose.
+    assert pose_text.with_pose(3, NEW, 1e-9) == text.replace(
+        '0 0 0 0 0 0', '1.5 -2 0.25 0 0 1.570796327').encode(encoding)
+
+
+@pytest.mark.parametrize(('old', 'new'), [
+    ('<link name="l"/>', '<link name="l">{}</link>'),
+    ('<link name="l"></link>', '<link name="l">{}</link>'),
+    ('<link name="l">\n    <visual name="v"/>\n  </link>',
+     '<link name="l">\n    {}\n    <visual name="v"/>\n  </link>'),
+    ('<link name="l">\r\n\r\n\t<!-- c -->\r\n</link>',
+     '<link name="l">\r\n\t{}\r\n\r\n\t<!-- c -->\r\n</link>'),
+])
+def test_a_new_pose_is_indented_like_what_follows(old, new):
+    text = PoseText(model_file(old).encode(), 'file.sdf').with_new_pose(2, NEW, 1e-9).decode()
+    assert text == model_file(new.format('<pose>1.5 -2 0.25 0 0 1.570796327</pose>'))
+
+
+@pytest.mark.parametrize(('text', 'reason'), [
+    (model_file('<link name="l"><pose><![CDATA[0 0 0 0 0 0]]></pose></link>'), 'plain text'),
+    (model_file('<link name="l"><pose>&#48; 0 0 0 0 0</pose></link>'), 'plain text'),
+    (model_file('<link name="l"><pose>0 0 0</pose></link>'), 'a pose has 6 values'),
+    (model_file('<link name="l"><pose degrees="true" rotation_format="quat_xyzw"/></link>'),
+     'cannot be combined'),
+    (model_file('<link name="R&D"><pose>0 0 0 0 0 0</pose></link>'), 'not well-formed'),
+    ('<robot name="r"><link name="l"><pose>0 0 0 0 0 0</pose></link></robot>', 'URDF'),
+])
+def test_other_texts_are_refused(text, reason):
+    with pytest.raises(PoseNotSetError, match=reason):
+        PoseText(text.encode(), 'file.sdf').with_pose(3, NEW, 1e-9)
+
+
+def test_each_tag_has_a_line():
+    text = PoseText(model_file('<link name="a"/><link name="b"\n/>').encode(), 'file.sdf')
+    assert [text.element_at_line(line) for line in (2, 3, 4, 6)] == [0, 1, 2, 3]
+    with pytest.raises(PoseNotSetError):
+        text.element_at_line(5)
+    assert text.line(3) == 2
+
+
+NUMBERS = st.floats(-1e6, 1e6)
+
+
+@given(st.tuples(NUMBERS, NUMBERS, NUMBERS), st.tuples(*[st.floats(-1, 1)] * 4).filter(
+    lambda quat_xyzw: max(map(abs, quat_xyzw)) > 1e-3), st.sampled_from([
+        '', 'degrees="true"', 'rotation_format="quat_xyzw"']))
+def test_what_is_written_is_right_to_the_tolerance(xyz, quat_xyzw, attributes):
+    pose = Pose(*xyz, *canonical_quaternion(quat_xyzw))
+    text = model_file(f'<link name="l"><pose {attributes}/></link>').encode()
+    written = PoseText(PoseText(text, '').with_pose(3, pose, 1e-9), '').pose(3)
+    between = canonical_relative_pose(pose, written)
+    assert max(map(abs, between[:3])) <= 1e-9
+    assert 2.0 * sum(part ** 2 for part in between[3:6]) ** 0.5 <= 1e-9
