@@ -57,9 +57,8 @@ def document_from_file(
     """
     sources.add_path(path)
     text = sources.texts.get(path)
-    if text is not None:
-        return document_from_text(text, path, sources, problems)
-    text = bytes_from_file(path, sources.usage)
+    if text is None:
+        text = bytes_from_file(path, sources.usage)
     return _document_from_bytes(
         text, path, None, sources, problems, is_included=is_included,
         reads_gazebo_elements=reads_gazebo_elements)
