@@ -270,18 +270,17 @@ def test_a_failure_is_reported_until_a_load_succeeds(bridge, file, listener):
 
 
 def test_one_call_that_sets_the_file_and_more_reads_it_once(file, listener):
-    monitor = Monitor(listener)
     set_parameters(listener, sdf_file=str(file), frame_prefix='a/', publish_rate=0.0, watch=True)
-    listener.wait(lambda: len(listener.tf_messages) > 1, lambda: 'the new frames')
-    monitor.wait_for_more()
-    assert len(listener.tf_messages) == 2
+    replace(file, world(2))
+    wait_for_x(listener, 2.0, 'a/crate/body')
+    assert len(listener.tf_messages) == 3
 
 
-def test_parameters_that_change_nothing_publish_nothing(listener):
-    monitor = Monitor(listener)
+def test_parameters_that_change_nothing_publish_nothing(file, listener):
     set_parameters(listener, root_frame='world', publish_rate=0.0, watch=True, pose_topics=['*'])
-    monitor.wait_for_more()
-    assert len(listener.tf_messages) == 1
+    replace(file, world(2))
+    wait_for_x(listener, 2.0)
+    assert len(listener.tf_messages) == 2
 
 
 REFUSED = [
