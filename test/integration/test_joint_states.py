@@ -219,6 +219,25 @@ def test_the_frame_of_poses_can_be_set_while_joints_move(start, file, joints, tf
     wait_for_z(tf, poses, 'upper', base=-1.0, tool=1.5)
 
 
+def test_listeners_get_poses_while_joints_move(start, file, joints, tf):
+    start(file)
+    listeners = {name: [] for name in ('transforms', 'poses/tool')}
+    tf.listener.node.create_subscription(
+        TransformStamped, f'{BRIDGE}/transforms', listeners['transforms'].append, latched(100))
+    tf.listener.node.create_subscription(
+        PoseStamped, f'{BRIDGE}/poses/tool', listeners['poses/tool'].append, latched(1))
+    stamps = set()
+
+    def are_followed():
+        # The next one comes before the joints are at rest.
+        stamps.add(joints.send({'lift': 0.001 * len(stamps)}))
+        return all(
+            len(stamps.intersection(each.header.stamp.sec for each in messages)) > 1
+            for messages in listeners.values())
+
+    tf.listener.wait(are_followed, lambda: listeners)
+
+
 def test_joints_move_while_the_file_is_read_again(start, tmp_path, joints, tf):
     slow = SlowFile(tmp_path / 'slow.sdf', ARM.format(tool=1))
     start(slow.path, 'watch:=false')
