@@ -81,8 +81,8 @@ setup(
     # By this colcon knows that it is pytest that runs the tests.
     extras_require={
         'test': ['pytest', 'hypothesis'],
-        # For sdf_pose view: pages; pictures, which need Chrome as well; boxes around meshes.
-        'view': ['plotly', 'kaleido', 'trimesh'],
+        # For sdf_pose view, whose pictures need Chrome or Chromium as well.
+        'view': ['viser', 'trimesh', 'pycollada'],
     },
     packages=find_packages(include=[PACKAGE, f'{PACKAGE}.*']),
     package_data={PACKAGE: ['py.typed']},

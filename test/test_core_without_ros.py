@@ -15,8 +15,9 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / 'sdf_pose_bridge'
 CORE = sorted(
     '.'.join(path.relative_to(PACKAGE).with_suffix('').parts) for path in PACKAGE.rglob('*.py')
-    if path.relative_to(PACKAGE).parts[0] != 'ros' and not path.stem.startswith('__'))
-"""The modules of all rooms but that of the node."""
+    if path.relative_to(PACKAGE).parts[0] != 'ros' and not path.stem.startswith('__')
+    and path.parent.name != 'viewer')
+"""The modules of all rooms but that of the node, and that of the viewer, which needs viser."""
 
 ROS_NAME = re.compile(
     r'(rclpy|rcl|rosidl|rpyutils|ament|launch|tf2|builtin_interfaces|action_msgs)(_\w+)?'

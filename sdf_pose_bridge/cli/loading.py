@@ -128,6 +128,13 @@ def add_model_argument(parser: argparse.ArgumentParser) -> None:
         '--model', metavar='NAME', default='', help='show only this model, such as robot::arm')
 
 
+def tf_options_from_arguments(options: argparse.Namespace) -> TfOptions:
+    """Return which elements become frames, and how they are named."""
+    return TfOptions(
+        model=options.model, kinds=frozenset(options.kinds),
+        frame_names=FrameNames(options.frame_names))
+
+
 def tf_tree_of(scene: Scene, options: argparse.Namespace) -> TfTree:
     """
     Make the TF tree of a scene and print its warnings to standard error.
@@ -135,9 +142,7 @@ def tf_tree_of(scene: Scene, options: argparse.Namespace) -> TfTree:
     :return: the tree.
     :raises SdfError: if there is none.
     """
-    tree = tf_tree_from_scene(scene, TfOptions(
-        model=options.model, kinds=frozenset(options.kinds),
-        frame_names=FrameNames(options.frame_names)))
+    tree = tf_tree_from_scene(scene, tf_options_from_arguments(options))
     print_problems((), tree.warnings, sys.stderr)
     return tree
 

@@ -10,7 +10,6 @@ from typing import TypeAlias
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
 from sdf_pose_bridge.sdformat.shapes import Shape
 
@@ -34,12 +33,10 @@ class Triangles(NamedTuple):
     """Shape (m, 3): indices of the corners of each triangle, counterclockwise from outside."""
 
 
-def triangles_from_shape(shape: Shape, largest_m: float) -> Triangles | None:
+def triangles_from_shape(shape: Shape) -> Triangles | None:
     """
     Make the surface of a shape.
 
-    :param largest_m: no side of a plane is longer, because planes are often much larger than
-        what stands on them.
     :return: the surface in the frame of the shape; None for a shape without an extent, a mesh and
         other shapes from files.
     """
@@ -49,7 +46,7 @@ def triangles_from_shape(shape: Shape, largest_m: float) -> Triangles | None:
     if shape.type == 'box':
         return Triangles(_CORNERS * sizes, _BOX_FACES)
     if shape.type == 'plane':
-        return _plane(min(sizes[0], largest_m), min(sizes[1], largest_m), shape.normal)
+        return _plane(sizes[0], sizes[1], shape.normal)
     if shape.type == 'ellipsoid':
         sphere = _surface_of_revolution(_arc(1.0, -1.0, 0.0) + _arc(1.0, 1.0, 0.0))
         return Triangles(sphere.points * sizes, sphere.faces)
@@ -60,29 +57,6 @@ def triangles_from_shape(shape: Shape, largest_m: float) -> Triangles | None:
         return _surface_of_revolution([(0.0, -half), (radius, -half), (0.0, half)])
     # A capsule; a sphere is one without a length.
     return _surface_of_revolution(_arc(radius, -1.0, -half) + _arc(radius, 1.0, half))
-
-
-def triangles_of_box(lowest: Points, highest: Points) -> Triangles:
-    """
-    Make a box.
-
-    :param lowest: shape (3,), one of its corners.
-    :param highest: shape (3,), the opposite corner.
-    :return: its surface.
-    """
-    return Triangles(lowest + (_CORNERS + 0.5) * (highest - lowest), _BOX_FACES)
-
-
-def points_in_parent(pose: Pose, points: Points) -> Points:
-    """
-    Move points from a child frame to its parent.
-
-    :param pose: pose of the child in the parent.
-    :param points: shape (n, 3), points in the child.
-    :return: shape (n, 3), the points in the parent.
-    """
-    moved: Points = points @ np.array(matrix_from_quaternion(pose[3:])).T + pose[:3]
-    return moved
 
 
 def _arc(radius: float, side: float, middle: float) -> list[tuple[float, float]]:
@@ -116,5 +90,4 @@ def _plane(x: float, y: float, normal: tuple[float, ...]) -> Triangles:
     # Half a turn has no shortest way.
     rotation = (1.0, 0.0, 0.0, 0.0) if nz < -1.0 + 1e-9 else (-ny, nx, 0.0, 1.0 + nz)
     quat_xyzw = np.array(rotation) / np.linalg.norm(rotation)
-    return Triangles(points_in_parent(Pose(0.0, 0.0, 0.0, *quat_xyzw.tolist()), corners),
-                     _PLANE_FACES)
+    return Triangles(corners @ np.array(matrix_from_quaternion(quat_xyzw)).T, _PLANE_FACES)

@@ -133,7 +133,7 @@ def _forms_from_shape(
     if shape.type == 'ellipsoid':
         return (Form('SPHERE', tuple(2.0 * radius_m for radius_m in sizes_m)),)
     if shape.type in ('cone', 'plane'):
-        triangles = triangles_from_shape(shape, largest_m=math.inf)
+        triangles = triangles_from_shape(shape)
         assert triangles is not None
         return (Form('TRIANGLE_LIST', points=triangles.points[triangles.faces.reshape(-1)]),)
     # The other shapes are round. A capsule that is not longer than its ends is a sphere.

@@ -3,6 +3,7 @@
 """``sdf_pose view``: pages, and libraries that are not installed."""
 
 from pathlib import Path
+import re
 import subprocess
 import sys
 import webbrowser
@@ -14,25 +15,28 @@ MESH = """<sdf version="1.9"><model name="m"><link name="l"><visual name="v"><ge
   <mesh><uri>none.stl</uri></mesh></geometry></visual></link></model></sdf>"""
 
 
-@pytest.fixture
-def plotly():
-    """Skips where plotly is not installed."""
-    return pytest.importorskip('plotly', reason='needs plotly')
+@pytest.fixture(autouse=True)
+def viser():
+    """Skips where viser is not installed."""
+    return pytest.importorskip('viser', reason='needs viser')
 
 
 def test_missing_library_is_an_error_of_one_line(run_main, monkeypatch):
-    monkeypatch.setitem(sys.modules, 'plotly.io', None)
+    monkeypatch.delitem(sys.modules, 'sdf_pose_bridge.cli.viewer.server', raising=False)
+    monkeypatch.setitem(sys.modules, 'viser', None)
     done = run_main('view', 'good.sdf', '-o', 'page.html')
     assert (done.returncode, done.stdout) == (1, '')
-    assert done.stderr.startswith('sdf_pose view: this needs the library plotly: pip install ')
-    assert len(done.stderr.splitlines()) == 1
+    assert done.stderr == (
+        "sdf_pose view: this needs viser, trimesh and pycollada: pip install "
+        "'sdf_pose_bridge[view]'\n")
 
 
-def test_missing_library_of_pictures_is_an_error_of_one_line(run_main, monkeypatch, plotly):
-    monkeypatch.setitem(sys.modules, 'kaleido', None)
+def test_missing_browser_is_an_error_of_one_line(run_main, monkeypatch):
+    monkeypatch.setattr('shutil.which', lambda name: None)
     done = run_main('view', 'good.sdf', '-o', 'page.png')
     assert done.returncode == 1
-    assert done.stderr.startswith('sdf_pose view: a picture needs the library kaleido ')
+    assert done.stderr.startswith(
+        'sdf_pose view: cannot write page.png: a picture needs Chrome or Chromium;')
     assert len(done.stderr.splitlines()) == 1
 
 
@@ -42,57 +46,61 @@ def test_unknown_format_is_an_error(run_main):
     assert '"page.svg" must end with one of .html, .png' in done.stderr
 
 
-def test_invalid_file_is_reported(run_main, plotly):
+def test_invalid_file_is_reported(run_main):
     done = run_main('view', 'bad.sdf', '-o', 'page.html')
     assert done.returncode == 1
     assert done.stderr.startswith('bad.sdf:3: ELEMENT_INVALID: ')
 
 
-def test_unknown_model_is_an_error(run_main, plotly):
+def test_unknown_model_is_an_error(run_main):
     done = run_main('view', 'good.sdf', '--model', 'n', '-o', 'page.html')
     assert done.returncode == 1
     assert 'there is no model "n"' in done.stderr
 
 
-def test_folder_that_does_not_exist_is_an_error(run_main, plotly):
+def test_folder_that_does_not_exist_is_an_error(run_main):
     done = run_main('view', 'good.sdf', '-o', 'nowhere/page.html')
     assert done.returncode == 1
     assert done.stderr.startswith('sdf_pose view: cannot write nowhere/page.html: ')
 
 
-def test_page_has_the_frames_and_needs_no_network(run_main, files, plotly):
+def test_page_has_a_title_and_needs_no_network(run_main, files):
     done = run_main('view', 'good.sdf', '-o', 'page.html')
     assert (done.returncode, done.stdout, done.stderr) == (0, '', '')
     page = (files / 'page.html').read_text()
-    assert 'm/l' in page.replace('\\u002f', '/')
+    assert '<title>good.sdf</title>' in page
     assert '<script src=' not in page
-    assert '<link' not in page
+    assert 'stylesheet' not in page.partition('<body>')[0].partition('<script')[0]
 
 
-def test_what_is_not_drawn_is_said(run_main, files, plotly):
+def test_what_is_not_drawn_is_said(run_main, files):
     (files / 'mesh.sdf').write_text(MESH)
     done = run_main('view', 'mesh.sdf', '-o', 'page.html')
     assert done.returncode == 0
     assert done.stderr == (
-        'sdf_pose view: 1 shape is not drawn: the mesh "none.stl" is not found\n')
+        'sdf_pose view: 1 shape is not drawn as the file means it: the mesh '
+        '"none.stl": it is not found\n')
 
 
 @pytest.mark.parametrize('has_browser', [True, False])
-def test_page_opens_in_the_browser(run_main, files, monkeypatch, plotly, has_browser):
+def test_page_opens_in_the_browser(run_main, monkeypatch, has_browser):
     opened = []
-    monkeypatch.setenv('TMPDIR', str(files))
-    monkeypatch.setattr('tempfile.tempdir', None)
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
     monkeypatch.setattr(webbrowser, 'open', lambda uri: bool(opened.append(uri)) or has_browser)
-    done = run_main('view', 'good.sdf')
-    (page,) = files.glob('sdf_pose_view_*.html')
-    assert (done.returncode, done.stdout, opened) == (0, f'{page}\n', [page.as_uri()])
+    monkeypatch.setattr('sdf_pose_bridge.cli.view._follow', stop)
+    done = run_main('view', 'good.sdf', '--port', '0')
+    assert re.fullmatch(r'http://127\.0\.0\.1:[0-9]+\n', done.stdout)
+    assert (done.returncode, opened) == (130, [done.stdout.strip()])
     assert bool(done.stderr) is not has_browser
 
 
 def test_libraries_are_imported_only_by_the_command(files):
     program = ('import sys; from sdf_pose_bridge.cli.main import main\n'
                'main(["tree", "good.sdf"])\n'
-               'sys.exit(str({"plotly", "trimesh", "webbrowser"} & set(sys.modules)))')
+               'sys.exit(str({"viser", "trimesh", "webbrowser"} & set(sys.modules)))')
     done = subprocess.run(
         [sys.executable, '-c', program], cwd=files, env={'PYTHONPATH': str(ROOT)},
         capture_output=True, text=True, check=False)

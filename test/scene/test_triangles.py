@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 from sdf_pose_bridge.scene.triangles import triangles_from_shape
-from sdf_pose_bridge.scene.triangles import triangles_of_box
 from sdf_pose_bridge.sdformat.shapes import Shape
 
 
-def surface(kind, *sizes_m, normal=(0.0, 0.0, 1.0), largest_m=100.0):
+def surface(kind, *sizes_m, normal=(0.0, 0.0, 1.0)):
     shape = Shape(kind, sizes_m, normal, '', '', (1.0, 1.0, 1.0), None)
-    return triangles_from_shape(shape, largest_m)
+    return triangles_from_shape(shape)
 
 
 def volume_of(triangles):
@@ -57,14 +56,3 @@ def test_plane_has_its_normal(normal):
     areas = 0.5 * np.cross(second - first, third - first)
     assert areas.sum(axis=0) == pytest.approx(8.0 * np.array(normal) / np.linalg.norm(normal))
 
-
-def test_plane_is_cut():
-    assert np.ptp(surface('plane', 2.0, 400.0, largest_m=3.0).points, axis=0) == pytest.approx(
-        (2.0, 3.0, 0.0))
-
-
-def test_box_has_opposite_corners():
-    triangles = triangles_of_box(np.array([1.0, 2.0, 3.0]), np.array([2.0, 4.0, 6.0]))
-    assert triangles.points.min(axis=0) == pytest.approx((1.0, 2.0, 3.0))
-    assert triangles.points.max(axis=0) == pytest.approx((2.0, 4.0, 6.0))
-    assert volume_of(triangles) == pytest.approx(6.0)

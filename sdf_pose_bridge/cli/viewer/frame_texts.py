@@ -1,0 +1,134 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Write what the page says about frames, as HTML; what comes from a file is escaped."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from collections.abc import Sequence
+import html
+import shlex
+from xml.sax.saxutils import quoteattr
+
+from sdf_pose_bridge.cli.printing import kind_labels_of
+from sdf_pose_bridge.cli.printing import Units
+from sdf_pose_bridge.geometry.formats import converted_poses
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import relative_pose
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.tf.parents import NO_PARENT
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
+from sdf_pose_bridge.tf.tree import TfTree
+
+_COPIED = 'display:block;user-select:all;white-space:pre-wrap;overflow-wrap:anywhere;'
+
+
+def escaped(text: str) -> str:
+    """
+    Return a text for HTML.
+
+    :return: the same, without characters that a page or a terminal would act upon.
+    """
+    return html.escape(printable(text))
+
+
+def pose_of_frame(tree: TfTree, frame: int) -> Pose:
+    """
+    Return the pose of a frame in the root frame.
+
+    :param frame: index of the frame, or ``ROOT_IS_PARENT`` for the root frame.
+    :return: its pose.
+    """
+    return Pose() if frame == ROOT_IS_PARENT else Pose(*tree.poses[frame].tolist())
+
+
+def html_of_frame(scene: Scene, tree: TfTree, frame: int, reference: int, units: Units) -> str:
+    """
+    Describe a frame.
+
+    :param frame: index of the frame.
+    :param reference: index of another one, or ``ROOT_IS_PARENT`` for the root frame.
+    :param units: units of poses that are for reading; those for copying are in metres and radians.
+    :return: names, place in the file, poses in the root, the parent and the other frame, and the
+        last in forms to copy.
+    """
+    element, parent = int(tree.elements[frame]), int(tree.parents[frame])
+    lines = [f'<b>{escaped(tree.frame_ids[frame])}</b> {kind_labels_of(scene, tree)[frame]}']
+    if element >= 0:
+        lines += [escaped(scene.names[element]), escaped(str(scene.place(element)))]
+    references = dict.fromkeys((reference, ROOT_IS_PARENT, parent))
+    for other in references:
+        if other not in (NO_PARENT, frame):
+            texts = units.texts(relative_pose(
+                pose_of_frame(tree, other), pose_of_frame(tree, frame)))
+            lines.append(
+                f'in <b>{escaped(_frame_id(tree, other))}</b>'
+                f'<br>xyz {" ".join(texts[:3])} {units.length}'
+                f'<br>rpy {" ".join(texts[3:])} {units.angle}')
+    copied = ''.join(
+        f'<div>{label}<code style="{_COPIED}">{html.escape(text)}</code></div>'
+        for label, text in _texts_to_copy(scene, tree, frame, reference))
+    return (f'<div style="font-size:0.8em;margin:0 1em;overflow-wrap:anywhere">'
+            f'{"<br>".join(lines)}{copied}</div>')
+
+
+def _frame_id(tree: TfTree, frame: int) -> str:
+    return tree.root_frame if frame == ROOT_IS_PARENT else tree.frame_ids[frame]
+
+
+def _texts_to_copy(
+    scene: Scene, tree: TfTree, frame: int, reference: int,
+) -> Iterator[tuple[str, str]]:
+    pose = relative_pose(pose_of_frame(tree, reference), pose_of_frame(tree, frame))
+    # What differs less than this comes from the computation. To add zero leaves no negative zeros.
+    rpy, quat, franka = (
+        (converted_poses([pose], 'sdf_quat_xyzw', name)[0].round(12) + 0.0).tolist()
+        for name in ('sdf_rpy', 'sdf_quat_xyzw', 'franka_matrix'))
+    yield 'SDF', f'<pose{_relative_to(scene, tree, frame, reference)}>{_text(rpy)}</pose>'
+    arguments = zip(('x', 'y', 'z', 'qx', 'qy', 'qz', 'qw'), quat, strict=True)
+    yield 'static_transform_publisher', ' '.join([
+        *(f'--{name} {value!r}' for name, value in arguments),
+        '--frame-id', shlex.quote(_frame_id(tree, reference)),
+        '--child-frame-id', shlex.quote(tree.frame_ids[frame])])
+    yield 'x y z, quaternion x y z w', _text(quat)
+    yield 'Franka matrix', str(franka)
+
+
+def _text(values: Sequence[float]) -> str:
+    return ' '.join(map(repr, values))
+
+
+def _relative_to(scene: Scene, tree: TfTree, frame: int, reference: int) -> str:
+    """Return the attribute of a pose; nothing for the root and for what SDFormat has no name."""
+    element = int(tree.elements[reference]) if reference != ROOT_IS_PARENT else -1
+    if element < 0:
+        return ''
+    name = scene.names[element]
+    holder = int(scene.parents[tree.elements[frame]]) if tree.elements[frame] >= 0 else -1
+    scope = scene.names[holder] + SEPARATOR if holder >= 0 else ''
+    return f' relative_to={quoteattr(name.removeprefix(scope))}'
+
+
+def rows_of_tree(tree: TfTree, search: str) -> Iterator[tuple[int, int, str]]:
+    """
+    List frames, each below its parent in TF.
+
+    :param search: a part of the ids of the frames to list; empty for all of them.
+    :return: the index, the depth in the tree and the text of each.
+    """
+    if search:
+        for index, frame_id in enumerate(tree.frame_ids):
+            if search.lower() in frame_id.lower():
+                yield index, 0, frame_id
+        return
+    children: dict[int, list[int]] = {}
+    for index, parent in enumerate(tree.parents.tolist()):
+        children.setdefault(parent, []).append(index)
+    waiting = [(index, 0) for other in (NO_PARENT, ROOT_IS_PARENT)
+               for index in reversed(children.get(other, ()))]
+    while waiting:
+        index, depth = waiting.pop()
+        yield index, min(depth, 20), tree.frame_ids[index].rpartition('/')[2]
+        waiting += [(child, depth + 1) for child in reversed(children.get(index, ()))]

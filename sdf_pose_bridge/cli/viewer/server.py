@@ -1,0 +1,129 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""A server of viser for this machine alone, and pages and pictures of what it shows."""
+
+from __future__ import annotations
+
+import html
+import logging
+from pathlib import Path
+import shutil
+import subprocess
+import tempfile
+import time
+from urllib.parse import urlsplit
+
+import imageio.v3 as imageio
+import numpy as np
+import rich
+import viser
+from viser.infra import WebsockClientConnection
+
+from sdf_pose_bridge.names import printable
+
+ADDRESS = '127.0.0.1'
+_OWN_HOSTS = (ADDRESS, 'localhost')
+_BROWSERS = ('chromium', 'chromium-browser', 'google-chrome', 'chrome')
+# WebGL in software where there is no graphics card; no requests but those of the page.
+_BROWSER_OPTIONS = (
+    '--headless', '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader', '--no-first-run', '--disable-background-networking',
+    '--disable-component-update', '--disable-sync', '--disable-quic')
+_PICTURE_HEIGHT, _PICTURE_WIDTH = 1000, 1600
+_MOST_SECONDS = 120.0
+_EQUAL_PICTURES = 2
+
+
+class PictureError(RuntimeError):
+    """A picture cannot be made; the message says why."""
+
+
+def server_for_this_machine(port: int) -> viser.ViserServer:
+    """
+    Start a server that other machines, and the pages of other servers, cannot reach.
+
+    :param port: its port, or the next one that is free; 0 for any.
+    :return: the server.
+    """
+    rich.get_console().quiet = True
+    # Else each connection that a browser opens in advance, and closes, is an error with a trace.
+    logging.getLogger('websockets').setLevel(logging.CRITICAL)
+    server = viser.ViserServer(ADDRESS, port, verbose=False)
+    sockets = server._websock_server  # noqa: SLF001  # viser itself accepts every page
+
+    async def refuse_other_pages(connection: WebsockClientConnection) -> None:
+        socket = sockets._live_connections[connection.client_id]  # noqa: SLF001
+        origin = None if socket.request is None else socket.request.headers.get('Origin')
+        if origin is not None and urlsplit(origin).hostname not in _OWN_HOSTS:
+            await socket.close(1008, 'only pages of this server may connect')
+
+    sockets.on_client_connect(refuse_other_pages)
+    sockets.disconnect_all_clients()
+    server.gui.configure_theme(show_logo=False, show_share_button=False)
+    # The picture of surroundings that viser lights a scene with makes every color pale.
+    server.scene.configure_environment_map(None)
+    server.scene.configure_default_lights(cast_shadow=False)
+    return server
+
+
+def page_from_server(server: viser.ViserServer, title: str) -> str:
+    """
+    Return what a server shows as one page that needs no network.
+
+    :param title: the title of the page.
+    :return: its HTML.
+    """
+    page: str = server.get_scene_serializer().as_html()
+    return page.replace('<title>Viser</title>', f'<title>{html.escape(printable(title))}</title>')
+
+
+def write_picture(server: viser.ViserServer, path: Path) -> None:
+    """
+    Write what a server shows as a picture, by a browser without a window.
+
+    :param path: where to write it.
+    :raises PictureError: if there is no browser, or it does not show the page.
+    :raises OSError: if the picture cannot be written.
+    """
+    browser = next(filter(None, map(shutil.which, _BROWSERS)), None)
+    if browser is None:
+        msg = 'a picture needs Chrome or Chromium; a file that ends with .html does not'
+        raise PictureError(msg)
+    # The last processes of the browser may still write while the first has ended.
+    with tempfile.TemporaryDirectory(
+            prefix='sdf_pose_view_', ignore_cleanup_errors=True) as folder:
+        process = subprocess.Popen(
+            [browser, *_BROWSER_OPTIONS, f'--user-data-dir={folder}',
+             f'--window-size={_PICTURE_WIDTH},{_PICTURE_HEIGHT}',
+             f'http://{ADDRESS}:{server.get_port()}'],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            pixels = _pixels(server, process)
+        finally:
+            process.terminate()
+            process.wait()
+    rgb, alpha = pixels[:, :, :3].astype(float), pixels[:, :, 3:] / 255.0
+    imageio.imwrite(path, (rgb * alpha + 255.0 * (1.0 - alpha)).astype(np.uint8))
+
+
+def _pixels(server: viser.ViserServer, browser: subprocess.Popen[bytes]) -> np.ndarray:
+    """Wait for the browser and let it draw; shape (height, width, 4), red green blue alpha."""
+    end = time.monotonic() + _MOST_SECONDS
+    while not server.get_clients():
+        if browser.poll() is not None or time.monotonic() > end:
+            msg = 'the browser did not show the page'
+            raise PictureError(msg)
+        time.sleep(0.05)
+    (client, *_) = server.get_clients().values()
+    last, count = np.empty(0), 0
+    try:
+        # Names and lights appear after the rest, without a message when they have.
+        while count < _EQUAL_PICTURES and time.monotonic() < end:
+            pixels = client.get_render(
+                _PICTURE_HEIGHT, _PICTURE_WIDTH, transport_format='png', timeout=_MOST_SECONDS)
+            last, count = pixels, count + 1 if np.array_equal(pixels, last) else 0
+            time.sleep(1.0)
+    except (RuntimeError, TimeoutError) as error:
+        msg = f'the browser did not draw the page: {error}'
+        raise PictureError(msg) from error
+    return last

@@ -1,0 +1,105 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""A browser without a window, told what to do by the DevTools protocol of Chromium."""
+
+import base64
+import contextlib
+import itertools
+import json
+from pathlib import Path
+import shutil
+import subprocess
+import time
+
+import pytest
+
+OPTIONS = (
+    '--headless', '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
+    '--disable-background-networking', '--disable-component-update', '--disable-sync',
+    '--remote-debugging-port=0')
+DEADLINE_S = 90.0
+
+
+class Browser:
+    """One page in a browser; ``requests`` has the address of everything that it asked for."""
+
+    def __init__(self, socket):
+        self._socket, self._numbers = socket, itertools.count(1)
+        self.requests, self.errors = [], []
+        for domain in ('Page', 'Network', 'Runtime'):
+            self.call(f'{domain}.enable')
+
+    def call(self, method, **parameters):
+        number = next(self._numbers)
+        self._socket.send(json.dumps({'id': number, 'method': method, 'params': parameters}))
+        while True:
+            message = json.loads(self._socket.recv(timeout=DEADLINE_S))
+            if message.get('id') == number:
+                assert 'error' not in message, message
+                return message['result']
+            if message.get('method') == 'Network.requestWillBeSent':
+                self.requests.append(message['params']['request']['url'])
+            elif message.get('method') == 'Network.webSocketCreated':
+                self.requests.append(message['params']['url'])
+            elif message.get('method') == 'Runtime.exceptionThrown':
+                self.errors.append(message['params']['exceptionDetails'])
+
+    def open(self, address):
+        self.call('Page.navigate', url=address)
+
+    def run(self, script):
+        """Return the value of an expression of JavaScript."""
+        result = self.call(
+            'Runtime.evaluate', expression=script, returnByValue=True, awaitPromise=True)
+        assert 'exceptionDetails' not in result, result
+        return result['result'].get('value')
+
+    def wait_for(self, script):
+        """Wait until an expression is true."""
+        end = time.monotonic() + DEADLINE_S
+        while not self.run(f'Boolean({script})'):
+            assert time.monotonic() < end, f'this never became true: {script}'
+            time.sleep(0.05)
+
+    def size(self, width, height, *, is_phone=False):
+        self.call('Emulation.setDeviceMetricsOverride', width=width, height=height,
+                  deviceScaleFactor=1, mobile=is_phone)
+
+    def screenshot(self, path):
+        data = self.call('Page.captureScreenshot')['data']
+        Path(path).write_bytes(base64.b64decode(data))
+
+    def mouse(self, *steps):
+        """Press at the first of some points, move over them, and release at the last one."""
+        for kind, (x, y) in (
+                ('mouseMoved', steps[0]), ('mousePressed', steps[0]),
+                *(('mouseMoved', step) for step in steps[1:]), ('mouseReleased', steps[-1])):
+            self.call('Input.dispatchMouseEvent', type=kind, x=x, y=y, button='left',
+                      buttons=int(kind != 'mouseReleased'), clickCount=1)
+
+
+@contextlib.contextmanager
+def browser(folder):
+    """Start a browser that keeps its files in a folder; skip where there is none."""
+    client = pytest.importorskip('websockets.sync.client', reason='needs websockets')
+    program = shutil.which('chromium') or shutil.which('google-chrome')
+    if program is None:
+        pytest.skip('needs Chromium')
+    process = subprocess.Popen(
+        [program, *OPTIONS, f'--user-data-dir={folder}', 'about:blank'],
+        stderr=subprocess.PIPE, text=True)
+    try:
+        line = next(line for line in process.stderr if 'DevTools listening on' in line)
+        address = line.split()[-1]
+        with client.connect(address, max_size=None, ping_interval=None) as socket:
+            root = Browser.__new__(Browser)
+            root._socket, root._numbers = socket, itertools.count(1)
+            root.requests, root.errors = [], []
+            target = root.call('Target.createTarget', url='about:blank')['targetId']
+        page = address.rpartition('/devtools/')[0] + f'/devtools/page/{target}'
+        with client.connect(page, max_size=None, ping_interval=None) as socket:
+            yield Browser(socket)
+    finally:
+        process.terminate()
+        process.communicate()

@@ -1,0 +1,126 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Which surfaces and names are drawn, and where."""
+
+import mesh_texts
+import numpy as np
+import pytest
+
+from sdf_pose_bridge import load
+from sdf_pose_bridge.cli.viewer import drawing
+from sdf_pose_bridge.cli.viewer.drawing import bounds_of_scene
+from sdf_pose_bridge.cli.viewer.drawing import names_at_places
+from sdf_pose_bridge.cli.viewer.drawing import surfaces_from_scene
+from sdf_pose_bridge.cli.viewer.meshes import MeshReader
+from sdf_pose_bridge.sdformat.include.uris import resource_finder
+
+
+@pytest.fixture
+def drawn(tmp_path):
+    """Returns the scene, its surfaces and what is not drawn, of visuals with these contents."""
+    reader = MeshReader(resource_finder([], {}))
+
+    def draw(*visuals):
+        text = ''.join(
+            f'<visual name="v{number}">{visual}</visual>' for number, visual in enumerate(visuals))
+        path = tmp_path / 'model.sdf'
+        path.write_text(f'<sdf version="1.11"><model name="m"><link name="l">{text}</link></model>'
+                        '</sdf>')
+        scene = load(path, shapes=True)
+        return scene, *surfaces_from_scene(scene, list(scene.shapes), 2.0, reader)
+    yield draw
+    reader.close()
+
+
+def geometry(text):
+    return f'<geometry>{text}</geometry>'
+
+
+MESH = geometry('<mesh><uri>a.stl</uri><scale>1 1 -2</scale></mesh>')
+
+
+def test_shape_that_is_not_supported(drawn):
+    _, surfaces, ((_, reason),) = drawn(geometry('<heightmap/>'))
+    assert (surfaces, reason) == ([], 'a heightmap is not supported')
+
+
+def test_missing_mesh_is_a_small_box(drawn):
+    _, (surface,), ((_, reason),) = drawn(MESH)
+    assert surface.scales.tolist() == [[pytest.approx(0.06)] * 3]
+    assert reason == 'the mesh "a.stl": it is not found'
+
+
+def test_scale_that_is_not_finite(drawn):
+    _, surfaces, ((_, reason),) = drawn(MESH.replace('-2', 'inf'))
+    assert (surfaces, reason) == ([], 'the scale of its mesh is not finite')
+
+
+def test_more_surfaces_than_are_drawn(drawn, monkeypatch):
+    monkeypatch.setattr(drawing, 'MOST_SURFACES', 2)
+    _, (surface,), not_drawn = drawn(*[geometry('<sphere/>')] * 5)
+    assert len(surface.elements) == 2
+    assert [reason for _, reason in not_drawn] == ['there are too many surfaces'] * 3
+
+
+def test_more_triangles_than_are_drawn(drawn, monkeypatch):
+    monkeypatch.setattr(drawing, 'MOST_TRIANGLES', 12)
+    _, (surface,), not_drawn = drawn(geometry('<sphere/>'), geometry('<box/>'))
+    assert len(surface.triangles.faces) == 12
+    assert len(not_drawn) == 1
+
+
+def test_shapes_of_any_size_share_a_surface(drawn):
+    _, (surface,), _ = drawn(*(
+        geometry(f'<sphere><radius>{radius}</radius></sphere>') for radius in (1, 2)))
+    assert surface.scales.tolist() == [[1, 1, 1], [2, 2, 2]]
+
+
+@pytest.mark.parametrize(('shape', 'half'), [
+    ('<box><size>1 2 3</size></box>', (0.5, 1, 1.5)),
+    ('<cylinder><radius>1</radius><length>4</length></cylinder>', (1, 1, 2)),
+    ('<cone><radius>1</radius><length>4</length></cone>', (1, 1, 2)),
+    ('<capsule><radius>2</radius><length>4</length></capsule>', (2, 2, 4)),
+    ('<ellipsoid><radii>1 2 3</radii></ellipsoid>', (1, 2, 3)),
+    ('<plane><size>2 1000</size></plane>', (1, 2, 0)),
+])
+def test_size_of_a_shape(drawn, shape, half):
+    scene, surfaces, _ = drawn(geometry(shape))
+    bounds = bounds_of_scene(scene, np.zeros((1, 3)), surfaces)
+    assert bounds == pytest.approx(np.array([-np.array(half), half]))
+
+
+def test_color_of_the_material(drawn):
+    material = ('<material><diffuse>1 0 0 0.5</diffuse></material><transparency>0.5</transparency>'
+                + geometry('<box/>'))
+    _, (surface,), _ = drawn(material)
+    assert surface.rgba.tolist() == [[1, 0, 0, 0.25]]
+
+
+def test_what_is_transparent_is_not_drawn(drawn):
+    material = '<material><diffuse>1 0 0 0</diffuse></material>' + geometry('<box/>')
+    assert drawn(material)[1:] == ([], [])
+
+
+def test_mesh_with_its_scale(drawn, tmp_path):
+    (tmp_path / 'a.stl').write_text(mesh_texts.STL.format(y=2))
+    _, (surface,), not_drawn = drawn(MESH, MESH)
+    assert (len(surface.elements), surface.scales[0].tolist()) == (2, [1, 1, -2])
+    assert not not_drawn
+
+
+def test_bounds_contain_what_is_turned(drawn):
+    scene, surfaces, _ = drawn(
+        '<pose degrees="true">0 0 5 0 90 0</pose>' + geometry('<box><size>1 2 6</size></box>'))
+    bounds = bounds_of_scene(scene, np.zeros((1, 3)), surfaces)
+    assert bounds == pytest.approx(np.array([(-3, -1, 0), (3, 1, 5.5)]))
+
+
+def test_names_of_one_place_are_joined():
+    points = np.array([(0, 0, 0), (9, 0, 0), *[(0, 0, 0.01)] * 4])
+    found = list(names_at_places(list('abcdef'), points, 0.1))
+    assert [text for text, _ in found] == ['a, c, d and 2 more', 'b']
+    assert found[1][1].tolist() == [9, 0, 0]
+
+
+def test_no_names():
+    assert list(names_at_places([], np.zeros((0, 3)), 0.1)) == []

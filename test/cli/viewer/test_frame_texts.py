@@ -1,0 +1,91 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the page says about frames: the numbers, the forms to copy, and that names are text."""
+
+import html
+import re
+import shlex
+
+import pytest
+
+from sdf_pose_bridge.cli.printing import Units
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_frame
+from sdf_pose_bridge.cli.viewer.frame_texts import rows_of_tree
+from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+
+HOSTILE = '<img src=x onerror=alert(1)>'
+TEXT = f"""<sdf version="1.11"><world name="w"><model name="m"><pose>1 2 3 0 0 1.5</pose>
+  <link name="l"><sensor name="s" type="camera"/></link>
+  <frame name="f" attached_to="l"><pose>0.5 0 0 0 0 0</pose></frame></model>
+  <frame name="{html.escape(HOSTILE)}"/></world></sdf>"""
+
+
+@pytest.fixture(name='scene')
+def loaded_scene():
+    return load_text(TEXT.encode(), 'cell.sdf')
+
+
+@pytest.fixture
+def described(scene):
+    """Returns the description of a frame in another one, without its HTML."""
+    tree = tf_tree_from_scene(scene)
+
+    def describe(frame, reference=None):
+        text = html_of_frame(
+            scene, tree, tree.frame_ids.index(frame),
+            ROOT_IS_PARENT if reference is None else tree.frame_ids.index(reference),
+            Units(False, False))
+        return html.unescape(re.sub('<[^>]*>', '\n', text))
+    return describe
+
+
+def test_names_and_place(described):
+    lines = described('m/f').split('\n')
+    assert {'m/f', 'm::f', 'cell.sdf:3'} <= set(lines)
+
+
+def test_pose_to_copy_names_the_other_frame_as_its_model_does(described):
+    assert '<pose relative_to="l">0.5 0.0 0.0 0.0 0.0 0.0</pose>' in html.unescape(
+        described('m/f', 'm/l'))
+
+
+def test_pose_in_the_root_has_no_attribute(described):
+    assert '<pose>1.0 2.0 3.0 0.0 0.0 1.5</pose>' in html.unescape(described('m/l'))
+
+
+def test_arguments_of_static_transform_publisher(described):
+    (line,) = (line for line in described('m/f', 'm/l').split('\n') if line.startswith('--x'))
+    words = shlex.split(line)
+    assert dict(zip(words[::2], words[1::2], strict=True)) == {
+        '--x': '0.5', '--y': '0.0', '--z': '0.0', '--qx': '0.0', '--qy': '0.0', '--qz': '0.0',
+        '--qw': '1.0', '--frame-id': 'm/l', '--child-frame-id': 'm/f'}
+
+
+def test_franka_matrix(described):
+    matrix = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.5, 0.0, 0.0, 1.0]
+    assert str(matrix) in described('m/f', 'm/l')
+
+
+def test_optical_frame_has_no_name_in_the_file(described):
+    assert 'm::l::s_optical' not in described('m/l/s_optical')
+
+
+def test_name_is_text(scene):
+    tree = tf_tree_from_scene(scene)
+    text = html_of_frame(
+        scene, tree, tree.frame_ids.index(HOSTILE), ROOT_IS_PARENT, Units(False, False))
+    assert '<img' not in text
+    assert html.escape(HOSTILE) in text
+
+
+def test_rows_stand_below_their_parents(scene):
+    rows = [(depth, text) for _, depth, text in rows_of_tree(tf_tree_from_scene(scene), '')]
+    assert rows == [
+        (0, 'l'), (1, 'm'), (1, 's'), (2, 's_optical'), (1, 'f'), (0, HOSTILE)]
+
+
+def test_search(scene):
+    tree = tf_tree_from_scene(scene)
+    assert [text for *_, text in rows_of_tree(tree, 'M/L/')] == ['m/l/s', 'm/l/s_optical']

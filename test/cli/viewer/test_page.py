@@ -1,0 +1,166 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The page in a real browser: joints, frames, edited files, errors, and hostile names."""
+
+import html
+import os
+from pathlib import Path
+import re
+import subprocess
+import sys
+from types import SimpleNamespace
+
+from browser import browser
+from browser import DEADLINE_S
+import pytest
+
+pytest.importorskip('viser', reason='needs viser')
+
+ROOT = Path(__file__).resolve().parents[3]
+HOSTILE = '<img src=x onerror="window.wasRun=true">'
+TEXT = f"""<sdf version="1.11"><world name="w">
+  <model name="arm">
+    <link name="base"><visual name="v"><geometry><box><size>0.2 0.2 0.2</size></box></geometry>
+      <material><diffuse>1 0 0 1</diffuse></material></visual></link>
+    <link name="slide"/>
+    <link name="follower"/>
+    <joint name="rail" type="prismatic"><parent>base</parent><child>slide</child>
+      <axis><xyz>0 0 1</xyz><limit><lower>0</lower><upper>2</upper></limit></axis></joint>
+    <joint name="second" type="prismatic"><parent>base</parent><child>follower</child>
+      <axis><xyz>0 0 1</xyz><limit><lower>0</lower><upper>4</upper></limit>
+        <mimic joint="rail"><multiplier>2</multiplier><offset>0</offset><reference>0</reference>
+        </mimic></axis></joint>
+  </model>
+  <frame name="{html.escape(HOSTILE)}"><pose>1 0 0 0 0 0</pose></frame>
+</world></sdf>"""
+ROWS = "[...document.querySelectorAll('.rows label')]"
+
+
+def run_view(folder, *arguments, **options):
+    return subprocess.Popen(
+        [sys.executable, '-m', 'sdf_pose_bridge', 'view', *arguments], cwd=folder, text=True,
+        env={**os.environ, 'PYTHONPATH': str(ROOT), 'BROWSER': 'true'},
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
+
+
+@pytest.fixture(scope='module')
+def shown(tmp_path_factory):
+    """A file that ``view`` shows, and a browser that shows its page."""
+    folder = tmp_path_factory.mktemp('page')
+    file = folder / 'cell.sdf'
+    file.write_text(TEXT)
+    with browser(folder / 'browser') as page:
+        process = run_view(folder, 'cell.sdf', '--port', '0')
+        try:
+            address = process.stdout.readline().strip()
+            page.open(address)
+            page.wait_for(f'{ROWS}.length > 0')
+            yield SimpleNamespace(file=file, page=page, address=address)
+        finally:
+            process.terminate()
+            process.communicate()
+
+
+@pytest.fixture
+def page(shown):
+    """The page of the file as it was at first."""
+    if shown.file.read_text() != TEXT:
+        shown.file.write_text(TEXT)
+    shown.page.wait_for(f'{ROWS}.length === 5')
+    return shown.page
+
+
+def select(page, name):
+    page.wait_for(f"{ROWS}.find(row => row.textContent === '{name}')")
+    page.run(f"{ROWS}.find(row => row.textContent === '{name}').click()")
+    page.wait_for(f"document.querySelector('.rows .selected')?.textContent === '{name}'")
+
+
+def enter(page, element, text):
+    """Type a text into an input element."""
+    page.run(f"""(input => {{
+      const prototype = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value');
+      prototype.set.call(input, '{text}');
+      input.dispatchEvent(new Event('input', {{bubbles: true}}));
+    }})({element})""")
+
+
+def test_slider_moves_frames_and_those_that_mimic(page):
+    select(page, 'slide')
+    assert page.run("document.body.innerText.includes('arm/second')") is False
+    enter(page, "[...document.querySelectorAll('input')].filter("
+                "input => ['decimal', 'numeric'].includes(input.inputMode))[1]", '0.5')
+    page.wait_for("document.body.innerText.includes('xyz 0.0000 0.0000 0.5000 m')")
+    select(page, 'follower')
+    page.wait_for("document.body.innerText.includes('xyz 0.0000 0.0000 1.0000 m')")
+
+
+def test_search(page):
+    search = ("[...document.querySelectorAll('input')].find("
+              "input => input.type === 'text' && !input.inputMode)")
+    enter(page, search, 'SLI')
+    page.wait_for(f'{ROWS}.length === 1')
+    enter(page, search, '')
+    page.wait_for(f'{ROWS}.length === 5')
+
+
+def test_file_is_followed(page, shown):
+    shown.file.write_text(TEXT.replace('</world>', '<frame name="added"/></world>'))
+    page.wait_for(f"{ROWS}.some(row => row.textContent === 'added')")
+
+
+def test_errors_are_shown_above_the_last_scene(page, shown):
+    shown.file.write_text(TEXT.replace('<parent>base', '<parent>bass'))
+    page.wait_for("document.querySelector('pre')?.textContent.includes('cell.sdf:')")
+    assert page.run(f'{ROWS}.length') == 5
+    shown.file.write_text(TEXT)
+    page.wait_for("!document.querySelector('pre')")
+
+
+def test_names_and_errors_are_text(page, shown):
+    select(page, HOSTILE)
+    assert page.run(f"document.body.innerText.includes('{HOSTILE}')")
+    wrong = TEXT.replace('<link name="slide"/>', f'<link name="{html.escape(HOSTILE)}::a"/>')
+    shown.file.write_text(wrong)
+    page.wait_for("document.querySelector('pre')?.textContent.includes('<img')")
+    assert page.run('window.wasRun') is None
+    assert page.run("document.querySelectorAll('img[src=x]').length") == 0
+
+
+def test_page_asks_for_nothing_elsewhere(page, shown):
+    assert [request for request in page.requests if not request.startswith(
+        (shown.address, shown.address.replace('http', 'ws'), 'data:', 'blob:', 'about:'))] == []
+    assert page.errors == []
+
+
+@pytest.mark.parametrize(('origin', 'is_accepted'), [
+    ('http://127.0.0.1:9', True), ('http://example.org', False), ('null', False)])
+def test_pages_of_other_servers_are_refused(shown, origin, is_accepted):
+    viser = pytest.importorskip('viser')
+    client = pytest.importorskip('websockets.sync.client')
+    with client.connect(
+            shown.address.replace('http', 'ws'), origin=origin, max_size=None,
+            subprotocols=[f'viser-v{viser.__version__}']) as socket:
+        if is_accepted:
+            assert socket.recv(timeout=DEADLINE_S)
+        else:
+            with pytest.raises(Exception, match='1008'):
+                socket.recv(timeout=DEADLINE_S)
+
+
+def test_written_page_and_picture(shown, tmp_path):
+    (tmp_path / 'cell.sdf').write_text(TEXT)
+    for name in ('page.html', 'picture.png'):
+        process = run_view(tmp_path, 'cell.sdf', '-o', name)
+        assert process.communicate(timeout=4 * DEADLINE_S) == ('', '')
+    with browser(tmp_path / 'browser') as page:
+        page.open((tmp_path / 'page.html').as_uri())
+        page.wait_for("document.querySelector('canvas')")
+        assert page.run('document.title') == 'cell.sdf'
+        assert [request for request in page.requests
+                if not re.match('file:|data:|blob:|about:', request)] == []
+    imageio = pytest.importorskip('imageio.v3')
+    pixels = imageio.imread(tmp_path / 'picture.png').astype(int)
+    assert pixels.shape == (1000, 1600, 3)
+    is_red = (pixels[:, :, 0] > 100) & (pixels[:, :, 1:] < 80).all(axis=2)
+    assert 500 < is_red.sum() < 500_000
