@@ -97,7 +97,7 @@ def test_slider_moves_frames_and_those_that_mimic(page):
 
 def test_search(page):
     search = ("[...document.querySelectorAll('input')].find("
-              "input => input.type === 'text' && !input.inputMode)")
+              "input => input.type === 'text' && ['', 'SLI'].includes(input.value))")
     enter(page, search, 'SLI')
     page.wait_for(f'{ROWS}.length === 1')
     enter(page, search, '')
