@@ -98,7 +98,7 @@ def test_commands(command, folder, capsys):
         if arguments[0] == 'graph' and shutil.which('dot') is None:
             pytest.skip('needs dot of Graphviz')
         if arguments[0] == 'view':
-            pytest.importorskip('plotly', reason='needs plotly')
+            pytest.importorskip('viser', reason='needs viser')
     assert main(arguments) == 0
     if '-o' in arguments:
         assert (folder / arguments[arguments.index('-o') + 1]).stat().st_size
