@@ -93,8 +93,9 @@ def _document_from_bytes(
     is_included: bool, reads_gazebo_elements: bool,
 ) -> Document:
     sources.usage.add_elements_of(text, Place(path))
-    root, warnings, lines = xml_from_bytes(text, path, encoding)
-    problems.extend(warnings)
+    file = xml_from_bytes(text, path, encoding)
+    root, lines = file.root, file.lines
+    problems.extend(file.warnings)
     has_gazebo_elements = False
     if root.tag == 'robot':
         # Most files are not URDF and need not wait for this import.
@@ -107,7 +108,7 @@ def _document_from_bytes(
                 root.remove(element)
         root, lines = sdf_from_urdf(root, lines, sources, problems, is_included=is_included)
     version = version_from_text(_declared_version(root, path), Place(path, root.sourceline or 0))
-    document = Document(path, root, _may_hold_scoped_names(text), has_gazebo_elements)
+    document = Document(path, root, _may_hold_scoped_names(file.text), has_gazebo_elements)
     sources.add_tree(path, root, version, lines)
     convert(root, version, sources, may_hold_scoped_names=document.may_hold_scoped_names)
     _check_top_model(root, sources, problems)
@@ -127,8 +128,8 @@ def _declared_version(root: XmlElement, path: str) -> str:
 
 
 def _may_hold_scoped_names(text: bytes) -> bool:
-    # A colon may be written as a character reference, or in an encoding of two bytes.
-    return SEPARATOR.encode() in text or b'&#' in text or b'\0' in text[:4]
+    # A colon may be written as a character reference.
+    return SEPARATOR.encode() in text or b'&#' in text
 
 
 def _check_top_model(root: XmlElement, sources: Sources, problems: Problems) -> None:

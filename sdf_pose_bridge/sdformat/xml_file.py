@@ -9,7 +9,6 @@ Depth and sizes are limited as libxml2 does without its option ``huge``.
 from __future__ import annotations
 
 from collections.abc import Mapping
-import contextlib
 from itertools import chain
 from itertools import islice
 import os
@@ -25,6 +24,7 @@ from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.xml_encoding import utf8_from_bytes
 from sdf_pose_bridge.sdformat.xml_repair import repaired
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
@@ -44,7 +44,10 @@ START_TAG = re.compile(
     rb'|!--.*?-->|!\[CDATA\[.*?\]\]>|![A-Z](?:[^"\'>]|"[^"]*"|\'[^\']*\')*>|\?.*?\?>)', re.DOTALL)
 """A start tag, its inside as group 1, or what may hold something that looks like one."""
 
-_INTERNAL_SUBSET = re.compile(rb'<!DOCTYPE(?:[^"\'\[>]|"[^"]*"|\'[^\']*\')*\[')
+_BEFORE_DOCUMENT_TYPE = re.compile(rb'[ \t\r\n]+|<!--.*?-->|<\?.*?\?>', re.DOTALL)
+"""One thing that can stand before the document type."""
+
+_QUOTED_OR_BRACKET = re.compile(rb'"[^"]*"|\'[^\']*\'|[\[>]')
 
 
 class XmlFile(NamedTuple):
@@ -56,6 +59,8 @@ class XmlFile(NamedTuple):
     """What is wrong but is accepted."""
     lines: Mapping[XmlElement, int]
     """The lines of those elements whose line lxml does not know."""
+    text: bytes
+    """What was parsed, in UTF-8."""
 
 
 def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> bytes:
@@ -102,37 +107,42 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
 
     :param text: the XML.
     :param path: the name to use in errors.
-    :param encoding: encoding of the text; None for the one that it declares.
+    :param encoding: ``utf-8`` if the text is that, whatever it declares; else None.
     :return: the tree.
-    :raises FileReadError: if it is not well-formed, apart from what libsdformat accepts.
+    :raises FileReadError: if it is not well-formed, apart from what libsdformat accepts, or not in
+        an encoding that is supported.
     """
-    warnings: list[SdfWarning] = []
-    root, error, is_complete = _parsed(text, path, encoding)
+    fault = ''
+    if encoding is None:
+        text, fault = utf8_from_bytes(text, path)
+    faults = [(1, fault)] if fault else []
+    root, error, is_complete = _parsed(text, path)
     if error is not None:
-        repair = repaired(text, encoding)
+        repair = repaired(text)
         if repair is None:
             raise error
-        text, encoding = repair.text, 'utf-8'
-        root, second_error, is_complete = _parsed(text, path, encoding)
+        text = repair.text
+        faults += repair.faults
+        root, second_error, is_complete = _parsed(text, path)
         if second_error is not None:
             raise second_error
-        warnings = [
-            SdfWarning('WARNING', f'this is not well-formed XML: {fault}', Place(path, line))
-            for line, fault in repair.faults]
     if root is None:
         msg = 'this is not XML: it has no element'
         raise FileReadError(msg, Place(path))
     _check_document_type(root, text, path)
     _check_instructions(root, text, path)
     if not is_complete:
-        _check_with_expat(text, encoding, path)
+        _check_with_expat(text, path)
     if b'xmlns' in text:
         _remove_default_namespaces(root)
-    return XmlFile(root, tuple(warnings), _lines_beyond_last(root, text))
+    warnings = tuple(
+        SdfWarning('WARNING', f'this is not well-formed XML: {fault}', Place(path, line))
+        for line, fault in faults)
+    return XmlFile(root, warnings, _lines_beyond_last(root, text), text)
 
 
 def _parsed(
-    text: bytes, path: str, encoding: str | None,
+    text: bytes, path: str,
 ) -> tuple[XmlElement | None, FileReadError | None, bool]:
     """
     Parse text.
@@ -141,7 +151,7 @@ def _parsed(
         no other errors.
     """
     parser = etree.XMLParser(
-        encoding=encoding, recover=True, resolve_entities=False, no_network=True, load_dtd=False,
+        encoding='utf-8', recover=True, resolve_entities=False, no_network=True, load_dtd=False,
         huge_tree=False, remove_blank_text=True)
     root = None
     error = None
@@ -160,11 +170,14 @@ def _parsed(
 def _check_document_type(root: XmlElement, text: bytes, path: str) -> None:
     if root.getroottree().docinfo.internalDTD is None:
         return
-    # Without zero bytes, UTF-16 can be searched too.
-    subset = _INTERNAL_SUBSET.search(text.replace(b'\0', b''))
-    if subset is not None:
+    start = 0
+    while (before := _BEFORE_DOCUMENT_TYPE.match(text, start)) is not None:
+        start = before.end()
+    # Declarations are in square brackets before the ">" that ends the document type.
+    brackets = (part[0] for part in _QUOTED_OR_BRACKET.finditer(text, start) if len(part[0]) == 1)
+    if next(brackets, b'') != b'>':
         msg = 'the document type has declarations of its own, which SDFormat does not have'
-        raise FileReadError(msg, Place(path, 1 + text.count(b'\n', 0, subset.start())))
+        raise FileReadError(msg, Place(path, 1 + text.count(b'\n', 0, start)))
 
 
 def _check_instructions(root: XmlElement, text: bytes, path: str) -> None:
@@ -178,24 +191,20 @@ def _check_instructions(root: XmlElement, text: bytes, path: str) -> None:
         raise FileReadError(msg, Place(path, instruction.sourceline or 0))
 
 
-def _check_with_expat(text: bytes, encoding: str | None, path: str) -> None:
+def _check_with_expat(text: bytes, path: str) -> None:
     """
     Refuse what libxml2 did not report after its first errors.
 
     :raises FileReadError: if the text is not well-formed, apart from what follows the outermost
-        element. Encodings that expat does not know are not checked.
+        element.
     """
     stripped = text.lstrip(WHITE_SPACE.encode())
     skipped = text.count(b'\n', 0, len(text) - len(stripped))
     try:
-        expat.ParserCreate(encoding).Parse(stripped, True)
-    except (LookupError, ValueError):
-        return
+        expat.ParserCreate('utf-8').Parse(stripped, True)
     except expat.ExpatError as error:
         message = expat.ErrorString(error.code)
-        if message not in (
-                expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT,
-                expat.errors.XML_ERROR_UNKNOWN_ENCODING):
+        if message != expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
             msg = f'this is not well-formed XML: {message}'
             raise FileReadError(msg, Place(path, skipped + error.lineno)) from error
 
@@ -215,11 +224,6 @@ def _lines_beyond_last(root: XmlElement, text: bytes) -> dict[XmlElement, int]:
     """
     if text.count(b'\n') < _LAST_LINE:
         return {}
-    encoding = root.getroottree().docinfo.encoding or 'utf-8'
-    if text.startswith((b'\xff\xfe', b'\xfe\xff')):
-        encoding = 'utf-16'
-    with contextlib.suppress(LookupError, UnicodeDecodeError):
-        text = text.decode(encoding).encode()
     ends = [tag.end(1) for tag in START_TAG.finditer(text) if tag[1]]
     line_ends = np.flatnonzero(np.frombuffer(text, np.uint8) == ord('\n'))
     lines = np.searchsorted(line_ends, ends) + 1

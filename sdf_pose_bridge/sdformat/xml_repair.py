@@ -22,7 +22,6 @@ _TOKEN = re.compile(
     rf'|<(?P<end>/?)(?P<tag>{_NAME})(?![\w:.\-])(?P<attributes>(?:{_ATTRIBUTE.pattern})*)'
     rf'(?P<rest>\s*(?P<empty>/?)>)', re.DOTALL)
 _BARE_AMPERSAND = re.compile(r'&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)')
-_DECLARED_ENCODING = re.compile(rb'\s*<\?xml[^>]*?encoding\s*=\s*["\']([A-Za-z0-9._-]+)["\']')
 _ESCAPED_BYTE = re.compile('[\udc80-\udcff]')
 """What the error handler ``surrogateescape`` makes of a byte that is not UTF-8."""
 _NOT_NEW_LINE = re.compile(r'[^\n]')
@@ -37,16 +36,15 @@ class Repair(NamedTuple):
     """What was wrong: the line and a sentence for each sort of fault."""
 
 
-def repaired(text: bytes, encoding: str | None) -> Repair | None:
+def repaired(text: bytes) -> Repair | None:
     """
     Rewrite text.
 
-    :param text: text that is not well-formed XML.
-    :param encoding: its encoding; None for the one that it declares.
+    :param text: text that is not well-formed XML; it should be UTF-8.
     :return: the repair; None if TinyXML-2 would not accept the text either. Nesting and names of
         end tags are not checked.
     """
-    return _Repairer().repaired(text, encoding)
+    return _Repairer().repaired(text)
 
 
 class _Repairer:
@@ -58,8 +56,8 @@ class _Repairer:
         self._has_root = False
         self._may_declare = True
 
-    def repaired(self, text: bytes, encoding: str | None) -> Repair | None:
-        decoded = self._decoded(text, encoding).partition('\0')[0]
+    def repaired(self, text: bytes) -> Repair | None:
+        decoded = self._decoded(text).partition('\0')[0]
         parts = []
         position = 0
         while position < len(decoded):
@@ -145,16 +143,7 @@ class _Repairer:
             self._note('"&" is not the beginning of a known entity', line)
         return _BARE_AMPERSAND.sub('&amp;', text)
 
-    def _decoded(self, text: bytes, encoding: str | None) -> str:
-        declared = _DECLARED_ENCODING.match(text)
-        if text.startswith((b'\xff\xfe', b'\xfe\xff')):
-            encoding = 'utf-16'
-        encoding = encoding or (declared[1].decode() if declared else 'utf-8')
-        try:
-            return text.decode(encoding)
-        except (LookupError, UnicodeDecodeError):
-            if encoding.lower() not in ('utf-8', 'utf8'):
-                self._note(f'the text is not in the encoding "{encoding}"; UTF-8 is used')
+    def _decoded(self, text: bytes) -> str:
         result = text.decode('utf-8', errors='surrogateescape')
         escaped = _ESCAPED_BYTE.search(result)
         if escaped is not None:

@@ -275,8 +275,9 @@ def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
         warnings.append(SdfWarning('WARNING', msg, Place(manifest)))
     text = bytes_from_file(manifest, usage)
     usage.add_elements_of(text, Place(manifest))
-    root, xml_warnings, _ = xml_from_bytes(text, manifest)
-    warnings += xml_warnings
+    file = xml_from_bytes(text, manifest)
+    root = file.root
+    warnings += file.warnings
     best: tuple[int, ...] = ()
     chosen = None
     for entry in child_elements(root, 'sdf'):

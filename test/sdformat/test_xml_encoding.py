@@ -1,0 +1,83 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Files are decoded before they are searched, from a few encodings."""
+
+import codecs
+
+import pytest
+from sdf_texts import LINK
+from sdf_texts import model_file
+from sdf_texts import names_of
+
+from sdf_pose_bridge import load_text
+from sdf_pose_bridge import SdfError
+from sdf_pose_bridge.errors import FileReadError
+from sdf_pose_bridge.sdformat.xml_encoding import utf8_from_bytes
+
+NAME = 'größe'
+
+
+def declared(encoding, content='<link name="größe"/>'):
+    return f'<?xml version="1.0" encoding="{encoding}"?>' + model_file(content)
+
+
+@pytest.mark.parametrize('encoding', [
+    'utf-8', 'UTF8', 'ISO-8859-1', 'latin-1', 'iso-8859-15', 'windows-1252', 'UTF-16', 'UTF-32'])
+def test_text_is_decoded_from_the_encoding_that_it_declares(encoding):
+    text = declared(encoding)
+    scene = load_text(text.encode(encoding))
+    assert names_of(scene) == ['m', f'm::{NAME}']
+    assert scene.warnings == ()
+
+
+@pytest.mark.parametrize('encoding', ['utf-16-le', 'utf-16-be', 'utf-32-le', 'utf-32-be'])
+def test_two_and_four_bytes_are_known_without_a_byte_order_mark(encoding):
+    assert utf8_from_bytes(model_file(NAME).encode(encoding), 'f') == (
+        model_file(NAME).encode(), '')
+
+
+@pytest.mark.parametrize('encoding', [
+    'punycode', 'undefined', 'UTF-7', 'idna', 'unicode_escape', 'rot13', 'zlib', 'EUC-JP', 'cp037',
+    'utf-8-sig'])
+def test_other_encodings_are_refused_by_name(encoding):
+    with pytest.raises(FileReadError, match=f'"{encoding}" is not supported'):
+        utf8_from_bytes(declared(encoding).encode(), 'f')
+
+
+@pytest.mark.parametrize('text', [
+    b'+ADwAIQ-DOCTYPE sdf +AFsAPAAh-ENTITY a "b"+AD4AXQA+-' + model_file(LINK).encode(),
+    model_file('<link name="l+ADoAOg-x"/>').encode()])
+def test_nothing_is_hidden_by_an_encoding(text):
+    with pytest.raises(SdfError, match='UTF-7'):
+        load_text(b'<?xml version="1.0" encoding="UTF-7"?>' + text)
+
+
+@pytest.mark.parametrize('encoding', ['none', 'utf-16', 'UTF-32', 'mbcs'])
+def test_text_that_is_not_in_its_encoding_is_read_as_utf_8(encoding):
+    scene = load_text(declared(encoding).encode())
+    assert names_of(scene) == ['m', f'm::{NAME}']
+    assert encoding in scene.warnings[0].message
+
+
+@pytest.mark.parametrize('content', [
+    b'\x81', codecs.BOM_UTF16_LE + b'\0\xd8', codecs.BOM_UTF32_BE + b'\xff' * 4,
+    codecs.BOM_UTF16_BE + b'a', b'\0<\0'])
+def test_bytes_that_cannot_be_decoded_are_an_error_of_the_file(content):
+    with pytest.raises(SdfError):
+        load_text(declared('windows-1252', '').encode() + content
+                  if content == b'\x81' else content)
+
+
+def test_declarations_in_a_comment_are_no_document_type():
+    comment = f'<!-- {"<!DOCTYPE" * 12_000} -->'
+    text = '<!DOCTYPE sdf>' + model_file(LINK + comment)
+    assert names_of(load_text(text)) == ['m', 'm::l']
+
+
+@pytest.mark.parametrize('text', [
+    '<!DOCTYPE sdf [<!ENTITY e "f">]>', '<!-- > --><?a b?>\n<!DOCTYPE sdf SYSTEM "a>" []>',
+    "<!DOCTYPE sdf SYSTEM ']' [ ]>", '&<!DOCTYPE sdf []>'])
+@pytest.mark.parametrize('encoding', ['utf-8', 'utf-16', 'utf-32'])
+def test_declarations_of_a_document_type_are_refused(text, encoding):
+    with pytest.raises(SdfError, match='declarations of its own'):
+        load_text((text + model_file(LINK)).encode(encoding))
