@@ -4,9 +4,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import bisect
+from collections import Counter
 from collections.abc import Iterable
-import difflib
+from collections.abc import Iterator
+from collections.abc import Sequence
 import re
 
 SEPARATOR = '::'
@@ -31,8 +33,13 @@ _QUOTED = re.compile(r'"([^"]*)"')
 _LONGEST_COMPARED = 200
 """How long a name may be that is compared with others."""
 
-_MOST_COMPARED = 400
-"""How many names are compared in full with one that was not found."""
+_NEIGHBORS = 25
+"""How many names on each side of one that was not found are compared with it, in both orders."""
+
+_SEPARATORS = str.maketrans('_-. ', '////')
+
+_MOST_PAIRS = 5_000
+"""How many pairs of equal characters the compared names may have; comparing takes as long."""
 
 
 def is_reserved(name: str) -> bool:
@@ -122,36 +129,55 @@ def nearest_name(wanted: str, names: Iterable[str]) -> str:
     :param names: the names that exist.
     :return: the nearest of them, or an empty string if none is near.
     """
-    # The comparison takes the product of the lengths.
-    if len(wanted) > _LONGEST_COMPARED:
-        return ''
-    near = difflib.get_close_matches(wanted, _likely_names(wanted, list(names)), n=1, cutoff=0.6)
-    return near[0] if near else ''
+    return NameIndex(names).nearest(wanted) if len(wanted) <= _LONGEST_COMPARED else ''
 
 
-def _likely_names(wanted: str, names: list[str]) -> list[str]:
-    """Return the names with the longest common beginnings and ends, if there are very many."""
-    if len(names) <= _MOST_COMPARED:
-        return names
-    length = len(wanted)
-    longest = min(length, max(map(len, names)))
-    same_start = _sharing_longest(names, longest, str.startswith, lambda size: wanted[:size])
-    same_end = _sharing_longest(names, longest, str.endswith, lambda size: wanted[length - size:])
-    half = _MOST_COMPARED // 2
-    return [*same_start[:half], *same_end[:half]]
+class NameIndex:
+    """
+    Names in order, among which one that was probably meant is found soon, however many they are.
+
+    :param names: the names that exist; very long ones are never meant.
+    """
+
+    def __init__(self, names: Iterable[str]) -> None:
+        short = {name for name in names if len(name) <= 2 * _LONGEST_COMPARED}
+        self._names = sorted(short, key=_sort_key)
+        self._reversed_names = sorted((name[::-1] for name in short), key=_sort_key)
+
+    def nearest(self, wanted: str) -> str:
+        """
+        Return the name that was probably meant.
+
+        :param wanted: a name that was not found.
+        :return: as of :func:`nearest_name`.
+        """
+        if len(wanted) > _LONGEST_COMPARED:
+            return ''
+        # The import takes a millisecond, and most processes do not need it.
+        import difflib
+        likely = [*_neighbors(self._names, wanted), *(
+            name[::-1] for name in _neighbors(self._reversed_names, wanted[::-1]))]
+        near = difflib.get_close_matches(wanted, _comparable(wanted, likely), n=1, cutoff=0.6)
+        return near[0] if near else ''
 
 
-def _sharing_longest(
-    names: list[str], longest: int, shares: Callable[[str, str], bool], part: Callable[[int], str],
-) -> list[str]:
-    """Find, by bisection, the names that share the longest possible part with the wanted one."""
-    shortest = 0
-    while shortest < longest:
-        size = (shortest + longest + 1) // 2
-        wanted = part(size)
-        sharing = [name for name in names if shares(name, wanted)]
-        if sharing:
-            names, shortest = sharing, size
-        else:
-            longest = size - 1
-    return names
+def _sort_key(name: str) -> str:
+    """Return what names are ordered by, the same for all cases and separators."""
+    return name.replace(SEPARATOR, '/').translate(_SEPARATORS).lower()
+
+
+def _neighbors(names: Sequence[str], wanted: str) -> Sequence[str]:
+    """Return the names around one that is not among them; its beginning is that of the nearest."""
+    index = bisect.bisect(names, _sort_key(wanted), key=_sort_key)
+    return names[max(index - _NEIGHBORS, 0):index + _NEIGHBORS]
+
+
+def _comparable(wanted: str, names: Iterable[str]) -> Iterator[str]:
+    """Leave out names which the comparison would take long for, as of a few letters repeated."""
+    counts = Counter(wanted)
+    pairs = 0
+    for name in dict.fromkeys(names):
+        new_pairs = sum(map(counts.__getitem__, name))
+        if pairs + new_pairs <= _MOST_PAIRS:
+            pairs += new_pairs
+            yield name

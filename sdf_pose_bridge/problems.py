@@ -21,7 +21,7 @@ from sdf_pose_bridge.names import shortened_message
 MOST_PROBLEMS = 100
 """How many errors and how many warnings of a load are kept."""
 
-MOST_HINTS = 100
+MOST_HINTS = 50
 """How many messages of a load may say which name was probably meant."""
 
 _LONGEST_CHAIN = 10
@@ -113,7 +113,7 @@ class Problems:
         """
         Return whether a message may end in a hint that takes long to find, and count it.
 
-        :return: True for the first hundred times of a load.
+        :return: True for the first ``MOST_HINTS`` times of a load.
         """
         if self._parent is not None:
             return self._parent.allows_hint()

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import NamedTuple
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.tree import TfTree
 
@@ -93,6 +94,11 @@ class PoseLookup:
             return element
         return self._element(name)
 
+    @cached_property
+    def _name_index(self) -> NameIndex:
+        """All names, put in order when one was not found for the first time."""
+        return NameIndex([*self._indices, *self._scene.names])
+
     def _pose_in_root(self, name: str) -> tuple[Pose, str]:
         """Return the pose of a frame in the root frame, and its frame id or else its name."""
         scene, tree, positions = self._scene, self._tree, self._positions
@@ -111,7 +117,8 @@ class PoseLookup:
         """Find an element by its name in SDF."""
         scene = self._scene
         if not scene.has(name):
-            hint = hint_from_names(name, [*self._indices, *scene.names])
+            nearest = self._name_index.nearest(name)
+            hint = f'; did you mean "{nearest}"?' if nearest else ''
             msg = f'"{name}" is the name of nothing{hint}'
             raise UnknownFrameError(msg, Place(scene.path))
         element = scene.index(name, world=self._tree.world)

@@ -10,6 +10,7 @@ whose name is the longest beginning of the id, and goes on inside that one alone
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from collections.abc import Iterator
 from itertools import islice
 
@@ -22,17 +23,23 @@ from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _MOST_IDS_COMPARED = 2000
+_LONGEST_ID_COMPARED = 200
 
 
-def element_by_id(top: XmlElement, element_id: str, tag: str = '') -> XmlElement | None:
+def element_by_id(
+    top: XmlElement, element_id: str, tag: str = '',
+    *, count: Callable[[int], object] = lambda _children: None,
+) -> XmlElement | None:
     """
     Find an element.
 
     :param top: the included element.
     :param element_id: names from the included element inwards.
     :param tag: its tag, as written; empty for any.
+    :param count: is called with the number of children of each element that is searched.
     :return: the element, or None.
     """
+    count(len(top))
     children = child_elements(top)
     start = longest = 0
     while True:
@@ -51,6 +58,7 @@ def element_by_id(top: XmlElement, element_id: str, tag: str = '') -> XmlElement
             match, longest = child, last
         if match is None:
             return None
+        count(len(match))
         children = child_elements(match)
         start = longest
         if element_id.startswith(SEPARATOR, start + 1):
@@ -66,6 +74,8 @@ def hint_for_id(top: XmlElement, element_id: str, tag: str = '') -> str:
     :param tag: tag of the element that was looked for; empty for any.
     :return: a likely reason, or the nearest id that exists; else an empty string.
     """
+    if len(element_id) > _LONGEST_ID_COMPARED:
+        return ''
     ids = list(islice(_ids(top, ''), _MOST_IDS_COMPARED))
     tags = [found_tag for found_id, found_tag in ids if found_id == element_id]
     if tag in tags and len(element_id.split(SEPARATOR)[0]) == 1:
@@ -79,9 +89,10 @@ def hint_for_id(top: XmlElement, element_id: str, tag: str = '') -> str:
 
 
 def _ids(xml: XmlElement, scope: str) -> Iterator[tuple[str, str]]:
+    """Iterate over the ids in an element, and their tags, without those that are very long."""
     for child in child_elements(xml):
         name = attribute_of(child, 'name')
-        if name:
-            scoped = scoped_name(scope, name)
+        scoped = scoped_name(scope, name)
+        if name and len(scoped) <= 2 * _LONGEST_ID_COMPARED:
             yield scoped, written_tag(child)
             yield from _ids(child, scoped)

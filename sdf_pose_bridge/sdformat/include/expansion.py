@@ -27,6 +27,7 @@ from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import UriLookupError
 from sdf_pose_bridge.names import ROOT_FRAME
+from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.documents import Document
 from sdf_pose_bridge.sdformat.documents import document_from_file
@@ -221,7 +222,7 @@ class IncludeExpansion:
             self._sources.usage.check('depth', depth + 1, self._sources.place(xml))
 
     def _report_missing(self, include: XmlElement, uri: str, reason: str) -> None:
-        msg = f'"{uri}" cannot be included: {reason}'
+        msg = f'"{shortened(uri)}" cannot be included: {reason}'
         place = self._sources.place(include)
         if not self._skips_missing:
             self._problems.error(UriLookupError(msg, place))

@@ -41,6 +41,9 @@ _POSE_FORMAT_ATTRIBUTES = frozenset({'degrees', 'rotation_format'})
 _PARTS = ('pose', 'parent', 'child', 'axis', 'axis2')
 """Children that stand in the file of their parent element."""
 
+_STEPS_OF_SOURCE = 4
+"""Steps of work to set where a child of a changed element stands."""
+
 _DEFAULT_JOINT_END = '__default__'
 """The value of a joint's parent or child for which none is given."""
 
@@ -110,7 +113,7 @@ class _Changer:
         if action == 'add':
             self._add(xml, tag, element_id)
             return
-        target = element_by_id(self._top, element_id, tag)
+        target = self._element(xml, element_id, tag)
         if target is None:
             msg = (f'the included model has no <{tag}> "{element_id}"'
                    f'{self._hint(element_id, tag)}')
@@ -136,11 +139,11 @@ class _Changer:
             self._error(missing, xml, f'<{tag}> is to be added, so it needs a name')
             return
         scoped = f'{element_id}{SEPARATOR}{name}'
-        if tag != 'plugin' and element_by_id(self._top, scoped, tag) is not None:
+        if tag != 'plugin' and self._element(xml, scoped, tag) is not None:
             msg = f'<{tag}> cannot be added: the included model has a <{tag}> "{scoped}" already'
             self._error(DuplicateNameError, xml, msg)
             return
-        parent = element_by_id(self._top, element_id) if element_id else self._top
+        parent = self._element(xml, element_id) if element_id else self._top
         if parent is None:
             msg = (f'<{tag}> cannot be added to element_id="{element_id}": the included model has '
                    f'no such element{self._hint(element_id)}')
@@ -250,6 +253,7 @@ class _Changer:
     ) -> None:
         tag = written_tag(target)
         definition = self._definition(target)
+        is_changed = False
         for attribute, value in xml.attrib.items():
             if attribute in _OWN_ATTRIBUTES or ':' in attribute:
                 continue
@@ -265,12 +269,15 @@ class _Changer:
                     self._warning(xml, msg)
             else:
                 target.set(attribute, str(value))
-                self._set_source(target, xml)
+                is_changed = True
+        if is_changed:
+            self._set_source(target, xml)
 
     def _set_source(self, target: XmlElement, xml: XmlElement) -> None:
         """Set that an element and those around it, up to the one with the id, stand in params."""
         path = self._sources.path(xml)
         while True:
+            self._count(_STEPS_OF_SOURCE * len(target), xml)
             for child in child_elements(target):
                 self._sources.set_source(child, self._sources.path(child))
             parts = (part for child in child_elements(target, *_PARTS)
@@ -285,11 +292,16 @@ class _Changer:
 
     # Look-ups
 
+    def _element(self, xml: XmlElement, element_id: str, tag: str = '') -> XmlElement | None:
+        return element_by_id(
+            self._top, element_id, tag, count=lambda children: self._count(children, xml))
+
     def _child(
         self, parent: XmlElement, xml: XmlElement, *, takes_first: bool = False,
     ) -> XmlElement | None:
         """Find the child with the tag and the name of a parameter; report it if there is none."""
         tag, name = written_tag(xml), xml.get('name')
+        self._count(len(parent), xml)
         children = [child for child in child_elements(parent) if written_tag(child) == tag]
         definition = self._definition(parent)
         if not children and definition is not None and tag in definition.required_children:
@@ -310,6 +322,10 @@ class _Changer:
         self._error(
             ElementMissingError, xml, f'<{label}> of the included model has no {wanted}')
         return None
+
+    def _count(self, children: int, xml: XmlElement) -> None:
+        """Count the work of looking at children for a parameter."""
+        self._sources.usage.add('work', children, lambda: self._place(xml))
 
     def _definition(self, xml: XmlElement) -> Definition | None:
         """Return the definition of an element of the included model; None if there is none."""

@@ -186,16 +186,17 @@ class ResourceFinder(NamedTuple):
         steps = [unquote(part) for part in parts.path.split('/') if part]
         if steps and re.fullmatch(r'[0-9]+\.[0-9]+', steps[0]):
             steps = steps[1:]
-        if len(steps) < 3 or steps[1] != 'models' or '..' in steps:
+        if len(steps) < 3 or steps[1] != 'models' or not all(
+                map(_is_file_name, (parts.netloc, *steps))):
             return
         version, rest = (steps[3] if len(steps) > 3 else 'tip'), steps[4:]
         model = Path(self.fuel_cache, parts.netloc)
         for part in steps[:3]:
             model = _entry_in_any_case(model, part)
         versions = [version]
-        if version == 'tip' and os.path.isdir(model):  # noqa: PTH112
-            numbers = [int(entry.name) for entry in model.iterdir() if entry.name.isdigit()]
-            versions = [str(number) for number in sorted(numbers, reverse=True)]
+        if version == 'tip':
+            numbers = [name for name in _names_in(model) if name.isascii() and name.isdecimal()]
+            versions = sorted(numbers, key=int, reverse=True)
         for candidate in versions:
             yield model.joinpath(candidate, *(rest[1:] if rest[:1] == ['files'] else rest))
 
@@ -226,12 +227,23 @@ def resource_finder(
 def _entry_in_any_case(directory: Path, name: str) -> Path:
     """Return the entry of a name; Gazebo writes owners and models in lower case."""
     plain = directory / name
-    if os.path.exists(plain) or not os.path.isdir(directory):  # noqa: PTH110, PTH112
+    if os.path.exists(plain):  # noqa: PTH110
         return plain
-    for entry in directory.iterdir():
-        if entry.name.lower() == name.lower():
-            return entry
-    return plain
+    same = (entry for entry in _names_in(directory) if entry.lower() == name.lower())
+    return directory / next(same, name)
+
+
+def _is_file_name(name: str) -> bool:
+    """Return whether a part of a URI, without its per cent escapes, is the name of one file."""
+    return name not in ('', '.', '..') and not {'/', '\0'}.intersection(name)
+
+
+def _names_in(directory: Path) -> list[str]:
+    """Return what is in a directory; nothing if it does not exist or may not be read."""
+    try:
+        return os.listdir(directory)  # noqa: PTH208
+    except (OSError, ValueError):  # ValueError: a zero character
+        return []
 
 
 # Directories of models

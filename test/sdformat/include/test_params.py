@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parameters of includes: wrong ones are refused, others change the included model."""
 
+import tracemalloc
+
 import pytest
 from sdf_texts import assert_at
 from sdf_texts import errors_of_file
 from sdf_texts import names_of
 
 import sdf_pose_bridge
+from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
 
 BOX = '<geometry><box><size>1 1 1</size></box></geometry>'
 ARM = f"""<sdf version="1.9"><model name="arm">
@@ -38,8 +41,9 @@ def write(tmp_path):
 
 @pytest.fixture
 def load(write, tmp_path):
-    def load_files(*texts, **others):
-        return sdf_pose_bridge.load(write(*texts, **others), resource_paths=[tmp_path])
+    def load_files(*texts, limits=DEFAULT_LIMITS, **others):
+        return sdf_pose_bridge.load(
+            write(*texts, **others), resource_paths=[tmp_path], limits=limits)
     return load_files
 
 
@@ -281,3 +285,48 @@ def test_element_that_is_defined_for_itself_can_be_added(load, tag):
 def test_value_in_an_element_is_changed(load, action):
     load('<visual element_id="base::shape"><transparency action="add">0.5</transparency>'
          f'<transparency action="{action}">0.4</transparency></visual>')
+
+
+# Hostile parameters
+
+DEEP = '<sdf version="1.9"><model name="arm">' + ''.join(
+    f'<link name="{number}{"x" * 20_000}">' + '<visual name="v"/>' * 50 + '</link>'
+    for number in range(20)) + '</model></sdf>'
+
+
+def test_hint_among_long_ids_takes_little_memory(write, tmp_path):
+    params = ''.join(
+        f'<link element_id="none{number}" action="remove"/>' for number in range(50))
+    path = write(params, arm=DEEP)
+    tracemalloc.start()
+    errors = errors_of_file(path, resource_paths=[tmp_path])
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert 'ELEMENT_MISSING' in {error.code for error in errors}
+    assert peak < 20 * len(DEEP)  # 100 times as much if all ids are made
+
+
+SIBLINGS = ARM.replace('<sensor name="eye"', ''.join(
+    f'<visual name="v{i}"/>' for i in range(300)) + '<sensor name="eye"')
+
+
+@pytest.mark.parametrize('params', [
+    '<link element_id="base" action="modify"><pose>1 2 3 0 0 0</pose></link>' * 300,
+    '<link element_id="base">' + ''.join(
+        f'<visual name="v{i}" action="modify"><pose>1 2 3 0 0 0</pose></visual>'
+        for i in range(300)) + '</link>',
+    ''.join(f'<visual element_id="base::v{i}" action="remove"/>' for i in range(300)),
+])
+def test_work_of_many_parameters_on_many_siblings_is_limited(write, tmp_path, params):
+    errors = errors_of_file(
+        write(params, arm=SIBLINGS), resource_paths=[tmp_path],
+        limits=sdf_pose_bridge.Limits(work=20_000))
+    assert errors[-1].code == 'LIMIT'
+
+
+def test_work_of_many_attributes_is_not_that_of_all_siblings_for_each(load):
+    attributes = ' '.join(f'a{i}="x"' for i in range(300))
+    scene = load(f'<link element_id="base" action="modify" {attributes}/>',
+                 arm=SIBLINGS.replace('<link name="base"', f'<link name="base" {attributes}'),
+                 limits=sdf_pose_bridge.Limits(work=20_000))
+    assert 'arm::base' in scene.names

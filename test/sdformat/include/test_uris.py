@@ -129,6 +129,47 @@ def test_fuel_model_is_found_in_the_cache(uri, version, tmp_path):
     assert path.endswith(f'/big box/{version}')
 
 
+@pytest.mark.parametrize('uri', [
+    'https://{}/1.0/..%2f..%2foutside/models/box', 'https://{}/1.0/me/models/%2e%2e',
+    'https://{}/1.0/me/models/box/1/files/..%2f..%2f..%2f..%2f..%2foutside/models/box/m.sdf',
+    'https://../outside/models/box', 'https://{}/1.0/%2e./models/box/%2e',
+    'https:///outside/models/box',
+    'https://{}/1.0/me/models/a%00b'])
+def test_uri_does_not_leave_the_cache(uri, tmp_path):
+    write(tmp_path / 'outside/models/box', '1/m.sdf')
+    write(tmp_path / 'outside/models/box', 'm.sdf')
+    write(tmp_path / 'cache/server/me/models/box', '1/m.sdf')
+    cache = str(tmp_path / 'cache')
+    assert found(uri.format('server'), tmp_path, GZ_FUEL_CACHE_PATH=cache) is None
+
+
+def test_what_is_no_version_in_the_cache_is_skipped(tmp_path):
+    box = tmp_path / 'cache/server/me/models/box'
+    for name in ('1', '\u00b2', '\u0663', '-4', 'x5'):
+        write(box / name, 'm.sdf')
+    assert found('https://server/1.0/me/models/box', tmp_path,
+                 GZ_FUEL_CACHE_PATH=str(tmp_path / 'cache')) == str(box / '1')
+
+
+@pytest.mark.parametrize('folder', ['server', 'server/me', 'server/me/models'])
+def test_directory_of_the_cache_that_cannot_be_listed_has_nothing(folder, tmp_path):
+    cache = tmp_path / 'cache'
+    loop = cache / folder
+    loop.parent.mkdir(parents=True)
+    loop.symlink_to(loop)
+    assert found('https://server/1.0/me/models/box', tmp_path,
+                 GZ_FUEL_CACHE_PATH=str(cache)) is None
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason='root may list every directory')
+def test_directory_of_the_cache_that_may_not_be_listed_has_nothing(tmp_path):
+    box = tmp_path / 'cache/server/me/models/box'
+    box.mkdir(parents=True)
+    box.chmod(0)
+    assert found('https://server/1.0/me/models/box', tmp_path,
+                 GZ_FUEL_CACHE_PATH=str(tmp_path / 'cache')) is None
+
+
 def test_file_of_a_fuel_model_is_found_in_the_cache(tmp_path):
     box = write(tmp_path / 'cache/fuel.gazebosim.org/open/models/box', '3/meshes/box.sdf')
     uri = 'https://fuel.gazebosim.org/1.0/Open/models/Box/3/files/meshes/box.sdf'
