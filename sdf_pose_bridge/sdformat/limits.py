@@ -41,6 +41,12 @@ BYTES_OF_STEP = 4
 STEPS_OF_INCLUDE = 100
 """Steps of work that each include counts for, without what it copies."""
 
+STEPS_OF_MERGE = 400
+"""Further steps for an include that merges a model, which is checked by itself."""
+
+STEPS_OF_PLACE = 8
+"""Steps of work to find the place of an error or a warning, and to report it."""
+
 STEPS_OF_ELEMENT = 2
 """Steps of work that each element counts for that is copied."""
 

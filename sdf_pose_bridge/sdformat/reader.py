@@ -9,6 +9,8 @@ of the table, a value is checked, and what the grammar does not know is skipped.
 
 from __future__ import annotations
 
+from functools import partial
+
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import AttributeMissingError
 from sdf_pose_bridge.errors import DuplicateNameError
@@ -45,6 +47,7 @@ from sdf_pose_bridge.sdformat.values import is_of_type
 from sdf_pose_bridge.sdformat.values import value_fault
 from sdf_pose_bridge.sdformat.versions import allows_scoped_names
 from sdf_pose_bridge.sdformat.xml_tree import described
+from sdf_pose_bridge.sdformat.xml_tree import is_foreign
 from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
@@ -56,10 +59,6 @@ have; empty if any unknown name may come from it."""
 
 MISSING_URI = '{sdf_pose_bridge}missing_uri'
 """Attribute of such an ``<include>``: the URI that it names."""
-
-_SCOPED_NAMES = ('//*[contains(@name, "::")]'
-                 '[not(ancestor-or-self::*[self::plugin or contains(name(), ":")])]')
-"""Finds names with ``::``, but for those in plugins and in elements with a prefix."""
 
 _DEFAULT_FORMAT = PoseFormat()
 
@@ -95,9 +94,11 @@ def check_element(
 
 def _check_scoped_names(root: XmlElement, sources: Sources, problems: Problems) -> None:
     """Report names with ``::`` in files that must not have them, or are included by such files."""
-    xmls: list[XmlElement] = root.xpath(_SCOPED_NAMES)
+    xmls: list[XmlElement] = root.xpath('//*[contains(@name, "::")]')
     for xml in xmls:
-        if all(allows_scoped_names(sources.versions[path])
+        depth = sum(1 for _ in xml.iterancestors())
+        sources.usage.add('work', depth, partial(sources.place, xml))
+        if is_foreign(xml) or all(allows_scoped_names(sources.versions[path])
                for path in sources.enclosing_paths_of_name(xml)):
             continue
         msg = f'the name "{xml.get("name")}" holds "{SEPARATOR}", which separates scopes'

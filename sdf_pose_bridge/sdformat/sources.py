@@ -18,6 +18,7 @@ from typing import NamedTuple
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
 from sdf_pose_bridge.sdformat.limits import Limits
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_PLACE
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.versions import Version
 from sdf_pose_bridge.sdformat.xml_tree import described
@@ -204,12 +205,15 @@ class Sources:
 
         :param part: path of a missing element in it; empty for the element itself.
         :return: its file, its line and its path in the tree.
+        :raises LimitError: if very many places are asked for, each for an error or a warning.
         """
         parent = xml.getparent()
         outer = Place('') if parent is None else self._place_in_tree(parent)
         path = f'{outer.element}/{described(xml)}'
         file = self.path_of_pose(xml, self.path_at(xml, outer.file))
-        return Place(file, self.line(xml), f'{path}/{part}' if part else path)
+        place = Place(file, self.line(xml), f'{path}/{part}' if part else path)
+        self.usage.add('work', STEPS_OF_PLACE, place)
+        return place
 
     @contextlib.contextmanager
     def unchanged_trees(self) -> Iterator[None]:
@@ -233,6 +237,7 @@ class Sources:
             file = file or self.path_at(element, '')
             steps.append(described(element))
         place = Place(file, element='/'.join([path, *reversed(steps)]))
+        self.usage.add('work', len(steps), place._replace(line=self.line(xml)))
         if self._remembers_places:
             if len(self._places) == _MOST_PLACES_REMEMBERED:
                 self._places.clear()

@@ -20,9 +20,8 @@ from sdf_pose_bridge import load_text
 from sdf_pose_bridge import SdfError
 from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.sdformat.limits import BYTES_OF_STEP
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_INCLUDE
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_NAMED_ELEMENT
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_MERGE
 
 FILES = 30
 TWICE = ('<include><name>a</name><uri>{0}.sdf</uri></include>'
@@ -71,6 +70,24 @@ def test_errors_in_a_long_name_take_no_long_time_and_are_short(tmp_path):
     assert len(errors_of_file(tmp_path / 'many.sdf')) == MOST_PROBLEMS + 1
 
 
+def test_file_with_many_tops_that_is_included_often_is_refused(tmp_path):
+    tops = ''.join(f'<model name="m{number}"/>' for number in range(1000))
+    write_files(tmp_path, tops=f'<sdf version="1.9">{tops}</sdf>',
+                main=world_file('<include><uri>tops.sdf</uri></include>' * 1100))
+    errors = errors_of_file(tmp_path / 'main.sdf')
+    assert errors[-1].code == 'LIMIT'
+    assert len(errors[0].message) < 300
+
+
+def test_model_that_is_merged_often_is_checked_once(tmp_path):
+    merges = ''.join(
+        f'<model name="m{number}"><include merge="true"><uri>leaf.sdf</uri></include></model>'
+        for number in range(100))
+    write_files(tmp_path, leaf=model_file(LINK), main=world_file(merges))
+    scene = load(tmp_path / 'main.sdf', limits=Limits(work=100 * STEPS_OF_MERGE))
+    assert len(scene.names) == 1 + 3 * 100
+
+
 def test_included_pipe_is_refused(tmp_path):
     os.mkfifo(tmp_path / 'pipe.sdf')
     write_files(tmp_path, main=world_file('<include><uri>pipe.sdf</uri></include>'))
@@ -98,8 +115,7 @@ def test_limits_that_are_just_met_refuse_nothing(tmp_path):
     size = sum(path.stat().st_size for path in tmp_path.iterdir())
     scene = load(tmp_path / 'main.sdf', limits=Limits(
         bytes_read=size, elements=7, include_depth=2, depth=3,
-        work=STEPS_OF_INCLUDE + 2 * (STEPS_OF_ELEMENT + STEPS_OF_NAMED_ELEMENT)
-        + 1 - size // BYTES_OF_STEP))
+        work=2 * STEPS_OF_INCLUDE - size // BYTES_OF_STEP))
     assert names_of(scene) == ['m', 'm::l']
 
 

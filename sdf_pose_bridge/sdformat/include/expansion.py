@@ -14,6 +14,8 @@ import copy
 import os
 from pathlib import Path
 
+from lxml import etree
+
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import AttributeMissingError
 from sdf_pose_bridge.errors import ElementIncorrectTypeError
@@ -39,6 +41,7 @@ from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_INCLUDE
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_MERGE
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_NAMED_ELEMENT
 from sdf_pose_bridge.sdformat.reader import check_element
 from sdf_pose_bridge.sdformat.reader import MISSING_NAME
@@ -53,8 +56,8 @@ from sdf_pose_bridge.sdformat.xml_tree import value_of
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-_READINGS_OF_MERGED_MODEL = 3
-"""How often the elements of a merged model are counted: it is also read by itself."""
+_MOST_TOPS_SHOWN = 5
+"""How many of the elements at the top of a file are named, where there should be one."""
 
 _TOP_TAGS = ('model', 'actor', 'light')
 """What can be included, in the order of preference."""
@@ -86,6 +89,7 @@ class IncludeExpansion:
         self._canonical_link_of = canonical_link_of
         self._files: dict[str, Document | None] = {}
         self._missing_uris: set[str] = set()
+        self._canonical_links: dict[tuple[XmlElement, str, bytes], str | None] = {}
         self._undefined = UndefinedReporter(sources, problems)
 
     def expand(self, document: Document) -> None:
@@ -119,8 +123,7 @@ class IncludeExpansion:
         include.set(MISSING_URI, uri)
 
     def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
-        self._sources.usage.add(
-            'work', STEPS_OF_INCLUDE, lambda: self._sources.place(include))
+        self._count(STEPS_OF_INCLUDE, include)
         is_merge = self._is_merge(include)
         self._undefined.report_content(include, definition_of('include'))
         for plugin in child_elements(include, 'plugin'):
@@ -138,7 +141,7 @@ class IncludeExpansion:
         if chosen is None or is_merge is None:
             return
         self.may_hold_scoped_names |= found.may_hold_scoped_names
-        self._count_copy(include, chosen, is_merge=is_merge)
+        self._count_copy(include, chosen)
         top = self._sources.copy_of(chosen)
         self._sources.set_include(top, include)
         self._override(include, top)
@@ -147,16 +150,19 @@ class IncludeExpansion:
             for added in apply_params(params, top, self._sources, self._problems):
                 self.may_hold_scoped_names = True
                 self._expand_in(added, files)
-        self._insert(include, top, is_merge=is_merge)
+        if is_merge:
+            self._merge(include, top, chosen)
+        else:
+            self._insert(include, top)
 
-    def _count_copy(self, include: XmlElement, top: XmlElement, *, is_merge: bool) -> None:
+    def _count(self, steps: int, include: XmlElement) -> None:
+        self._sources.usage.add('work', steps, lambda: self._sources.place(include))
+
+    def _count_copy(self, include: XmlElement, top: XmlElement) -> None:
         """Count the work of copying an element and reading the copy."""
         elements = int(top.xpath('count(descendant-or-self::*)'))
         named = int(top.xpath('count(descendant-or-self::*[@name])'))
-        steps = STEPS_OF_ELEMENT * elements + STEPS_OF_NAMED_ELEMENT * named
-        self._sources.usage.add(
-            'work', steps * (_READINGS_OF_MERGED_MODEL if is_merge else 1),
-            lambda: self._sources.place(include))
+        self._count(STEPS_OF_ELEMENT * elements + STEPS_OF_NAMED_ELEMENT * named, include)
 
     # What an include names
 
@@ -232,10 +238,13 @@ class IncludeExpansion:
 
     def _top(self, include: XmlElement, document: Document) -> XmlElement | None:
         """Return the model, actor or light that a file is included for."""
+        self._count(len(document.root), include)
         tops = [xml for xml in child_elements(document.root) if xml.tag in _TOP_TAGS]
         if len(tops) > 1:
-            names = ', '.join(described(xml) for xml in tops)
-            msg = f'{document.path} has more than one element at its top: {names}'
+            names = ', '.join(map(described, tops[:_MOST_TOPS_SHOWN]))
+            rest = len(tops) - _MOST_TOPS_SHOWN
+            msg = (f'{document.path} has more than one element at its top: {names}'
+                   f'{f" and {rest} more" if rest > 0 else ""}')
             self._problems.error(ElementIncorrectTypeError(msg, self._sources.place(include)))
         if tops:
             return min(tops, key=lambda xml: _TOP_TAGS.index(str(xml.tag)))
@@ -316,13 +325,25 @@ class IncludeExpansion:
             self._problems.error(AttributeInvalidError(msg, self._sources.place(include)))
         return value
 
-    def _insert(self, include: XmlElement, top: XmlElement, *, is_merge: bool) -> None:
+    def _merge(self, include: XmlElement, top: XmlElement, chosen: XmlElement) -> None:
+        """Merge a copy of a model; includes with the same text have the same canonical link."""
+        text = etree.tostring(include, with_tail=False)
+        key = chosen, self._sources.path(include), text
+
+        def canonical_link_of(root: XmlElement) -> str | None:
+            if key not in self._canonical_links:
+                self._count_copy(include, root)
+                self._count(STEPS_OF_MERGE, include)
+                self._canonical_links[key] = self._canonical_link_of(root)
+            return self._canonical_links[key]
+
+        merge(include, top, self._sources, self._problems, canonical_link_of)
+
+    def _insert(self, include: XmlElement, top: XmlElement) -> None:
         parent = include.getparent()
         if parent is None:
             return
-        if is_merge:
-            merge(include, top, self._sources, self._problems, self._canonical_link_of)
-        elif parent.tag == 'model' and top.tag != 'model':
+        if parent.tag == 'model' and top.tag != 'model':
             msg = f'the included {written_tag(top)} is left out; a model can include only models'
             self._problems.warning(msg, self._sources.place(include))
             parent.remove(include)

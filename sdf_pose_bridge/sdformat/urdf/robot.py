@@ -14,7 +14,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import DuplicateNameError
-from sdf_pose_bridge.errors import LoadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
@@ -130,7 +129,7 @@ class _RobotReader:
         self._root = root
         self._sources = sources
         self._problems = problems
-        self._errors: list[SdfError] = []
+        self._errors = Problems(sources.paths)
 
     def robot(self) -> Robot:
         if self._root.get('name') is None:
@@ -140,7 +139,7 @@ class _RobotReader:
         if not links:
             self._error(self._root, 'the robot has no <link>')
         joints = [self._joint(name, xml, links) for name, xml in self._check_names('joint')]
-        self._raise_errors()
+        self._errors.raise_errors()
         parent_joints: dict[str, Joint] = {}
         child_joints: dict[str, list[Joint]] = {}
         for joint in sorted(filter(None, joints), key=lambda joint: joint.name.encode()):
@@ -155,7 +154,7 @@ class _RobotReader:
             names = ', '.join(f'"{link.name}"' for link in roots[:10])
             self._error(self._root, 'the links must be one tree, in which one link has no parent; '
                         f'here these have none: {names or "no link"}')
-        self._raise_errors()
+        self._errors.raise_errors()
         robot = Robot(
             self._root.get('name', ''), roots[0], links, parent_joints, child_joints,
             {joint.name: joint.name for joint in parent_joints.values()})
@@ -165,11 +164,7 @@ class _RobotReader:
     def _error(
         self, xml: XmlElement, message: str, error_type: type[SdfError] = ParsingError,
     ) -> None:
-        self._errors.append(error_type(message, self._sources.place(xml)))
-
-    def _raise_errors(self) -> None:
-        if self._errors:
-            raise LoadError(sorted(self._errors, key=lambda error: error.line))
+        self._errors.error(error_type(message, self._sources.place(xml)))
 
     def _check_names(self, tag: str) -> list[tuple[str, XmlElement]]:
         named: dict[str, XmlElement] = {}

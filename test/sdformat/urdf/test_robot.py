@@ -10,6 +10,7 @@ from urdf_texts import link
 from urdf_texts import robot
 
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge.problems import MOST_PROBLEMS
 
 TWO = link('a') + link('b')
 LIMIT = '<limit effort="1" velocity="1"/>'
@@ -68,6 +69,12 @@ def test_all_errors_are_reported():
     errors = errors_of(
         robot(TWO + '\n' + joint('j', 'a', 'c') + '\n' + joint('k', 'd', 'b')))
     assert [error.line for error in errors] == [2, 3]
+
+
+def test_number_of_errors_is_bounded():
+    errors = errors_of(robot(''.join(joint(f'j{i}', 'a', 'c') for i in range(500))))
+    assert len(errors) == MOST_PROBLEMS + 1
+    assert '901 more' in errors[-1].message
 
 
 @pytest.mark.parametrize('broken', [
