@@ -123,6 +123,10 @@ class FileReadError(SdfError):
     code = 'FILE_READ'
 
 
+class PassingReadError(FileReadError):
+    """A file cannot be read now, for a reason that passes: no descriptors, no memory, a disk."""
+
+
 class LimitError(SdfError):
     """The file needs more than a load may use."""
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 import contextlib
+import os
 import threading
 
 from rclpy.exceptions import InvalidHandle
@@ -20,20 +21,33 @@ def run_in_thread(node: Node, function: Callable[[], object]) -> Future:
     :param node: a node with an executor.
     :param function: what to run; it must not use the node.
     :return: a future for its result or exception, which a coroutine on the executor can await.
+    :raises MemoryError: if no thread can be started.
     """
     executor = node.executor
     future = Future()
 
     def run() -> None:
         try:
-            future.set_result(function())
-        except Exception as error:  # noqa: BLE001 - raised where the future is awaited
-            future.set_exception(error)
+            try:
+                future.set_result(function())
+            except MemoryError:
+                pass  # here its traceback still keeps all that the function has made
+            except Exception as error:  # noqa: BLE001 - raised where the future is awaited
+                future.set_exception(error)
+            if not future.done():
+                future.set_exception(MemoryError('out of memory'))
+        except MemoryError:
+            # Without a result, the callbacks that wait for it would be blocked for ever.
+            os._exit(1)
         # The executor resumes coroutines only when it wakes up. It may have been shut down.
         with contextlib.suppress(InvalidHandle):
             executor.wake()
 
-    threading.Thread(target=run, name='background', daemon=True).start()
+    try:
+        threading.Thread(target=run, name='background', daemon=True).start()
+    except RuntimeError as error:
+        msg = 'there is no room for another thread'
+        raise MemoryError(msg) from error
     return future
 
 

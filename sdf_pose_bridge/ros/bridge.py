@@ -53,6 +53,9 @@ def main(args: Sequence[str] | None = None) -> int:
     except ImportError as error:
         print(f'sdf_pose_bridge: {sentence_from_import_error(error)}', file=sys.stderr)
         return 1
+    except (MemoryError, OSError) as error:  # such as too many open files
+        print(f'sdf_pose_bridge: the node cannot start: {error}', file=sys.stderr)
+        return 1
 
 
 def sentence_from_import_error(error: ImportError) -> str:

@@ -39,6 +39,7 @@ TOPICS_PERIOD_S = 1.0 / 30.0
 
 _PERIODS_UNTIL_REST = 15
 _WARNING_PERIOD_S = 10.0
+_NANOSECONDS = 1_000_000_000
 _MOST_PLANS = 20
 
 
@@ -116,6 +117,13 @@ class JointStates:
                 f'{len(values)} positions; it is ignored, as each name must have a position',
                 throttle_duration_sec=_WARNING_PERIOD_S)
             return
+        stamp = message.header.stamp.sec, message.header.stamp.nanosec
+        if stamp[0] < 0 or stamp[1] >= _NANOSECONDS:
+            self._logger.warning(
+                f'a message on {self._subscription.topic_name} has the stamp sec={stamp[0]} '
+                f'nanosec={stamp[1]}; it is ignored, as sec must not be negative and nanosec must '
+                f'be less than {_NANOSECONDS}', throttle_duration_sec=_WARNING_PERIOD_S)
+            return
         plan = self._last_plan
         if plan is None or plan.names != names:
             plan = self._last_plan = self._plan_from_names(names, values)
@@ -127,7 +135,6 @@ class JointStates:
                 throttle_duration_sec=_WARNING_PERIOD_S)
         if not len(plan.rows):
             return
-        stamp = message.header.stamp.sec, message.header.stamp.nanosec
         if not any(stamp):
             stamp = self._node.get_clock().now().seconds_nanoseconds()
         if self._frames.stamp is None:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sdf_pose_bridge.errors import PassingReadError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UriLookupError
@@ -130,6 +131,16 @@ def files_behind_error(error: Exception, settings: Settings) -> list[str]:
             *(str(Path(each.place.file).parent) for each in missing),
             *finder.search_paths, *finder.environment_paths]
     return list(dict.fromkeys(files))
+
+
+def may_pass(error: Exception) -> bool:
+    """
+    Return whether reading the same files again may succeed.
+
+    :param error: what :func:`loaded_scene_from_settings` raised.
+    """
+    errors = error.errors if isinstance(error, SdfError) else (error,)
+    return any(isinstance(each, MemoryError | PassingReadError) for each in errors)
 
 
 def _file_from_settings(

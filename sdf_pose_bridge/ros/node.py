@@ -31,6 +31,7 @@ from sdf_pose_bridge.ros.file_watcher import PollingThread
 from sdf_pose_bridge.ros.loaded_scene import files_behind_error
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.loaded_scene import LoadedScene
+from sdf_pose_bridge.ros.loaded_scene import may_pass
 from sdf_pose_bridge.ros.log_lines import count_in_words
 from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
 from sdf_pose_bridge.ros.log_lines import lines_from_error
@@ -48,6 +49,10 @@ from sdf_pose_bridge.sdformat.include.uris import AddressError
 
 if TYPE_CHECKING:
     from sdf_pose_bridge.ros.joint_states import JointStates
+
+
+RETRY_PERIOD_S = 1.0
+"""Seconds until the files are read again after a failure that may pass."""
 
 
 class SdfPoseBridge:
@@ -69,6 +74,8 @@ class SdfPoseBridge:
         self._failure: list[str] = []
         # A failure that was not reported yet, because the file may still be being written.
         self._pending_failure: list[str] = []
+        # When to read the files again after a failure that may pass without a change of them.
+        self._retry_time: float | None = None
         self._diagnostics = Diagnostics(node)
         self._watcher = FileWatcher()
         # All callbacks that change what is published: one runs after the other.
@@ -143,6 +150,7 @@ class SdfPoseBridge:
     def _report_success(self) -> None:
         loaded = self._loaded
         self._failure = self._pending_failure = []
+        self._retry_time = None
         self._watcher.watch(loaded.files, loaded.read_since_ns)
         for line in lines_from_warnings(loaded.warnings):
             self._logger.warning(line)
@@ -157,6 +165,7 @@ class SdfPoseBridge:
         try:
             await self._show(await self._load(self._settings))
         except Exception as error:  # noqa: BLE001 - includes defects
+            self._retry_time = time.monotonic() + RETRY_PERIOD_S if may_pass(error) else None
             self._watcher.watch_also(files_behind_error(error, self._settings))
             return self._lines_from_error(error)
         return []
@@ -164,6 +173,8 @@ class SdfPoseBridge:
     def _lines_from_error(self, error: Exception) -> list[str]:
         if isinstance(error, SdfError | SettingsError | AddressError):
             return lines_from_error(error)
+        if isinstance(error, MemoryError):
+            return ['there is not enough memory to read the file']
         self._logger.error(f'internal error:\n{traceback.format_exc()}')
         return [f'internal error, see the log of the node: {error!r}']
 
@@ -191,7 +202,12 @@ class SdfPoseBridge:
     # Changes of files
 
     def _has_to_check_files(self) -> bool:
-        return self._settings.watch and (bool(self._pending_failure) or self._watcher.differs())
+        return self._settings.watch and (
+            bool(self._pending_failure) or self._has_to_retry() or self._watcher.differs())
+
+    def _has_to_retry(self) -> bool:
+        retry_time = self._retry_time
+        return retry_time is not None and time.monotonic() >= retry_time
 
     async def _check_files(self) -> None:
         """
@@ -202,7 +218,7 @@ class SdfPoseBridge:
         """
         try:
             before = self._pending_failure
-            if self._watcher.has_changed():
+            if self._watcher.has_changed() or self._has_to_retry():
                 self._pending_failure = await self._reload()
                 if self._pending_failure != before:
                     return

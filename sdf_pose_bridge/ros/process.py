@@ -11,8 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from collections.abc import Sequence
+import contextlib
 from contextlib import contextmanager
 import gc
+import os
 import signal
 import sys
 import threading
@@ -41,6 +43,9 @@ import sdf_pose_bridge_interfaces  # noqa: F401 - if it is missing, say so befor
 
 NODE_NAME = 'sdf_pose_bridge'
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+LONGEST_STOP_S = 10.0
+"""How long what is being done may go on after a signal, before the process is ended."""
 
 USAGE = """\
 Publish every frame of an SDFormat file on TF and on topics.
@@ -131,11 +136,16 @@ def _interrupted_by_signals() -> Iterator[None]:
 
 
 def _spin_until_signal(executor: SingleThreadedExecutor, node: Node, start: Task) -> None:
-    has_to_stop = threading.Event()
+    has_to_stop, has_stopped = threading.Event(), threading.Event()
 
     def wait_for_signal() -> None:
         signal.sigwait(STOP_SIGNALS)
-        executor.create_task(has_to_stop.set)
+        has_to_stop.set()
+        # Without memory, neither the task can be made nor the executor go on.
+        with contextlib.suppress(MemoryError):
+            executor.create_task(has_to_stop.set)
+        if not has_stopped.wait(LONGEST_STOP_S):
+            os._exit(1)
 
     threading.Thread(target=wait_for_signal, name='signals', daemon=True).start()
     while not has_to_stop.is_set():
@@ -148,6 +158,7 @@ def _spin_until_signal(executor: SingleThreadedExecutor, node: Node, start: Task
             node.get_logger().error(
                 f'internal error in a callback: {error}\n{traceback.format_exc()}',
                 throttle_duration_sec=60.0)
+    has_stopped.set()
 
 
 def _log_warnings(node: Node, warnings: Sequence[object]) -> None:

@@ -9,6 +9,7 @@ Depth and sizes are limited as libxml2 does without its option ``huge``.
 from __future__ import annotations
 
 from collections.abc import Mapping
+import errno
 from itertools import chain
 from itertools import islice
 import os
@@ -21,6 +22,7 @@ from lxml import etree
 import numpy as np
 
 from sdf_pose_bridge.errors import FileReadError
+from sdf_pose_bridge.errors import PassingReadError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.sdformat.limits import Usage
@@ -28,6 +30,10 @@ from sdf_pose_bridge.sdformat.xml_encoding import utf8_from_bytes
 from sdf_pose_bridge.sdformat.xml_repair import repaired
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+_PASSING = frozenset({
+    errno.EAGAIN, errno.EINTR, errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.ESTALE,
+    errno.ETIMEDOUT})
 
 _IGNORED_ERRORS = frozenset({
     'NS_ERR_UNDEFINED_NAMESPACE', 'NS_ERR_QNAME', 'NS_ERR_COLON', 'DTD_ID_REDEFINED'})
@@ -71,7 +77,8 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
     :param usage: counts its bytes.
     :param allows_pipe: whether it may be a pipe, such as that of the shell's ``<(command)``.
     :return: its bytes.
-    :raises FileReadError: if it is missing, unreadable or not a regular file.
+    :raises FileReadError: if it is missing, unreadable or not a regular file;
+        :class:`~sdf_pose_bridge.errors.PassingReadError` if reading it again may help.
     :raises LimitError: if it is too large.
     """
     place = Place(path)
@@ -90,7 +97,8 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
             return text
     except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
         msg = f'the file cannot be read: {getattr(error, "strerror", None) or error}'
-        raise FileReadError(msg, place) from error
+        is_passing = isinstance(error, OSError) and error.errno in _PASSING
+        raise (PassingReadError if is_passing else FileReadError)(msg, place) from error
 
 
 def _descriptor_without_waiting(path: str, flags: int) -> int:

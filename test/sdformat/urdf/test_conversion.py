@@ -40,9 +40,10 @@ def converted(text, *, is_included=True):
     """Return the ``model`` that a robot becomes."""
     sources = Sources()
     sources.add_path('f')
-    root, _, lines = xml_from_bytes(text.encode(), 'f')
-    sources.add_tree('f', root, NEWEST, lines)
-    root, _ = sdf_from_urdf(root, lines, sources, Problems(['f']), is_included=is_included)
+    file = xml_from_bytes(text.encode(), 'f')
+    sources.add_tree('f', file.root, NEWEST, file.lines)
+    root, _ = sdf_from_urdf(
+        file.root, file.lines, sources, Problems(['f']), is_included=is_included)
     return root.find('model')
 
 
