@@ -9,7 +9,6 @@ in one line. So the place is read from the same text with a line for each tag.
 
 from __future__ import annotations
 
-import codecs
 from collections.abc import Sequence
 from itertools import count
 import re
@@ -57,10 +56,11 @@ class PoseText:
 
     def __init__(self, content: bytes, path: str) -> None:
         self._path = path
-        root, warnings, _ = xml_from_bytes(content, path)
-        if warnings:
-            msg = f'{warnings[0].message}; correct this before a pose is set in the file'
-            raise PoseNotSetError(msg, warnings[0].place)
+        file = xml_from_bytes(content, path)
+        root = file.root
+        for warning in file.warnings:
+            msg = f'{warning.message}; correct this before a pose is set in the file'
+            raise PoseNotSetError(msg, warning.place)
         if root.tag == 'robot':
             msg = 'this is URDF, in which no pose can be set; convert the file to SDFormat first'
             raise PoseNotSetError(msg, Place(path))
@@ -68,11 +68,9 @@ class PoseText:
             msg = (f'this is SDFormat {root.get("version")}, which writes poses in another way; '
                    f'convert the file to {_FIRST_WITH_POSE} or newer first')
             raise PoseNotSetError(msg, Place(path))
-        self._encoding = _encoding_of(content, root.getroottree().docinfo.encoding)
-        try:
-            self._text = content.decode(self._encoding).encode()
-        except (LookupError, UnicodeDecodeError):
-            self._text = b''
+        self._encoding = file.encoding
+        # With its byte order mark.
+        self._text = content.decode(self._encoding).encode()
         self._elements = list(root.iter(etree.Element))
         self._tags = [
             (tag.start(), tag.end(1)) for tag in START_TAG.finditer(self._text) if tag[1]]
@@ -211,14 +209,6 @@ class PoseText:
 
     def _encoded(self, text: bytes) -> bytes:
         return text.decode().encode(self._encoding)
-
-
-def _encoding_of(content: bytes, declared: str | None) -> str:
-    for mark, encoding in (
-            (codecs.BOM_UTF16_LE, 'utf-16-le'), (codecs.BOM_UTF16_BE, 'utf-16-be')):
-        if content.startswith(mark):
-            return encoding
-    return declared or 'utf-8'
 
 
 def _words_from_pose(

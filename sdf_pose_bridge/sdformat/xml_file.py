@@ -26,7 +26,8 @@ from sdf_pose_bridge.errors import PassingReadError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.xml_encoding import utf8_from_bytes
+from sdf_pose_bridge.sdformat.xml_encoding import DecodedText
+from sdf_pose_bridge.sdformat.xml_encoding import text_from_bytes
 from sdf_pose_bridge.sdformat.xml_repair import repaired
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
@@ -67,6 +68,8 @@ class XmlFile(NamedTuple):
     """The lines of those elements whose line lxml does not know."""
     text: bytes
     """What was parsed, in UTF-8."""
+    encoding: str
+    """Python's name of the encoding that the file is in."""
 
 
 def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> bytes:
@@ -120,10 +123,9 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
     :raises FileReadError: if it is not well-formed, apart from what libsdformat accepts, or not in
         an encoding that is supported.
     """
-    fault = ''
-    if encoding is None:
-        text, fault = utf8_from_bytes(text, path)
-    faults = [(1, fault)] if fault else []
+    decoded = text_from_bytes(text, path) if encoding is None else DecodedText(text, encoding)
+    text = decoded.utf8
+    faults = [(1, decoded.fault)] if decoded.fault else []
     root, error, is_complete = _parsed(text, path)
     if error is not None:
         repair = repaired(text)
@@ -146,7 +148,7 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
     warnings = tuple(
         SdfWarning('WARNING', f'this is not well-formed XML: {fault}', Place(path, line))
         for line, fault in faults)
-    return XmlFile(root, warnings, _lines_beyond_last(root, text), text)
+    return XmlFile(root, warnings, _lines_beyond_last(root, text), text, decoded.encoding)
 
 
 def _parsed(

@@ -12,7 +12,7 @@ from sdf_texts import names_of
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge import SdfError
 from sdf_pose_bridge.errors import FileReadError
-from sdf_pose_bridge.sdformat.xml_encoding import utf8_from_bytes
+from sdf_pose_bridge.sdformat.xml_encoding import text_from_bytes
 
 NAME = 'größe'
 
@@ -32,8 +32,8 @@ def test_text_is_decoded_from_the_encoding_that_it_declares(encoding):
 
 @pytest.mark.parametrize('encoding', ['utf-16-le', 'utf-16-be', 'utf-32-le', 'utf-32-be'])
 def test_two_and_four_bytes_are_known_without_a_byte_order_mark(encoding):
-    assert utf8_from_bytes(model_file(NAME).encode(encoding), 'f') == (
-        model_file(NAME).encode(), '')
+    assert text_from_bytes(model_file(NAME).encode(encoding), 'f') == (
+        model_file(NAME).encode(), encoding, '')
 
 
 @pytest.mark.parametrize('encoding', [
@@ -41,7 +41,7 @@ def test_two_and_four_bytes_are_known_without_a_byte_order_mark(encoding):
     'utf-8-sig'])
 def test_other_encodings_are_refused_by_name(encoding):
     with pytest.raises(FileReadError, match=f'"{encoding}" is not supported'):
-        utf8_from_bytes(declared(encoding).encode(), 'f')
+        text_from_bytes(declared(encoding).encode(), 'f')
 
 
 @pytest.mark.parametrize('text', [
