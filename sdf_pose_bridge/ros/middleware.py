@@ -3,8 +3,8 @@
 """
 Choose the profile of Fast DDS, the default middleware of ROS 2.
 
-With the default settings of the Fast DDS of ROS 2 Jazzy the first message arrives late in many
-starts; the profile of this package says why.
+With its default settings the first message arrives late in many starts; the profiles of this
+package say why.
 """
 
 from __future__ import annotations
@@ -12,26 +12,33 @@ from __future__ import annotations
 from collections.abc import Mapping
 from collections.abc import MutableMapping
 from pathlib import Path
+from typing import NamedTuple
 
 from ament_index_python.packages import get_package_share_directory
 
-PROFILE = 'config/fastdds_profile.xml'
-"""The profile of this package, below its share directory."""
 
-PROFILES_VARIABLE = 'FASTRTPS_DEFAULT_PROFILES_FILE'
-"""The environment variable that the Fast DDS of ROS 2 Jazzy reads."""
+class Profile(NamedTuple):
+    """A profile of this package, and what the Fast DDS that it is for reads by itself."""
 
-NEW_PROFILES_VARIABLE = 'FASTDDS_DEFAULT_PROFILES_FILE'
-"""Its name in later versions of Fast DDS; the version of ROS 2 Jazzy ignores it."""
+    file: str
+    """The profile, below the share directory of this package."""
+    variable: str
+    """The environment variable that names the file of profiles to use."""
+    local_file: str
+    """The file of profiles that is used if it is in the working directory."""
 
-LOCAL_PROFILES = 'DEFAULT_FASTRTPS_PROFILES.xml'
-"""The file that Fast DDS reads from the working directory."""
 
-DISTRO = 'jazzy'
-"""The distribution of ROS 2 whose Fast DDS understands the profile.
+FAST_DDS_2 = Profile(
+    'config/fastdds_profile.xml', 'FASTRTPS_DEFAULT_PROFILES_FILE',
+    'DEFAULT_FASTRTPS_PROFILES.xml')
+FAST_DDS_3 = Profile(
+    'config/fastdds3_profile.xml', 'FASTDDS_DEFAULT_PROFILES_FILE', 'DEFAULT_FASTDDS_PROFILES.xml')
 
-Fast DDS 3, which Kilted has, refuses a file with ``<throughputController>``.
-"""
+PROFILES = {'jazzy': FAST_DDS_2, 'kilted': FAST_DDS_3}
+"""The profile for each distribution of ROS 2; each Fast DDS refuses that of the other one."""
+
+VARIABLES = (FAST_DDS_2.variable, FAST_DDS_3.variable)
+"""The environment variables; each Fast DDS ignores that of the other one."""
 
 _FAST_DDS = ('', 'rmw_fastrtps_cpp', 'rmw_fastrtps_dynamic_cpp')
 
@@ -51,22 +58,25 @@ def use_profile(environment: MutableMapping[str, str]) -> str:
         share = get_package_share_directory('sdf_pose_bridge')
     except (LookupError, OSError):
         return 'the Fast DDS profile of this package is not used: the package is not installed'
-    environment[PROFILES_VARIABLE] = str(Path(share, PROFILE))
-    return (f'the Fast DDS profile {environment[PROFILES_VARIABLE]} is used; set '
-            f'{PROFILES_VARIABLE} to use your own, or {NEW_PROFILES_VARIABLE} to an empty string '
-            'to use none')
+    profile = PROFILES[environment['ROS_DISTRO']]
+    environment[profile.variable] = str(Path(share, profile.file))
+    (other_variable,) = set(VARIABLES) - {profile.variable}
+    return (f'the Fast DDS profile {environment[profile.variable]} is used; set '
+            f'{profile.variable} to use your own, or {other_variable} to an empty string to use '
+            'none')
 
 
 def _reason_against_profile(environment: Mapping[str, str]) -> str:
     middleware = environment.get('RMW_IMPLEMENTATION', '')
     if middleware not in _FAST_DDS:
         return f'the middleware is {middleware}'
-    for variable in (PROFILES_VARIABLE, NEW_PROFILES_VARIABLE):
+    for variable in VARIABLES:
         if variable in environment:
             return f'{variable} is set'
-    if Path(LOCAL_PROFILES).exists():
-        return f'{LOCAL_PROFILES} is in the working directory'
     distro = environment.get('ROS_DISTRO', '')
-    if distro != DISTRO:
-        return f'it is for ROS 2 {DISTRO}, and ROS_DISTRO is "{distro}"'
+    if distro not in PROFILES:
+        return f'there is none for ROS_DISTRO "{distro}"'
+    local_file = PROFILES[distro].local_file
+    if Path(local_file).exists():
+        return f'{local_file} is in the working directory'
     return ''

@@ -15,6 +15,13 @@ from changes import reload
 from rosgraph_msgs.msg import Clock
 from slow_file import SlowFile
 
+from sdf_pose_bridge.ros.middleware import PROFILES
+from sdf_pose_bridge.ros.middleware import VARIABLES
+
+PROFILE = PROFILES[os.environ['ROS_DISTRO']]
+(OTHER_VARIABLE,) = set(VARIABLES) - {PROFILE.variable}
+"""Setting it keeps the node from using its profile; Fast DDS does not read it."""
+
 GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
 BAD = """\
 <sdf version="1.10">
@@ -124,15 +131,14 @@ def test_the_first_line_tells_what_is_published(start_bridge, write_file):
 
 
 @pytest.mark.parametrize(('value', 'text'), [
-    (None, 'config/fastdds_profile.xml is used' if os.environ.get('ROS_DISTRO') == 'jazzy'
-     else 'is not used: it is for ROS 2 jazzy'),
-    ('', 'is not used: FASTDDS_DEFAULT_PROFILES_FILE is set'),
+    (None, f'{PROFILE.file} is used'),
+    ('', f'is not used: {OTHER_VARIABLE} is set'),
 ])
 def test_the_profile_of_the_middleware_is_logged_for_debugging(
         start_bridge, write_file, monkeypatch, tmp_path, value, text):
     monkeypatch.chdir(tmp_path)
     if value is not None:
-        monkeypatch.setenv('FASTDDS_DEFAULT_PROFILES_FILE', value)
+        monkeypatch.setenv(OTHER_VARIABLE, value)
     bridge = start_bridge(
         '--ros-args', '-p', f'sdf_file:={write_file(GOOD)}',
         '--log-level', 'sdf_pose_bridge:=debug')

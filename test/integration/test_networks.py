@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A bridge and a listener on two hosts: network namespaces that a cable (veth) connects."""
 
+import os
 from pathlib import Path
 import shutil
 import subprocess
@@ -20,6 +21,9 @@ from bridge_process import STARTED
 from changes import replace
 from changes import world
 from sizes import size
+
+from sdf_pose_bridge.ros.middleware import FAST_DDS_3
+from sdf_pose_bridge.ros.middleware import PROFILES
 
 ADDRESSES = {'a': '10.211.7.1', 'b': '10.211.7.2'}
 LEASE = '<leaseDuration><sec>3</sec></leaseDuration>'
@@ -157,10 +161,11 @@ def test_a_late_joiner_on_another_host_gets_everything(start_bridge_on, start_li
 def test_a_link_that_is_cut_for_longer_than_the_lease_and_restored(
         hosts, start_bridge_on, start_listener_on, file, tmp_path, monkeypatch):
     share = get_package_share_directory('sdf_pose_bridge')
-    profile = Path(share, 'config/fastdds_profile.xml').read_text(encoding='utf-8')
+    profile = PROFILES[os.environ['ROS_DISTRO']]
+    text = Path(share, profile.file).read_text(encoding='utf-8')
     short = tmp_path / 'profile.xml'
-    short.write_text(profile.replace('<leaseAnnouncement>', f'{LEASE}<leaseAnnouncement>'))
-    monkeypatch.setenv('FASTRTPS_DEFAULT_PROFILES_FILE', str(short))
+    short.write_text(text.replace('<leaseAnnouncement>', f'{LEASE}<leaseAnnouncement>'))
+    monkeypatch.setenv(profile.variable, str(short))
     bridge = start_bridge_on('a')
     listener = start_listener_on('b')
     listener.wait_for_line('all transforms')
@@ -196,7 +201,10 @@ def test_a_discovery_server_leads_to_everything(
         start_on, start_bridge_on, start_listener_on, monkeypatch):
     if shutil.which('fast-discovery-server') is None:
         pytest.skip('the discovery server of Fast DDS is not installed')
-    start_on('a', 'fast-discovery-server', '-i', '0', '-l', ADDRESSES['a'], '-p', '11811')
+    # What "fastdds discovery" of Fast DDS 3 calls for a server.
+    command = ['42'] if PROFILES[os.environ['ROS_DISTRO']] is FAST_DDS_3 else []
+    start_on(
+        'a', 'fast-discovery-server', *command, '-i', '0', '-l', ADDRESSES['a'], '-p', '11811')
     monkeypatch.setenv('ROS_DISCOVERY_SERVER', f'{ADDRESSES["a"]}:11811')
     start_bridge_on('a')
     listener = start_listener_on('b')

@@ -9,36 +9,42 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from sdf_pose_bridge.ros.middleware import LOCAL_PROFILES
-from sdf_pose_bridge.ros.middleware import NEW_PROFILES_VARIABLE
-from sdf_pose_bridge.ros.middleware import PROFILE
-from sdf_pose_bridge.ros.middleware import PROFILES_VARIABLE
+from sdf_pose_bridge.ros.middleware import FAST_DDS_2
+from sdf_pose_bridge.ros.middleware import FAST_DDS_3
+from sdf_pose_bridge.ros.middleware import PROFILES
 from sdf_pose_bridge.ros.middleware import use_profile
 
 ROOT = Path(__file__).resolve().parents[2]
 JAZZY = {'ROS_DISTRO': 'jazzy'}
+BOTH = pytest.mark.parametrize('distro', PROFILES)
+OLD, NEW = FAST_DDS_2.variable, FAST_DDS_3.variable
 
 
+@BOTH
 @pytest.mark.parametrize(('chosen', 'reason'), [
-    ({PROFILES_VARIABLE: 'mine.xml'}, f'{PROFILES_VARIABLE} is set'),
-    ({PROFILES_VARIABLE: ''}, f'{PROFILES_VARIABLE} is set'),
-    ({NEW_PROFILES_VARIABLE: 'mine.xml'}, f'{NEW_PROFILES_VARIABLE} is set'),
-    ({NEW_PROFILES_VARIABLE: ''}, f'{NEW_PROFILES_VARIABLE} is set'),
+    ({OLD: 'mine.xml'}, f'{OLD} is set'),
+    ({OLD: ''}, f'{OLD} is set'),
+    ({NEW: 'mine.xml'}, f'{NEW} is set'),
+    ({NEW: ''}, f'{NEW} is set'),
     ({'RMW_IMPLEMENTATION': 'rmw_cyclonedds_cpp'}, 'the middleware is rmw_cyclonedds_cpp'),
-    ({'ROS_DISTRO': 'kilted'}, 'it is for ROS 2 jazzy, and ROS_DISTRO is "kilted"'),
+    ({'ROS_DISTRO': 'humble'}, 'there is none for ROS_DISTRO "humble"'),
+    ({'ROS_DISTRO': ''}, 'there is none for ROS_DISTRO ""'),
 ])
-def test_a_choice_of_the_user_is_left_alone(chosen, reason):
-    environment = {**JAZZY, **chosen}
+def test_a_choice_of_the_user_is_left_alone(distro, chosen, reason):
+    environment = {'ROS_DISTRO': distro, **chosen}
+    before = dict(environment)
     assert use_profile(environment).endswith(f'is not used: {reason}')
-    assert environment == {**JAZZY, **chosen}
+    assert environment == before
 
 
-def test_profiles_in_the_working_directory_are_left_alone(tmp_path, monkeypatch):
-    (tmp_path / LOCAL_PROFILES).touch()
+@BOTH
+def test_profiles_in_the_working_directory_are_left_alone(tmp_path, monkeypatch, distro):
+    local_file = PROFILES[distro].local_file
+    (tmp_path / local_file).touch()
     monkeypatch.chdir(tmp_path)
-    environment = dict(JAZZY)
-    assert f'{LOCAL_PROFILES} is in the working directory' in use_profile(environment)
-    assert environment == JAZZY
+    environment = {'ROS_DISTRO': distro}
+    assert f'{local_file} is in the working directory' in use_profile(environment)
+    assert environment == {'ROS_DISTRO': distro}
 
 
 @pytest.mark.parametrize('prefixes', ['', '/nonexistent'])
@@ -49,27 +55,32 @@ def test_without_an_installed_package_there_is_no_profile(monkeypatch, prefixes)
     assert environment == JAZZY
 
 
+@BOTH
 @pytest.mark.parametrize('chosen', [
     {}, {'RMW_IMPLEMENTATION': ''}, {'RMW_IMPLEMENTATION': 'rmw_fastrtps_cpp'},
     {'RMW_IMPLEMENTATION': 'rmw_fastrtps_dynamic_cpp'},
 ])
-def test_with_fast_dds_and_no_other_choice_it_is_used(tmp_path, monkeypatch, chosen):
+def test_with_fast_dds_and_no_other_choice_it_is_used(tmp_path, monkeypatch, distro, chosen):
     monkeypatch.chdir(tmp_path)
-    environment = {**JAZZY, **chosen}
+    environment = {'ROS_DISTRO': distro, **chosen}
     sentence = use_profile(environment)
-    profile = Path(environment[PROFILES_VARIABLE])
-    assert profile.parts[-2:] == Path(PROFILE).parts
+    variable = PROFILES[distro].variable
+    profile = Path(environment[variable])
+    assert profile.parts[-2:] == Path(PROFILES[distro].file).parts
     assert profile.is_file()
     assert str(profile) in sentence
-    assert f'{NEW_PROFILES_VARIABLE} to an empty string' in sentence
+    assert f'set {variable} to use your own' in sentence
 
 
-def test_the_profile_is_the_default_of_participants():
-    profiles = ET.parse(ROOT / PROFILE).getroot()
+@BOTH
+def test_the_profile_is_the_default_of_participants(distro):
+    profiles = ET.parse(ROOT / PROFILES[distro].file).getroot()
     (participant,) = profiles
     assert participant.get('is_default_profile') == 'true'
 
 
-def test_the_thread_of_the_throughput_controller_sleeps_long():
-    (period,) = ET.parse(ROOT / PROFILE).getroot().findall('.//{*}periodMillisecs')
+@BOTH
+def test_the_thread_that_sends_announcements_sleeps_long(distro):
+    root = ET.parse(ROOT / PROFILES[distro].file).getroot()
+    (period,) = [*root.findall('.//{*}periodMillisecs'), *root.findall('.//{*}period_ms')]
     assert int(period.text) >= 1000  # with 1 ms an idle node takes 4 % of a core
