@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 import os
 from pathlib import Path
 import time
@@ -50,10 +51,13 @@ class LoadedScene(NamedTuple):
     """How long reading took."""
 
 
-def loaded_scene_from_settings(settings: Settings) -> LoadedScene:
+def loaded_scene_from_settings(
+    settings: Settings, texts: Mapping[str, bytes] | None = None,
+) -> LoadedScene:
     """
     Read the file or the text that the settings name.
 
+    :param texts: what to read instead of some files, by their paths.
     :raises AddressError: if ``sdf_file`` is a URI of a file that is not found.
     :raises SdfError: if it is not valid, or cannot be published with these settings.
     """
@@ -61,7 +65,7 @@ def loaded_scene_from_settings(settings: Settings) -> LoadedScene:
     begin = time.perf_counter()
     path, manifests, warnings = _file_from_settings(settings)
     text = bytes_from_file(str(path), Usage()) if settings.sdf_file else settings.robot_description
-    scene = _scene_from_text(text, path, settings)
+    scene = _scene_from_text(text, path, settings, texts=texts)
     tree = tf_tree_from_scene(scene, settings.tf_options)
     joint_positions = _joint_positions(scene, tree, settings)
     return LoadedScene(
@@ -101,10 +105,11 @@ def scene_with_shapes(loaded: LoadedScene, settings: Settings) -> Scene | None:
 
 def _scene_from_text(
     text: str | bytes, path: Path, settings: Settings, *, shapes: bool = False,
+    texts: Mapping[str, bytes] | None = None,
 ) -> Scene:
     return load_text(
         text, str(path), resource_paths=settings.resource_paths,
-        on_missing_include=settings.on_missing_include, shapes=shapes)
+        on_missing_include=settings.on_missing_include, shapes=shapes, texts=texts)
 
 
 def _joint_positions(scene: Scene, tree: TfTree, settings: Settings) -> JointPositions | None:

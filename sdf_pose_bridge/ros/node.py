@@ -49,6 +49,7 @@ from sdf_pose_bridge.sdformat.include.uris import AddressError
 
 if TYPE_CHECKING:
     from sdf_pose_bridge.ros.joint_states import JointStates
+    from sdf_pose_bridge_interfaces.srv import SetPose
 
 
 RETRY_PERIOD_S = 1.0
@@ -90,6 +91,12 @@ class SdfPoseBridge:
         node.create_service(
             Trigger, '~/reload', self._answer_to_reload, qos_profile=SERVICE_QOS,
             callback_group=self._changes)
+        if settings.allow_set_pose:
+            # Imported here because it takes time, and few nodes write files.
+            from sdf_pose_bridge_interfaces.srv import SetPose
+            node.create_service(
+                SetPose, '~/set_pose', self._answer_to_set_pose, qos_profile=SERVICE_QOS,
+                callback_group=self._changes)
         add_parameter_services(node, self._changes, self._set_parameters)
         node.create_timer(PERIOD_S, self._diagnostics.publish, clock=self._steady_clock)
         guard_condition = node.create_guard_condition(
@@ -197,6 +204,23 @@ class SdfPoseBridge:
         response.message = '; '.join(failure) or (
             f'publishing {count_in_words(len(self._loaded.tree.frame_ids), "frame")} of '
             f'{self._loaded.path}')
+        return response
+
+    async def _answer_to_set_pose(
+        self, request: SetPose.Request, response: SetPose.Response,
+    ) -> SetPose.Response:
+        """Write a measured pose, and answer when it is published."""
+        from sdf_pose_bridge.ros.set_pose import fill_response
+        from sdf_pose_bridge.ros.set_pose import set_pose
+        loaded, settings = self._loaded, self._settings
+        try:
+            measured = await run_in_thread(
+                self._node, lambda: set_pose(request, loaded, settings))
+            if not request.dry_run:
+                await self._show(await self._load(settings))
+            fill_response(response, measured)
+        except Exception as error:  # noqa: BLE001 - the client must be answered
+            response.message = '; '.join(self._lines_from_error(error))
         return response
 
     # Changes of files

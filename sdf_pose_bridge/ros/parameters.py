@@ -68,6 +68,7 @@ class Declaration(Generic[Setting]):
     :param convert: makes the setting of a value. If the value is not allowed, it raises ValueError
         with the words that follow "parameter <name>" in a sentence.
     :param needs_load: whether a new setting takes effect only when the file is read again.
+    :param is_read_only: whether the parameter can be set only at the start.
     :param maximum: largest value of a number; the smallest one is 0.0.
     """
 
@@ -76,7 +77,7 @@ class Declaration(Generic[Setting]):
     def __init__(
         self, default: Value, description: str, constraint: str,
         convert: Callable[[Any], Setting], *, needs_load: bool = True,
-        maximum: float | None = None,
+        maximum: float | None = None, is_read_only: bool = False,
     ) -> None:
         self.default = default
         self.type_ = TYPES[type(default)]
@@ -85,6 +86,7 @@ class Declaration(Generic[Setting]):
         self.convert = convert
         self.needs_load = needs_load
         self.maximum = maximum
+        self.is_read_only = is_read_only
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
@@ -233,6 +235,16 @@ class Settings:
         """The name of what is published, for people: that of the file or of the parameter."""
         return self.sdf_file or 'robot_description'
 
+    allow_set_pose = Declaration(
+        False,
+        'Offers the service ~/set_pose, which writes a measured pose into the file that places a '
+        'frame. Anybody in the domain may call it.',
+        'true or false; can be set only at the start',
+        bool,
+        needs_load=False,
+        is_read_only=True,
+    )
+
     @property
     def tf_options(self) -> TfOptions:
         """The settings of the TF tree; parameters and options have the same names."""
@@ -318,7 +330,7 @@ def _declared_value(node: Node, declaration: Declaration[Any]) -> Any:
     name, type_, default = declaration.name, declaration.type_, declaration.default
     descriptor = ParameterDescriptor(
         type=type_.value, description=declaration.description,
-        additional_constraints=declaration.constraint)
+        additional_constraints=declaration.constraint, read_only=declaration.is_read_only)
     if declaration.maximum is not None:
         descriptor.floating_point_range = [
             FloatingPointRange(from_value=0.0, to_value=declaration.maximum)]

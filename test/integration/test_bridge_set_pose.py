@@ -1,0 +1,102 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""A measured pose goes into the file: client, bridge, joints and a listener are apart."""
+
+from math import pi
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from changes import BRIDGE
+from changes import listen_to_tf
+from changes import set_parameters
+from changes import wait_for_x
+from geometry_msgs.msg import PoseStamped
+from joint_publisher import JointPublisher
+
+from sdf_pose_bridge import load
+from sdf_pose_bridge_interfaces.srv import LookupPose
+from sdf_pose_bridge_interfaces.srv import SetPose
+
+ARM = """<sdf version="1.11"><world name="w"><model name="arm"><static>false</static>
+<link name="base"/><link name="tool"><pose>1 0 0 0 0 0</pose></link>
+<joint name="turn" type="revolute"><pose relative_to="base"/><parent>base</parent>
+  <child>tool</child><axis><xyz>0 0 1</xyz></axis></joint></model>
+<frame name="fixture"><pose>5 0 0 0 0 0</pose></frame>
+<include><uri>gauge.sdf</uri></include></world></sdf>"""
+GAUGE = """<sdf version="1.11"><model name="gauge"><static>true</static><link name="body"/>
+<frame name="zero"><pose>0 0 0 0 0 0</pose></frame></model></sdf>"""
+
+
+@pytest.fixture(name='path')
+def write_files(tmp_path):
+    (tmp_path / 'gauge.sdf').write_text(GAUGE, encoding='utf-8')
+    path = tmp_path / 'cell.sdf'
+    path.write_text(ARM, encoding='utf-8')
+    return path
+
+
+def ask(listener, frame, x, frame_id='', *, dry_run=False):
+    pose = PoseStamped()
+    pose.header.frame_id = frame_id
+    pose.pose.position.x = x
+    return listener.call(
+        SetPose, f'{BRIDGE}/set_pose', SetPose.Request(frame=frame, pose=pose, dry_run=dry_run))
+
+
+def test_a_pose_measured_by_a_moving_tool(
+        start_bridge, start_listener, ros_domain, path):
+    start_bridge('--ros-args', '-p', f'sdf_file:={path}', '-p', 'allow_set_pose:=true',
+                 '-p', 'use_joint_states:=true').wait_until_started()
+    client, observer = start_listener(), start_listener()
+    listen_to_tf(observer)
+    wait_for_x(observer, 5.0, 'fixture')
+    joints = JointPublisher()
+    try:
+        joints.send({'turn': pi / 2})
+
+        def tool_y():
+            request = LookupPose.Request(frame='arm/tool')
+            return client.call(
+                LookupPose, f'{BRIDGE}/lookup_pose', request).pose.pose.position.y
+
+        client.wait(lambda: abs(tool_y() - 1.0) < 1e-9, lambda: 'the tool at y = 1')
+        answer = ask(client, 'fixture', 0.5, 'arm/tool')
+    finally:
+        joints.end()
+    assert (answer.success, answer.message) == (True, '')
+    assert (answer.file, answer.line) == (str(path), 5)
+    assert path.read_text(encoding='utf-8') == ARM.replace(
+        '5 0 0 0 0 0', '0 1.5 0 0 0 1.570796327')
+    wait_for_x(observer, 0.0, 'fixture')
+    assert load(path).pose('fixture')[:3] == (0.0, 1.5, 0.0)
+
+
+def test_a_frame_of_an_included_model(start_bridge, start_listener, path):
+    start_bridge('--ros-args', '-p', f'sdf_file:={path}', '-p', 'allow_set_pose:=true')
+    client, observer = start_listener(), start_listener()
+    listen_to_tf(observer)
+    wait_for_x(observer, 0.0, 'gauge/zero')
+    assert '+<frame name="zero"><pose>0.25' in ask(client, 'gauge/zero', 0.25, dry_run=True).diff
+    answer = ask(client, 'gauge/zero', 0.25)
+    assert (answer.success, answer.file) == (True, str(path.with_name('gauge.sdf')))
+    wait_for_x(observer, 0.25, 'gauge/zero')
+    refused = ask(client, 'arm/tol', 0.0)
+    assert not refused.success
+    assert 'did you mean "arm/tool"' in refused.message
+    assert path.read_text(encoding='utf-8') == ARM
+
+
+def test_nobody_can_switch_it_on_while_the_node_runs(start_bridge, start_listener, path):
+    start_bridge('--ros-args', '-p', f'sdf_file:={path}').wait_until_started()
+    client = start_listener()
+    result, = set_parameters(client, allow_set_pose=True)
+    assert not result.successful
+    assert 'allow_set_pose' in result.reason
+
+    def services():
+        return {name for name, _ in client.node.get_service_names_and_types()}
+
+    client.wait(lambda: f'{BRIDGE}/lookup_pose' in services(), services)
+    assert f'{BRIDGE}/set_pose' not in services()
