@@ -66,8 +66,11 @@ def collision_masses(
                    'of a mesh is not computed')
             problems.warning(msg, sources.place(collision))
             return ()
+        # An empty density is the default of the element, and not that of the inertial.
+        has_density = first_child(collision, 'density') is not None
+        (density,) = numbers_of_child(collision, 'density', (DEFAULT_DENSITY_KG_M3,))
         mass = None if shape is None else _mass(
-            shape, *numbers_of_child(collision, 'density', (default_density,)))
+            shape, density if has_density else default_density)
         if mass is None:
             msg = ('an automatic inertial needs collisions that are boxes, capsules, cones, '
                    'cylinders, ellipsoids or spheres, with positive dimensions and density')

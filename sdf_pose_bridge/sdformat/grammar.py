@@ -42,7 +42,9 @@ class ValueType(enum.Enum):
     STRING = 'string', 'a text', 0
     BOOLEAN = 'bool', 'a boolean (true, false, 1 or 0)', 0
     INTEGER = 'int', 'an integer', 1
+    UNSIGNED = 'uint', 'an integer', 1
     NUMBER = 'double', 'a number', 1
+    TIME = 'time', 'a time of two integers, seconds and nanoseconds', 2
     TWO_NUMBERS = 'vector2', 'two numbers', 2
     THREE_NUMBERS = 'vector3', 'three numbers', 3
     AXIS = 'axis', 'three numbers', 3
@@ -106,7 +108,7 @@ class Kind(enum.IntEnum):
     FRAME = 'model world', '@name! @attached_to:frame pose', True
     VISUAL = 'link', (
         '@name! pose cast_shadows:bool laser_retro:double transparency:double '
-        'visibility_flags:int meta material geometry! plugin')
+        'visibility_flags:uint meta material geometry! plugin')
     COLLISION = 'link', (
         '@name! pose laser_retro:double max_contacts:int density:double auto_inertia_params '
         'geometry! surface')
@@ -127,7 +129,7 @@ class Kind(enum.IntEnum):
         'color_range_image topic particle_scatter_ratio:double material')
     PROJECTOR = 'link', (
         '@name! pose texture!:string fov:double near_clip:double far_clip:double '
-        'visibility_flags:int plugin')
+        'visibility_flags:uint plugin')
     ACTOR = 'sdf world', '@name! pose skin animation script! link!=link joint=joint plugin'
 
     @property
@@ -185,12 +187,6 @@ class Definition:
         # Python takes longer to look up a member of an Enum than to read an attribute.
         self.is_pose = self.value_type is ValueType.POSE
         self.is_text = self.value_type is ValueType.STRING
-
-    @cached_property
-    def takes_any_number(self) -> bool:
-        """Whether the value is a number or an integer of any size."""
-        return self.minimum == -math.inf and (
-            self.value_type in (ValueType.NUMBER, ValueType.INTEGER))
 
     @cached_property
     def takes_any_children(self) -> bool:

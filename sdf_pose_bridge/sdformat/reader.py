@@ -44,7 +44,7 @@ from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.values import choice_fault
 from sdf_pose_bridge.sdformat.values import frame_of_attribute
 from sdf_pose_bridge.sdformat.values import is_of_type
-from sdf_pose_bridge.sdformat.values import value_fault
+from sdf_pose_bridge.sdformat.values import judged_value
 from sdf_pose_bridge.sdformat.versions import allows_scoped_names
 from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import is_foreign
@@ -229,9 +229,7 @@ class _Reader:
                 else:
                     self._read_pose(child, child_definition, parent)
             elif child_definition.is_required or not child_definition.is_text:
-                fault = value_fault(text_of(child), child_definition)
-                if fault:
-                    self._problems.error(ElementInvalidError(fault, self._sources.place(child)))
+                self._check_value(child, child_definition)
             if len(child) and child_definition.value_type is not None:
                 for grandchild in child:
                     self._undefined.report_element(grandchild, child_definition)
@@ -281,6 +279,13 @@ class _Reader:
                         ElementInvalidError if definition.kind is None else AttributeInvalidError)
                     msg = f'{name}="{value.strip(WHITE_SPACE)}" of <{written_tag(xml)}> {fault}'
                     self._problems.error(error(msg, self._sources.place(xml)))
+
+    def _check_value(self, xml: XmlElement, definition: Definition) -> None:
+        fault, doubt = judged_value(text_of(xml), definition)
+        if fault:
+            self._problems.error(ElementInvalidError(fault, self._sources.place(xml)))
+        elif doubt:
+            self._problems.warning(doubt, self._sources.place(xml))
 
     def _read_pose(self, xml: XmlElement, definition: Definition, index: int) -> None:
         pose_format: PoseFormat | None = _DEFAULT_FORMAT

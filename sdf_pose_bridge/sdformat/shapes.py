@@ -15,8 +15,9 @@ from typing import NamedTuple
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.values import leading_numbers
+from sdf_pose_bridge.sdformat.values import numbers_from_text
 from sdf_pose_bridge.sdformat.values import numbers_of_child
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import first_child
@@ -120,7 +121,8 @@ def _color(xml: XmlElement) -> tuple[float, float, float, float] | None:
         return None
     for tag in ('diffuse', 'ambient'):
         element = first_child(material, tag)
-        numbers = () if element is None else leading_numbers(text_of(element), 4)
+        numbers = () if element is None else numbers_from_text(
+            text_of(element), ValueType.COLOR)
         if len(numbers) >= 3 and all(map(math.isfinite, numbers)):
             red, green, blue, alpha = (*numbers, 1.0)[:4]
             (transparency,) = numbers_of_child(xml, 'transparency', (0.0,))

@@ -80,7 +80,7 @@ ELEMENTS = {
     'camera': (
         '@name triggered:bool camera_info_topic trigger_topic '
         'horizontal_fov!:double[0.1,6.283186] image! clip! save depth_camera segmentation_type '
-        'box_type noise distortion lens visibility_mask:int optical_frame_id pose'),
+        'box_type noise distortion lens visibility_mask:uint optical_frame_id pose'),
     'camera/clip': 'near!:double[0,] far!:double[0.1,]',
     'camera/image': 'width!:int height!:int format anti_aliasing:int',
     'camera/noise': 'type! mean:double stddev:double',
@@ -90,7 +90,7 @@ ELEMENTS = {
         'mean_size:double[0,1] ambient:color'),
     'cone': 'radius!:double length!:double',
     'contact': 'collision!:string topic!',
-    'convex_decomposition': 'max_convex_hulls:int voxel_resolution:int',
+    'convex_decomposition': 'max_convex_hulls:uint voxel_resolution:uint',
     'custom_function': 'c1:double c2:double c3:double f:double fun!',
     'custom_rpy': ':vector3 @parent_frame:frame',
     'cylinder': 'radius!:double length!:double',
@@ -118,14 +118,14 @@ ELEMENTS = {
     'geometry': (
         'empty box capsule cone cylinder ellipsoid heightmap image mesh plane polyline sphere'),
     'gps': 'position_sensing velocity_sensing',
-    'grasp_check': 'detach_steps:int attach_steps:int min_contact_count:int',
+    'grasp_check': 'detach_steps:int attach_steps:int min_contact_count:uint',
     'grav_dir_x': ':vector3 @parent_frame',
     'gripper': '@name! grasp_check gripper_link+ palm_link!',
     'gui': '@fullscreen:bool plugin camera=gui_camera',
     'gui_camera': '@name! view_controller projection_type track_visual pose',
     'heightmap': (
-        'uri! size:vector3 pos:vector3 texture blend use_terrain_paging:bool sampling:int'),
-    'horizontal': 'samples!:int resolution!:double min_angle!:double max_angle!:double',
+        'uri! size:vector3 pos:vector3 texture blend use_terrain_paging:bool sampling:uint'),
+    'horizontal': 'samples!:uint resolution!:double min_angle!:double max_angle!:double',
     'image': 'uri! scale!:double threshold!:int height!:double granularity!:int',
     'imu': (
         'orientation_reference_frame angular_velocity linear_acceleration '
@@ -143,8 +143,8 @@ ELEMENTS = {
     'lens': (
         'type! scale_to_hfov!:bool custom_function cutoff_angle:double[0,3.141592653] '
         'env_texture_size:int[4,2048] intrinsics projection'),
-    'lidar': 'scan! range! noise=camera/noise visibility_mask:int',
-    'light_map': ':string @uv_set:int',
+    'lidar': 'scan! range! noise=camera/noise visibility_mask:uint',
+    'light_map': ':string @uv_set:uint',
     'light_state': '@name! pose',
     'limit': 'cfm!:double erp!:double',
     'linear_acceleration': 'x y z',
@@ -166,7 +166,7 @@ ELEMENTS = {
         '@name! joint=joint_state model=model_state frame=frame pose scale:vector3 '
         'link=link_state'),
     'joint_state': '@name! angle+',
-    'joint_state/angle': ':double @axis!:int',
+    'joint_state/angle': ':double @axis!:uint',
     'navsat': 'position_sensing velocity_sensing',
     'noise': (
         '@type! mean:double stddev:double[0,] bias_mean:double bias_stddev:double[0,] '
@@ -197,7 +197,7 @@ ELEMENTS = {
     'projection': (
         'p_fx:double p_fy:double p_cx:double p_cy:double tx:double ty:double'),
     'range': 'min!:double max!:double resolution:double',
-    'ray': 'scan! range! noise=camera/noise visibility_mask:int',
+    'ray': 'scan! range! noise=camera/noise visibility_mask:uint',
     'rfid': '',
     'rfidtag': '',
     'road': '@name! width!:double point+:vector3 material',
@@ -229,13 +229,13 @@ ELEMENTS = {
         'surface_axis_equatorial:double surface_axis_polar:double heading_deg!:double'),
     'spot': 'inner_angle!:double outer_angle!:double falloff!:double',
     'state': (
-        '@world_name! sim_time wall_time real_time iterations!:int insertions deletions '
-        'model=model_state light=light_state'),
+        '@world_name! sim_time:time wall_time:time real_time:time iterations!:uint '
+        'insertions deletions model=model_state light=light_state'),
     'submesh': 'name! center:bool',
     'surface': 'bounce friction contact soft_contact',
     'surface/contact': (
-        'collide_without_contact:bool collide_without_contact_bitmask:int collide_bitmask:int '
-        'category_bitmask:int poissons_ratio:double elastic_modulus:double ode=contact_ode '
+        'collide_without_contact:bool collide_without_contact_bitmask:uint collide_bitmask:uint '
+        'category_bitmask:uint poissons_ratio:double elastic_modulus:double ode=contact_ode '
         'bullet=contact_bullet'),
     'contact_bullet': (
         'soft_cfm:double soft_erp:double kp:double kd:double split_impulse!:bool '
@@ -260,7 +260,7 @@ ELEMENTS = {
     'velocity_sensing': 'horizontal vertical',
     'velocity_sensing/horizontal': 'noise',
     'velocity_sensing/vertical': 'noise',
-    'vertical': 'samples!:int resolution:double min_angle!:double max_angle!:double',
+    'vertical': 'samples!:uint resolution:double min_angle!:double max_angle!:double',
     'vertical_position': 'noise',
     'vertical_velocity': 'noise',
     'waypoint': 'time!:double pose!:pose',

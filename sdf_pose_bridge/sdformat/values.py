@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import math
 import re
 import sys
+from typing import NamedTuple
 
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.sdformat.grammar import Definition
@@ -24,18 +25,33 @@ from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-# Like C's strtod, libsdformat takes the number at the beginning of a word and drops the rest.
-_LEADING_NUMBER = re.compile(
-    r'[+-]?(?:[0-9]+\.?[0-9]*(?:[eE][+-]?[0-9]+)?|\.[0-9]+(?:[eE][+-]?[0-9]+)?|inf|nan)',
+_DECIMAL = r'(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?'
+_C_NUMBER = re.compile(
+    rf'[+-]?(?:0x(?:[0-9a-f]+\.?[0-9a-f]*|\.[0-9a-f]+)(?:p[+-]?[0-9]+)?|{_DECIMAL}|inf(?:inity)?|nan)',
     re.IGNORECASE)
-_LEADING_INTEGER_OR_BOOLEAN = re.compile(r'[+-]?[0-9]|true|false', re.IGNORECASE)
-_LEADING_BOOLEAN = re.compile(r'true|false', re.IGNORECASE)
-_DIGITS = frozenset('0123456789')
+"""What C's ``strtod`` takes from the beginning of a word; it drops the rest."""
+_C_INTEGER = re.compile(r'0x[0-9a-f]+|[+-]?[0-9]+', re.IGNORECASE)
+_STREAM_NUMBER = re.compile(rf'[{WHITE_SPACE}]*([+-]?{_DECIMAL})')
+"""What a C++ stream takes; it leaves the rest for the next number."""
+_STREAM_INTEGER = re.compile(rf'[{WHITE_SPACE}]*([+-]?[0-9]+)')
+_PLAIN = r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)'
+_PLAIN_NUMBERS = re.compile(rf'{_PLAIN}(?:[{WHITE_SPACE}]+{_PLAIN})*')
+"""Numbers that everybody reads alike."""
 _SHORTEST_AXIS = 1e-6
 LONGEST_PLAIN = 200
 """A number with fewer characters, and without an exponent, is in the range of a double."""
 _NOT_ZERO = re.compile(r'[^eE]*[1-9]')
 _FEWEST_COLOR_NUMBERS = 3
+_BOOLEANS = {'true': 1.0, 'false': 0.0}
+_INTEGER_RANGES = {
+    ValueType.INTEGER: (-2 ** 31, 2 ** 31 - 1),
+    # A negative number is taken modulo 2 ** 64.
+    ValueType.UNSIGNED: (-2 ** 64 + 1, 2 ** 64 - 1),
+}
+_FLOATING_TYPES = frozenset({
+    ValueType.AXIS, ValueType.NUMBER, ValueType.THREE_NUMBERS, ValueType.TWO_NUMBERS})
+_TYPES_BY_COUNT = {
+    1: ValueType.NUMBER, 2: ValueType.TWO_NUMBERS, 3: ValueType.THREE_NUMBERS}
 
 
 def boolean_from_text(text: str) -> bool | None:
@@ -76,37 +92,63 @@ def choice_fault(text: str, choice: Choice) -> str:
     return '' if value in choice.texts else f'must be one of {", ".join(choice.texts)}'
 
 
-def value_fault(text: str, definition: Definition) -> str:
+class Judgment(NamedTuple):
+    """What libsdformat makes of the value of an element."""
+
+    fault: str = ''
+    """The value and the rule that it breaks; empty if it is right."""
+    doubt: str = ''
+    """How a value is read that probably means something else; empty if it is plain."""
+
+
+_RIGHT = Judgment()
+
+
+def judged_value(text: str, definition: Definition) -> Judgment:
     """
-    Return what is wrong with the value of an element.
+    Judge the value of an element.
 
     :param text: the value. If the element is not required, the default replaces a blank one.
     :param definition: the definition of the element; not that of a pose.
-    :return: the value and the rule that it breaks; empty if it is right.
+    :return: what is wrong with it.
     """
-    if (definition.takes_any_number and text[:1] in _DIGITS and len(text) < LONGEST_PLAIN
-            and 'e' not in text and 'E' not in text):
-        return ''
     value_type = definition.value_type
     stripped = text.strip(WHITE_SPACE)
     if not stripped and definition.is_required and value_type is not None:
-        return f'<{definition.identifier}> is empty; it must have a value'
+        return Judgment(f'<{definition.identifier}> is empty; it must have a value')
     if not stripped or value_type is None or definition.is_text:
-        return ''
+        return _RIGHT
     if definition.choice is not None:
         fault = choice_fault(stripped, definition.choice)
-        return f'"{stripped}" of <{definition.identifier}> {fault}' if fault else ''
-    numbers = leading_numbers(stripped, value_type.count)
+        return Judgment(f'"{stripped}" of <{definition.identifier}> {fault}' if fault else '')
+    plain_numbers = _plain_numbers(stripped, value_type)
+    numbers = plain_numbers or numbers_from_text(stripped, value_type)
     if not _is_of_type(stripped, numbers, value_type):
-        return f'"{stripped[:80]}" is not {value_type.description}'
+        return Judgment(f'"{stripped[:80]}" is not {value_type.description}')
     if value_type is ValueType.AXIS and math.hypot(*numbers) <= _SHORTEST_AXIS:
-        return f'"{stripped}" is not a valid axis: its length is zero'
+        return Judgment(f'"{stripped}" is not a valid axis: its length is zero')
     minimum, maximum = definition.minimum, definition.maximum
-    # Like libsdformat, this accepts what is not a number.
-    if not numbers or not (numbers[0] < minimum or numbers[0] > maximum):
+    # Like libsdformat, this accepts NaN.
+    if numbers and (numbers[0] < minimum or numbers[0] > maximum):
+        rule = (f'at least {minimum:g}' if maximum == math.inf
+                else f'from {minimum:g} to {maximum:g}')
+        return Judgment(f'"{stripped}" must be {rule}')
+    return _RIGHT if plain_numbers else Judgment(doubt=_doubt(stripped, numbers))
+
+
+def _doubt(text: str, numbers: Sequence[float]) -> str:
+    """Return how numbers are read if they are not what the words of the text are."""
+    if not numbers:
         return ''
-    rule = f'at least {minimum:g}' if maximum == math.inf else f'from {minimum:g} to {maximum:g}'
-    return f'"{stripped}" must be {rule}'
+    try:
+        words = [float(word) for word in text.split()]
+    except ValueError:
+        words = []
+    if len(words) == len(numbers) and all(
+            word == number or math.isnan(word)
+            for word, number in zip(words, numbers, strict=True)):
+        return ''
+    return f'"{text[:80]}" is read as {" ".join(f"{number:.17g}" for number in numbers)}'
 
 
 def is_representable(text: str, number: float) -> bool:
@@ -132,18 +174,13 @@ def is_of_type(text: str, value_type: ValueType) -> bool:
     :param value_type: any type but ``POSE``; of a choice any text is one.
     :return: True if it does.
     """
-    return _is_of_type(text, leading_numbers(text, value_type.count), value_type)
+    return _is_of_type(text, numbers_from_text(text, value_type), value_type)
 
 
 def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> bool:
     if value_type is ValueType.COLOR:
-        return len(numbers) == len(text.split()) >= _FEWEST_COLOR_NUMBERS and all(
+        return len(numbers) >= _FEWEST_COLOR_NUMBERS and all(
             not (number < 0.0 or number > 1.0) for number in numbers)
-    if value_type is ValueType.NUMBER:
-        return (bool(numbers) and is_representable(text, numbers[0])) or (
-            _LEADING_BOOLEAN.match(text) is not None)
-    if value_type is ValueType.INTEGER:
-        return _LEADING_INTEGER_OR_BOOLEAN.match(text) is not None
     if value_type is ValueType.BOOLEAN:
         return boolean_from_text(text) is not None
     if value_type is ValueType.FRAME:
@@ -151,23 +188,92 @@ def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> b
     return len(numbers) == value_type.count  # 0 for a text
 
 
-def leading_numbers(text: str, count: int) -> Sequence[float]:
+def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
     """
-    Return the numbers that the first words of a text begin with.
+    Return the numbers of a value.
 
     :param text: the value of an element.
-    :param count: how many words are read.
-    :return: the numbers; none for a word that begins with none.
+    :param value_type: its type.
+    :return: as many as the type has, or three of a color; fewer if the text is not of the type.
     """
-    words = text.split()[:count]
-    # Python also reads 1_000 and the digits of all scripts.
-    if '_' not in text and text.isascii():
+    if value_type.count == 0:
+        return ()
+    if value_type is ValueType.COLOR:
+        words = text.split()
+        numbers = [number for word in words for number in _number(word)]
+        return numbers if len(numbers) == len(words) <= value_type.count else ()
+    stripped = text.strip(WHITE_SPACE)
+    boolean = None if value_type.count > 1 else _BOOLEANS.get(stripped.lower())
+    if boolean is not None:
+        return (boolean,)
+    plain_numbers = _plain_numbers(stripped, value_type)
+    if plain_numbers:
+        return plain_numbers
+    if value_type is ValueType.NUMBER:
+        return _number(stripped)
+    if value_type in _INTEGER_RANGES:
+        return _integer(stripped, *_INTEGER_RANGES[value_type])
+    if value_type is ValueType.TIME:
+        return _streamed_integers(stripped, value_type.count)
+    return _streamed_numbers(stripped, value_type.count)
+
+
+def _plain_numbers(text: str, value_type: ValueType) -> Sequence[float]:
+    """Return the numbers of a text that needs no closer look; none for any other text."""
+    if (value_type not in _FLOATING_TYPES or len(text) >= LONGEST_PLAIN
+            or not _PLAIN_NUMBERS.fullmatch(text)):
+        return ()
+    words = text.split()
+    return [float(word) for word in words] if len(words) == value_type.count else ()
+
+
+def _number(word: str) -> Sequence[float]:
+    """Read a number as ``std::stod`` does."""
+    match = _C_NUMBER.match(word)
+    if match is None:
+        return ()
+    if 'x' in match[0] or 'X' in match[0]:
         try:
-            return [float(word) for word in words]
-        except ValueError:
-            pass
-    matches = map(_LEADING_NUMBER.match, words)
-    return [float(number[0]) for number in matches if number]
+            return (float.fromhex(match[0]),)
+        except OverflowError:
+            return ()
+    number = float(match[0])
+    return (number,) if is_representable(match[0], number) else ()
+
+
+def _integer(text: str, minimum: int, maximum: int) -> Sequence[float]:
+    """Read an integer as ``std::stoi`` and ``std::stoul`` do."""
+    match = _C_INTEGER.match(text)
+    if match is None or len(match[0]) > LONGEST_PLAIN:
+        return ()
+    number = int(match[0], 16 if 'x' in match[0] or 'X' in match[0] else 10)
+    return (number,) if minimum <= number <= maximum else ()
+
+
+def _streamed_numbers(text: str, count: int) -> Sequence[float]:
+    numbers: list[float] = []
+    position = 0
+    while len(numbers) < count:
+        match = _STREAM_NUMBER.match(text, position)
+        if match is None or math.isinf(float(match[1])):
+            break
+        position = match.end()
+        if text[position:position + 1] in ('e', 'E') and 'e' not in match[1].lower():
+            break  # an exponent without digits
+        numbers.append(float(match[1]))
+    return numbers
+
+
+def _streamed_integers(text: str, count: int) -> Sequence[float]:
+    numbers: list[float] = []
+    position = 0
+    while len(numbers) < count:
+        match = _STREAM_INTEGER.match(text, position)
+        if match is None or not _integer(match[1], *_INTEGER_RANGES[ValueType.INTEGER]):
+            break
+        numbers.append(int(match[1]))
+        position = match.end()
+    return numbers
 
 
 def numbers_of_child(
@@ -180,5 +286,6 @@ def numbers_of_child(
     :return: as many numbers as there are in the default.
     """
     child = first_child(parent, tag)
-    numbers = () if child is None else tuple(leading_numbers(text_of(child), len(default)))
+    numbers = () if child is None else tuple(
+        numbers_from_text(text_of(child), _TYPES_BY_COUNT[len(default)]))
     return numbers if len(numbers) == len(default) else default

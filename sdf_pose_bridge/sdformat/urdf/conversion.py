@@ -43,12 +43,12 @@ from sdf_pose_bridge.sdformat.urdf.robot import Link
 from sdf_pose_bridge.sdformat.urdf.robot import Robot
 from sdf_pose_bridge.sdformat.urdf.robot import robot_from_tree
 from sdf_pose_bridge.sdformat.urdf.robot import SHAPES
+from sdf_pose_bridge.sdformat.urdf.values import leading_numbers
 from sdf_pose_bridge.sdformat.urdf.values import numbers_of
 from sdf_pose_bridge.sdformat.urdf.values import pose_from_numbers
 from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math
 from sdf_pose_bridge.sdformat.urdf.values import rpy_by_urdfdom
 from sdf_pose_bridge.sdformat.urdf.values import text_from_numbers
-from sdf_pose_bridge.sdformat.values import leading_numbers
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
 from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import text_of

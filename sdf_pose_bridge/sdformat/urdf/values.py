@@ -6,17 +6,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 import math
+import re
 
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.sdformat.values import is_representable
-from sdf_pose_bridge.sdformat.values import leading_numbers
 from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
+_LEADING_NUMBER = re.compile(
+    r'[+-]?(?:[0-9]+\.?[0-9]*(?:[eE][+-]?[0-9]+)?|\.[0-9]+(?:[eE][+-]?[0-9]+)?|inf|nan)',
+    re.IGNORECASE)
 _URDFDOM_GIMBAL_LOCK = 1e-5
 _GZ_MATH_GIMBAL_LOCK = 1e-15
 """Where 1 - |sin(pitch)| is less, libsdformat writes angles that are only nearly the same."""
@@ -31,6 +34,17 @@ def is_true(xml: XmlElement) -> bool:
     """
     value = xml.get('value', text_of(xml))
     return value.strip(WHITE_SPACE).lower() in ('true', 'yes', '1')
+
+
+def leading_numbers(text: str, count: int) -> Sequence[float]:
+    """
+    Return the numbers that the first words of a text begin with.
+
+    :param count: how many words are read.
+    :return: the numbers; none for a word that begins with none.
+    """
+    matches = map(_LEADING_NUMBER.match, text.split()[:count])
+    return [float(number[0]) for number in matches if number]
 
 
 def numbers_of(xml: XmlElement, attributes: str) -> dict[str, list[float]]:
