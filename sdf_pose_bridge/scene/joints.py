@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from sdf_pose_bridge.errors import AttachedToError
 from sdf_pose_bridge.errors import ExpressedInError
 from sdf_pose_bridge.errors import JointChildError
 from sdf_pose_bridge.errors import JointParentError
@@ -20,6 +21,8 @@ from sdf_pose_bridge.errors import JointSameLinkError
 from sdf_pose_bridge.errors import MimicError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.chains import Indices
+from sdf_pose_bridge.names import MODEL_FRAME
+from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.name_scopes import NameScopes
@@ -122,7 +125,10 @@ class _JointChecks:
         elif child_index < 0 and child.name:
             self._report_unknown(JointChildError, joint, child, 'child')
         if parent_index < 0 and parent.name:
-            self._report_unknown(JointParentError, joint, parent, 'parent')
+            # libsdformat looks for other parents before it resolves them.
+            is_model_frame = parent.name.rpartition(SEPARATOR)[2] == MODEL_FRAME
+            self._report_unknown(
+                AttachedToError if is_model_frame else JointParentError, joint, parent, 'parent')
         elif parent_index == joint:
             msg = f'the joint names itself, "{parent.name}", as its parent'
             self._report(JointParentError, msg, joint, parent.line, 'parent')

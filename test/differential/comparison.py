@@ -12,10 +12,15 @@ from differential.known_defects import JOINT_SENSOR
 from differential.known_defects import MERGED_PLACEMENT
 from differential.known_defects import PROJECTOR
 from differential.reference import Answer
+from differential.reference import AxisValues
 from differential.reference import CRASH
+from differential.reference import JointValues
 from differential.reference import PoseValues
 import sdf_pose_bridge
+from sdf_pose_bridge.scene.scene import Joint
+from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
 
 TOLERANCE = 1e-9
 """Metres, relative to the distance from the root where that is more than one; and radians."""
@@ -35,7 +40,7 @@ class Difference:
     """One thing on which the two sides disagree."""
 
     kind: str
-    """``accepted``, ``refused``, ``missing``, ``extra``, ``pose`` or ``crash``."""
+    """``accepted``, ``refused``, ``missing``, ``extra``, ``pose``, ``joint`` or ``crash``."""
     text: str
     """What differs, in words."""
 
@@ -62,7 +67,25 @@ def own_answer(file: Path, resource_path: Path) -> Answer:
             continue
         world = scene.world_names.get(int(scene.roots[index]), '')
         poses[(world, kind.label, name)] = tuple(scene.poses[index].tolist())
-    return Answer(True, (), '', poses)
+    joints = {(scene.world_names.get(int(scene.roots[joint.element]), ''),
+               scene.names[joint.element]): own_joint(scene, joint) for joint in scene.joints}
+    return Answer(True, (), '', poses, joints)
+
+
+def own_joint(scene: Scene, joint: Joint) -> JointValues:
+    """Return a joint in the terms of the reference."""
+    def body(frame: int) -> str:
+        element = int(scene.bodies[frame])
+        is_root = scene.kinds[element] in (Kind.WORLD, Kind.ROOT)
+        return 'world' if is_root else scene.names[element]
+
+    axes = tuple(
+        AxisValues(axis.xyz, (axis.lower, axis.upper), axis.mimic and (
+            scene.names[axis.mimic.joint], AXIS_TAGS[axis.mimic.axis], axis.mimic.multiplier,
+            axis.mimic.offset, axis.mimic.reference))
+        for axis in joint.axes)
+    return JointValues(
+        joint.type, body(joint.parent), body(joint.child), joint.screw_pitch_m, axes)
 
 
 def difference_between(own: Answer, reference: Answer, version: str,
@@ -98,6 +121,10 @@ def difference_between(own: Answer, reference: Answer, version: str,
         if not is_same_pose(expected, got, tolerance):
             text = f'{key[1]} "{key[2]}": {list(got)} here, {list(expected)} by libsdformat'
             return Difference('pose', text)
+    for joint_key, joint in reference.joints.items():
+        text = joint_difference(own.joints.get(joint_key), joint, tolerance)
+        if text:
+            return Difference('joint', f'joint "{joint_key[1]}": {text}')
     joints = {(world, name) for world, kind, name in own.poses if kind == 'joint'}
     for world, kind, name in own.poses.keys() - reference.poses.keys():
         of_joint = (world, name.rpartition('::')[0]) in joints
@@ -105,6 +132,29 @@ def difference_between(own: Answer, reference: Answer, version: str,
         if not known or not is_before(version, known.fixed_in):
             return Difference('extra', f'{kind} "{name}" is not resolved by libsdformat')
     return None
+
+
+def joint_difference(own: JointValues | None, expected: JointValues, tolerance: float) -> str:
+    """Say what differs in a joint, or nothing."""
+    if own is None:
+        return '' if expected.parent == expected.child else 'it is not in the scene'
+    if own[:3] != expected[:3]:
+        return f'{own[:3]} here, {expected[:3]} by libsdformat'
+    if own.type == 'screw' and expected.pitch_m not in (None, own.pitch_m):
+        return f'the pitch is {own.pitch_m} here, {expected.pitch_m} by libsdformat'
+    for own_axis, axis in zip(own.axes, expected.axes, strict=True):
+        if axis is None:
+            continue
+        if math.dist(own_axis.xyz, axis.xyz) > tolerance:
+            return f'an axis is {own_axis.xyz} here, {axis.xyz} by libsdformat'
+        if str(own_axis[1:]) != str(AxisValues(*map(_with_floats, axis))[1:]):
+            return f'{own_axis[1:]} here, {axis[1:]} by libsdformat'
+    return ''
+
+
+def _with_floats(values: tuple[object, ...] | None) -> tuple[object, ...] | None:
+    return values and tuple(
+        float(value) if isinstance(value, int) else value for value in values)
 
 
 def is_before(version: str, other: str) -> bool:

@@ -1,7 +1,8 @@
 // Copyright 2026 The sdf_pose_bridge authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Print the poses that libsdformat resolves, as the reference that the package is compared with.
+// Print the poses and joints that libsdformat resolves, as the reference that the package is
+// compared with.
 //
 //     print_poses [-I DIR]... FILE...
 //
@@ -13,7 +14,14 @@
 //
 //     {"file": "cell.sdf", "ok": true, "errors": [{"code": "...", "message": "..."}],
 //      "elements": [{"kind": "link", "name": "robot::arm", "world": "cell",
-//                    "pose": [x, y, z, qx, qy, qz, qw]}]}
+//                    "pose": [x, y, z, qx, qy, qz, qw]}],
+//      "joints": [{"name": "robot::j", "world": "cell", "type": 1, "parent": "robot::arm",
+//                  "child": "robot::hand", "pitch": 1, "axes": [{"xyz": [x, y, z], "limits":
+//                  [lower, upper], "mimic": null}, null]}]}
+//
+// "parent" and "child" are the bodies that a joint joins, "xyz" is an axis in the frame of the
+// joint, and "mimic" is [joint, axis, multiplier, offset, reference]. Numbers may be NaN, Infinity
+// and -Infinity. Joints are only printed where an axis and both ends can be resolved.
 //
 // Poses are in the world, or in the implicit root of a model file; "world" is empty there. Names
 // are joined by "::" without the world's name. An element whose pose libsdformat cannot resolve is
@@ -64,6 +72,18 @@ std::string Quoted(const std::string &_text)
     }
   }
   return result + "\"";
+}
+
+/// Write a number as Python's module json reads it.
+std::string Number(double _value)
+{
+  if (std::isnan(_value))
+    return "NaN";
+  if (std::isinf(_value))
+    return _value < 0 ? "-Infinity" : "Infinity";
+  char number[32];
+  std::snprintf(number, sizeof(number), "%.17g", _value);
+  return number;
 }
 
 /// Name of an error code as it is spelt in libsdformat's enumeration.
@@ -129,11 +149,18 @@ class Printer
     // A light on its own belongs to no graph: its pose is the one that is written.
     if (_root.Light())
       this->Print("light", _root.Light()->Name(), _root.Light()->RawPose());
+    if (_root.Actor())
+      this->Print("actor", _root.Actor()->Name(), _root.Actor()->RawPose());
   }
 
   public: const std::string &Text() const
   {
     return this->text;
+  }
+
+  public: const std::string &Joints() const
+  {
+    return this->joints;
   }
 
   private: void World(const sdf::World &_world)
@@ -145,11 +172,14 @@ class Printer
       this->Resolved("frame", "", *_world.FrameByIndex(i), "world", Pose::Zero);
     for (uint64_t i = 0; i < _world.LightCount(); ++i)
       this->Resolved("light", "", *_world.LightByIndex(i), "world", Pose::Zero);
+    for (uint64_t i = 0; i < _world.ActorCount(); ++i)
+      this->Print("actor", _world.ActorByIndex(i)->Name(), _world.ActorByIndex(i)->RawPose());
 #if SDF_MAJOR_VERSION >= 14
     for (uint64_t i = 0; i < _world.JointCount(); ++i)
     {
       const auto *joint = _world.JointByIndex(i);
       this->Resolved("joint", "", *joint, "world", Pose::Zero);
+      this->Joint("", *joint);
       for (uint64_t k = 0; k < joint->SensorCount(); ++k)
       {
         this->Resolved("sensor", joint->Name() + "::", *joint->SensorByIndex(k), "world",
@@ -177,6 +207,7 @@ class Printer
     {
       const auto *joint = _model.JointByIndex(i);
       this->Resolved("joint", scope, *joint, self, pose);
+      this->Joint(scope, *joint);
       for (uint64_t k = 0; k < joint->SensorCount(); ++k)
       {
         this->Resolved("sensor", scope + joint->Name() + "::", *joint->SensorByIndex(k), self,
@@ -227,6 +258,62 @@ class Printer
 #endif
   }
 
+  private: void Joint(const std::string &_scope, const sdf::Joint &_joint)
+  {
+    std::string ends[2];
+    if (!_joint.ResolveParentLink(ends[0]).empty() || !_joint.ResolveChildLink(ends[1]).empty())
+      return;
+    for (auto &end : ends)
+    {
+      end = end == "world" ? end : _scope + end;
+      const std::string self = "::__model__";
+      if (end.size() > self.size() && end.substr(end.size() - self.size()) == self)
+        end.resize(end.size() - self.size());
+    }
+    std::string axes[2] = {"null", "null"};
+    for (unsigned int i = 0; i < 2; ++i)
+    {
+      const auto *axis = _joint.Axis(i);
+      if (axis == nullptr)
+        continue;
+      std::decay_t<decltype(axis->Xyz())> xyz;
+      if (!axis->ResolveXyz(xyz).empty())
+        return;
+      axes[i] = "{\"xyz\": [" + Number(xyz.X()) + ", " + Number(xyz.Y()) + ", " +
+          Number(xyz.Z()) + "], \"limits\": [" + Number(axis->Lower()) + ", " +
+          Number(axis->Upper()) + "], \"mimic\": " + Mimic(_scope, *axis) + "}";
+    }
+    this->joints += this->joints.empty() ? "" : ", ";
+    this->joints += "{\"name\": " + Quoted(_scope + _joint.Name()) + ", \"world\": " +
+        Quoted(this->world) + ", \"type\": " +
+        std::to_string(static_cast<int>(_joint.Type())) + ", \"parent\": " + Quoted(ends[0]) +
+        ", \"child\": " + Quoted(ends[1]) + ", \"pitch\": " + Pitch(_joint) +
+        ", \"axes\": [" + axes[0] + ", " + axes[1] + "]}";
+  }
+
+  private: static std::string Pitch(const sdf::Joint &_joint)
+  {
+#if SDF_MAJOR_VERSION >= 14
+    return Number(_joint.ScrewThreadPitch());
+#else
+    return "null";
+#endif
+  }
+
+  private: static std::string Mimic(const std::string &_scope, const sdf::JointAxis &_axis)
+  {
+#if SDF_MAJOR_VERSION >= 14
+    const auto mimic = _axis.Mimic();
+    if (!mimic)
+      return "null";
+    return "[" + Quoted(_scope + mimic->Joint()) + ", " + Quoted(mimic->Axis()) + ", " +
+        Number(mimic->Multiplier()) + ", " + Number(mimic->Offset()) + ", " +
+        Number(mimic->Reference()) + "]";
+#else
+    return "null";
+#endif
+  }
+
   private: template <typename Element>
   void Resolved(const char *_kind, const std::string &_scope, const Element &_element,
       const std::string &_resolveTo, const Pose &_scopePose)
@@ -246,9 +333,7 @@ class Printer
     {
       if (!std::isfinite(value))
         return;
-      char number[32];
-      std::snprintf(number, sizeof(number), "%s%.17g", numbers.empty() ? "" : ", ", value);
-      numbers += number;
+      numbers += (numbers.empty() ? "" : ", ") + Number(value);
     }
     this->text += this->text.empty() ? "" : ", ";
     this->text += std::string("{\"kind\": \"") + _kind + "\", \"name\": " + Quoted(_name) +
@@ -256,6 +341,7 @@ class Printer
   }
 
   private: std::string text;
+  private: std::string joints;
   private: std::string world;
 };
 
@@ -288,7 +374,8 @@ void Answer(const std::string &_file)
     line += line.back() == '[' ? "" : ", ";
     line += "{\"code\": " + Quoted(code) + ", \"message\": " + Quoted(message) + "}";
   }
-  line += "], \"elements\": [" + (ok ? printer.Text() : std::string()) + "]}";
+  line += "], \"elements\": [" + (ok ? printer.Text() : std::string()) +
+      "], \"joints\": [" + (ok ? printer.Joints() : std::string()) + "]}";
   std::cout << line << std::endl;
 }
 

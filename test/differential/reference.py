@@ -6,10 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from dataclasses import field
 import json
 from pathlib import Path
 import shutil
 import subprocess
+from typing import Any
+from typing import NamedTuple
 from typing import TypeAlias
 
 SOURCE = Path(__file__).with_name('print_poses.cpp')
@@ -25,6 +28,33 @@ PoseValues: TypeAlias = tuple[float, ...]
 """x y z in metres, quaternion x y z w."""
 
 
+class AxisValues(NamedTuple):
+    """An axis of a joint."""
+
+    xyz: tuple[float, ...]
+    """Unit vector in the frame of the joint."""
+    limits: tuple[float, ...]
+    mimic: tuple[object, ...] | None
+    """Scoped name of the leader, ``axis`` or ``axis2``, multiplier, offset and reference."""
+
+
+class JointValues(NamedTuple):
+    """A joint."""
+
+    type: str
+    parent: str
+    """Scoped name of the body; ``world`` for the world."""
+    child: str
+    pitch_m: float | None
+    """None where the release does not tell."""
+    axes: tuple[AxisValues | None, ...]
+
+
+JOINT_TYPES = ('', 'ball', 'continuous', 'fixed', 'gearbox', 'prismatic', 'revolute', 'revolute2',
+               'screw', 'universal')
+"""The types by their numbers in ``sdf::JointType``."""
+
+
 @dataclass(frozen=True)
 class Answer:
     """What one side makes of a file."""
@@ -34,6 +64,8 @@ class Answer:
     """Codes of the errors, in the order in which they were found."""
     message: str
     poses: dict[Key, PoseValues]
+    joints: dict[tuple[str, str], JointValues] = field(default_factory=dict)
+    """By world and scoped name; those whose ends and axes can be resolved."""
 
 
 class ReferenceMissingError(Exception):
@@ -96,7 +128,19 @@ def answer_from_json(line: str) -> Answer:
         message=errors[0]['message'] if errors else '',
         poses={(element['world'], element['kind'], element['name']): tuple(element['pose'])
                for element in fields['elements']},
+        joints={(joint['world'], joint['name']): joint_from_json(joint)
+                for joint in fields['joints']},
     )
+
+
+def joint_from_json(fields: dict[str, Any]) -> JointValues:
+    """Read one joint of the program's output."""
+    axes = tuple(
+        axis and AxisValues(
+            tuple(axis['xyz']), tuple(axis['limits']), axis['mimic'] and tuple(axis['mimic']))
+        for axis in fields['axes'])
+    return JointValues(
+        JOINT_TYPES[fields['type']], fields['parent'], fields['child'], fields['pitch'], axes)
 
 
 def built_reference(folder: Path) -> Reference:

@@ -20,6 +20,21 @@ AXES = {
 }
 """Types of joints with the number of their axes."""
 
+AXIS_PARTS = (
+    (), (), (), ('<limit><lower>-1.5</lower><upper>2</upper></limit>',), ('<limit/>',),
+    ('<limit><lower/><upper>-inf</upper></limit>',), ('<limit><lower>1e-3</lower></limit>',),
+    ('<limit><lower> 0x10 </lower><upper>1.5rad</upper></limit>',),
+    ('<limit><upper>inf</upper></limit>', '<dynamics><damping>1</damping></dynamics>'),
+)
+"""What axes have besides a vector."""
+
+MIMIC_NUMBERS = (None, None, '', '0', '2.5', '-1e-3', '1.5rad')
+PITCHES = (
+    (), ('<thread_pitch>-2.5</thread_pitch>',), ('<screw_thread_pitch>0.5</screw_thread_pitch>',),
+    ('<thread_pitch/>',), ('<screw_thread_pitch/>', '<thread_pitch>3</thread_pitch>'),
+    ('<thread_pitch>3</thread_pitch>', '<screw_thread_pitch>-1e-3</screw_thread_pitch>'),
+)
+
 SENSORS = ('imu', 'contact', 'magnetometer', 'altimeter', 'air_pressure', 'force_torque',
            'navsat', 'logical_camera', 'camera', 'gpu_lidar')
 LINK_CHILDREN = ('visual', 'visual', 'collision', 'sensor', 'light', 'particle_emitter')
@@ -44,6 +59,11 @@ def joint_body(draw: Draw, name: str, parent: str, child: str) -> ElementTree.El
         axis = ElementTree.SubElement(element, 'axis2' if number else 'axis')
         vector = draw(st.sampled_from(('0 0 1', '0 1 0', '1 0 0', '-1 0 0', '0.6 0 0.8')))
         ElementTree.SubElement(axis, 'xyz').text = vector
+        for part in draw(st.sampled_from(AXIS_PARTS)):
+            axis.append(ElementTree.fromstring(part))
+    if kind == 'screw':
+        for part in draw(st.sampled_from(PITCHES)):
+            element.append(ElementTree.fromstring(part))
     return element
 
 
@@ -97,6 +117,23 @@ class LinkBuilder:
         if self.draw(st.integers(0, 15)) == 0:
             self.add_foreign(element)
 
+    def add_mimics(self, joints: list[ElementTree.Element]) -> None:
+        """Let some axes of joints follow others."""
+        leaders = [(joint, tag) for joint in joints for tag in ('axis', 'axis2')
+                   if joint.find(tag) is not None]
+        for joint, tag in leaders:
+            if self.draw(st.integers(0, 7)) == 0 and len(leaders) > 1:
+                leader, leader_tag = self.draw(st.sampled_from(
+                    [each for each in leaders if each != (joint, tag)]))
+                mimic = ElementTree.Element('mimic', joint=leader.get('name', ''))
+                if leader_tag == 'axis2' or self.draw(st.booleans()):
+                    mimic.set('axis', leader_tag)
+                for part in ('multiplier', 'offset', 'reference'):
+                    text = self.draw(st.sampled_from(MIMIC_NUMBERS))
+                    if text is not None:
+                        ElementTree.SubElement(mimic, part).text = text
+                joint.find(tag).append(mimic)
+
     def geometry(self) -> ElementTree.Element:
         """Draw a shape."""
         geometry = ElementTree.Element('geometry')
@@ -115,8 +152,8 @@ class LinkBuilder:
         inertial.set('auto', 'true')
         for element in (inertial, *link.iterfind('collision')):
             if self.draw(st.booleans()):
-                density = self.draw(st.integers(1, 9000))
-                ElementTree.SubElement(element, 'density').text = str(density)
+                density = self.draw(st.one_of(st.just(''), st.integers(1, 9000).map(str)))
+                ElementTree.SubElement(element, 'density').text = density
         for pose in link.iterfind('collision/pose'):
             # The collision has to be somewhere for its mass to count.
             if pose.get('relative_to', '').strip() == UNKNOWN_FRAME:

@@ -34,11 +34,12 @@ class Feature(enum.Enum):
     XML_ODDITIES = 'xml-oddities'
     URDF = 'urdf'
     DEFECTS = 'defects'
+    ODD_VALUES = 'odd-values'
 
 
 _SINCE_14 = frozenset({
-    Feature.AUTOMATIC_INERTIALS, Feature.MERGED_OVERRIDES, Feature.NESTED_JOINTS, Feature.URDF,
-    Feature.XML_ODDITIES})
+    Feature.AUTOMATIC_INERTIALS, Feature.MERGED_OVERRIDES, Feature.NESTED_JOINTS,
+    Feature.ODD_VALUES, Feature.URDF, Feature.XML_ODDITIES})
 
 
 def features_of_release(version):

@@ -36,6 +36,7 @@ from differential.scene_text import new_pose
 from differential.scene_text import SEEDS
 from differential.scene_urdf import RobotBuilder
 from differential.scene_urdf import text_from_robot
+from differential.scene_values import odd_scene
 from differential.scene_xml import with_oddities
 
 
@@ -302,6 +303,7 @@ class SceneBuilder:
         references = [visible.reference for visible in placed]
         for element in filled:
             self.links.fill(element, references)
+        self.links.add_mimics([element for element in filled if element.tag == 'joint'])
         ordered = [element for element in elements if element is not None]
         for element in added:
             ordered.insert(self.draw(st.integers(0, len(ordered))), element)
@@ -429,6 +431,8 @@ def scenes(draw: Draw, features: frozenset[Feature] = frozenset(Feature)) -> Sce
     :param features: what it may hold. With DEFECTS, one scene in five at most is broken.
     """
     builder = SceneBuilder(draw, features)
+    if Feature.ODD_VALUES in features and builder.chance(4):
+        return odd_scene(Random(builder.draw(SEEDS)))
     content = [builder.scene()]
     if Feature.WORLDS in features and content[0].tag == 'world' and builder.chance(8):
         content.append(builder.world(content[0].get('name', '') + ' too'))

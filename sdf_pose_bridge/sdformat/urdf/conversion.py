@@ -279,7 +279,8 @@ class _Conversion:
         xyz = values.get('axis', {'xyz': [1.0, 0.0, 0.0]}).get('xyz', [0.0, 0.0, 0.0])
         limit = values.get('limit', {})
         if joint.type == 'fixed':
-            values, limit = {}, {'lower': [0.0], 'upper': [0.0]}
+            # Its axis is that of SDFormat, as URDF gives it none.
+            xyz, values, limit = [0.0, 0.0, 1.0], {}, {'lower': [0.0], 'upper': [0.0]}
         elif 'limit' in values:
             ends = sorted((*limit.pop('lower', [0.0]), *limit.pop('upper', [0.0])))
             if URDF_JOINT_TYPES[joint.type].has_limit:
