@@ -36,6 +36,7 @@ from sdf_pose_bridge.sdformat.poses import PoseFormat
 from sdf_pose_bridge.sdformat.poses import PoseTextError
 from sdf_pose_bridge.sdformat.sensors import sensor_details_from_element
 from sdf_pose_bridge.sdformat.shapes import check_material
+from sdf_pose_bridge.sdformat.shapes import check_submesh
 from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sibling_names import SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources
@@ -175,6 +176,8 @@ class _Reader:
         else:
             if definition.identifier == 'material':
                 check_material(xml, self._sources, self._problems)
+            elif definition.identifier == 'submesh':
+                check_submesh(xml, self._sources, self._problems)
             self._read_children(xml, definition, NO_ELEMENT, scope, path, depth)
 
     def _read_frame(
@@ -221,7 +224,7 @@ class _Reader:
                 self._read(child, child_definition, parent, scope, path, depth + 1)
             elif child_definition.is_pose:
                 if parent == NO_ELEMENT:
-                    self._check_pose(child)
+                    self._check_pose(child, is_required=child_definition.is_required)
                 elif self._builder.pose_lines[parent]:
                     self._check_pose(child)
                     msg = 'a second <pose> is ignored; the first one counts'
@@ -321,9 +324,12 @@ class _Reader:
         else:
             builder.relative_to[index] = relative_to
 
-    def _check_pose(self, xml: XmlElement) -> None:
+    def _check_pose(self, xml: XmlElement, *, is_required: bool = False) -> None:
         """Check a pose that is not that of a frame."""
         pose_format = self._pose_format(xml)
+        if is_required and not text_of(xml):
+            msg = f'<{written_tag(xml)}> is empty; it must have a value'
+            self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
         try:
             pose_from_text(
                 '' if pose_format is None else text_of(xml), pose_format or _DEFAULT_FORMAT)

@@ -130,6 +130,14 @@ def _color(xml: XmlElement) -> tuple[float, float, float, float] | None:
     return None
 
 
+def check_submesh(xml: XmlElement, sources: Sources, problems: Problems) -> None:
+    """Check that a part of a mesh has a name."""
+    name = first_child(xml, 'name')
+    if name is None or value_of(name) == '__default__':
+        msg = 'the <submesh> has no <name>'
+        problems.error(ElementMissingError(msg, sources.place(xml)))
+
+
 def check_material(xml: XmlElement, sources: Sources, problems: Problems) -> None:
     """Check that the script and the shader of a material have what they need."""
     script, shader = first_child(xml, 'script'), first_child(xml, 'shader')

@@ -148,7 +148,7 @@ def _doubt(text: str, numbers: Sequence[float]) -> str:
             word == number or math.isnan(word)
             for word, number in zip(words, numbers, strict=True)):
         return ''
-    return f'"{text[:80]}" is read as {" ".join(f"{number:.17g}" for number in numbers)}'
+    return f'"{text[:80]}" is read as {" ".join(map(repr, numbers))}'
 
 
 def is_representable(text: str, number: float) -> bool:

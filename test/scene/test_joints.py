@@ -101,6 +101,12 @@ def test_second_axis_in_an_unknown_frame_is_refused():
         'JOINT_AXIS_EXPRESSED_IN_INVALID']
 
 
+def test_unknown_model_frame_as_parent_is_an_unknown_attachment():
+    text = model_file(TWO_LINKS + '<joint name="j" type="fixed"><parent>no::__model__</parent>'
+                      '<child>b</child></joint>')
+    assert codes_of(text) == ['FRAME_ATTACHED_TO_INVALID']
+
+
 @pytest.mark.parametrize('name', ['__model__', 'a', 'j', 'n::k', 'on_a', '', ' '])
 def test_axis_can_be_in_any_frame_of_the_scope(name):
     axis = f'<axis><xyz expressed_in="{name}">1 0 0</xyz></axis>'

@@ -94,6 +94,7 @@ def test_center_of_a_cone_is_a_quarter_below_its_middle():
     (AUTO, ('', ''), 0.5),
     (AUTO, ('', '3000'), 0.75),
     ('<inertial auto="true"><density>3</density></inertial>', ('1', ''), 0.75),
+    ('<inertial auto="true"><density>3000</density></inertial>', ('', ' '), 0.25),
     ('<inertial auto="true"><mass>7</mass></inertial>', ('', '3000'), 0.75),
 ])
 def test_density_is_that_of_collision_inertial_or_water(inertial, densities, x):

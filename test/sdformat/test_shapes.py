@@ -125,6 +125,12 @@ def test_wrong_material_is_refused(content, code):
     assert codes_of(link_with(visual)) == [code]
 
 
+def test_submesh_without_a_name_is_refused():
+    visual = '<visual name="v"><geometry><mesh><uri>u</uri>{}</mesh></geometry></visual>'
+    assert codes_of(link_with(visual.format('<submesh/>'))) == ['ELEMENT_MISSING']
+    load_text(link_with(visual.format('<submesh><name>n</name></submesh>')))
+
+
 @pytest.mark.parametrize('content', [
     '<script><uri>u</uri><name>n</name></script>',
     '<shader type="pixel"/>',

@@ -3,6 +3,8 @@
 """Values that no pose depends on, but that libsdformat refuses."""
 
 
+import math
+
 import pytest
 from sdf_texts import codes_of
 from sdf_texts import link_with
@@ -15,6 +17,7 @@ from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.values import is_of_type
+from sdf_pose_bridge.sdformat.values import numbers_from_text
 
 
 def visual(content):
@@ -161,6 +164,72 @@ def test_message_has_the_range():
 
 def test_long_value_is_cut_in_the_message():
     assert len(only_error(visual(f'<transparency>{"x" * 10_000}</transparency>')).message) < 200
+
+
+# Where libsdformat stops at what it does not know, it drops the rest of a number, but not of three
+
+@pytest.mark.parametrize(('text', 'value_type'), [
+    ('nan 0 1', ValueType.THREE_NUMBERS), ('1 inf 1', ValueType.THREE_NUMBERS),
+    ('1 1 1e999', ValueType.THREE_NUMBERS), ('1abc 2 3', ValueType.THREE_NUMBERS),
+    ('1e 2 3', ValueType.THREE_NUMBERS), ('1 2 x', ValueType.AXIS),
+    ('1,2', ValueType.TWO_NUMBERS),
+    ('1e999', ValueType.NUMBER), ('1e-400', ValueType.NUMBER), ('truex', ValueType.NUMBER),
+    ('2147483648', ValueType.INTEGER), ('-2147483649', ValueType.INTEGER),
+    ('18446744073709551616', ValueType.UNSIGNED), ('0x', ValueType.TIME),
+    ('9' * 5000, ValueType.INTEGER), ('0x1' + '0' * 5000, ValueType.NUMBER),
+    ('1', ValueType.TIME), ('1.5 2', ValueType.TIME), ('1 2147483648', ValueType.TIME),
+    ('1 1 1e-320', ValueType.COLOR),
+])
+def test_numbers_that_libsdformat_does_not_read(text, value_type):
+    assert not is_of_type(text, value_type)
+
+
+@pytest.mark.parametrize(('text', 'value_type', 'numbers'), [
+    ('1.22.28 0.26', ValueType.THREE_NUMBERS, [1.22, 0.28, 0.26]),
+    ('1-2-3', ValueType.THREE_NUMBERS, [1, -2, -3]),
+    ('1 2 3abc', ValueType.THREE_NUMBERS, [1, 2, 3]),
+    ('1 2 0x10', ValueType.THREE_NUMBERS, [1, 2, 0]),
+    ('1 2 1e-400', ValueType.THREE_NUMBERS, [1, 2, 0]),
+    ('1 2 3 4', ValueType.THREE_NUMBERS, [1, 2, 3]),
+    ('0x10', ValueType.INTEGER, [16]), ('-0x10', ValueType.INTEGER, [0]),
+    ('0XfF', ValueType.UNSIGNED, [255]), ('-1', ValueType.UNSIGNED, [-1]),
+    ('4294967296', ValueType.UNSIGNED, [4294967296]), ('1.5', ValueType.INTEGER, [1]),
+    ('0x1p3', ValueType.NUMBER, [8]), ('1.5abc', ValueType.NUMBER, [1.5]),
+    ('1_0', ValueType.NUMBER, [1]), ('TRUE', ValueType.NUMBER, [1]),
+    ('-inf', ValueType.NUMBER, [-math.inf]), ('12 34', ValueType.TIME, [12, 34]),
+    ('+.5 5.', ValueType.TWO_NUMBERS, [0.5, 5]),
+])
+def test_numbers_as_libsdformat_reads_them(text, value_type, numbers):
+    assert list(numbers_from_text(text, value_type)) == numbers
+
+
+def test_numbers_that_are_read_otherwise_have_a_warning():
+    scene = load_text(box('1.22.28 0.26'))
+    assert [warning.message for warning in scene.warnings] == [
+        '"1.22.28 0.26" is read as 1.22 0.28 0.26']
+
+
+@pytest.mark.parametrize('text', ['1 2 3', ' 1\t2\n3 ', '+1 .5 1e-3', '1. 2. 3.'])
+def test_plain_numbers_have_no_warning(text):
+    assert not load_text(box(text)).warnings
+
+
+def state(content):
+    return world_file(f'<state world_name="w">{content}</state>')
+
+
+@pytest.mark.parametrize('tag', ['sim_time', 'wall_time', 'real_time'])
+def test_time_of_a_state_is_two_integers(tag):
+    assert not load_text(state(f'<{tag}>12 345</{tag}>')).warnings
+    assert codes_of(state(f'<{tag}>12.5</{tag}>')) == ['ELEMENT_INVALID']
+
+
+def test_empty_pose_of_a_waypoint_is_refused():
+    waypoint = '<waypoint><time>0</time><pose>{}</pose></waypoint>'
+    actor = ('<actor name="a"><script><trajectory id="0" type="t">{}</trajectory></script>'
+             '<link name="l"/></actor>')
+    load_text(world_file(actor.format(waypoint.format('1 2 3 0 0 0'))))
+    assert codes_of(world_file(actor.format(waypoint.format('')))) == ['ELEMENT_INVALID']
 
 
 # Booleans
