@@ -6,6 +6,8 @@ import json
 import subprocess
 import sys
 
+from bridge_process import SECONDS
+
 
 class JointPublisher:
     """A process that publishes positions of joints."""
@@ -32,7 +34,11 @@ class JointPublisher:
 
     def end(self):
         self._process.stdin.close()
-        self._process.wait(30.0)
+        try:
+            self._process.wait(SECONDS)
+        except subprocess.TimeoutExpired:  # it waits for a bridge that has ended
+            self._process.kill()
+            self._process.wait()
 
 
 def main():
