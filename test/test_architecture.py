@@ -14,28 +14,30 @@ MODULES = sorted(
     path.relative_to(PACKAGE) for path in PACKAGE.rglob('*.py') if not path.stem.startswith('__'))
 PAGES = [ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').glob('*.md'))]
 
-TESTED_BY_PROCESSES = {
-    'ros/joint_states.py': ['test_joint_states.py'],
+TESTED_AS_A_WHOLE = {
+    'cli/viewer/server.py': ['cli/viewer/test_page.py'],
     'ros/node.py': [
-        'test_bridge_changes.py', 'test_bridge_reload.py', 'test_bridge_background.py'],
-    'ros/parameter_service.py': ['test_bridge_changes.py', 'test_bridge_reload.py'],
-    'ros/process.py': ['test_bridge_process.py'],
+        'integration/test_bridge_changes.py', 'integration/test_bridge_reload.py',
+        'integration/test_bridge_background.py'],
+    'ros/parameter_service.py': [
+        'integration/test_bridge_changes.py', 'integration/test_bridge_reload.py'],
+    'ros/process.py': ['integration/test_bridge_process.py'],
 }
-"""Modules that run only in a whole node, and the modules in test/integration that test them."""
+"""Modules that run only in a whole program, and the test modules that run it."""
 
 
 def path_of_test(module):
     return TESTS / module.with_name(f'test_{module.name}')
 
 
-def test_every_module_has_its_test_module_or_is_tested_by_processes():
+def test_every_module_has_its_test_module_or_is_tested_as_a_whole():
     without = {str(module) for module in MODULES if not path_of_test(module).exists()}
-    assert without == TESTED_BY_PROCESSES.keys()
+    assert without == TESTED_AS_A_WHOLE.keys()
 
 
-@pytest.mark.parametrize('module', TESTED_BY_PROCESSES)
-def test_tests_by_processes_exist(module):
-    assert all((TESTS / 'integration' / name).exists() for name in TESTED_BY_PROCESSES[module])
+@pytest.mark.parametrize('module', TESTED_AS_A_WHOLE)
+def test_tests_of_whole_programs_exist(module):
+    assert all((TESTS / name).exists() for name in TESTED_AS_A_WHOLE[module])
 
 
 @pytest.mark.parametrize('page', PAGES, ids=lambda page: page.name)

@@ -1,0 +1,125 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What messages of joint states put on ``/tf``: which frames, with which stamp, and how often."""
+
+import time
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from builtin_interfaces.msg import Time
+from rclpy.executors import SingleThreadedExecutor
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Header
+from tf2_msgs.msg import TFMessage
+
+from sdf_pose_bridge import load_text
+from sdf_pose_bridge.ros.joint_states import JointStates
+from sdf_pose_bridge.ros.published_frames import PublishedFrames
+from sdf_pose_bridge.ros.publishers import Publishers
+from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
+
+ARM = """<sdf version="1.11"><model name="arm">
+<link name="base"/><link name="upper"/><link name="slide"/><link name="finger"/>
+<joint name="turn" type="revolute"><parent>base</parent><child>upper</child>
+  <axis><xyz>0 0 1</xyz></axis></joint>
+<joint name="lift" type="prismatic"><parent>upper</parent><child>slide</child>
+  <axis><xyz>0 0 1</xyz></axis></joint>
+<joint name="grip" type="prismatic"><parent>base</parent><child>finger</child>
+  <axis><xyz>1 0 0</xyz></axis></joint>
+</model></sdf>"""
+NOW = 10**9
+"""Seconds of a time that the clock has passed."""
+
+
+def joint_state(sec, positions):
+    return JointState(
+        header=Header(stamp=Time(sec=sec)), name=list(positions),
+        position=list(positions.values()))
+
+
+@pytest.fixture(name='states')
+def joint_states(make_node):
+    node = make_node('bridge')
+    scene = load_text(ARM)
+    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
+    frames = PublishedFrames(
+        Publishers(node), tree, JointPositions(scene, tree.moving.dofs), {})
+    return JointStates(node, frames.moving, is_published_later=False)
+
+
+@pytest.fixture(name='published')
+def make_published(make_node, states):
+    """
+    Returns what messages put on ``/tf``; ``published(*messages)``.
+
+    The last message must be published. The result has the stamp and the frames of each.
+    """
+    listener = make_node('listener')
+    executor = SingleThreadedExecutor(context=listener.context)
+    for node in (listener, states._node):
+        executor.add_node(node)
+    found = []
+
+    def add(message):
+        first = message.transforms[0].header.stamp.sec
+        found.append((first, {each.child_frame_id for each in message.transforms}))
+
+    def wait_for(is_last):
+        deadline = time.monotonic() + 20.0
+        while not found or not is_last(found[-1][0]):
+            assert time.monotonic() < deadline, found
+            executor.spin_once(timeout_sec=0.1)
+
+    listener.create_subscription(TFMessage, '/tf', add, 100)
+    wait_for(lambda _: True)  # what is published before the first message
+
+    def published(*messages):
+        for message in messages:
+            states.take(message)
+        wait_for(lambda sec: sec == messages[-1].header.stamp.sec)
+        return [each for each in found if each[0] < NOW]
+
+    yield published
+    executor.shutdown()
+
+
+def test_a_message_with_another_number_of_positions_is_ignored(published):
+    wrong = joint_state(5, {'turn': 1.0})
+    wrong.name.append('lift')
+    assert [sec for sec, _ in published(wrong, joint_state(6, {'turn': 0.0}))] == [6]
+
+
+def test_a_second_message_with_one_stamp_is_not_published(published):
+    messages = [joint_state(sec, {'turn': 0.5}) for sec in (5, 5, 6)]
+    assert [sec for sec, _ in published(*messages)] == [5, 6]
+
+
+def test_joints_that_no_message_has_named_are_published_too(published):
+    assert published(joint_state(5, {'lift': 0.5})) == [(5, {'upper', 'slide', 'finger'})]
+
+
+def test_of_joints_that_are_known_those_that_move_are_published(published):
+    found = published(
+        joint_state(5, {'turn': 0.5}), joint_state(6, {'lift': 0.5, 'grip': 0.5}),
+        joint_state(7, {'turn': 0.25}))
+    assert found[-1] == (7, {'upper'})
+
+
+def test_a_message_without_a_stamp_gets_the_time_of_the_node(published, states):
+    published(joint_state(0, {'turn': 0.5}), joint_state(6, {'turn': 0.25}))
+    states.take(joint_state(0, {'turn': 0.5}))
+    assert states._frames.stamp[0] > NOW
+
+
+def test_messages_that_are_published_later_are_published_together(published, states):
+    states.is_published_later = True
+    states.take(joint_state(5, {'turn': 0.5, 'lift': 0.5, 'grip': 0.5}))
+    states.take(joint_state(6, {'turn': 0.25}))
+    states.publish_waiting()
+    states.is_published_later = False
+    assert published(joint_state(7, {'turn': 0.5})) == [
+        (6, {'upper', 'slide', 'finger'}), (7, {'upper'})]
