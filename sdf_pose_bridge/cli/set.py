@@ -25,7 +25,9 @@ from sdf_pose_bridge.scene.comparison import Change
 from sdf_pose_bridge.scene.comparison import differences_of_scenes
 from sdf_pose_bridge.scene.loading import load
 from sdf_pose_bridge.scene.loading import MissingInclude
+from sdf_pose_bridge.scene.pose_setting import Measure
 from sdf_pose_bridge.scene.pose_setting import pose_change
+from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_replacement import replace_file
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -84,13 +86,33 @@ def run(options: argparse.Namespace) -> int:
     return 1
 
 
-def _set(scene: Scene, numbers: list[float], options: argparse.Namespace) -> int:
+def set_pose(
+    scene: Scene, element: int, asked: Pose, measure: Measure, options: argparse.Namespace, *,
+    all_instances: bool = False, dry_run: bool = False,
+) -> PoseChange:
+    """
+    Put the pose of an element into the file that says it.
+
+    :param asked: the pose, as ``measure`` shall return it.
+    :param options: how the scene was loaded.
+    :param all_instances: whether elements that the same ``<pose>`` places may move too.
+    :param dry_run: whether nothing is written.
+    :return: what the file says then.
+    :raises SdfError: if the file cannot say this, or cannot be written.
+    """
     def loaded(texts: Mapping[str, bytes]) -> Scene:
         return load(
             options.files[0], resource_paths=options.resource_paths, texts=texts,
             on_missing_include=MissingInclude.SKIP if options.skip_missing else (
                 MissingInclude.ERROR))
 
+    change = pose_change(scene, element, asked, measure, loaded, all_instances=all_instances)
+    if not dry_run:
+        replace_file(change.path, change.old_text, change.new_text)
+    return change
+
+
+def _set(scene: Scene, numbers: list[float], options: argparse.Namespace) -> int:
     def measured(scene: Scene, element: int) -> Pose:
         return _lookup(scene).pose_of_element(element, options.relative_to)
 
@@ -100,10 +122,9 @@ def _set(scene: Scene, numbers: list[float], options: argparse.Namespace) -> int
     else:
         quat_xyzw = converted_rotations(numbers, options.format, 'quaternion').tolist()
         asked = Pose(*measured(scene, element)[:3], *quat_xyzw)
-    change = pose_change(
-        scene, element, asked, measured, loaded, all_instances=options.all_instances)
-    if not options.dry_run:
-        replace_file(change.path, change.old_text, change.new_text)
+    change = set_pose(
+        scene, element, asked, measured, options, all_instances=options.all_instances,
+        dry_run=options.dry_run)
     sys.stdout.write(change.diff)
     moved = [
         printable(difference.name) for difference in differences_of_scenes(scene, change.scene)

@@ -6,7 +6,9 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
+from collections.abc import Callable
 from collections.abc import Iterable
+from collections.abc import Mapping
 import importlib
 import os
 import sys
@@ -22,9 +24,13 @@ from sdf_pose_bridge.cli.printing import add_output_argument
 from sdf_pose_bridge.cli.printing import add_unit_arguments
 from sdf_pose_bridge.cli.printing import printed_errors
 from sdf_pose_bridge.cli.printing import units_from_arguments
+from sdf_pose_bridge.cli.set import set_pose
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
+from sdf_pose_bridge.tf.joint_positions import scene_at_positions
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 
 _FORMATS = ('.html', '.png')
@@ -49,6 +55,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         '--port', type=int, default=_PORT, metavar='N',
         help=f'the port of the page, or the next free one; by default {_PORT}')
+    parser.add_argument(
+        '--edit', action='store_true',
+        help='let a frame be dragged in the page, and its pose be written into the file as by '
+             '"sdf_pose set"')
     parser.set_defaults(run=run)
 
 
@@ -71,7 +81,8 @@ def run(options: argparse.Namespace) -> int:
     reader = meshes.MeshReader(resource_finder(options.resource_paths, os.environ))
     server = servers.server_for_this_machine(0 if options.output else options.port)
     page = pages.Page(
-        server, tf_options_from_arguments(options), units_from_arguments(options), reader)
+        server, tf_options_from_arguments(options), units_from_arguments(options), reader,
+        _pose_setter(options) if options.edit else None)
     not_drawn = None
     with printed_errors():
         not_drawn = page.show(scene)
@@ -93,6 +104,18 @@ def run(options: argparse.Namespace) -> int:
         reader.close()
         server.stop()
     return 0
+
+
+def _pose_setter(options: argparse.Namespace) -> Callable[..., None]:
+    def put(
+        scene: Scene, element: int, pose: Pose, positions: Mapping[str, float], *, dry_run: bool,
+    ) -> None:
+        def measured(scene: Scene, element: int) -> Pose:
+            return scene_at_positions(scene, positions).pose_of(element)
+
+        set_pose(scene, element, pose, measured, options, dry_run=dry_run)
+
+    return put
 
 
 def _fail(message: str) -> int:

@@ -18,6 +18,7 @@ import os
 from pathlib import Path
 import resource
 import sys
+import time
 from typing import Any
 
 import numpy as np
@@ -36,6 +37,8 @@ MOST_BYTES = 100_000_000
 """Size of a mesh with the files that it names."""
 MOST_TRIANGLES = 500_000
 """How many triangles a mesh may have."""
+MOST_SECONDS = 10
+"""Processor time for each mesh."""
 MOST_MEMORY_BYTES = 2_000_000_000
 """Address space of the process."""
 FORMATS = ('.dae', '.glb', '.gltf', '.obj', '.stl')
@@ -148,7 +151,10 @@ def main() -> None:
     answers = os.fdopen(os.dup(1), 'wb')
     # What a library prints must not get between the answers.
     os.dup2(2, 1)
+    _, most_seconds = resource.getrlimit(resource.RLIMIT_CPU)
     for line in sys.stdin:
+        seconds = int(time.process_time()) + MOST_SECONDS + 1
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, most_seconds))
         try:
             arrays = arrays_from_mesh(*json.loads(line))
         except (MeshError, SdfError) as error:

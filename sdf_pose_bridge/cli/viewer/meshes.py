@@ -7,6 +7,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -20,8 +21,8 @@ from sdf_pose_bridge.scene.triangles import Triangles
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.sdformat.shapes import Shape
 
-MOST_SECONDS = 10.0
-"""How long it may take to read a mesh."""
+MOST_SECONDS = 60.0
+"""How long it may take to read a mesh; its processor time has a limit of its own."""
 
 
 class MeshPart(NamedTuple):
@@ -88,13 +89,7 @@ class MeshReader:
         process = self._process
         assert process.stdin is not None
         assert process.stdout is not None
-        is_late = threading.Event()
-
-        def end() -> None:
-            is_late.set()
-            process.kill()
-
-        timer = threading.Timer(MOST_SECONDS, end)
+        timer = threading.Timer(MOST_SECONDS, process.kill)
         timer.start()
         try:
             process.stdin.write(json.dumps([path, submesh]).encode() + b'\n')
@@ -106,9 +101,10 @@ class MeshReader:
         finally:
             timer.cancel()
         if not archive:
+            is_late = process.wait() in (-signal.SIGXCPU, -signal.SIGKILL)
             self.close()
-            return Mesh(reason=f'it takes longer than {MOST_SECONDS:g} s to read'
-                        if is_late.is_set() else 'the process that reads it has ended')
+            return Mesh(reason='it takes too long to read' if is_late else (
+                'the process that reads it has ended'))
         return _mesh_from_archive(archive)
 
 

@@ -1,15 +1,18 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the page of a scene shows, and what its sliders, buttons and clicks do."""
+"""The controls of the page, and what its sliders, buttons and clicks do."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from collections.abc import Mapping
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import islice
 import math
 import threading
 from typing import Any
+from typing import Protocol
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,18 +20,18 @@ import viser
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
 from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.viewer.drawing import bounds_of_scene
-from sdf_pose_bridge.cli.viewer.drawing import names_at_places
 from sdf_pose_bridge.cli.viewer.drawing import NotDrawn
-from sdf_pose_bridge.cli.viewer.drawing import Surface
-from sdf_pose_bridge.cli.viewer.drawing import surfaces_from_scene
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_frame
+from sdf_pose_bridge.cli.viewer.frame_texts import pose_of_frame
 from sdf_pose_bridge.cli.viewer.frame_texts import rows_of_tree
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
-from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.cli.viewer.scene_nodes import GROUPS
+from sdf_pose_bridge.cli.viewer.scene_nodes import node_of_kind
+from sdf_pose_bridge.cli.viewer.scene_nodes import SceneNodes
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom
@@ -41,7 +44,6 @@ from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 from sdf_pose_bridge.tf.tree import elements_in_model
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
-from sdf_pose_bridge.tf.tree import TfTree
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -54,13 +56,28 @@ _LARGEST_RANGE = 1000.0
 half a metre to either side."""
 _MOST_SWITCHES = 50
 _MOST_CHOICES = 1000
-_WXYZ = [6, 3, 4, 5]
-_DIRECTION_TO_EYE = np.array([0.75, -0.5, 0.45])
 _ROWS_STYLE = ('<style>.rows{max-height:40vh;overflow:auto;margin:0 1em;font-size:0.8em}'
                '.rows label{display:block;cursor:pointer;white-space:pre}'
                '.rows .selected{font-weight:bold}div:has(>.rows)~*{display:none}</style>')
 _HOW_TO_SELECT = '<div style="margin:0 1em;font-size:0.8em">Click one above or in the scene.</div>'
 _ERROR_STYLE = 'color:#c92a2a;white-space:pre-wrap;overflow-wrap:anywhere;margin:0 1em;'
+
+
+class SetPose(Protocol):
+    """Puts a pose into the file."""
+
+    def __call__(
+        self, scene: Scene, element: int, pose: Pose, positions: Mapping[str, float], *,
+        dry_run: bool,
+    ) -> None:
+        """
+        Put the pose of an element into the file that says it.
+
+        :param scene: the scene as it was loaded.
+        :param pose: where the element shall be in the root, with the joints at ``positions``.
+        :param dry_run: whether only to check that the file can say this.
+        :raises SdfError: if it cannot, or cannot be written.
+        """
 
 
 class Page:
@@ -71,20 +88,23 @@ class Page:
     :param options: which elements are frames, and how they are named.
     :param units: the units of poses and sliders.
     :param meshes: reads the meshes.
+    :param set_pose: puts poses into the file; None if frames cannot be dragged.
     """
 
     def __init__(
         self, server: viser.ViserServer, options: TfOptions, units: Units, meshes: MeshReader,
+        set_pose: SetPose | None = None,
     ) -> None:
-        self._server, self._options, self._units, self._meshes = server, options, units, meshes
+        self._server, self._options, self._units = server, options, units
+        self._set_pose = set_pose
         # The functions that viser calls run in many threads.
         self._lock = threading.RLock()
         self._is_moved = threading.Event()
-        self._hidden = {'/collisions'}
-        self._nodes: dict[str, Any] = {}
+        self._nodes = SceneNodes(server, meshes, self._select)
         self._opacity = 1.0
         self._positions: dict[str, float] = {}
         self._selected = self._reference = ''
+        self._dragged: Pose | None = None
         self._loaded: Scene | None = None
         threading.Thread(target=self._follow_sliders, name='sliders', daemon=True).start()
 
@@ -105,28 +125,29 @@ class Page:
             is_first = self._loaded is None
             self._loaded = self._scene = scene
             self._tree, self._is_in_model = tree, is_in_model
-            self._labels = kind_labels_of(scene, tree)
-            self._tops, self._elements = _tops_of_scene(scene), _elements_of_frames(tree)
+            self._tops = _tops_of_scene(scene)
             self._dofs = self._movable_dofs()
             self._positions = {
                 name: value for name, value in self._positions.items() if name in self._dofs}
             self._move()
-            self._nodes = {}
             self._add_controls()
             not_drawn = self._draw()
             if is_first:
-                self._look_at_everything()
+                self._nodes.look_at_everything()
         return not_drawn
 
     def show_errors(self, lines: Sequence[str]) -> None:
-        """
-        Show the errors of a file above its last scene.
-
-        :param lines: a line for each error.
-        """
+        """Show the errors of a file, a line for each, above its last scene."""
         with self._lock:
             text = '\n'.join(map(escaped, lines))
             self._errors.content = f'<pre style="{_ERROR_STYLE}">{text}</pre>'
+
+    def _draw(self) -> list[NotDrawn]:
+        hidden = [self._scene.index(name) for name in self._nodes.hidden if self._scene.has(name)]
+        is_shown = self._is_in_model & ~np.isin(self._tops, hidden)
+        not_drawn = self._nodes.draw(self._scene, self._tree, is_shown)
+        self._show_frame()
+        return not_drawn
 
     # Joints
 
@@ -151,9 +172,10 @@ class Page:
             self._is_moved.clear()
             with self._lock, self._server.atomic():
                 self._move()
-                self._place()
+                self._nodes.place(self._scene, self._tree)
+                self._show_frame()
 
-    def _add_slider(self, name: str, dof: DegreeOfFreedom) -> viser.GuiSliderHandle[float]:
+    def _add_slider(self, name: str, dof: DegreeOfFreedom) -> Any:
         turns, units = dof.rad_per_unit != 0.0, self._units
         factor = (math.degrees(units.is_degrees) if turns else 1000.0 * units.is_mm) or 1.0
         lower, upper = (-math.pi, math.pi) if turns else (-0.5, 0.5)
@@ -167,8 +189,8 @@ class Page:
             upper * factor, max((upper - lower) * factor / 1000.0, 1e-9), value * factor)
 
         @slider.on_update
-        def _(event: viser.GuiEvent[Any]) -> None:
-            self._positions[name] = event.target.value / factor
+        def _(_: object) -> None:
+            self._positions[name] = slider.value / factor
             self._is_moved.set()
 
         return slider
@@ -176,24 +198,17 @@ class Page:
     # Controls
 
     def _add_controls(self) -> None:
-        gui, labels = self._server.gui, self._labels
+        gui, labels = self._server.gui, kind_labels_of(self._scene, self._tree)
         gui.reset()
         gui.set_panel_label(printable(self._scene.path))
         self._errors = gui.add_html('')
         with gui.add_folder('Show'):
             for label in dict.fromkeys(labels):
-                self._add_switch(f'/frames/{label}', f'{label} ({labels.count(label)})')
-            for name in ('/names', '/lines to parents', '/visuals', '/collisions'):
+                self._add_switch(node_of_kind(label), f'{label} ({labels.count(label)})')
+            for name in GROUPS:
                 self._add_switch(name, name[1:])
             opacity = gui.add_slider('opacity', 0.1, 1.0, 0.05, self._opacity)
-
-        @opacity.on_update
-        def _(_: object) -> None:
-            with self._lock, self._server.atomic():
-                self._opacity = opacity.value
-                for copies in self._copies:
-                    copies.opacity = self._opacity if self._opacity < 1.0 else None
-
+        opacity.on_update(lambda _: self._set_opacity(opacity.value))
         models = [
             element for element in dict.fromkeys(self._tops.tolist())
             if element >= 0 and self._scene.kinds[element] == Kind.MODEL
@@ -229,29 +244,32 @@ class Page:
                 'in', ids,
                 initial_value=self._reference if self._reference in ids else ids[0])
             self._description = gui.add_html('')
-
-        @self._choice.on_update
-        def _(_: object) -> None:
-            self._reference = self._choice.value
-            self._show_frame()
-
+            self._write = gui.add_button('write to file', visible=False)
+        self._choice.on_update(lambda _: self._choose(self._choice.value))
+        self._write.on_click(lambda _: self._write_pose())
         self._show_rows()
-        self._show_frame()
 
     def _add_switch(
         self, name: str, label: str, redraw: Callable[[], object] | None = None,
     ) -> None:
-        switch = self._server.gui.add_checkbox(label, name not in self._hidden)
+        hidden = self._nodes.hidden
+        switch = self._server.gui.add_checkbox(label, name not in hidden)
 
         @switch.on_update
         def _(_: object) -> None:
             with self._lock, self._server.atomic():
-                (self._hidden.discard if switch.value else self._hidden.add)(name)
-                if redraw is not None:
+                (hidden.discard if switch.value else hidden.add)(name)
+                if redraw is None:
+                    self._nodes.set_visible(name, self._tree, visible=switch.value)
+                else:
                     redraw()
-                elif name in self._nodes:
-                    self._nodes[name].visible = switch.value
-                    self._place_names()
+
+    def _set_opacity(self, opacity: float) -> None:
+        with self._lock, self._server.atomic():
+            self._opacity = opacity
+            self._nodes.set_opacity(opacity)
+
+    # Frames
 
     def _show_rows(self) -> None:
         with self._lock:
@@ -274,142 +292,61 @@ class Page:
                 self._show_rows()
                 self._show_frame()
 
+    def _choose(self, reference: str) -> None:
+        with self._lock:
+            self._reference = reference
+            self._show_frame()
+
     def _show_frame(self) -> None:
         """Describe the selected frame, and mark it in the scene."""
-        with self._lock:
-            ids, marked = self._tree.frame_ids, self._nodes.get('/selected')
-            frame = ids.index(self._selected) if self._selected in ids else NO_PARENT
-            if marked is not None:
-                marked.visible = frame != NO_PARENT
-            if frame == NO_PARENT:
-                self._description.content = _HOW_TO_SELECT
-                return
-            reference = ids.index(self._reference) if self._reference in ids else ROOT_IS_PARENT
-            self._description.content = html_of_frame(
-                self._scene, self._tree, frame, reference, self._units)
-            if marked is not None:
-                pose = self._tree.poses[frame]
-                marked.position, marked.wxyz = pose[:3], pose[_WXYZ]
-
-    # The scene
-
-    def _draw(self) -> list[NotDrawn]:
-        """Draw everything anew."""
-        scene, tree, nodes = self._scene, self._tree, self._server.scene
-        nodes.reset()
-        nodes.add_light_hemisphere('/light', ground_color=(160, 160, 160), intensity=1.5)
-        is_shown = self._is_in_model & ~np.isin(
-            self._tops, [scene.index(name) for name in self._hidden if scene.has(name)])
-        size_m = float(np.ptp(tree.poses[:, :3], axis=0).max(initial=0.0)) or 1.0
-        self._surfaces, not_drawn = surfaces_from_scene(
-            scene, [element for element in scene.shapes if is_shown[element]], size_m,
-            self._meshes)
-        self._bounds = bounds_of_scene(scene, tree.poses[:, :3], self._surfaces)
-        self._size_m = float(np.ptp(self._bounds, axis=0).max()) or 1.0
-        # A floor is often much larger than what stands on it.
-        origins = tree.poses[:, :3]
-        self._corners = np.array([origins.min(axis=0), origins.max(axis=0)]) if len(
-            origins) else self._bounds
-        self._view_m = max(float(np.ptp(self._corners, axis=0).max()), 0.3 * self._size_m)
-        self._shown = np.flatnonzero(is_shown[self._elements])
-        length_m = self._length_of_axes()
-        self._nodes = {
-            name: nodes.add_frame(name, show_axes=False, visible=name not in self._hidden)
-            for name in ('/frames', '/names', '/visuals', '/collisions')}
-        self._nodes['/selected'] = nodes.add_frame(
-            '/selected', axes_length=2.0 * length_m, axes_radius=0.08 * length_m, visible=False)
-        self._nodes['/lines to parents'] = nodes.add_line_segments(
-            '/lines to parents', self._lines(), (134, 142, 150), thickness=0.002 * self._view_m,
-            visible='/lines to parents' not in self._hidden)
-        self._axes: list[tuple[Any, NDArray[np.intp]]] = []
-        for label in dict.fromkeys(self._labels):
-            frames = np.array([
-                frame for frame in self._shown.tolist() if self._labels[frame] == label], int)
-            name, poses = f'/frames/{label}', tree.poses[frames]
-            axes = nodes.add_batched_axes(
-                name, poses[:, _WXYZ], poses[:, :3], axes_length=length_m,
-                axes_radius=0.05 * length_m, visible=name not in self._hidden)
-            axes.on_click(lambda event, frames=frames: self._select(frames[event.instance_index]))
-            self._nodes[name] = axes
-            self._axes.append((axes, frames))
-        self._copies = [
-            self._add_surface(number, surface) for number, surface in enumerate(self._surfaces)]
-        self._names: list[viser.LabelHandle] = []
-        self._place_names()
-        self._show_frame()
-        return not_drawn
-
-    def _add_surface(self, number: int, surface: Surface) -> Any:
-        poses = self._scene.poses[surface.elements]
-        copies = self._server.scene.add_batched_meshes_simple(
-            f'/{surface.kind.label}s/{number}', surface.triangles.points, surface.triangles.faces,
-            poses[:, _WXYZ], poses[:, :3], batched_scales=surface.scales,
-            batched_colors=np.round(255.0 * np.clip(surface.rgba[:, :3], 0.0, 1.0)).astype(
-                np.uint8),
-            batched_opacities=surface.rgba[:, 3] if (surface.rgba[:, 3] < 1.0).any() else None,
-            opacity=self._opacity if self._opacity < 1.0 else None, lod='off', flat_shading=True,
-            side='double')
-        copies.on_click(lambda event: self._select(
-            int(self._tree.nearest_frames[surface.elements[event.instance_index or 0]])))
-        return copies
-
-    def _place(self) -> None:
-        """Move what is drawn to where the joints put it."""
-        for axes, frames in self._axes:
-            _set_poses(axes, self._tree.poses[frames])
-        for copies, surface in zip(self._copies, self._surfaces, strict=True):
-            _set_poses(copies, self._scene.poses[surface.elements])
-        self._nodes['/lines to parents'].points = self._lines()
-        self._place_names()
-        self._show_frame()
-
-    def _lines(self) -> NDArray[np.float64]:
-        """Return lines from the parents of frames to the frames, shape (n, 2, 3)."""
-        frames = self._shown[self._tree.parents[self._shown] != NO_PARENT]
-        # The last entry is the root frame, which the index of the root as a parent means.
-        origins = np.concatenate([self._tree.poses[:, :3], np.zeros((1, 3))])
-        assert ROOT_IS_PARENT == -1
-        return np.stack([origins[self._tree.parents[frames]], origins[frames]], axis=1)
-
-    def _place_names(self) -> None:
-        if '/names' in self._hidden:
+        ids, self._dragged = self._tree.frame_ids, None
+        self._write.visible = False
+        frame = ids.index(self._selected) if self._selected in ids else NO_PARENT
+        if frame == NO_PARENT:
+            self._nodes.mark(None)
+            self._description.content = _HOW_TO_SELECT
             return
-        frames = [frame for frame in self._shown.tolist()
-                  if f'/frames/{self._labels[frame]}' not in self._hidden]
-        texts = [printable(shortened(self._tree.frame_ids[frame].rpartition('/')[2]))
-                 for frame in frames]
-        count = 0
-        for count, (text, point) in enumerate(names_at_places(
-                texts, self._tree.poses[frames, :3], 0.025 * self._view_m), 1):
-            if count > len(self._names):
-                self._names.append(self._server.scene.add_label(
-                    f'/names/{count}', text, position=point, font_screen_scale=0.8))
-                continue
-            label = self._names[count - 1]
-            label.position = point
-            if label.text != text:
-                label.text = text
-        while len(self._names) > count:
-            self._names.pop().remove()
+        pose = pose_of_frame(self._tree, frame)
+        self._nodes.mark(pose)
+        self._describe(frame, pose)
+        element = int(self._tree.elements[frame])
+        if self._set_pose is None or element < 0 or self._loaded is None:
+            return
+        try:
+            self._set_pose(self._loaded, element, pose, self._positions, dry_run=True)
+        except SdfError as error:
+            self._description.content += f'<pre style="{_ERROR_STYLE}">{escaped(str(error))}</pre>'
+            return
+        gizmo = self._nodes.add_gizmo(pose)
 
-    def _length_of_axes(self) -> float:
-        """Return the length of axes, in metres: short where frames are near to one another."""
-        distances_m = np.linalg.norm(self._tree.transforms[:, :3], axis=1)
-        distances_m = distances_m[distances_m > 1e-6 * self._size_m]
-        typical_m = float(np.median(distances_m)) if len(distances_m) else self._size_m
-        return min(max(0.4 * typical_m, 0.01 * self._size_m), 0.1 * self._size_m)
+        @gizmo.on_update
+        def _(_: object) -> None:
+            with self._lock:
+                w, x, y, z = gizmo.wxyz.tolist()
+                self._dragged = Pose(*(*gizmo.position.tolist(), x, y, z, w))
+                self._nodes.mark(self._dragged)
+                self._describe(frame, self._dragged)
+                self._write.visible = True
 
-    def _look_at_everything(self) -> None:
-        camera, corners = self._server.initial_camera, self._corners
-        camera.look_at = corners.mean(axis=0)
-        camera.position = corners.mean(axis=0) + 1.6 * self._view_m * _DIRECTION_TO_EYE
-        camera.near, camera.far = 0.001 * self._size_m, 100.0 * self._size_m
-        camera.fov = 0.8
+    def _describe(self, frame: int, pose: Pose) -> None:
+        poses = self._tree.poses.copy()
+        poses[frame] = pose
+        ids = self._tree.frame_ids
+        reference = ids.index(self._reference) if self._reference in ids else ROOT_IS_PARENT
+        self._description.content = html_of_frame(
+            self._scene, replace(self._tree, poses=poses), frame, reference, self._units)
 
-
-def _set_poses(node: Any, poses: PoseArray) -> None:
-    node.batched_positions = poses[:, :3].astype(np.float32)
-    node.batched_wxyzs = poses[:, _WXYZ].astype(np.float32)
+    def _write_pose(self) -> None:
+        with self._lock:
+            if self._dragged is None or self._set_pose is None or self._loaded is None:
+                return
+            frame = self._tree.frame_ids.index(self._selected)
+            try:
+                self._set_pose(
+                    self._loaded, int(self._tree.elements[frame]), self._dragged, self._positions,
+                    dry_run=False)
+            except SdfError as error:
+                self.show_errors(list(map(str, error.errors)))
 
 
 def _tops_of_scene(scene: Scene) -> NDArray[np.intp]:
@@ -418,12 +355,3 @@ def _tops_of_scene(scene: Scene) -> NDArray[np.intp]:
     for element, parent in enumerate(scene.parents.tolist()):
         tops.append(-1 if parent < 0 else element if tops[parent] < 0 else tops[parent])
     return np.array(tops)
-
-
-def _elements_of_frames(tree: TfTree) -> NDArray[np.intp]:
-    """Return the element of each frame; of an optical frame that of its parent."""
-    elements = tree.elements.tolist()
-    for frame, parent in enumerate(tree.parents.tolist()):
-        if elements[frame] < 0:
-            elements[frame] = elements[parent]
-    return np.array(elements, int)

@@ -12,7 +12,10 @@ from types import SimpleNamespace
 
 from browser import browser
 from browser import DEADLINE_S
+import numpy as np
 import pytest
+
+from sdf_pose_bridge import load
 
 pytest.importorskip('viser', reason='needs viser')
 
@@ -50,9 +53,10 @@ def shown(tmp_path_factory):
     file = folder / 'cell.sdf'
     file.write_text(TEXT)
     with browser(folder / 'browser') as page:
-        process = run_view(folder, 'cell.sdf', '--port', '0')
+        process = run_view(folder, 'cell.sdf', '--port', '0', '--edit')
         try:
             address = process.stdout.readline().strip()
+            page.size(1366, 768)
             page.open(address)
             page.wait_for(f'{ROWS}.length > 0')
             yield SimpleNamespace(file=file, page=page, address=address)
@@ -125,6 +129,34 @@ def test_names_and_errors_are_text(page, shown):
     page.wait_for("document.querySelector('pre')?.textContent.includes('<img')")
     assert page.run('window.wasRun') is None
     assert page.run("document.querySelectorAll('img[src=x]').length") == 0
+
+
+def point_on_screen(page, point):
+    """Return where a point of the scene is in the picture, as the camera stands at first."""
+    width, height = page.run('[window.innerWidth, window.innerHeight]')
+    middle = np.array([0.5, 0.0, 0.0])
+    to_scene = -1.6 * np.array([0.75, -0.5, 0.45])
+    forward = to_scene / np.linalg.norm(to_scene)
+    right = np.cross(forward, (0, 0, 1))
+    right /= np.linalg.norm(right)
+    x, y, z = np.array([right, np.cross(right, forward), forward]) @ (point - middle + to_scene)
+    scale = 0.5 * height / np.tan(0.4)
+    return 0.5 * width + scale * x / z, 0.5 * height - scale * y / z
+
+
+def test_frame_is_dragged_and_written(page, shown):
+    select(page, HOSTILE)
+    page.mouse(*(point_on_screen(page, (1.0, 0.0, 0.38 + height)) for height in (
+        0.0, 0.02, 0.05, 0.08, 0.1)))
+    write = "[...document.querySelectorAll('button')].find(b => b.innerText === 'write to file')"
+    page.wait_for(write)
+    page.run(f'{write}.click()')
+    page.wait_for(f'!{write}')
+    pose = load(shown.file).pose(HOSTILE)
+    assert pose[:3] == pytest.approx((1.0, 0.0, 0.1), abs=0.02)
+    changed = shown.file.read_text().splitlines()
+    assert [line for line in TEXT.splitlines() if line not in changed] == [
+        f'  <frame name="{html.escape(HOSTILE)}"><pose>1 0 0 0 0 0</pose></frame>']
 
 
 def test_page_asks_for_nothing_elsewhere(page, shown):
