@@ -140,7 +140,7 @@ class Page:
         """Show the errors of a file, a line for each, above its last scene."""
         with self._lock:
             text = '\n'.join(map(escaped, lines))
-            self._errors.content = f'<pre style="{_ERROR_STYLE}">{text}</pre>'
+            self._errors.content = f'<pre class="errors" style="{_ERROR_STYLE}">{text}</pre>'
 
     def _draw(self) -> list[NotDrawn]:
         hidden = [self._scene.index(name) for name in self._nodes.hidden if self._scene.has(name)]

@@ -18,7 +18,7 @@ OPTIONS = (
     '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
     '--disable-background-networking', '--disable-component-update', '--disable-sync',
     '--remote-debugging-port=0')
-DEADLINE_S = 60.0
+DEADLINE_S = 120.0
 
 
 class Browser:

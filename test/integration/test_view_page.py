@@ -19,7 +19,7 @@ from sdf_pose_bridge import load
 
 pytest.importorskip('viser', reason='needs viser')
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[2]
 HOSTILE = '<img src=x onerror="window.wasRun=true">'
 TEXT = f"""<sdf version="1.11"><world name="w">
   <model name="arm">
@@ -115,10 +115,10 @@ def test_file_is_followed(page, shown):
 
 def test_errors_are_shown_above_the_last_scene(page, shown):
     shown.file.write_text(TEXT.replace('<parent>base', '<parent>bass'))
-    page.wait_for("document.querySelector('pre')?.textContent.includes('cell.sdf:')")
+    page.wait_for("document.querySelector('.errors')?.textContent.includes('cell.sdf:')")
     assert page.run(f'{ROWS}.length') == 5
     shown.file.write_text(TEXT)
-    page.wait_for("!document.querySelector('pre')")
+    page.wait_for("!document.querySelector('.errors')")
 
 
 def test_names_and_errors_are_text(page, shown):
@@ -126,7 +126,7 @@ def test_names_and_errors_are_text(page, shown):
     assert page.run(f"document.body.innerText.includes('{HOSTILE}')")
     wrong = TEXT.replace('<link name="slide"/>', f'<link name="{html.escape(HOSTILE)}::a"/>')
     shown.file.write_text(wrong)
-    page.wait_for("document.querySelector('pre')?.textContent.includes('<img')")
+    page.wait_for("document.querySelector('.errors')?.textContent.includes('<img')")
     assert page.run('window.wasRun') is None
     assert page.run("document.querySelectorAll('img[src=x]').length") == 0
 
