@@ -107,8 +107,6 @@ def _parts(
         triangles = triangles_from_shape(unit)
         assert triangles is not None
         return [(unit, triangles, scale, rgba)], ''
-    if not np.isfinite(shape.mesh_scale).all():
-        return [], 'the scale of its mesh is not finite'
     mesh = meshes.mesh(shape, file)
     if mesh.parts:
         return [

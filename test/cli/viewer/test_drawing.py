@@ -50,11 +50,6 @@ def test_missing_mesh_is_a_small_box(drawn):
     assert reason == 'the mesh "a.stl": it is not found'
 
 
-def test_scale_that_is_not_finite(drawn):
-    _, surfaces, ((_, reason),) = drawn(MESH.replace('-2', 'inf'))
-    assert (surfaces, reason) == ([], 'the scale of its mesh is not finite')
-
-
 def test_more_surfaces_than_are_drawn(drawn, monkeypatch):
     monkeypatch.setattr(drawing, 'MOST_SURFACES', 2)
     _, (surface,), not_drawn = drawn(*[geometry('<sphere/>')] * 5)
