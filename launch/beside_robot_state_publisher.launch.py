@@ -69,11 +69,11 @@ def generate_launch_description() -> LaunchDescription:
             package='sdf_pose_bridge',
             executable='bridge',
             name='sdf_pose_bridge',
-            parameters=[
-                {name: _text(LaunchConfiguration(name))
-                 for name in ('sdf_file', 'root_frame', 'frame_prefix', 'model')},
+            parameters=[{
+                **{name: _text(LaunchConfiguration(name))
+                   for name in ('sdf_file', 'root_frame', 'frame_prefix', 'model')},
                 # The topic is robot_state_publisher's.
-                {'publish_robot_description': False}],
+                'publish_robot_description': False}],
             output='screen',
         ),
     ])

@@ -8,16 +8,26 @@ Start the bridge on one file.
 A parameter whose argument is not given comes from the params file, or else is the default of the
 node. ``config/bridge.yaml`` of this package is a params file that explains every parameter.
 
+If the name of the file ends with ``.xacro``, xacro expands it first, with ``xacro_arguments``, and
+the node gets the text as ``robot_description``:
+
+    ros2 launch sdf_pose_bridge bridge.launch.py sdf_file:=robot.urdf.xacro \
+        xacro_arguments:='prefix:=left_ gripper:=true'
+
 With ``rviz:=true`` RViz shows the frames and the visuals of the links, from ``rviz/bridge.rviz``.
 """
 
 from __future__ import annotations
 
+import shlex
+
+from ament_index_python.packages import get_packages_with_prefixes
 from launch import LaunchContext
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.actions import OpaqueFunction
 from launch.conditions import IfCondition
+from launch.substitutions import Command
 from launch.substitutions import LaunchConfiguration
 from launch.substitutions import PathJoinSubstitution
 from launch.substitutions import ThisLaunchFileDir
@@ -48,6 +58,10 @@ def generate_launch_description() -> LaunchDescription:
             description=f'{description} If empty, params_file decides.')
           for name, description in PARAMETERS.items()),
         DeclareLaunchArgument(
+            'xacro_arguments', default_value='',
+            description='Arguments for xacro, such as name:=value; for a file that ends with '
+            '.xacro.'),
+        DeclareLaunchArgument(
             'namespace', default_value='',
             description='Namespace of the node, its topics and services; not of /tf_static.'),
         DeclareLaunchArgument(
@@ -61,6 +75,11 @@ def generate_launch_description() -> LaunchDescription:
 
 
 def _nodes(context: LaunchContext) -> list[Node]:
+    with_rviz = IfCondition(LaunchConfiguration('rviz')).evaluate(context)
+    if with_rviz and 'rviz2' not in get_packages_with_prefixes():
+        # Said before the node starts, which would run on when launch ends with an error.
+        msg = 'rviz:=true needs the package rviz2, which is not installed'
+        raise RuntimeError(msg)
     given = {name: LaunchConfiguration(name).perform(context) for name in PARAMETERS}
     params_file = LaunchConfiguration('params_file').perform(context)
     bridge = Node(
@@ -72,13 +91,24 @@ def _nodes(context: LaunchContext) -> list[Node]:
         parameters=[
             *([ParameterFile(params_file)] if params_file else []),
             # As a string, even if it looks like a number: a frame may be called 1 or yes.
-            {name: ParameterValue(value, value_type=str) for name, value in given.items()
-             if value},
+            {name: ParameterValue(value, value_type=str)
+             for name, value in _parameters(given).items()},
         ],
         output='screen',
     )
-    with_rviz = IfCondition(LaunchConfiguration('rviz')).evaluate(context)
     return [bridge, _rviz(context, given['root_frame'])] if with_rviz else [bridge]
+
+
+def _parameters(given: dict[str, str]) -> dict[str, str | Command]:
+    parameters: dict[str, str | Command] = {name: value for name, value in given.items() if value}
+    file = given['sdf_file']
+    if file.endswith('.xacro'):
+        # The file of a params file must not be set, too.
+        parameters['sdf_file'] = ''
+        parameters['robot_description'] = Command(
+            ['xacro ', shlex.quote(file), ' ', LaunchConfiguration('xacro_arguments')],
+            on_stderr='warn')
+    return parameters
 
 
 def _rviz(context: LaunchContext, root_frame: str) -> Node:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Launch files load, describe their arguments and pass them to the right nodes."""
 
+import os
 from pathlib import Path
 import xml.etree.ElementTree as ET
 
@@ -15,6 +16,7 @@ from launch.actions import IncludeLaunchDescription
 from launch.conditions import InvalidConditionExpressionError
 from launch.launch_description_sources import AnyLaunchDescriptionSource
 from launch.launch_description_sources import get_launch_description_from_any_launch_file
+from launch.substitutions.substitution_failure import SubstitutionFailure
 from launch.utilities import perform_substitutions
 from launch_ros.actions import Node
 import yaml
@@ -62,6 +64,23 @@ def parameters_of_nodes(name, **arguments):
     return found
 
 
+def command(folder, monkeypatch, name, text):
+    """Make a command that runs a text of the shell, before all others of its name."""
+    file = folder / name
+    file.write_text(f'#!/bin/sh\n{text}\n', encoding='utf-8')
+    file.chmod(0o755)
+    monkeypatch.setenv('PATH', f'{folder}:{os.environ["PATH"]}')
+
+
+@pytest.fixture
+def rviz_installed(tmp_path, monkeypatch):
+    """Make the ament index list rviz2, which needs a display and is not on most machines."""
+    index = tmp_path / 'share/ament_index/resource_index/packages'
+    index.mkdir(parents=True)
+    (index / 'rviz2').touch()
+    monkeypatch.setenv('AMENT_PREFIX_PATH', f'{tmp_path}:{os.environ["AMENT_PREFIX_PATH"]}')
+
+
 def rviz_of(name, **arguments):
     """Return the command line of RViz and the topics that it finds under other names."""
     nodes, context = nodes_of(name, rviz='true', **arguments)
@@ -88,7 +107,8 @@ def test_every_argument_has_a_description(name):
 @pytest.mark.parametrize('name', BRIDGE_FILES)
 def test_the_bridge_can_be_told_file_names_and_parameters(name):
     assert declared(name).keys() == {
-        'sdf_file', 'namespace', 'frame_prefix', 'root_frame', 'params_file', 'rviz'}
+        'sdf_file', 'xacro_arguments', 'namespace', 'frame_prefix', 'root_frame', 'params_file',
+        'rviz'}
 
 
 def test_both_forms_say_the_same_of_their_arguments():
@@ -111,6 +131,28 @@ def test_a_value_stays_text_whatever_it_looks_like(value):
 
 
 @pytest.mark.parametrize('name', BRIDGE_FILES)
+def test_xacro_makes_the_text_of_a_file_for_it(name, tmp_path, monkeypatch):
+    # What xacro makes of a file is tested with the real one, where it is installed.
+    command(tmp_path, monkeypatch, 'xacro', 'echo "$@"')
+    nodes = parameters_of_nodes(
+        name, sdf_file='my arm.urdf.xacro', xacro_arguments='side:=left size:=2')
+    assert nodes == {'bridge': {
+        'sdf_file': '', 'robot_description': 'my arm.urdf.xacro side:=left size:=2\n'}}
+
+
+def test_warnings_of_xacro_end_nothing(tmp_path, monkeypatch):
+    command(tmp_path, monkeypatch, 'xacro', 'echo deprecated >&2; echo text')
+    nodes = parameters_of_nodes('bridge.launch.py', sdf_file='a.xacro')
+    assert nodes['bridge']['robot_description'] == 'text\n'
+
+
+def test_an_error_of_xacro_is_reported(tmp_path, monkeypatch):
+    command(tmp_path, monkeypatch, 'xacro', 'exit 2')
+    with pytest.raises(SubstitutionFailure, match='xacro'):
+        parameters_of_nodes('bridge.launch.py', sdf_file='a.xacro')
+
+
+@pytest.mark.parametrize('name', BRIDGE_FILES)
 def test_rviz_is_not_started_unless_it_is_asked_for(name):
     assert nodes_of(name, sdf_file='a.sdf')[0].keys() == {'bridge'}
 
@@ -120,12 +162,20 @@ def test_rviz_must_be_true_or_false():
         nodes_of('bridge.launch.py', rviz='perhaps')
 
 
+def test_rviz_that_is_not_installed_is_reported_before_anything_starts(monkeypatch):
+    monkeypatch.setenv('AMENT_PREFIX_PATH', '/nonexistent')
+    with pytest.raises(RuntimeError, match='rviz2, which is not installed'):
+        nodes_of('bridge.launch.py', sdf_file='a.sdf', rviz='true')
+
+
+@pytest.mark.usefixtures('rviz_installed')
 @pytest.mark.parametrize('name', BRIDGE_FILES)
 def test_rviz_starts_with_the_file_of_this_package(name):
     (option, file), remappings = rviz_of(name, sdf_file='a.sdf')
     assert (option, Path(file).resolve(), remappings) == ('-d', RVIZ_FILE, {})
 
 
+@pytest.mark.usefixtures('rviz_installed')
 @pytest.mark.parametrize('namespace', ['left', '/left'])
 def test_rviz_follows_root_frame_and_namespace(namespace):
     words, remappings = rviz_of('bridge.launch.py', root_frame='map', namespace=namespace)
@@ -153,5 +203,6 @@ def test_beside_robot_state_publisher_the_two_publish_different_frames(tmp_path)
     assert nodes == {
         'robot_state_publisher': {'robot_description': URDF},
         'bridge': {
-            'sdf_file': 'cell.sdf', 'root_frame': 'world', 'frame_prefix': 'cell/', 'model': ''},
+            'sdf_file': 'cell.sdf', 'root_frame': 'world', 'frame_prefix': 'cell/', 'model': '',
+            'publish_robot_description': False},
     }

@@ -96,6 +96,10 @@ def _document_from_bytes(
     file = xml_from_bytes(text, path, encoding)
     root, lines = file.root, file.lines
     problems.extend(file.warnings)
+    if b'$' in text or b'xacro' in text or b'\0' in text[:4]:
+        # Most files have nothing to do with xacro and need not wait for this import.
+        from sdf_pose_bridge.sdformat.xacro import check_is_expanded
+        check_is_expanded(root, path, lines)
     has_gazebo_elements = False
     if root.tag == 'robot':
         # Most files are not URDF and need not wait for this import.

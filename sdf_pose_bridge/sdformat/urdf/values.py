@@ -75,8 +75,7 @@ def _numbers_from_text(text: str, count: int, what: str) -> list[float]:
             or not all(map(is_representable, words, numbers))
             or (count > 1 and not all(map(math.isfinite, numbers)))):
         type_name = 'a number' if count == 1 else f'{count} finite numbers'
-        hint = '; run xacro on the file first' if '${' in text else ''
-        msg = f'{what} is "{text[:80]}", which is not {type_name}{hint}'
+        msg = f'{what} is "{text[:80]}", which is not {type_name}'
         raise ValueError(msg)
     return list(numbers)
 

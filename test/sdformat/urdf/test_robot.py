@@ -41,8 +41,6 @@ LIMIT = '<limit effort="1" velocity="1"/>'
      'xyz of <axis> is "1 0", which is not 3 finite numbers'),
     (robot(TWO + joint('j', 'a', 'b', 'fixed', '<origin xyz="0 0 inf"/>')),
      'xyz of <origin> is "0 0 inf", which is not 3 finite numbers'),
-    (robot(TWO + joint('j', 'a', 'b', 'fixed', '<origin xyz="0 0 ${h}"/>')),
-     'run xacro on the file first'),
     (robot(TWO + joint('j', 'a', 'b', 'continuous', '<mimic/>')), 'the <mimic> names no joint'),
     (robot(TWO + joint('j', 'a', 'b', 'continuous', '<dynamics/>')), 'neither damping nor'),
     (robot(TWO + joint('j', 'a', 'b', 'continuous', '<safety_controller/>')),
