@@ -92,6 +92,8 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
             is_pipe = allows_pipe and stat.S_ISFIFO(status.st_mode)
             if not stat.S_ISREG(status.st_mode) and not is_pipe:
                 msg = 'the file cannot be read: it is not a regular file'
+                if path.startswith('/dev/'):  # /dev/stdin, or what a shell makes of <(xacro ...)
+                    msg += '; the node takes the text itself as its parameter robot_description'
                 raise FileReadError(msg, place)
             os.set_blocking(file.fileno(), True)
             usage.add('bytes_read', status.st_size, place)

@@ -66,6 +66,11 @@ def test_named_pipe_is_refused_at_once(tmp_path):
         bytes_from_file(str(tmp_path / 'pipe'), Usage())
 
 
+def test_who_reads_from_a_command_is_told_of_the_text_as_a_parameter():
+    with pytest.raises(FileReadError, match='robot_description'):
+        bytes_from_file('/dev/zero', Usage())
+
+
 @pytest.mark.parametrize('size', [0, 1, 100_000])
 def test_pipe_is_read_where_it_is_allowed(size):
     reader, writer = os.pipe()
