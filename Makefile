@@ -3,7 +3,7 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test_long run lint bench differential fuzz soak licenses audit docs clean
+.PHONY: help setup demo test test_long run lint bench differential fuzz growth soak licenses audit docs clean
 
 # The distribution of ROS 2, also for the scripts in underlay.
 ROS ?= jazzy
@@ -32,6 +32,7 @@ help:
 	@echo 'make bench          benchmarks; ARGS="..." hands arguments to them'
 	@echo 'make differential   random scenes against libsdformat; ARGS="--scenes 100" for fewer'
 	@echo 'make fuzz           hostile files by atheris; MINUTES=60 for longer, findings in fuzz_findings'
+	@echo 'make growth         time and memory of hostile files; ARGS="--pairs" for them in pairs'
 	@echo 'make soak           the node under load for MINUTES=30: nothing lost, nothing growing'
 	@echo 'make licenses       licences of everything that is installed for this, as in docs/licenses.md'
 	@echo 'make audit          known vulnerabilities of it, by pip-audit; needs the network'
@@ -72,13 +73,16 @@ bench: setup
 differential: setup
 	@. underlay/setup.bash && PYTHONPATH=test:$$PYTHONPATH exec python -m differential $(ARGS)
 
-# Bytes and scenes by turns. atheris has wheels for few releases of Python, so nothing else needs it.
+# Bytes, valid scenes and hostile files by turns. atheris has wheels for few releases of Python, so nothing else needs it.
 fuzz: MINUTES := 10
 fuzz: setup
 	@. underlay/setup.bash && python -m pip install --quiet --only-binary :all: atheris==3.0.0 \
 	  && export PYTHONPATH=test:$$PYTHONPATH \
-	  && python -m fuzzing bytes --seconds $$((30 * $(MINUTES))) \
-	  && exec python -m fuzzing scenes --seconds $$((30 * $(MINUTES)))
+	  && for target in bytes scenes hostile; do \
+	    python -m fuzzing $$target --seconds $$((20 * $(MINUTES))) || exit; done
+
+growth: setup
+	@. underlay/setup.bash && PYTHONPATH=test:$$PYTHONPATH exec python -m growth $(ARGS)
 
 soak: MINUTES := 30
 soak: setup

@@ -127,8 +127,9 @@ def line_from_text(number: int, text: str, source: Format) -> Line:
     values = []
     for word in text.split():
         try:
-            if '_' in word:
-                raise ValueError  # float() takes 1_000, which other readers of poses do not
+            if '_' in word or not word.isascii():
+                # float() takes 1_000 and digits of all scripts; other readers of poses do not.
+                raise ValueError
             values.append(float(word))
         except ValueError:
             return Line(number, [], f'{shortened(word)!r} is not a number')

@@ -69,6 +69,7 @@ def test_poses_and_rotations_do_not_convert_to_each_other(convert, source, targe
     (('rpy', '1', '2', '3', '4'), 'but 4 are given'),
     (('rpy', '1', 'two', '3'), "'two' is not a number"),
     (('rpy', '1', '1_000', '3'), "'1_000' is not a number"),
+    (('rpy', '1', '\u0663', '3'), "'\u0663' is not a number"),
     (('rpy', '1', '1,5', '3'), "'1,5' is not a number"),
     (('rpy', '1', 'nan', '3'), 'value 1 is nan'),
     (('rpy', '1', '2', '-inf'), 'value 2 is -inf'),

@@ -24,14 +24,19 @@ with atheris.instrument_imports(include=['sdf_pose_bridge']):
     from sdf_pose_bridge import load_text
     from sdf_pose_bridge import SdfError
     import sdf_pose_bridge.sdformat.include.expansion  # noqa: F401  # else imported at first use
+    from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+    from sdf_pose_bridge.tf.tree import TfOptions
 
 from differential.scene_strategy import scenes
 from hypothesis import given
 from hypothesis import HealthCheck
 from hypothesis import settings
 
+from fuzzing.hostile_files import files_from_choices
+
 ROOT = Path(__file__).resolve().parents[2]
 LONGEST_S = 2.0
+MEMORY = '/dev/shm' if Path('/dev/shm').is_dir() else None
 LIMITS = ('-timeout=100', '-report_slow_units=100', '-rss_limit_mb=1024', '-max_len=20000')
 
 
@@ -64,8 +69,21 @@ def load_scene(scene):
             load(Path(folder, 'scene.sdf'), resource_paths=[folder])
 
 
+def load_hostile(data: bytes) -> None:
+    """Load a file of any elements, which includes, merges and changes others."""
+    provider = atheris.FuzzedDataProvider(data)
+    files = files_from_choices(
+        lambda values: values[provider.ConsumeIntInRange(0, len(values) - 1)])
+    with tempfile.TemporaryDirectory(dir=MEMORY) as folder:
+        for name, text in files.items():
+            Path(folder, name).write_text(text, encoding='utf-8')
+        with limited():
+            tf_tree_from_scene(load(Path(folder, 'scene.sdf')), TfOptions(use_joint_states=True))
+
+
 TARGETS: dict[str, Callable[[bytes], object]] = {
-    'bytes': load_bytes, 'scenes': load_scene.hypothesis.fuzz_one_input}
+    'bytes': load_bytes, 'hostile': load_hostile,
+    'scenes': load_scene.hypothesis.fuzz_one_input}
 
 
 def main() -> None:

@@ -17,18 +17,19 @@ class JointPublisher:
             [sys.executable, __file__], stdin=subprocess.PIPE, text=True)
         self._sec = 1000
 
-    def send(self, positions, *, sec=None, names=None):
+    def send(self, positions, *, sec=None, nanosec=0, names=None):
         """
         Publish one message.
 
         :param positions: by the names of joints.
         :param sec: the stamp; the last one and 1 if there is none.
+        :param nanosec: the nanoseconds of the stamp.
         :param names: other names than those of the positions.
         :return: the stamp.
         """
         self._sec = self._sec + 1 if sec is None else sec
         self._process.stdin.write(json.dumps(
-            [names or list(positions), list(positions.values()), self._sec]) + '\n')
+            [names or list(positions), list(positions.values()), self._sec, nanosec]) + '\n')
         self._process.stdin.flush()
         return self._sec
 
@@ -51,9 +52,9 @@ def main():
         # Until the bridge is there, nobody would get the message.
         while not publisher.get_subscription_count():
             rclpy.spin_once(node, timeout_sec=0.1)
-        names, positions, sec = json.loads(line)
+        names, positions, sec, nanosec = json.loads(line)
         message = JointState(name=names, position=list(map(float, positions)))
-        message.header.stamp.sec = sec
+        message.header.stamp.sec, message.header.stamp.nanosec = sec, nanosec
         publisher.publish(message)
     node.destroy_node()
     rclpy.shutdown()

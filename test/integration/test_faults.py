@@ -4,6 +4,7 @@
 
 import os
 from pathlib import Path
+import resource
 import signal
 import subprocess
 import sys
@@ -142,6 +143,44 @@ def test_a_config_map_that_is_replaced_is_noticed(start, listener, tmp_path):
     (tmp_path / '..1/cell.sdf').unlink()
     (tmp_path / '..1').rmdir()
     wait_for_x(listener, 2.0)
+
+
+def test_a_change_without_descriptors_is_read_once_there_are_some(start, file, listener):
+    bridge = start(file)
+    wait_for_x(listener, 1.0)
+    soft, hard = resource.prlimit(bridge.pid, resource.RLIMIT_NOFILE)
+    resource.prlimit(bridge.pid, resource.RLIMIT_NOFILE, (4, hard))
+    replace(file, world(2))
+    bridge.wait_for_line('Too many open files')
+    resource.prlimit(bridge.pid, resource.RLIMIT_NOFILE, (soft, hard))
+    wait_for_x(listener, 2.0)
+    assert not [line for line in bridge.lines if 'internal error' in line]
+
+
+def address_space(pid):
+    """Return how much a process has, in bytes."""
+    status = Path(f'/proc/{pid}/status').read_text(encoding='utf-8')
+    return 1024 * int(status.partition('VmSize:')[2].split()[0])
+
+
+def test_without_memory_for_a_change_the_bridge_goes_on_or_ends(start, file, listener):
+    bridge = start(file)
+    wait_for_x(listener, 1.0)
+    _, hard = resource.prlimit(bridge.pid, resource.RLIMIT_AS)
+    limit = address_space(bridge.pid) + 30_000_000
+    resource.prlimit(bridge.pid, resource.RLIMIT_AS, (limit, hard))
+    replace(file, world(2, extra=''.join(
+        f'<model name="m{i}"><link name="l"/></model>' for i in range(60_000))))
+    try:
+        bridge.wait_for_line('there is not enough memory to read the file')
+    except AssertionError:
+        # Libraries of the middleware may end the process.
+        assert bridge.wait_for_end() not in (0, None)
+        return
+    resource.prlimit(bridge.pid, resource.RLIMIT_AS, (hard, hard))
+    wait_for_x(listener, 2.0)
+    bridge.send(signal.SIGTERM)
+    assert bridge.wait_for_end() == 0
 
 
 def test_a_file_that_a_full_disk_cuts_off_is_reported(

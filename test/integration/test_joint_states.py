@@ -136,6 +136,19 @@ def test_a_message_moves_the_joints_that_it_names(start, file, joints, tf):
     assert pose_of(tf, 'slide').z == 2.25
 
 
+@pytest.mark.parametrize(('sec', 'nanosec'), [(-1, 0), (1, 10**9), (1, 2**32 - 1)])
+def test_a_message_with_a_stamp_that_is_no_time_is_reported_and_changes_nothing(
+    start, file, joints, tf, sec, nanosec,
+):
+    bridge = start(file)
+    joints.send({'lift': 0.25}, sec=sec, nanosec=nanosec)
+    bridge.wait_for_line(f'has the stamp sec={sec} nanosec={nanosec}; it is ignored')
+    stamp = joints.send({'turn': 0.0}, sec=1000)
+    tf.wait_for('upper', stamp)
+    assert pose_of(tf, 'slide').z == 2.0
+    assert not [line for line in bridge.lines if 'internal error' in line]
+
+
 @pytest.mark.parametrize(('positions', 'names', 'line'), [
     ({'turn': nan}, None, 'not finite'),
     ({'turn': 1e12}, None, 'beyond 1e+09'),

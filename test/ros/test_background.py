@@ -3,6 +3,7 @@
 """Coroutines on a real executor: what they wait for, and what runs meanwhile."""
 
 import threading
+import weakref
 
 import pytest
 
@@ -14,6 +15,10 @@ from sdf_pose_bridge.ros.background import run_in_thread
 from sdf_pose_bridge.ros.background import run_other_callbacks
 
 SECONDS = 20.0
+
+
+class Large:
+    """What a function makes before it runs out of memory."""
 
 
 @pytest.fixture(name='node')
@@ -63,6 +68,22 @@ def test_an_exception_in_a_thread_is_raised_where_it_is_awaited(node):
         return 'caught'
 
     assert finished(node, callback) == 'caught'
+
+
+def test_a_thread_without_memory_has_a_result_that_keeps_nothing(node):
+    kept = []
+
+    def use_all_memory():
+        large = Large()
+        kept.append(weakref.ref(large))
+        raise MemoryError
+
+    async def callback():
+        with pytest.raises(MemoryError):
+            await run_in_thread(node, use_all_memory)
+        return kept[0]()
+
+    assert finished(node, callback) is None
 
 
 def test_two_coroutines_alternate(node):
