@@ -111,10 +111,10 @@ def poses_from_texts(texts: Sequence[str], pose_format: PoseFormat) -> PosesFrom
         rows = []
         for index, text in enumerate(texts):
             try:
-                rows.append(_numbers_from_text(text, pose_format))
+                rows.append(pose_numbers_from_text(text, pose_format))
             except PoseTextError as error:
                 failures.append((index, str(error)))
-                rows.append(_numbers_from_text('', pose_format))
+                rows.append(pose_numbers_from_text('', pose_format))
         numbers = np.array(rows)
     doubts = [
         (row, _doubt(texts[row], pose_format)) for row in _doubtful_rows(numbers, pose_format)]
@@ -129,13 +129,19 @@ def pose_from_text(text: str, pose_format: PoseFormat) -> Sequence[float]:
     :return: x y z in metres, unit quaternion x y z w.
     :raises PoseTextError: if it is not a pose.
     """
-    numbers = np.array([_numbers_from_text(text, pose_format)])
+    numbers = np.array([pose_numbers_from_text(text, pose_format)])
     pose: list[float] = _poses_from_numbers(numbers, pose_format)[0].tolist()
     return pose
 
 
-def _numbers_from_text(text: str, pose_format: PoseFormat) -> list[float]:
-    """Read the numbers of a text; those of a quaternion that is too large are scaled."""
+def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> list[float]:
+    """
+    Read the numbers of a text, without making a pose of them.
+
+    :return: the numbers in the order of the layout; those of a quaternion that is too large are
+        scaled.
+    :raises PoseTextError: if the text is not a pose.
+    """
     layout = pose_format.layout
     count = len(layout.split())
     words = _words(text) or _IDENTITY_TEXTS[count].split()

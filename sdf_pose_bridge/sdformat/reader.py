@@ -31,7 +31,7 @@ from sdf_pose_bridge.sdformat.joints import joint_details_from_element
 from sdf_pose_bridge.sdformat.models import frame_details_from_element
 from sdf_pose_bridge.sdformat.models import model_details_from_element
 from sdf_pose_bridge.sdformat.poses import pose_format_of
-from sdf_pose_bridge.sdformat.poses import pose_from_text
+from sdf_pose_bridge.sdformat.poses import pose_numbers_from_text
 from sdf_pose_bridge.sdformat.poses import PoseFormat
 from sdf_pose_bridge.sdformat.poses import PoseTextError
 from sdf_pose_bridge.sdformat.sensors import sensor_details_from_element
@@ -331,7 +331,7 @@ class _Reader:
             msg = f'<{written_tag(xml)}> is empty; it must have a value'
             self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
         try:
-            pose_from_text(
+            pose_numbers_from_text(
                 '' if pose_format is None else text_of(xml), pose_format or _DEFAULT_FORMAT)
         except PoseTextError as error:
             self._problems.error(ElementInvalidError(str(error), self._sources.place(xml)))
