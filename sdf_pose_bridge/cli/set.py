@@ -20,6 +20,8 @@ from sdf_pose_bridge.geometry.formats import POSE_FORMATS
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
 from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import pose_inverse
+from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.comparison import Change
 from sdf_pose_bridge.scene.comparison import differences_of_scenes
@@ -116,15 +118,16 @@ def _set(scene: Scene, numbers: list[float], options: argparse.Namespace) -> int
     def measured(scene: Scene, element: int) -> Pose:
         return _lookup(scene).pose_of_element(element, options.relative_to)
 
-    element = _lookup(scene).element(options.frame)
+    element, in_element = _lookup(scene).element(options.frame)
     if options.format in POSE_FORMATS:
         asked = Pose(*converted_poses(numbers, options.format, 'sdf_quat_xyzw').tolist())
     else:
         quat_xyzw = converted_rotations(numbers, options.format, 'quaternion').tolist()
-        asked = Pose(*measured(scene, element)[:3], *quat_xyzw)
+        position = _lookup(scene).pose(options.frame, options.relative_to).pose[:3]
+        asked = Pose(*position, *quat_xyzw)
     change = set_pose(
-        scene, element, asked, measured, options, all_instances=options.all_instances,
-        dry_run=options.dry_run)
+        scene, element, pose_product(asked, pose_inverse(in_element)), measured, options,
+        all_instances=options.all_instances, dry_run=options.dry_run)
     sys.stdout.write(change.diff)
     moved = [
         printable(difference.name) for difference in differences_of_scenes(scene, change.scene)

@@ -12,6 +12,8 @@ from sdf_pose_bridge.errors import PoseNotSetError
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import pose_inverse
+from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.loaded_scene import LoadedScene
 from sdf_pose_bridge.ros.parameters import Settings
@@ -61,7 +63,8 @@ def set_pose(
         return PoseLookup(scene, tree, positions).pose_of_element(element, reference)
 
     scene = loaded.scene
-    element = loaded.lookup.element(request.frame)
+    element, in_element = loaded.lookup.element(request.frame)
+    asked = pose_product(asked, pose_inverse(in_element))
     change = pose_change(scene, element, asked, measured, scene_with)
     if not request.dry_run:
         replace_file(change.path, change.old_text, change.new_text)

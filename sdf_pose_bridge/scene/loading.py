@@ -248,6 +248,9 @@ def _scene_from_graph(
         roots=reindexed(graph.roots),
         poses=_frozen(poses[is_kept]),
         references=reindexed(graph.references),
+        placements=MappingProxyType({
+            new_index_of[model]: new_index_of[frame]
+            for model, frame in graph.placements.items() if is_kept[model] and is_kept[frame]}),
         attachments=reindexed(graph.attachments),
         bodies=reindexed(graph.bodies),
         canonical_links=reindexed(graph.canonical_links),

@@ -76,6 +76,9 @@ def pose_change(
     """
     Find what a file must say so that an element is at a pose. Nothing is written.
 
+    Where the pose of a model places a frame in it, that pose is changed, unless the frame is to be
+    elsewhere in the model.
+
     :param asked: the pose, as ``measure`` shall return it.
     :param measure: says where elements are, in a frame of the caller's choice. Joints may be
         anywhere, but always at the same positions.
@@ -86,6 +89,23 @@ def pose_change(
     :raises PoseNotSetError: if no single ``<pose>`` can say this.
     :raises SdfError: if a file cannot be read any more.
     """
+    try:
+        return _change_of_own_pose(
+            scene, element, asked, measure, load, all_instances=all_instances)
+    except PoseNotSetError:
+        model = next(
+            (model for model, frame in scene.placements.items() if frame == element), None)
+        if model is None:
+            raise
+    in_model = relative_pose(measure(scene, model), measure(scene, element))
+    return _change_of_own_pose(
+        scene, model, pose_product(asked, pose_inverse(in_model)), measure, load,
+        all_instances=all_instances)
+
+
+def _change_of_own_pose(
+    scene: Scene, element: int, asked: Pose, measure: Measure, load: Load, *, all_instances: bool,
+) -> PoseChange:
     _check_kind(scene, element)
     path = _place_of_pose(scene, element)[0]
     cache = resource_finder((), os.environ).fuel_cache

@@ -100,6 +100,9 @@ class Scene:
     """Shape (n, 7): pose of each in its root, x y z in metres, unit quaternion x y z w, w >= 0."""
     references: Indices
     """The frame that the pose of each is relative to; -1 for worlds and implicit roots."""
+    placements: Mapping[int, int]
+    """The frame that the pose of a model places, where this is not the model itself, by the index
+    of the model; also for the frame that replaces a merged model."""
     attachments: Indices
     """The frame that each frame is attached to; -1 for links, static models and roots."""
     bodies: Indices

@@ -77,22 +77,28 @@ class PoseLookup:
         reference = self._pose_in_root(relative_to)[0] if relative_to else Pose()
         return canonical_relative_pose(reference, self._pose_of(element))
 
-    def element(self, name: str) -> int:
+    def element(self, name: str) -> tuple[int, Pose]:
         """
-        Find an element.
+        Find the element whose pose decides where a frame is.
 
         :param name: a name of SDF or of TF.
-        :return: its index in the scene.
-        :raises UnknownFrameError: if the name is unknown or ambiguous, or that of a frame without
-            an element of its own.
+        :return: its index in the scene, and the pose of the frame in it: the identity, but for the
+            optical frame of a camera.
+        :raises UnknownFrameError: if the name is unknown or ambiguous.
         """
-        if not self._scene.has(name) and name in self._indices:
-            element = int(self._tree.elements[self._indices[name]])
-            if element < 0:
-                msg = f'"{name}" is an optical frame, which moves with its camera'
-                raise UnknownFrameError(msg, Place(self._scene.path))
-            return element
-        return self._element(name)
+        tree = self._tree
+        if self._scene.has(name) or name not in self._indices:
+            return self._element(name), Pose()
+        index = self._indices[name]
+        element = int(tree.elements[index])
+        if element >= 0:
+            return element, Pose()
+        camera = int(tree.parents[index])
+        if camera < 0 or tree.elements[camera] not in self._scene.sensors:
+            msg = f'"{name}" is the optical frame of a camera without a frame of its own'
+            raise UnknownFrameError(msg, Place(self._scene.path))
+        return int(tree.elements[camera]), canonical_relative_pose(
+            *(Pose(*tree.poses[each].tolist()) for each in (camera, index)))
 
     @cached_property
     def _name_index(self) -> NameIndex:

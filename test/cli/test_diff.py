@@ -2,7 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """``sdf_pose diff``: the frames that changed, and the exit code."""
 
+import os
+from pathlib import Path
+import shutil
+import subprocess
+import sys
+
 import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture(name='diff')
@@ -38,6 +46,25 @@ def test_added_removed_and_renamed(diff):
     done = diff('<link name="l"/>', '<link name="k"/><frame name="g"/>')
     assert done.stdout.splitlines() == [
         'renamed  link  m::k  was m::l', 'added    frame  m::g']
+
+
+@pytest.mark.skipif(shutil.which('git') is None, reason='needs git')
+def test_git_shows_what_a_commit_moved(files):
+    def git(*arguments):
+        return subprocess.run(
+            ['git', '-c', 'user.name=a', '-c', 'user.email=b', *arguments], cwd=files,
+            env={**os.environ, 'PYTHONPATH': str(ROOT), 'GIT_CONFIG_GLOBAL': os.devnull},
+            capture_output=True, text=True, check=True).stdout
+
+    git('init', '-q')
+    for pose in ('1 2 3', '1 2 4'):
+        path = files / 'good.sdf'
+        path.write_text(path.read_text().replace('1 2 3', pose))
+        git('add', 'good.sdf')
+        git('commit', '-q', '-m', pose)
+    command = f'{sys.executable} -m sdf_pose_bridge diff'
+    shown = git('difftool', '--no-prompt', '--extcmd', command, 'HEAD~1', '--', 'good.sdf')
+    assert shown.splitlines()[0] == 'moved    frame  f  1 m  0 rad'
 
 
 def test_an_invalid_file_is_an_error(diff, run_main):

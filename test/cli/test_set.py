@@ -50,6 +50,18 @@ def test_a_pose_that_is_there_already_changes_nothing(run_main, path):
     assert (done.returncode, done.stdout, path.read_text()) == (0, '', text)
 
 
+def test_the_camera_moves_where_its_optical_frame_was_measured(run_main, path):
+    text = path.read_text()
+    camera = '<link name="l"><sensor name="eye" type="camera"/></link>'
+    path.write_text(text.replace('<link name="l"/>', camera))
+    done = run_main(
+        'set', 'good.sdf', 'm/l/eye_optical', '--relative-to', 'm/l', '--format', 'sdf_quat_xyzw',
+        '0', '0', '2', '-0.5', '0.5', '-0.5', '0.5')
+    assert done.returncode == 0, done.stderr
+    assert path.read_text() == text.replace('<link name="l"/>', camera.replace(
+        '"camera"/>', '"camera"><pose>0 0 2 0 0 0</pose></sensor>'))
+
+
 @pytest.mark.parametrize(('arguments', 'message'), [
     (['f', *'00000'], 'sdf_rpy has 6 numbers'),
     (['f', *'00000', 'x'], "'x' is not a number"),

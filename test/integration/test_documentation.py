@@ -22,6 +22,8 @@ TESTED_ELSEWHERE = {
     'ros2 topic echo': 'test_readme.py compares the message',
     'ros2 service call': 'test_readme.py and test_bridge_services.py make the calls',
     'ros2 param set': 'test_readme.py and test_bridge_changes.py set parameters',
+    'sdf_pose diff': 'test_diff.py compares files, also for git',
+    'git difftool': 'test_diff.py has git compare two commits',
     'sdf_pose check broken.sdf': 'test_readme.py compares the output',
     'sdf_pose check --strict cell.sdf': 'test_readme.py compares the output',
     'sdf_pose convert': 'test_formats_of_the_documentation, below',

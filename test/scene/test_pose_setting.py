@@ -59,6 +59,8 @@ def assert_at(pose, expected):
                 attributes='placement_frame="a"'), 'm', ''),
     (model_file('<pose>1 2 3 0 1 0</pose>' + posed('link', 'a', '0 0 1 0 0 2'),
                 attributes='placement_frame="a"'), 'm::a', 'm'),
+    (model_file('<pose>1 2 3 0 1 0</pose>' + posed('link', 'a', '0 0 1 0 0 2'),
+                attributes='placement_frame="a"'), 'm::a', ''),
     (MODEL.replace('1.9', '1.4').replace('relative_to="a"', ''), 'm::a', ''),
 ])
 def test_the_pose_is_what_was_asked_for(change, tmp_path, text, name, relative_to):
