@@ -4,7 +4,8 @@
 Replace the content of a file: all of it or nothing, whatever happens meanwhile.
 
 The new content is written to a file without a name, which vanishes with the process. It gets a
-name beside the old file only when it is on the disk, and takes the place of the old one at once.
+name beside the old file only when it is on the disk, and takes the place of the old one at once,
+by a process of its own, so that a writer that is killed leaves nothing behind.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ import fcntl
 import os
 from pathlib import Path
 import stat
+import subprocess
+import sys
 from typing import BinaryIO
 
 from sdf_pose_bridge.errors import FileWriteError
@@ -43,10 +46,9 @@ def replace_file(path: str, old: bytes, new: bytes) -> None:
                 os.fchmod(target.fileno(), stat.S_IMODE(status.st_mode))
                 target.flush()
                 os.fsync(target.fileno())
-                if file.read() != old or not os.path.samestat(real_path.stat(), status):
-                    msg = 'the file has changed since it was read, so it is not overwritten'
-                    raise FileWriteError(msg, Place(path))
-                _put_in_place(target.fileno(), real_path)
+                if file.read() != old:
+                    raise FileWriteError(_CHANGED, Place(path))
+                _put_in_place(target.fileno(), real_path, file.fileno())
     except BlockingIOError as error:
         msg = 'another process is writing the file'
         raise FileWriteError(msg, Place(path)) from error
@@ -60,19 +62,43 @@ def _nameless_file(directory: Path) -> BinaryIO:
     return os.fdopen(descriptor, 'wb')
 
 
-def _put_in_place(descriptor: int, path: Path) -> None:
-    folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY)
-    # Linux has no call that gives a file a name that is in use, so it gets this one first. If a
-    # process is killed between both calls, the next one that writes the file removes the rest.
+def _put_in_place(descriptor: int, path: Path, locked: int) -> None:
+    """
+    Let another process do the last step, which is done even if this one is killed meanwhile.
+
+    :param descriptor: the new file.
+    :param locked: the old file, which stays locked until that process has ended.
+    """
+    status = os.fstat(locked)
+    # Linux has no call that gives a file a name that is in use, so it gets another one first. If
+    # all processes are killed just then, the next one that writes the file removes the rest.
     temporary = path.with_name(f'.{path.name}.sdf_pose')
-    try:
-        temporary.unlink(missing_ok=True)
-        # With a descriptor of a directory os.link follows the link in /proc.
-        os.link(f'/proc/self/fd/{descriptor}', temporary, src_dir_fd=folder)
-        temporary.replace(path)
-        os.fsync(folder)
-    except OSError:
-        temporary.unlink(missing_ok=True)
-        raise
-    finally:
-        os.close(folder)
+    arguments = [descriptor, temporary, path, status.st_ino, status.st_mtime_ns]
+    done = subprocess.run(
+        [sys.executable, '-I', '-S', '-c', _LAST_STEP, *map(str, arguments)],
+        pass_fds=[descriptor, locked], start_new_session=True, check=False)
+    if done.returncode == _HAS_CHANGED:
+        raise FileWriteError(_CHANGED, Place(str(path)))
+    if done.returncode:
+        raise OSError(done.returncode, os.strerror(done.returncode))
+
+
+_CHANGED = 'the file has changed since it was read, so it is not overwritten'
+_HAS_CHANGED = 255
+_LAST_STEP = f"""
+import contextlib, os, sys
+descriptor, temporary, path, *expected = sys.argv[1:]
+try:
+    folder = os.open(os.path.dirname(path), os.O_RDONLY)
+    with contextlib.suppress(FileNotFoundError):
+        os.unlink(temporary)
+    status = os.stat(path)
+    if expected != [str(status.st_ino), str(status.st_mtime_ns)]:
+        sys.exit({_HAS_CHANGED})
+    # With a descriptor of a directory os.link follows the link in /proc.
+    os.link(f'/proc/self/fd/{{descriptor}}', temporary, src_dir_fd=folder)
+    os.replace(temporary, path)
+    os.fsync(folder)
+except OSError as error:
+    sys.exit(error.errno)
+"""

@@ -9,6 +9,7 @@ import random
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -109,4 +110,9 @@ def test_a_killed_process_leaves_the_old_file_or_the_new_one(path):
             process.wait(random_numbers.uniform(0.001, 0.1))
         process.send_signal(signal.SIGKILL)
         process.communicate()
+        assert path.read_bytes() in contents
+        # Another process may still be at the last step.
+        deadline = time.monotonic() + 20.0
+        while list(path.parent.iterdir()) != [path]:
+            assert time.monotonic() < deadline
         assert path.read_bytes() in contents
