@@ -60,8 +60,20 @@ class Shape(NamedTuple):
     mesh_scale: tuple[float, ...]
     """Factors of a mesh along x, y and z; 1 for others."""
     rgba: tuple[float, float, float, float] | None
-    """Color of the material, its diffuse or else its ambient one, each component from 0 to 1;
-    ``<transparency>`` reduces the last. None where the file gives none."""
+    """Color of the material, its diffuse or else its ambient one, each component from 0 to 1.
+    None where the file gives none."""
+    opacity: float = 1.0
+    """What ``<transparency>`` leaves of any color, from 0 to 1."""
+
+    @property
+    def is_visible(self) -> bool:
+        """Whether it is less than fully transparent."""
+        return self.opacity > 0.0 and (self.rgba is None or self.rgba[3] > 0.0)
+
+    def rgba_or(self, other: tuple[float, ...]) -> tuple[float, ...]:
+        """Return the color of its material, or else another one, as transparent as it is."""
+        red, green, blue, alpha = self.rgba or other
+        return red, green, blue, alpha * self.opacity
 
     @property
     def required_sizes_m(self) -> tuple[float, ...]:
@@ -100,6 +112,7 @@ def shape_of(xml: XmlElement) -> Shape | None:
     tag = str(shape.tag)
     sizes_m = (numbers_of_child(shape, name, size) for name, size in _DEFAULT_SIZES[tag].items())
     submesh = first_child(shape, 'submesh')
+    (transparency,) = numbers_of_child(xml, 'transparency', (0.0,))
     return Shape(
         type=tag,
         sizes_m=tuple(size_m for each in sizes_m for size_m in each),
@@ -107,7 +120,8 @@ def shape_of(xml: XmlElement) -> Shape | None:
         mesh_uri=_text(shape, 'uri') if tag == 'mesh' else '',
         submesh='' if submesh is None else _text(submesh, 'name'),
         mesh_scale=numbers_of_child(shape, 'scale', (1.0, 1.0, 1.0)),
-        rgba=_color(xml))
+        rgba=_color(xml),
+        opacity=1.0 - transparency if 0.0 < transparency <= 1.0 else 1.0)
 
 
 def _text(parent: XmlElement, tag: str) -> str:
@@ -125,8 +139,7 @@ def _color(xml: XmlElement) -> tuple[float, float, float, float] | None:
             text_of(element), ValueType.COLOR)
         if len(numbers) >= 3 and all(map(math.isfinite, numbers)):
             red, green, blue, alpha = (*numbers, 1.0)[:4]
-            (transparency,) = numbers_of_child(xml, 'transparency', (0.0,))
-            return red, green, blue, alpha * (1.0 - transparency if 0 < transparency <= 1 else 1.0)
+            return red, green, blue, alpha
     return None
 
 

@@ -61,7 +61,7 @@ class VisualMarker(NamedTuple):
     pose: Pose
     """Pose of the form in this frame."""
     form: Form
-    rgba: tuple[float, float, float, float] | None
+    rgba: tuple[float, ...] | None
     """Color, each component from 0 to 1; None for the materials of the mesh itself."""
 
 
@@ -86,7 +86,7 @@ def visual_markers_from_scene(
     markers: list[VisualMarker] = []
     point_count = 0
     for element, shape in scene.shapes.items():
-        if not is_shown[element] or (shape.rgba is not None and shape.rgba[3] <= 0.0):
+        if not is_shown[element] or not shape.is_visible:
             continue
         link = int(scene.parents[element])
         frame = int(tree.nearest_frames[link])
@@ -112,7 +112,7 @@ def visual_markers_from_scene(
         frame_id, reference = (tree.root_frame, 0) if frame < 0 else (
             tree.frame_ids[frame], int(tree.elements[frame]))
         pose = scene.relative_pose_of(element, reference)
-        rgba = shape.rgba or (None if shape.type == 'mesh' else _GRAY)
+        rgba = None if _has_materials_that_rviz_shows(shape) else shape.rgba_or(_GRAY)
         markers += [
             VisualMarker(namespace, frame_id, pose_product(pose, Pose(z=form.z_m)), form, rgba)
             for form in forms]
@@ -146,6 +146,13 @@ def _forms_from_shape(
         return (cylinder,)
     return (
         cylinder, sphere._replace(z_m=-0.5 * length_m), sphere._replace(z_m=0.5 * length_m))
+
+
+def _has_materials_that_rviz_shows(shape: Shape) -> bool:
+    # STL has none, and a mesh without a color would be black. RViz cannot make them transparent.
+    return (
+        shape.type == 'mesh' and shape.rgba is None and shape.opacity == 1.0
+        and not shape.mesh_uri.lower().endswith(('.stl', '.stlb')))
 
 
 def _form_of_mesh(shape: Shape, file: str, finder: ResourceFinder) -> tuple[Form] | str:

@@ -79,13 +79,26 @@ def test_mesh_has_a_uri_a_part_and_a_scale():
     ('<material><ambient>0 0 0 1</ambient><diffuse>.1 .2 .3 .4</diffuse></material>',
      (0.1, 0.2, 0.3, 0.4)),
     ('<material><diffuse>.1 .2 .3</diffuse></material>', (0.1, 0.2, 0.3, 1)),
-    ('<transparency>.75</transparency><material><diffuse>1 1 1 .5</diffuse></material>',
-     (1, 1, 1, 0.125)),
-    ('<transparency>7</transparency><material><diffuse>1 1 1 .5</diffuse></material>',
-     (1, 1, 1, 0.5)),
 ])
 def test_color_is_that_of_the_material(material, rgba):
     assert shape_of(f'{BOX}{material}').rgba == rgba
+
+
+@pytest.mark.parametrize(('transparency', 'opacity', 'is_visible'), [
+    ('', 1, True), ('.75', 0.25, True), ('1', 0, False), ('7', 1, True), ('-1', 1, True),
+])
+def test_transparency_counts_with_and_without_a_material(transparency, opacity, is_visible):
+    element = f'{BOX}<transparency>{transparency}</transparency>' if transparency else BOX
+    material = '<material><diffuse>1 0 0 .5</diffuse></material>'
+    for shape in (shape_of(element), shape_of(f'{element}{material}')):
+        assert (shape.opacity, shape.is_visible) == (opacity, is_visible)
+    assert shape_of(element).rgba_or((0, 0, 1, 1)) == (0, 0, 1, opacity)
+    assert shape_of(f'{element}{material}').rgba_or((0, 0, 1, 1)) == (1, 0, 0, 0.5 * opacity)
+
+
+def test_material_without_alpha_is_not_visible():
+    shape = shape_of(f'{BOX}<material><diffuse>1 0 0 0</diffuse></material>')
+    assert not shape.is_visible
 
 
 @pytest.mark.parametrize(('sizes_m', 'has_extent'), [

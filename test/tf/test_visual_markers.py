@@ -145,7 +145,6 @@ def test_mesh_beside_the_file_is_named_by_its_path(tmp_path):
         visual(MESH.format('a.stl', '<scale>1 2 -3</scale>')), file=folder / 'm.sdf')
     assert (marker.form.type, marker.form.scale) == ('MESH_RESOURCE', (1, 2, -3))
     assert marker.form.mesh_resource == f'file://{tmp_path}/my%20robot%20%231/a.stl'
-    assert marker.rgba is None
 
 
 def test_mesh_beside_a_file_with_a_relative_path_is_named_by_its_absolute_path(
@@ -184,14 +183,27 @@ def test_color_is_that_of_the_material():
         visual(MESH.format('package://a/a.stl', ''), material(1, 0, 0, 1))).rgba == (1, 0, 0, 1)
 
 
-def test_shape_without_a_material_is_gray():
-    red, green, blue, alpha = only_marker(visual(BOX)).rgba
+@pytest.mark.parametrize('geometry', [
+    BOX, MESH.format('package://a/a.stl', ''), MESH.format('package://a/a.STL', '')])
+def test_what_has_no_material_is_gray(geometry):
+    red, green, blue, alpha = only_marker(visual(geometry)).rgba
     assert 0 < red == green == blue < 1
     assert alpha == 1
 
 
-def test_transparent_visual_has_no_marker():
-    content = visual(BOX, f'<transparency>1</transparency>{material(1, 0, 0)}')
+def test_mesh_keeps_its_own_materials():
+    assert only_marker(visual(MESH.format('package://a/a.dae', ''))).rgba is None
+
+
+@pytest.mark.parametrize('geometry', [BOX, MESH.format('package://a/a.dae', '')])
+def test_transparency_without_a_material_is_that_of_a_gray(geometry):
+    rgba = only_marker(visual(geometry, '<transparency>.75</transparency>')).rgba
+    assert rgba[3] == 0.25
+
+
+@pytest.mark.parametrize('extra', ['', material(1, 0, 0)])
+def test_transparent_visual_has_no_marker(extra):
+    content = visual(BOX, f'<transparency>1</transparency>{extra}')
     assert markers_of(link_with(content)) == []
 
 

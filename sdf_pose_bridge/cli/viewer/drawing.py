@@ -75,7 +75,7 @@ def surfaces_from_scene(
     copy_count = triangle_count = 0
     for element in elements:
         shape, kind = scene.shapes[element], Kind(scene.kinds[element])
-        if shape.rgba is not None and shape.rgba[3] <= 0.0:
+        if not shape.is_visible:
             continue
         parts, reason = _parts(shape, scene.place(element).file, size_m, meshes)
         for form, triangles, scale, rgba in parts:
@@ -99,19 +99,18 @@ def _parts(
     shape: Shape, file: str, size_m: float, meshes: MeshReader,
 ) -> tuple[list[tuple[object, Triangles, tuple[float, ...], tuple[float, ...]]], str]:
     """Return form, triangles, scale and color of each part, and what is wrong with the shape."""
-    rgba = shape.rgba or _GRAY
     if shape.type != 'mesh':
         if shape.reason_without_surface:
             return [], shape.reason_without_surface
-        unit, scale = _unit_shape(shape._replace(rgba=None), 2.0 * size_m)
+        unit, scale = _unit_shape(shape._replace(rgba=None, opacity=1.0), 2.0 * size_m)
         triangles = triangles_from_shape(unit)
         assert triangles is not None
-        return [(unit, triangles, scale, rgba)], ''
+        return [(unit, triangles, scale, shape.rgba_or(_GRAY))], ''
     mesh = meshes.mesh(shape, file)
     if mesh.parts:
         return [
             ((id(part.triangles.points),), part.triangles, shape.mesh_scale,
-             shape.rgba or part.rgba or _GRAY) for part in mesh.parts], ''
+             shape.rgba_or(part.rgba or _GRAY)) for part in mesh.parts], ''
     box = triangles_from_shape(_BOX)
     assert box is not None
     reason = f'the mesh "{shape.mesh_uri}": {mesh.reason}'

@@ -245,7 +245,9 @@ class _Conversion:
         shape = self._element(
             self._element(xml, 'geometry', geometry), str(geometry.tag), geometry)
         if shape.tag == 'mesh':
-            uri = geometry.get('filename', '').replace('package://', 'model://', 1)
+            uri = geometry.get('filename', '')
+            if not self._for_ros:
+                uri = uri.replace('package://', 'model://', 1)
             self._element(shape, 'uri', geometry, text=uri)
         self._add_numbers(shape, geometry, numbers_of(geometry, SHAPES[str(shape.tag)]))
 

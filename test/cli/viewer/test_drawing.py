@@ -91,6 +91,11 @@ def test_color_of_the_material(drawn):
     assert surface.rgba.tolist() == [[1, 0, 0, 0.25]]
 
 
+def test_transparency_without_a_material(drawn):
+    _, (surface,), _ = drawn('<transparency>0.5</transparency>' + geometry('<box/>'))
+    assert surface.rgba[0, 3] == 0.5
+
+
 def test_what_is_transparent_is_not_drawn(drawn):
     material = '<material><diffuse>1 0 0 0</diffuse></material>' + geometry('<box/>')
     assert drawn(material)[1:] == ([], [])
