@@ -206,6 +206,10 @@ def test_unwatched_files_are_read_again_only_when_asked(start_bridge, file, star
     answer = reload(listener)
     assert answer.success, answer.message
     wait_for_x(listener, 6.0)
+    replace(file, world(7))
+    (result,) = set_parameters(listener, sdf_file=str(file))
+    assert result.successful, result.reason
+    wait_for_x(listener, 7.0)
 
 
 def test_reloading_a_bad_file_answers_with_the_reason(bridge, file, start_listener):
