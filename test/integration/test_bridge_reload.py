@@ -8,6 +8,7 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from bridge_process import STARTED
 from changes import BRIDGE
 from changes import last_x
 from changes import listen_to_tf
@@ -130,7 +131,7 @@ def test_a_moved_frame_is_moved_on_every_topic(bridge, file, listener, quality):
 def test_a_late_listener_gets_nothing_of_what_was_before(
         bridge, file, listener, start_listener, new, expected):
     replace(file, new)
-    listener.wait(lambda: len(listener.tf_messages) > 1, lambda: 'the new frames')
+    bridge.wait_for_line(STARTED, 2)
     late = start_listener()
     transforms = listen_to_transforms(late, latched(100))
     listen_to_tf(late)

@@ -173,8 +173,14 @@ def test_time_that_goes_back_is_followed(start, file, joints, tf):
 
 def test_later_listeners_get_the_last_positions(start, file, joints, tf):
     start(file)
+    early = []
+    tf.listener.node.create_subscription(
+        PoseStamped, f'{BRIDGE}/poses/slide', early.append, latched(1))
+    tf.listener.wait(lambda: early, lambda: 'the pose of the slide')
     sec = joints.send({'turn': 0.0, 'lift': 0.5})
-    tf.wait_for('slide', sec)
+    # The second one comes when the joints are at rest.
+    tf.listener.wait(
+        lambda: [each.header.stamp.sec for each in early[-2:]] == [sec, sec], lambda: early)
     transforms, poses = {}, []
     tf.listener.node.create_subscription(
         TransformStamped, f'{BRIDGE}/transforms',
@@ -298,6 +304,8 @@ def test_following_can_be_switched_off_and_on(start, file, joints, tf):
         lambda: tf.listener.tf_messages and {
             each.child_frame_id for each in tf.listener.tf_messages[-1].transforms} >= MOVED,
         lambda: 'all frames on /tf_static')
+    tf.listener.wait(
+        lambda: not tf.listener.node.count_subscribers('/joint_states'), lambda: 'its end')
     result, = set_parameters(tf.listener, use_joint_states=True)
     assert result.successful, result.reason
     assert tf.wait_for('slide', joints.send({'lift': 0.7})).translation.z == 1.7
