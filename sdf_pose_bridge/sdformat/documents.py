@@ -111,7 +111,8 @@ def _document_from_bytes(
             for element in gazebo_elements:
                 root.remove(element)
         root, lines = sdf_from_urdf(root, lines, sources, problems, is_included=is_included)
-    version = version_from_text(_declared_version(root, path), Place(path, root.sourceline or 0))
+    line = lines.get(root) or root.sourceline or 0
+    version = version_from_text(_declared_version(root, path, line), Place(path, line))
     document = Document(path, root, _may_hold_scoped_names(file.text), has_gazebo_elements)
     sources.add_tree(path, root, version, lines)
     convert(root, version, sources, may_hold_scoped_names=document.may_hold_scoped_names)
@@ -119,8 +120,8 @@ def _document_from_bytes(
     return document
 
 
-def _declared_version(root: XmlElement, path: str) -> str:
-    place = Place(path, root.sourceline or 0, f'/{written_tag(root)}')
+def _declared_version(root: XmlElement, path: str, line: int) -> str:
+    place = Place(path, line, f'/{written_tag(root)}')
     if root.tag != 'sdf':
         msg = f'the outermost element is <{written_tag(root)}>, it must be <sdf> or <robot>'
         raise ParsingError(msg, place)

@@ -79,7 +79,7 @@ class PoseText:
             raise PoseNotSetError(msg, Place(path))
 
     def with_a_line_for_each_tag(self) -> bytes:
-        """Return a text of the same meaning, in which no two start tags end in one line."""
+        """Return a text of the same meaning, in which no two start tags begin in one line."""
         parts = []
         position = 0
         for _, end in self._tags:
@@ -94,11 +94,11 @@ class PoseText:
 
         :param line: its line in :meth:`with_a_line_for_each_tag`.
         :return: the number of the element.
-        :raises PoseNotSetError: if no start tag ends there.
+        :raises PoseNotSetError: if no start tag begins there.
         """
         breaks = np.flatnonzero(np.frombuffer(self._text, np.uint8) == ord('\n'))
-        ends = np.array([end for _, end in self._tags])
-        lines = np.searchsorted(breaks, ends) + np.arange(len(ends)) + 2
+        starts = np.array([start for start, _ in self._tags])
+        lines = np.searchsorted(breaks, starts) + np.arange(len(starts)) + 1
         element = int(np.searchsorted(lines, line))
         if element == len(lines) or lines[element] != line:
             msg = 'the file does not say by itself where this element is'
@@ -106,8 +106,8 @@ class PoseText:
         return element
 
     def line(self, element: int) -> int:
-        """Return the line in which the start tag of an element ends, in the text as it stands."""
-        return self._text.count(b'\n', 0, self._tags[element][1]) + 1
+        """Return the line in which the start tag of an element begins, in the text as it is."""
+        return self._text.count(b'\n', 0, self._tags[element][0]) + 1
 
     def pose(self, element: int) -> Pose:
         """

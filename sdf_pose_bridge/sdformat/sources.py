@@ -3,7 +3,8 @@
 """
 Remember where each XML element was written: a tree may be put together from several files.
 
-lxml knows the line of an element, but not its file, and no line beyond 65,535.
+lxml knows the line of an element, but not its file, and neither lines beyond 65,535 nor the line
+in which a start tag begins that ends in another one.
 """
 
 from __future__ import annotations
@@ -190,7 +191,7 @@ class Sources:
         """
         Return the line of an element.
 
-        :return: the line of the end of its start tag, from 1; 0 if it is not known.
+        :return: the line of the beginning of its start tag, from 1; 0 if it is not known.
         """
         origin = self._origins.get(xml)
         if origin is not None and origin.pose is not None:

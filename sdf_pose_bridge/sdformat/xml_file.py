@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 import errno
 from itertools import chain
-from itertools import islice
 import os
 import re
 import stat
@@ -25,10 +24,12 @@ from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import PassingReadError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.names import shortened_message
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_encoding import DecodedText
 from sdf_pose_bridge.sdformat.xml_encoding import text_from_bytes
 from sdf_pose_bridge.sdformat.xml_repair import repaired
+from sdf_pose_bridge.sdformat.xml_tree import is_foreign
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
@@ -51,6 +52,12 @@ START_TAG = re.compile(
     rb'|!--.*?-->|!\[CDATA\[.*?\]\]>|![A-Z](?:[^"\'>]|"[^"]*"|\'[^\']*\')*>|\?.*?\?>)', re.DOTALL)
 """A start tag, its inside as group 1, or what may hold something that looks like one."""
 
+_BREAK_IN_TAG = re.compile(rb'<[^/!?<>][^<>\t\n]*[\t\n]')
+"""The beginning of a start tag over several lines, or with a tab, if no value before holds ">"."""
+
+_NAME = re.compile(rb'(?<=\s)name\s*=\s*("[^"]*"|\'[^\']*\')')
+_BREAKS = {'\n': 'a line break', '\t': 'a tab'}
+
 _BEFORE_DOCUMENT_TYPE = re.compile(rb'[ \t\r\n]+|<!--.*?-->|<\?.*?\?>', re.DOTALL)
 """One thing that can stand before the document type."""
 
@@ -65,7 +72,7 @@ class XmlFile(NamedTuple):
     warnings: tuple[SdfWarning, ...]
     """What is wrong but is accepted."""
     lines: Mapping[XmlElement, int]
-    """The lines of those elements whose line lxml does not know."""
+    """The lines in which start tags begin, of those elements for which lxml has another one."""
     text: bytes
     """What was parsed, in UTF-8."""
     encoding: str
@@ -147,10 +154,11 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
         _check_with_expat(text, path)
     if b'xmlns' in text:
         _remove_default_namespaces(root)
-    warnings = tuple(
+    lines, warnings = _lines_and_warnings(root, text, path)
+    warnings += [
         SdfWarning('WARNING', f'this is not well-formed XML: {fault}', Place(path, line))
-        for line, fault in faults)
-    return XmlFile(root, warnings, _lines_beyond_last(root, text), text, decoded.encoding)
+        for line, fault in faults]
+    return XmlFile(root, tuple(warnings), lines, text, decoded.encoding)
 
 
 def _parsed(
@@ -228,17 +236,34 @@ def _remove_default_namespaces(root: XmlElement) -> None:
             element.tag = tag[tag.index('}') + 1:]
 
 
-def _lines_beyond_last(root: XmlElement, text: bytes) -> dict[XmlElement, int]:
+def _lines_and_warnings(
+    root: XmlElement, text: bytes, path: str,
+) -> tuple[dict[XmlElement, int], list[SdfWarning]]:
     """
-    Return the lines of elements beyond the last line that libxml2 counts.
+    Return what only the text tells of start tags.
 
-    As for other elements, it is the line in which the start tag ends.
+    :return: the lines in which those start tags begin that libxml2 gives another line, and
+        warnings about names with a line break or a tab.
     """
-    if text.count(b'\n') < _LAST_LINE:
-        return {}
-    ends = [tag.end(1) for tag in START_TAG.finditer(text) if tag[1]]
+    if text.count(b'\n') < _LAST_LINE and _BREAK_IN_TAG.search(text) is None:
+        return {}, []
+    tags = [tag for tag in START_TAG.finditer(text) if tag[1]]
     line_ends = np.flatnonzero(np.frombuffer(text, np.uint8) == ord('\n'))
-    lines = np.searchsorted(line_ends, ends) + 1
-    first = int(np.searchsorted(lines, _LAST_LINE))
-    elements = islice(root.iter(etree.Element), first, None)
-    return dict(zip(elements, lines[first:].tolist(), strict=False))
+    first_lines = np.searchsorted(line_ends, [tag.start() for tag in tags]) + 1
+    last_lines = np.searchsorted(line_ends, [tag.end(1) for tag in tags]) + 1
+    # Nothing after the outermost element belongs to the tree.
+    elements = zip(
+        root.iter(etree.Element), tags, first_lines.tolist(), last_lines.tolist(), strict=False)
+    lines = {}
+    warnings = []
+    for element, tag, line, last_line in elements:
+        if line != last_line or last_line >= _LAST_LINE:
+            lines[element] = line
+        name = _NAME.search(tag[1]) if b'\n' in tag[1] or b'\t' in tag[1] else None
+        value = name[1][1:-1].strip(WHITE_SPACE.encode()).decode() if name else ''
+        found = [label for character, label in _BREAKS.items() if character in value]
+        if found and not is_foreign(element):
+            msg = (f'the name "{value}" holds {found[0]}, which XML reads as a blank; Gazebo '
+                   'keeps it, so names differ there')
+            warnings.append(SdfWarning('WARNING', shortened_message(msg), Place(path, line)))
+    return lines, warnings

@@ -5,13 +5,15 @@ Rewrite text that TinyXML-2 accepts, and libsdformat with it, but that is not we
 
 TinyXML-2 knows the five predefined entities and takes any other ``&`` as text. It takes ``<`` in
 attribute values, ``]]>`` in text, two hyphens in comments, attributes without white space between
-them, bytes that are not UTF-8, and any XML version and encoding. It skips text before the
-outermost element, and what follows it if that is not text alone. Lines stay where they are.
+them, bytes that are not UTF-8, and any XML version and encoding. In text and comments it takes
+characters that XML does not have, which are replaced here. It skips text before the outermost
+element, and what follows it if that is not text alone. Lines stay where they are.
 """
 
 from __future__ import annotations
 
 import re
+import sys
 from typing import NamedTuple
 
 _NAME = r'[^\W\d][\w:.\-]*|:[\w:.\-]*'
@@ -24,6 +26,12 @@ _TOKEN = re.compile(
 _BARE_AMPERSAND = re.compile(r'&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)')
 _ESCAPED_BYTE = re.compile('[\udc80-\udcff]')
 """What the error handler ``surrogateescape`` makes of a byte that is not UTF-8."""
+_REFERENCE = re.compile(r'&#(?:([0-9]+)|x([0-9a-fA-F]+));')
+_NOT_XML = re.compile('[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]')
+"""A character that XML does not have."""
+_REPLACEMENT = '\ufffd'
+_LONGEST_REFERENCE = 8
+"""Digits of a character reference; longer ones without zeros before them mean no character."""
 _NOT_NEW_LINE = re.compile(r'[^\n]')
 
 
@@ -70,7 +78,8 @@ class _Repairer:
             is_last = position == len(decoded)
             if self._is_after_root() and is_last and (token['text'] or '').strip():
                 return None
-            self._may_declare &= not token['comment'] and not token['tag']
+            self._may_declare &= bool(token['instruction']) or (
+                not (token['text'] or 'x').strip('\ufeff \t\r\n'))
             parts.append(self._repaired_token(token))
             self._line += token[0].count('\n')
         return Repair(
@@ -84,6 +93,7 @@ class _Repairer:
         whole = token[0]
         is_outside = not self._depth
         if token['comment']:
+            whole = self._with_xml_characters(whole)
             inside = whole[4:-3]
             if '--' not in inside and not inside.endswith('-'):
                 return whole
@@ -103,6 +113,8 @@ class _Repairer:
             elif not re.search(r'version\s*=\s*["\']1\.0', whole):
                 self._note('the declared XML version is not 1.0')
             return _blank(whole)
+        if token['verbatim']:
+            whole = self._with_xml_characters(whole)
         if (token['verbatim'] and is_outside) or (token['other'] and self._is_after_root()):
             return _blank(whole)
         return whole
@@ -134,7 +146,25 @@ class _Repairer:
     def _repaired_text(self, text: str) -> str:
         if ']]>' in text:
             self._note('"]]>" in text')
+        text = _REFERENCE.sub(self._repaired_reference, self._with_xml_characters(text))
         return self._repaired_ampersands(text).replace(']]>', ']]&gt;')
+
+    def _repaired_reference(self, reference: re.Match[str]) -> str:
+        digits = (reference[1] or reference[2]).lstrip('0')
+        code = int(digits or '0', 10 if reference[1] else 16) if (
+            len(digits) <= _LONGEST_REFERENCE) else sys.maxunicode + 1
+        if 0 < code <= sys.maxunicode and not _NOT_XML.match(chr(code)):
+            return reference[0]
+        self._note(f'{reference[0][:20]} is no character of XML; it is replaced')
+        return _REPLACEMENT
+
+    def _with_xml_characters(self, text: str) -> str:
+        found = _NOT_XML.search(text)
+        if found is None:
+            return text
+        line = self._line + text.count('\n', 0, found.start())
+        self._note(f'U+{ord(found[0]):04X} is no character of XML; it is replaced', line)
+        return _NOT_XML.sub(_REPLACEMENT, text)
 
     def _repaired_ampersands(self, text: str) -> str:
         ampersand = _BARE_AMPERSAND.search(text)

@@ -22,13 +22,13 @@ AXES = {
 
 AXIS_PARTS = (
     (), (), (), ('<limit><lower>-1.5</lower><upper>2</upper></limit>',), ('<limit/>',),
-    ('<limit><lower/><upper>-inf</upper></limit>',), ('<limit><lower>1e-3</lower></limit>',),
+    ('<limit><effort/><upper>-inf</upper></limit>',), ('<limit><lower>1e-3</lower></limit>',),
     ('<limit><lower> 0x10 </lower><upper>1.5rad</upper></limit>',),
     ('<limit><upper>inf</upper></limit>', '<dynamics><damping>1</damping></dynamics>'),
 )
 """What axes have besides a vector."""
 
-MIMIC_NUMBERS = (None, None, '', '0', '2.5', '-1e-3', '1.5rad')
+MIMIC_NUMBERS = (None, None, '0', '2.5', '-1e-3', '1.5rad')
 PITCHES = (
     (), ('<thread_pitch>-2.5</thread_pitch>',), ('<screw_thread_pitch>0.5</screw_thread_pitch>',),
     ('<thread_pitch/>',), ('<screw_thread_pitch/>', '<thread_pitch>3</thread_pitch>'),

@@ -27,8 +27,8 @@ def test_line_of_an_element(line):
 
 
 @pytest.mark.parametrize('line', [1, 65_533, 65_534, 65_535, 65_536, 70_000])
-def test_line_of_an_element_is_that_of_the_end_of_its_start_tag(line):
-    assert line_of_link('\n' * (line - 1) + '<link\nname="l"\n>\n</link>') == line + 2
+def test_line_of_an_element_is_that_of_the_beginning_of_its_start_tag(line):
+    assert line_of_link('\n' * (line - 1) + '<link\nname="l"\n>\n</link>') == line
 
 
 def test_lines_of_all_elements_of_a_long_file():

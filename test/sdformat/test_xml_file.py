@@ -355,3 +355,61 @@ def test_bytes_are_in_the_encoding_that_is_declared(encoding):
 def test_declared_encoding_does_not_matter_for_decoded_text(encoding):
     text = f'<?xml version="1.0" encoding="{encoding}"?>' + model_file('<link name="größe"/>')
     assert names_in(text) == ['m', 'm::größe']
+
+
+# Characters that XML does not have
+
+MODEL = '<sdf version="1.9"><model name="m"><link name="l">{}</link></model></sdf>'
+
+
+@pytest.mark.parametrize('text', [
+    '&#0;', '&#x0;', '&#1;', '&#xD800;', '&#55296;', '&#xFFFF;', '&#x110000;', '&#1114112;',
+    '&#99999999999;', '\x01', '\ufffe', '<!-- \x01 -->', '<!-- \ufffe -->', '<![CDATA[\x01]]>',
+])
+def test_characters_that_xml_does_not_have_are_replaced_in_text(text):
+    scene = load_text(MODEL.format(text))
+    assert scene.names[-1] == 'm::l'
+    assert 'is no character of XML; it is replaced' in scene.warnings[0].message
+
+
+@pytest.mark.parametrize('text', ['&#0;', '&#x110000;', '\x01', '\ufffe'])
+def test_characters_that_xml_does_not_have_are_refused_in_names(text):
+    assert codes_of(f'<sdf version="1.9"><model name="m{text}"/></sdf>') == ['FILE_READ']
+
+
+@pytest.mark.parametrize('text', ['&#65;', '&#x1F916;', '&#x0000000041;', '&#10;', '\t'])
+def test_other_characters_are_read(text):
+    assert not load_text(MODEL.format(text)).warnings
+
+
+# The declaration
+
+@pytest.mark.parametrize('before', [
+    'abc ', '<!DOCTYPE sdf>', '<!-- c -->', '<![CDATA[x]]>', 'a\n'])
+def test_declaration_after_something_else_is_refused(before):
+    assert codes_of(f'{before}<?xml version="1.0"?>{MODEL.format("")}') == ['FILE_READ']
+
+
+@pytest.mark.parametrize('before', ['\n', '\ufeff ', '<?xml version="1.0"?>'])
+def test_declaration_after_white_space_or_another_has_a_warning(before):
+    scene = load_text(f'{before}<?xml version="1.0"?>{MODEL.format("")}')
+    assert 'the declaration is not at the beginning' in scene.warnings[0].message
+
+
+# Names
+
+@pytest.mark.parametrize(('name', 'what'), [
+    ('"a\nb"', 'a line break'), ("'a\tb'", 'a tab'), ('"a\r\nb"', 'a line break')])
+def test_name_with_a_break_has_a_warning(name, what):
+    scene = load_text(f'<sdf version="1.9"><model name="m">\n<link name={name}/></model></sdf>')
+    assert scene.names[-1] == 'm::a b'
+    warning, = scene.warnings
+    assert f'holds {what}, which XML reads as a blank' in warning.message
+    assert warning.place.line == 2
+
+
+@pytest.mark.parametrize('link', [
+    '<link name="\nab\t"/>', '<link\n\tname="a b"/>',
+    '<link name="ab"/><plugin name="a\tb" filename="f"/>'])
+def test_name_without_a_break_in_it_has_no_warning(link):
+    assert not load_text(f'<sdf version="1.9"><model name="m">{link}</model></sdf>').warnings
