@@ -68,6 +68,10 @@ class UndefinedReporter:
             return
         if self._is_only_counted():
             return
+        if tag == 'include':
+            msg = f'<include> in <{written_tag(parent_xml)}> is not read'
+            self._problems.warning(msg, self._sources.place(xml))
+            return
         hint = _ELEMENT_HINTS.get(f'{parent.identifier}/{tag}', '') or _ELEMENT_HINTS.get(tag, '')
         if not hint and tag in parent.attributes:
             hint = f'it is an attribute: {tag}="..."'

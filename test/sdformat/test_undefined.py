@@ -102,3 +102,8 @@ def test_misspelt_element_of_an_include_is_a_warning_with_its_line(tmp_path):
     assert warning.message == (
         '<nmae> in <include> is not defined in SDFormat; did you mean <name>?')
     assert (warning.place.file, warning.place.line) == (str(tmp_path / 'main.sdf'), 4)
+
+
+def test_include_where_none_is_read_has_a_warning_of_its_own():
+    scene = load_text(world_file('<actor name="a"><include><uri>u</uri></include></actor>'))
+    assert [each.message for each in scene.warnings] == ['<include> in <actor> is not read']

@@ -27,6 +27,7 @@ from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.element_ids import element_by_id
 from sdf_pose_bridge.sdformat.include.element_ids import hint_for_id
+from sdf_pose_bridge.sdformat.reader import check_element
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
 from sdf_pose_bridge.sdformat.xml_tree import described
@@ -60,12 +61,7 @@ of the specification to themselves."""
 
 
 def params_of(include: XmlElement) -> XmlElement | None:
-    """
-    Return the parameters of an include.
-
-    :param include: the ``<include>``.
-    :return: its first ``<experimental:params>``, or None.
-    """
+    """Return the first ``<experimental:params>`` of an include, or None."""
     return next((xml for xml in child_elements(include) if written_tag(xml) == _PARAMS), None)
 
 
@@ -77,7 +73,6 @@ def apply_params(
 
     :param params: the ``<experimental:params>``; it is not changed.
     :param top: the included element.
-    :param sources: where elements were written.
     :param problems: takes what is wrong with the parameters. What has an error is not applied.
     :return: the elements that were added.
     """
@@ -197,16 +192,17 @@ class _Changer:
             msg = f'<{tag}> is to replace <{tag} name="{target.get("name")}">, so it needs a name'
             self._error(AttributeMissingError, xml, msg)
         elif parent is not None:
+            self._check_before_change(target)
             parent.replace(target, self._new_element(xml))
 
     def _remove(self, xml: XmlElement, target: XmlElement) -> None:
         if _is_empty(xml):
-            _take_out(target)
+            self._take_out(target)
             return
         for child in child_elements(xml):
             found = self._child(target, child)
             if found is not None:
-                _take_out(found)
+                self._take_out(found)
 
     def _modify(self, xml: XmlElement, target: XmlElement) -> None:
         text = text_of(xml)
@@ -236,12 +232,24 @@ class _Changer:
             definition = self._definition(found)
             if definition is not None and definition.is_required and not is_end:
                 # Without the element its default applies.
-                _take_out(found)
+                self._take_out(found)
                 return
             self._set_text(_DEFAULT_JOINT_END if is_end else '', xml, found)
             self._change_attributes(xml, found, is_read_before=False)
         else:
             self._warning(xml, f'<{written_tag(xml)}> holds nothing, so it changes nothing')
+
+    def _take_out(self, target: XmlElement) -> None:
+        self._check_before_change(target)
+        parent = target.getparent()
+        if parent is not None:
+            parent.remove(target)
+
+    def _check_before_change(self, target: XmlElement) -> None:
+        """Check what goes, as libsdformat reads the file, and each change, before the next one."""
+        definition = self._definition(target)
+        if definition is not None:
+            check_element(target, definition, self._sources, self._problems)
 
     def _set_text(self, text: str, xml: XmlElement, target: XmlElement) -> None:
         target[:] = []
@@ -392,9 +400,3 @@ def _step(xml: XmlElement) -> str:
 
 def _is_empty(xml: XmlElement) -> bool:
     return len(xml) == 0 and not (xml.text or '').strip()
-
-
-def _take_out(xml: XmlElement) -> None:
-    parent = xml.getparent()
-    if parent is not None:
-        parent.remove(xml)
