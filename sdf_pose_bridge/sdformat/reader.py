@@ -122,7 +122,12 @@ class _Reader:
 
     def check(self, xml: XmlElement, definition: Definition) -> None:
         self._check_attributes(xml, definition)
-        self._read(xml, definition, NO_ELEMENT, NO_ELEMENT, '', 1)
+        if definition.is_pose:
+            self._check_pose(xml)
+        elif definition.value_type is not None:
+            self._check_value(xml, definition)
+        else:
+            self._read(xml, definition, NO_ELEMENT, NO_ELEMENT, '', 1)
 
     def elements(self, root: XmlElement) -> Elements:
         self._read_file(root)

@@ -8,6 +8,7 @@ import pytest
 from sdf_texts import assert_at
 from sdf_texts import errors_of_file
 from sdf_texts import names_of
+from sdf_texts import write_files
 
 import sdf_pose_bridge
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
@@ -334,20 +335,16 @@ def test_work_of_many_attributes_is_not_that_of_all_siblings_for_each(load):
 
 # Every change is read before the next one
 
-def quaternion_model(tmp_path):
-    return write_files(tmp_path, {'inc.sdf': (
-        '<sdf version="1.11"><model name="inc"><link name="base">'
-        '<pose rotation_format="quat_xyzw">0 0 0 0 0 0 1</pose></link></model></sdf>')})
-
-
 def test_wrong_pose_that_a_later_parameter_replaces_is_refused(tmp_path):
-    quaternion_model(tmp_path)
-    text = model_file(
-        LINK + '<include><uri>inc.sdf</uri><experimental:params>'
-        '<link element_id="base" action="modify"><pose>1 2 3 0 0 0</pose></link>'
-        '<link element_id="base"><pose action="replace">1 2 3 0 0 0</pose></link>'
-        '</experimental:params></include>', version='1.11')
-    (tmp_path / 'top.sdf').write_text(text)
+    write_files(
+        tmp_path,
+        inc='<sdf version="1.11"><model name="inc"><link name="base">'
+            '<pose rotation_format="quat_xyzw">0 0 0 0 0 0 1</pose></link></model></sdf>',
+        top='<sdf version="1.11"><model name="top"><link name="l"/><include><uri>inc.sdf</uri>'
+            '<experimental:params>'
+            '<link element_id="base" action="modify"><pose>1 2 3 0 0 0</pose></link>'
+            '<link element_id="base"><pose action="replace">1 2 3 0 0 0</pose></link>'
+            '</experimental:params></include></model></sdf>')
     error, = errors_of_file(tmp_path / 'top.sdf')
     assert error.code == 'ELEMENT_INVALID'
     assert 'a pose has 7 values' in error.message
