@@ -3,7 +3,7 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test_long run lint bench differential fuzz growth soak licenses audit docs clean
+.PHONY: help setup demo test test_long run lint bench differential fuzz growth soak licenses audit docs pictures clean
 
 # The distribution of ROS 2, also for the scripts in underlay.
 ROS ?= jazzy
@@ -37,6 +37,7 @@ help:
 	@echo 'make licenses       licences of everything that is installed for this, as in docs/licenses.md'
 	@echo 'make audit          known vulnerabilities of it, by pip-audit; needs the network'
 	@echo 'make docs           the documentation, into docs/_build/html'
+	@echo 'make pictures       the pictures in the documentation; needs Chromium and Graphviz'
 	@echo 'make setup          only the environment in .underlay, which all of these share'
 	@echo 'make clean          remove the environment and everything that was built'
 	@echo ''
@@ -102,6 +103,13 @@ audit: setup
 # Warnings, such as those of links that lead nowhere, are errors.
 docs: setup
 	@$(in_shell) python -m sphinx --fail-on-warning --keep-going --quiet docs docs/_build/html
+
+pictures: setup
+	@. underlay/setup.bash \
+	  && python -m sdf_pose_bridge view examples/work_cell.sdf -o docs/pictures/work_cell.png \
+	  && python -m sdf_pose_bridge view docs/pictures/arm.sdf -o docs/pictures/view.png \
+	  && python -m sdf_pose_bridge view docs/pictures/tutorial/cell.sdf -o docs/pictures/tutorial.png \
+	  && exec python -m sdf_pose_bridge graph docs/pictures/arm.sdf -o docs/pictures/graph.svg
 
 clean:
 	@rm -rf .underlay build install log .underlay-* build-* install-* log-*

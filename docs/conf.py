@@ -11,8 +11,12 @@ project = 'sdf_pose_bridge'
 author = copyright = 'The sdf_pose_bridge authors'
 extensions = ['myst_parser', 'sphinx.ext.autodoc']
 exclude_patterns = ['_build']
-html_theme = 'alabaster'
-html_theme_options = {'description': 'Every frame of an SDFormat file in TF', 'page_width': '70em'}
+html_theme = 'furo'
+html_title = 'sdf_pose_bridge'
+html_static_path = ['static']
+html_css_files = ['pages.css']
+# Indented blocks are commands with their output as often as Python.
+highlight_language = 'text'
 myst_heading_anchors = 3
 autodoc_member_order = 'bysource'
 autodoc_typehints = 'description'
