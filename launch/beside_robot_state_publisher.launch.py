@@ -72,8 +72,9 @@ def generate_launch_description() -> LaunchDescription:
             parameters=[{
                 **{name: _text(LaunchConfiguration(name))
                    for name in ('sdf_file', 'root_frame', 'frame_prefix', 'model')},
-                # The topic is robot_state_publisher's.
-                'publish_robot_description': False}],
+                # The surroundings stand still in root_frame, also if they are a model file. The
+                # topic is robot_state_publisher's.
+                'anchor_models': 'all', 'publish_robot_description': False}],
             output='screen',
         ),
     ])

@@ -15,10 +15,12 @@ the node gets the text as ``robot_description``:
         xacro_arguments:='prefix:=left_ gripper:=true'
 
 With ``rviz:=true`` RViz shows the frames and the visuals of the links, from ``rviz/bridge.rviz``.
+Its fixed frame is the root of the tree that the node publishes.
 """
 
 from __future__ import annotations
 
+from pathlib import Path
 import shlex
 
 from ament_index_python.packages import get_packages_with_prefixes
@@ -34,11 +36,19 @@ from launch.substitutions import ThisLaunchFileDir
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterFile
 from launch_ros.parameter_descriptions import ParameterValue
+import yaml
+
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
+from sdf_pose_bridge.ros.parameters import settings_from_values
+from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.sdformat.include.uris import AddressError
 
 PARAMETERS = {
     'sdf_file': 'SDFormat file to publish: a path, or a file://, package:// or model:// URI.',
     'frame_prefix': 'Precedes every frame id but that of root_frame, such as robot1/.',
     'root_frame': "TF frame of the SDF world, or of a model file's root.",
+    'anchor_models': 'Which models get a transform from root_frame: auto, all, static or none.',
 }
 """Arguments that set the parameter of the same name."""
 
@@ -96,7 +106,7 @@ def _nodes(context: LaunchContext) -> list[Node]:
         ],
         output='screen',
     )
-    return [bridge, _rviz(context, given['root_frame'])] if with_rviz else [bridge]
+    return [bridge, _rviz(context, _fixed_frame(context, given, params_file))] if with_rviz else [bridge]
 
 
 def _parameters(given: dict[str, str]) -> dict[str, str | Command]:
@@ -111,14 +121,32 @@ def _parameters(given: dict[str, str]) -> dict[str, str | Command]:
     return parameters
 
 
-def _rviz(context: LaunchContext, root_frame: str) -> Node:
+def _fixed_frame(context: LaunchContext, given: dict[str, str], params_file: str) -> str:
+    """Return the root of the tree that the node will publish, or '' if it is not known."""
+    values: dict[str, object] = {}
+    if params_file:
+        nodes = yaml.safe_load(Path(params_file).read_text(encoding='utf-8')) or {}
+        for entries in nodes.values():
+            values.update(entries.get('ros__parameters', {}))
+    values.update({
+        name: value if isinstance(value, str) else value.perform(context)
+        for name, value in _parameters(given).items()})
+    try:
+        tree = loaded_scene_from_settings(settings_from_values(values)).tree
+    except (SdfError, SettingsError, AddressError):
+        # The node says what is wrong.
+        return given['root_frame']
+    return tree.fixed_frame
+
+
+def _rviz(context: LaunchContext, fixed_frame: str) -> Node:
     namespace = LaunchConfiguration('namespace').perform(context).strip('/')
     return Node(
         package='rviz2',
         executable='rviz2',
         arguments=[
             '-d', PathJoinSubstitution([ThisLaunchFileDir(), '..', 'rviz', 'bridge.rviz']),
-            *(['-f', root_frame] if root_frame else [])],
+            *(['-f', fixed_frame] if fixed_frame else [])],
         remappings=[(VISUALS, f'/{namespace}{VISUALS}')] if namespace else [],
         output='screen',
     )

@@ -9,8 +9,8 @@ Each robot has a node of its own. The namespace separates their topics and servi
 (``/left/sdf_pose_bridge/...``), the prefix their frames (``left/chassis``). A model file does not
 say where in the world the robot is, so each robot has its own root frame, ``left_start`` and
 ``right_start``; a third node publishes the poses of these in ``world``, from
-``examples/starting_places.sdf``. For robots that drive, leave that node out and let odometry or
-localization publish them.
+``examples/starting_places.sdf``. For robots that drive, leave that node and ``anchor_models`` out
+and let odometry or localization publish the pose of each chassis.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def generate_launch_description() -> LaunchDescription:
             frame_prefix=''),
         *(_bridge(
             sdf_file=LaunchConfiguration('sdf_file'), namespace=robot,
-            root_frame=f'{robot}_start', frame_prefix=f'{robot}/')
+            root_frame=f'{robot}_start', frame_prefix=f'{robot}/', anchor_models='all')
           for robot in ('left', 'right')),
     ])
 

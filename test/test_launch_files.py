@@ -107,8 +107,8 @@ def test_every_argument_has_a_description(name):
 @pytest.mark.parametrize('name', BRIDGE_FILES)
 def test_the_bridge_can_be_told_file_names_and_parameters(name):
     assert declared(name).keys() == {
-        'sdf_file', 'xacro_arguments', 'namespace', 'frame_prefix', 'root_frame', 'params_file',
-        'rviz'}
+        'sdf_file', 'xacro_arguments', 'namespace', 'frame_prefix', 'root_frame', 'anchor_models',
+        'params_file', 'rviz'}
 
 
 def test_both_forms_say_the_same_of_their_arguments():
@@ -183,6 +183,18 @@ def test_rviz_follows_root_frame_and_namespace(namespace):
     assert remappings == {VISUALS: f'/left{VISUALS}'}
 
 
+def test_the_fixed_frame_of_rviz_is_the_root_of_what_is_published(tmp_path):
+    params_file = tmp_path / 'params.yaml'
+    params_file.write_text('/**: {ros__parameters: {frame_prefix: r1/}}')
+    file = FOLDER.parent / 'examples/mobile_robot.sdf'
+    for arguments, frame in (
+            ({'params_file': str(params_file)}, 'r1/chassis'),
+            ({'frame_prefix': 'a/'}, 'a/chassis'),
+            ({'anchor_models': 'all', 'root_frame': 'map'}, 'map')):
+        words, _ = rviz_of('bridge.launch.py', sdf_file=str(file), **arguments)
+        assert words[2:] == ['-f', frame]
+
+
 def test_rviz_shows_frames_and_visuals():
     manager = yaml.safe_load(RVIZ_FILE.read_text(encoding='utf-8'))['Visualization Manager']
     assert manager['Global Options']['Fixed Frame'] == 'world'
@@ -204,5 +216,5 @@ def test_beside_robot_state_publisher_the_two_publish_different_frames(tmp_path)
         'robot_state_publisher': {'robot_description': URDF},
         'bridge': {
             'sdf_file': 'cell.sdf', 'root_frame': 'world', 'frame_prefix': 'cell/', 'model': '',
-            'publish_robot_description': False},
+            'anchor_models': 'all', 'publish_robot_description': False},
     }

@@ -95,7 +95,7 @@ def test_package_xml_declares_every_package_that_the_code_imports():
             names += [node.module] if isinstance(node, ast.ImportFrom) else []
             imported |= {name.split('.')[0] for name in names}
     keys = {
-        {'numpy': 'python3-numpy', 'lxml': 'python3-lxml'}.get(name, name)
+        f'python3-{name}' if name in ('lxml', 'numpy', 'yaml') else name
         for name in imported - sys.stdlib_module_names - OF_THE_VIEWER - {'sdf_pose_bridge'}}
     declared = {tag.text for tag in package_xml('sdf_pose_bridge').iter('exec_depend')}
     assert keys == declared

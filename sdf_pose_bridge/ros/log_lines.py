@@ -12,6 +12,7 @@ from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
@@ -84,6 +85,19 @@ def lines_about_lost_frames(before: TfTree, after: TfTree) -> list[str]:
             f'{count_in_words(len(detached), "frame")} without a parent now; TF listeners keep '
             f'the last transform until they are restarted: {names_in_line(detached)}')
     return lines
+
+
+def line_about_detached_models(tree: TfTree, scene: Scene) -> str:
+    """Name the models without a transform from the root frame; return '' if there are none."""
+    elements = tree.elements[tree.parents == NO_PARENT].tolist()
+    models = dict.fromkeys(
+        scene.names[top_level_model] for element in elements if element >= 0
+        for *_, top_level_model, _ in [scene.with_ancestors(element)])
+    if not models:
+        return ''
+    return (
+        f'no transform from "{tree.root_frame}" to {names_in_line(tuple(models))}: odometry or '
+        'localization can publish one, or this node with anchor_models "all"')
 
 
 def count_in_words(number: int, what: str) -> str:

@@ -33,6 +33,7 @@ from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.loaded_scene import LoadedScene
 from sdf_pose_bridge.ros.loaded_scene import may_pass
 from sdf_pose_bridge.ros.log_lines import count_in_words
+from sdf_pose_bridge.ros.log_lines import line_about_detached_models
 from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
@@ -165,6 +166,9 @@ class SdfPoseBridge:
             f'publishing {count_in_words(len(loaded.tree.frame_ids), "frame")} of {loaded.path} '
             f'with {count_in_words(loaded.tree.transform_count, "transform")}, root frame '
             f'"{loaded.tree.root_frame}" (read in {1e3 * loaded.seconds:.0f} ms)')
+        line = line_about_detached_models(loaded.tree, loaded.scene)
+        if line:
+            self._logger.info(line)
         self._diagnostics.update(loaded)
 
     async def _reload(self) -> list[str]:

@@ -131,10 +131,11 @@ class Settings:
         root_frame_setting,
     )
     anchor_models = Declaration(
-        'all',
-        'Which top-level models get a transform from root_frame. "none" leaves that to others, '
-        'such as odometry or a localization node.',
-        'one of all, static, none',
+        'auto',
+        'Which top-level models get a transform from root_frame; odometry or localization can '
+        'publish that of the others. "auto" is "static" for a model file or URDF, and "all" for a '
+        'world.',
+        'one of auto, all, static, none',
         choice_setting(AnchorModels),
     )
     model = Declaration(
@@ -281,6 +282,18 @@ def settings_from_node(node: Node) -> Settings:
         except ValueError as error:
             sentences.append(f'parameter {name} {error}')
     return _checked_settings(values, sentences)
+
+
+def settings_from_values(values: Mapping[str, Any]) -> Settings:
+    """
+    Convert values of parameters without a node.
+
+    :param values: values by the names of parameters; the others have their defaults.
+    :raises SettingsError: if a value has the wrong type or is not allowed.
+    """
+    defaults = {name: each.convert(each.default) for name, each in DECLARATIONS.items()}
+    return changed_settings(
+        Settings(defaults), [Parameter(name, value=value) for name, value in values.items()])
 
 
 def changed_settings(settings: Settings, parameters: Iterable[Parameter]) -> Settings:

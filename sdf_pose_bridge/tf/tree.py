@@ -48,6 +48,8 @@ DEFAULT_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.FRAME, Kind.SENSOR})
 class AnchorModels(enum.Enum):
     """Which top-level models get a transform from the root frame."""
 
+    AUTO = 'auto'
+    """All models of a world; those of a model file, or of URDF, like ``STATIC``."""
     ALL = 'all'
     STATIC = 'static'
     """Static models, and models that a joint connects to the world."""
@@ -59,7 +61,7 @@ class TfOptions(NamedTuple):
 
     root_frame: str = 'world'
     """The frame id of the world, or of a model file's implicit root."""
-    anchor_models: AnchorModels = AnchorModels.ALL
+    anchor_models: AnchorModels = AnchorModels.AUTO
     """Which top-level models get a transform from the root frame."""
     model: str = ''
     """The scoped name of the only model to publish; empty for everything."""
@@ -116,6 +118,13 @@ class TfTree:
         # The last two entries serve the two negative indices.
         ids = (*self.frame_ids, '', self.root_frame)
         return tuple(map(ids.__getitem__, self.parents.tolist()))
+
+    @property
+    def fixed_frame(self) -> str:
+        """The root of the first tree: the root frame, unless no frame is below it."""
+        if ROOT_IS_PARENT in self.parents or not self.frame_ids:
+            return self.root_frame
+        return self.frame_ids[int(np.flatnonzero(self.parents == NO_PARENT)[0])]
 
     @cached_property
     def fixed_indices(self) -> NDArray[np.intp]:
@@ -315,6 +324,8 @@ def _nearest_frames_and_parents(
     """
     is_root = scene.parents < 0
     is_detached = np.zeros(len(is_root), np.bool_)
+    if anchor_models is AnchorModels.AUTO:
+        anchor_models = AnchorModels.ALL if 0 in scene.world_names else AnchorModels.STATIC
     if anchor_models is not AnchorModels.ALL:
         for element in np.flatnonzero(is_root[tf_parents.parents] & ~is_root).tolist():
             is_detached[element] = not _is_anchored(element, scene, tf_parents, anchor_models)

@@ -89,7 +89,8 @@ def wait_for_parents(listener, frame_ids):
 def test_arguments_reach_the_node(launch, listener, sdf_file, name):
     listener.listen_to_frames('/left/sdf_pose_bridge')
     # A root frame that YAML would take for a number.
-    launch(name, sdf_file=sdf_file, namespace='left', frame_prefix='a/', root_frame='1')
+    launch(name, sdf_file=sdf_file, namespace='left', frame_prefix='a/', root_frame='1',
+        anchor_models='all')
     parents = wait_for_parents(listener, ['a/base', 'a/tool'])
     assert parents == {'a/arm': 'a/base', 'a/base': '1', 'a/tool': 'a/base'}
     listener.wait_for_keys(listener.transforms, parents)
@@ -102,7 +103,7 @@ def test_arguments_win_over_the_params_file_and_leave_it_the_rest(
     params_file = tmp_path / 'params.yaml'
     params_file.write_text(
         f'{node}:\n  ros__parameters:\n    sdf_file: {sdf_file}\n    root_frame: map\n'
-        '    frame_prefix: from_file_\n', encoding='utf-8')
+        '    frame_prefix: from_file_\n    anchor_models: all\n', encoding='utf-8')
     listener.listen_to_frames()
     namespace = '' if node == 'sdf_pose_bridge' else 'left'
     launch(name, params_file=params_file, namespace=namespace, frame_prefix='a/')

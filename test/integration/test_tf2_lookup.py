@@ -23,7 +23,9 @@ from tf2_ros import LookupException
 from tf2_ros import TransformListener
 
 import sdf_pose_bridge
+from sdf_pose_bridge.tf.tree import AnchorModels
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
 
 EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
 FILE = """\
@@ -46,7 +48,7 @@ class Expected:
 
     def __init__(self, path):
         self._scene = sdf_pose_bridge.load(path)
-        tree = tf_tree_from_scene(self._scene)
+        tree = tf_tree_from_scene(self._scene, TfOptions(anchor_models=AnchorModels.ALL))
         self.root_frame = tree.root_frame
         parents = dict(zip(tree.frame_ids, tree.parent_ids, strict=True))
         names = {
@@ -111,7 +113,8 @@ def test_every_frame_can_be_looked_up_from_every_other(
     expected = Expected(path)
     if not comes_late:
         buffer, listener = start_buffer()
-    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={path}')
+    bridge = start_bridge(
+        '--ros-args', '-p', f'sdf_file:={path}', '-p', 'anchor_models:=all')
     if comes_late:
         bridge.wait_until_started()
         buffer, listener = start_buffer()
@@ -126,7 +129,7 @@ def test_every_frame_can_be_looked_up_from_every_other(
 def test_models_that_are_not_anchored_leave_the_root_to_others(start_bridge, start_buffer):
     start_bridge(
         '--ros-args', '-p', f'sdf_file:={EXAMPLES / "mobile_robot.sdf"}',
-        '-p', 'anchor_models:=none')
+        '-p', 'anchor_models:=auto')
     buffer, listener = start_buffer()
     wait_for_frames(buffer, listener, ['base_link', 'left_wheel'], 'chassis')
     with pytest.raises(LookupException, match='world'):

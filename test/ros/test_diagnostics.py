@@ -59,6 +59,6 @@ def test_the_values_describe_what_is_served_and_what_is_wrong(status_of, tmp_pat
     values = {value.key: value.value for value in status.values}
     assert values.pop('time to load').endswith(' ms')
     assert values == {
-        'file': str(tmp_path / 'cell.sdf'), 'root frame': 'map', 'frames': '2', 'transforms': '2',
+        'file': str(tmp_path / 'cell.sdf'), 'root frame': 'map', 'frames': '2', 'transforms': '1',
         'files read': '1', 'last good load': '2026-01-02T03:04:05+00:00', 'warnings': '0',
         'first warning': '', 'last error': 'first\nsecond'}

@@ -13,14 +13,18 @@ from sdf_pose_bridge.errors import LoadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.problems import MOST_PROBLEMS
+from sdf_pose_bridge.ros.log_lines import line_about_detached_models
 from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
 from sdf_pose_bridge.ros.log_lines import MOST_ERRORS
 from sdf_pose_bridge.ros.log_lines import MOST_WARNINGS
 from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.tree import AnchorModels
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
 
 
 def test_each_error_of_a_file_has_its_line_with_its_place():
@@ -87,3 +91,17 @@ def test_frames_that_tf_cannot_forget_are_named():
     assert detached.startswith('1 frame without a parent now')
     assert detached.endswith('"a/l"')
     assert lines_about_lost_frames(tree('a', AnchorModels.NONE), tree('')) == []
+
+
+def test_models_without_a_transform_from_the_root_are_named():
+    def line(text, **options):
+        scene = load_text(text)
+        return line_about_detached_models(
+            tf_tree_from_scene(scene, TfOptions(root_frame='map', **options)), scene)
+
+    arm = '<model name="arm"><link name="l"/><model name="hand"><link name="l"/></model></model>'
+    assert line(world_file(arm)) == ''
+    assert 'no transform from "map" to "arm":' in line(f'<sdf version="1.10">{arm}</sdf>')
+    assert '"arm", "b":' in line(
+        world_file(f'{arm}<model name="b"><link name="l"/></model>'),
+        anchor_models=AnchorModels.STATIC)

@@ -14,6 +14,7 @@ from rclpy.parameter import Parameter
 from sdf_pose_bridge.ros.parameters import changed_settings
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.ros.parameters import settings_from_node
+from sdf_pose_bridge.ros.parameters import settings_from_values
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.parameters import warnings_about_unknown_parameters
 from sdf_pose_bridge.scene.loading import MissingInclude
@@ -42,7 +43,7 @@ def default_settings(make_node):
     ('publish_rate', '500', 'must be 0.0 for never, or from 0.001 to 100.0'),
     ('publish_rate', '1e-12', 'is 1e-12; it must be 0.0 for never, or from 0.001 to 100.0'),
     ('publish_rate', '.nan', 'must be 0.0 for never, or from 0.001 to 100.0'),
-    ('anchor_models', 'some', 'is "some"; it must be one of all, static, none'),
+    ('anchor_models', 'some', 'is "some"; it must be one of auto, all, static, none'),
     ('kinds', '[]', 'is []; it must be at least one of'),
 ])
 def test_a_wrong_value_on_the_command_line_is_named_once(make_node, name, value, sentence):
@@ -106,6 +107,16 @@ def test_without_a_file_the_sentence_says_how_to_name_one(make_node):
     assert 'sdf_file:=cell.sdf after "ros2 launch' in str(refusal.value)
 
 
+def test_settings_of_values_without_a_node(settings):
+    values = {'sdf_file': 'cell.sdf', 'publish_rate': 2, 'kinds': ['link']}
+    found = settings_from_values(values)
+    expected = changed_settings(
+        settings, [Parameter('publish_rate', value=2.0), Parameter('kinds', value=['link'])])
+    assert found.values == expected.values
+    with pytest.raises(SettingsError, match='anchor_models is "some"'):
+        settings_from_values({'sdf_file': 'cell.sdf', 'anchor_models': 'some'})
+
+
 def test_a_file_and_a_text_together_are_refused(settings):
     with pytest.raises(SettingsError, match='sdf_file and robot_description are both set'):
         changed_settings(settings, [Parameter('robot_description', value='<sdf/>')])
@@ -120,7 +131,7 @@ def test_a_file_and_a_text_together_are_refused(settings):
     ('root_frame', '/map', 'is "/map"; it must be without a leading slash'),
     ('root_frame', 'a\nb', r'is "a\nb"; it must be without control'),
     ('root_frame', 5, 'is 5, which is an integer; it must be a string'),
-    ('anchor_models', 'some', 'is "some"; it must be one of all, static, none'),
+    ('anchor_models', 'some', 'is "some"; it must be one of auto, all, static, none'),
     ('on_missing_include', 'ignore', 'is "ignore"; it must be one of error, skip'),
     ('frame_names', 'Auto', 'is "Auto"; it must be one of auto, scoped, relative'),
     ('frame_separator', '', 'is ""; it must be at least one'),

@@ -138,7 +138,7 @@ def test_a_frame_id_that_nothing_has_becomes_a_frame_at_the_sensor():
     text = model_file(f'<link name="l">{lidar("s", "laser")}</link>')
     tree = tree_of(text)
     assert dict(zip(tree.frame_ids, tree.parent_ids, strict=True)) == {
-        'm': 'l', 'l': 'world', 'laser': 'l'}
+        'm': 'l', 'l': '', 'laser': 'l'}
     assert pose_of(tree, 'laser')[:3] == [1, 0, 0]
 
 
@@ -223,12 +223,12 @@ def test_optical_frames_can_be_left_out():
 def test_a_camera_names_its_optical_frame():
     text = model_file('<link name="l">' + camera(
         inside='<optical_frame_id>eye</optical_frame_id>') + '</link>')
-    assert parents_of(text) == {'m': 'l', 'l': 'world', 'l/cam': 'l', 'eye': 'l/cam'}
+    assert parents_of(text) == {'m': 'l', 'l': '', 'l/cam': 'l', 'eye': 'l/cam'}
 
 
 def test_the_optical_frame_of_a_camera_with_a_frame_id():
     text = model_file(f'<link name="l">{camera(children="<gz_frame_id>eye</gz_frame_id>")}</link>')
-    assert parents_of(text) == {'m': 'l', 'l': 'world', 'eye': 'l', 'eye_optical': 'eye'}
+    assert parents_of(text) == {'m': 'l', 'l': '', 'eye': 'l', 'eye_optical': 'eye'}
 
 
 def test_the_optical_frame_of_a_camera_with_the_frame_id_of_a_link():

@@ -51,10 +51,12 @@ def test_only_links_behind_joints_move_in_their_parents():
 
 
 def test_a_frame_moves_by_all_joints_up_to_the_next_published_frame():
-    tree = moving_tree(model_file(ARM), kinds=frozenset({Kind.MODEL, Kind.SENSOR}))
+    tree = moving_tree(
+        model_file(ARM), kinds=frozenset({Kind.MODEL, Kind.SENSOR}),
+        anchor_models=AnchorModels.ALL)
     assert moving_ids(tree) == ['b/s']
     text = model_file(ARM.replace(CAMERA, '') + '<frame name="f" attached_to="c"/>')
-    tree = moving_tree(text, kinds=frozenset({Kind.FRAME}))
+    tree = moving_tree(text, kinds=frozenset({Kind.FRAME}), anchor_models=AnchorModels.ALL)
     transform, = tree.moving.transforms(np.array([np.pi / 2, np.pi / 2]))
     np.testing.assert_allclose(transform, [-1, 0, 0, 0, 0, 1, 0], atol=1e-15)
 
@@ -121,7 +123,7 @@ def test_transforms_along_the_tree_give_the_poses(data, count):
     text = model_text([data.draw(POSES) for _ in range(count)], joints)
     kinds = data.draw(st.sampled_from([
         {Kind.LINK}, {Kind.JOINT}, {Kind.MODEL, Kind.LINK, Kind.JOINT}]))
-    tree = moving_tree(text, kinds=frozenset(kinds))
+    tree = moving_tree(text, kinds=frozenset(kinds), anchor_models=AnchorModels.ALL)
     positions = np.array([data.draw(POSITIONS) for _ in tree.moving.dofs])
     transforms = tree.transforms.copy()
     transforms[tree.moving.indices] = tree.moving.transforms(positions)

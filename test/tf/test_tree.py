@@ -174,6 +174,23 @@ def test_a_frame_without_a_parent_starts_a_tree_of_its_own():
     assert (parents['free/l'], parents['free'], parents['free/f']) == ('', 'free/l', 'free')
 
 
+URDF = (
+    '<robot name="r"><link name="l"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" '
+    'ixy="0" ixz="0" iyz="0"/></inertial></link></robot>')
+
+
+@pytest.mark.parametrize(('text', 'on_root'), [
+    (world_file('<model name="m"><link name="l"/></model>'), {'m/l'}),
+    (model_file('<link name="l"/>'), set()),
+    (model_file('<static>true</static><link name="l"/>'), {'l'}),
+    (model_file('<link name="l"/>' + fixed_joint('j', 'world', 'l')), {'l'}),
+    (URDF, set()),
+])
+def test_a_model_file_that_can_move_is_not_anchored_by_default(text, on_root):
+    assert {child for child, parent in parents_of(text).items() if parent == 'world'} == on_root
+    assert (tree_of(text).fixed_frame == 'world') is bool(on_root)
+
+
 @pytest.mark.parametrize(('kinds', 'anchor', 'nearest'), [
     ({Kind.LINK}, AnchorModels.NONE, {
         'world': 'world', 'free': 'free/l', 'free::l': 'free/l', 'free::f': 'free/l',
@@ -200,7 +217,7 @@ def test_other_kinds():
         '<link name="l"><inertial/><visual name="x"/><collision name="x"/></link>'
         '<link name="k"/>' + fixed_joint('j', 'l', 'k'))
     assert parents_of(text, kinds=ALL_KINDS) == {
-        'm': 'l', 'l': 'world', 'l/inertial': 'l', 'l/visual/x': 'l', 'l/collision/x': 'l',
+        'm': 'l', 'l': '', 'l/inertial': 'l', 'l/visual/x': 'l', 'l/collision/x': 'l',
         'k': 'l', 'j': 'k'}
 
 
@@ -208,13 +225,18 @@ def test_what_is_not_published_stands_in_no_ones_way():
     text = model_file('<link name="l"/><frame name="f" attached_to="l"/>'
                       '<frame name="g" attached_to="f"/><link name="k"/>'
                       + fixed_joint('j', 'l', 'k'))
-    assert parents_of(text, kinds=frozenset({Kind.FRAME})) == {'f': 'world', 'g': 'f'}
-    assert parents_of(text, kinds=frozenset({Kind.JOINT})) == {'j': 'world'}
-    assert parents_of(text, kinds=frozenset()) == {}
+
+    def parents(*kinds):
+        return parents_of(text, kinds=frozenset(kinds), anchor_models=AnchorModels.ALL)
+
+    assert parents(Kind.FRAME) == {'f': 'world', 'g': 'f'}
+    assert parents(Kind.JOINT) == {'j': 'world'}
+    assert parents() == {}
 
 
 def test_the_root_frame():
-    assert parents_of(model_file(LINK), root_frame='map') == {'m': 'l', 'l': 'map'}
+    assert parents_of(world_file(f'<model name="m">{LINK}</model>'), root_frame='map') == {
+        'm': 'm/l', 'm/l': 'map'}
 
 
 def test_one_model_of_a_world():

@@ -228,7 +228,8 @@ def test_marker_is_in_the_root_frame_if_links_have_none():
         '<joint name="j" type="revolute"><parent>a</parent><child>b</child>'
         '<axis><xyz>0 0 1</xyz></axis></joint>'
         '<frame name="f"/>')
-    (marker,) = markers_of(text, kinds=frozenset({Kind.FRAME}), root_frame='map')
+    (marker,) = markers_of(
+        text, kinds=frozenset({Kind.FRAME}), root_frame='map', anchor_models=AnchorModels.ALL)
     assert (marker.frame_id, marker.pose[:3]) == ('map', pytest.approx((0, 0, 2)))
 
 
