@@ -20,6 +20,7 @@ import numpy as np
 from benchmarks.bench_idle import processor_time_ns
 from benchmarks.bench_publication import node
 from benchmarks.bench_reload import RunningBridge
+from benchmarks.harness import AtMostTimes
 from benchmarks.harness import benchmark
 from benchmarks.harness import Function
 from benchmarks.harness import TimesAsFast
@@ -48,6 +49,22 @@ try:
 except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
     pass
 """
+
+
+RECEIVER = """
+import rclpy
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import JointState
+rclpy.init()
+node = rclpy.create_node('counterpart')
+node.create_subscription(
+    JointState, 'joint_states', lambda message: None, qos_profile_sensor_data)
+try:
+    rclpy.spin(node)
+except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+    pass
+"""
+"""A minimal node that receives the messages and does nothing."""
 
 
 def chain_text(joints: int) -> str:
@@ -113,6 +130,8 @@ class JointBroadcaster:
     'JointState of 100 joints to sent TFMessage', counterpart='an object for each, and sent',
     goal=TimesAsFast(5.0))
 def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
+    from rclpy.serialization import serialize_message
+
     from sdf_pose_bridge.ros.joint_states import JointStates
     from sdf_pose_bridge.ros.published_frames import PublishedFrames
     from sdf_pose_bridge.ros.publishers import Publishers
@@ -126,11 +145,16 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
         follower = JointStates(ros, frames, is_published_later=False)
         broadcaster = JointBroadcaster(ros, 100, '/tf_of_counterpart')
         messages = joint_states(100)
-        yield lambda: follower.take(next(messages)), lambda: broadcaster.take(next(messages))
+        # The counterpart gets objects, which rclpy would have to make first.
+        serialized = itertools.cycle(
+            [serialize_message(each) for each in itertools.islice(messages, 1000)])
+        yield lambda: follower.take(next(serialized)), lambda: broadcaster.take(next(messages))
 
 
 @contextlib.contextmanager
-def shares_of_processors(joints: int) -> Iterator[tuple[Function, Function]]:
+def shares_of_processors(
+    joints: int, counterpart: str = COUNTERPART, publish_rate: float = 0.0,
+) -> Iterator[tuple[Function, Function]]:
     """Measure what the bridge and the counterpart take while they follow the same messages."""
     import rclpy
     from rclpy.context import Context
@@ -139,9 +163,10 @@ def shares_of_processors(joints: int) -> Iterator[tuple[Function, Function]]:
         file = Path(stack.enter_context(tempfile.TemporaryDirectory()), 'chain.sdf')
         file.write_text(chain_text(joints), encoding='utf-8')
         bridge = RunningBridge(
-            stack, file, 'use_joint_states:=true', 'watch:=false', 'pose_topics:=[]')
+            stack, file, 'use_joint_states:=true', 'watch:=false', 'pose_topics:=[]',
+            f'publish_rate:={publish_rate}')
         processes = [bridge.process, bridge.start(
-            stack, sys.executable, '-c', COUNTERPART, str(joints), stderr=subprocess.DEVNULL)]
+            stack, sys.executable, '-c', counterpart, str(joints), stderr=subprocess.DEVNULL)]
         context = Context()
         rclpy.init(args=[], context=context, domain_id=bridge.domain)
         stack.callback(context.shutdown)
@@ -189,4 +214,20 @@ def share_of_30_joints() -> Iterator[tuple[Function, Function | None]]:
     counterpart='a node that makes an object for each', goal=TimesAsFast())
 def share_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
     with shares_of_processors(100) as pair:
+        yield pair
+
+
+@benchmark(
+    '30 joints at 500 Hz, each message published, processor time in each second',
+    counterpart='a minimal node that receives and does nothing', goal=AtMostTimes(1.25))
+def share_and_receiver() -> Iterator[tuple[Function, Function | None]]:
+    with shares_of_processors(30, RECEIVER) as pair:
+        yield pair
+
+
+@benchmark(
+    '30 joints at 500 Hz, published at 20 Hz, processor time in each second',
+    counterpart='a minimal node that receives and does nothing', goal=AtMostTimes(1.0))
+def share_at_20_hz_and_receiver() -> Iterator[tuple[Function, Function | None]]:
+    with shares_of_processors(30, RECEIVER, publish_rate=20.0) as pair:
         yield pair

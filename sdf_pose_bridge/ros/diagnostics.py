@@ -17,6 +17,8 @@ from diagnostic_msgs.msg import KeyValue
 from rclpy.node import Node
 
 from sdf_pose_bridge.ros.loaded_scene import LoadedScene
+from sdf_pose_bridge.ros.publishers import new_publisher
+from sdf_pose_bridge.ros.publishers import Topic
 
 PERIOD_S = 2.0
 """
@@ -32,7 +34,8 @@ class Diagnostics:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', 10)
+        self._publisher = new_publisher(
+            node, Topic('/diagnostics', DiagnosticArray, depth=10, is_latched=False))
         self._message = DiagnosticArray()
 
     def update(self, loaded: LoadedScene, failure: Sequence[str] = ()) -> None:

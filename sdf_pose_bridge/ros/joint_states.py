@@ -10,18 +10,23 @@ joints are published where the file puts them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.clock import ClockType
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
+from rclpy.qos import QoSProfile
+from rclpy.qos import ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
 from sdf_pose_bridge.ros.cdr import StampedMessages
+from sdf_pose_bridge.ros.joint_state_bytes import joint_state_from_bytes
+from sdf_pose_bridge.ros.joint_state_bytes import JointStateBytes
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.publishers import Stamp
@@ -41,13 +46,28 @@ _PERIODS_UNTIL_REST = 15
 _WARNING_PERIOD_S = 10.0
 _NANOSECONDS = 1_000_000_000
 _MOST_PLANS = 20
+_MOST_WAITING = 1000
+
+
+class _NotExecuted(CallbackGroup):
+    """A callback group whose entities executors ignore."""
+
+    def can_execute(self, _entity: object) -> bool:
+        return False
+
+    def beginning_execution(self, _entity: object) -> bool:
+        return False
+
+    def ending_execution(self, _entity: object) -> None:
+        pass
 
 
 @dataclass
 class _Plan:
     """What messages with the same names change."""
 
-    names: Sequence[str]
+    names: bytes
+    """The serialized names."""
     selection: Selection
     """The degrees of freedom that the names mean."""
     rows: NDArray[np.intp]
@@ -73,7 +93,7 @@ class JointStates:
         self._node = node
         self._logger = node.get_logger()
         self._frames = frames
-        self._plans: dict[tuple[str, ...], _Plan] = {}
+        self._plans: dict[bytes, _Plan] = {}
         self._last_plan: _Plan | None = None
         self._waiting_rows: set[int] = set()
         self._periods_at_rest = 0
@@ -83,14 +103,25 @@ class JointStates:
             INITIAL_PERIOD_S, lambda: self._frames.publish_all(), clock=steady_clock)
         self._topics_timer = node.create_timer(
             TOPICS_PERIOD_S, self._publish_topics, clock=steady_clock)
+        self._timers = [self._initial_timer, self._topics_timer]
+        quality, group = qos_profile_sensor_data, None
+        if is_published_later:
+            # The messages of a period wait in the subscription, which does not wake the executor:
+            # that takes ten times as long as everything that is done with a message.
+            quality = QoSProfile(depth=_MOST_WAITING, reliability=ReliabilityPolicy.BEST_EFFORT)
+            group = _NotExecuted()
+            self._timers.append(node.create_timer(
+                TOPICS_PERIOD_S, self._take_waiting, clock=steady_clock))
+        # What is best effort and volatile fits every publisher, so there is nothing to report.
         self._subscription = node.create_subscription(
-            JointState, 'joint_states', self.take, qos_profile_sensor_data)
+            JointState, 'joint_states', self.take, quality, callback_group=group, raw=True,
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False))
 
     def destroy(self) -> None:
         """Stop following, and destroy what was created for it."""
         self._node.destroy_subscription(self._subscription)
-        self._node.destroy_timer(self._initial_timer)
-        self._node.destroy_timer(self._topics_timer)
+        for timer in self._timers:
+            self._node.destroy_timer(timer)
 
     def replace(self, frames: PublishedMovingFrames) -> None:
         """Move other frames from now on."""
@@ -101,6 +132,7 @@ class JointStates:
 
     def publish_waiting(self) -> None:
         """Publish on ``/tf`` what messages have changed since the last call."""
+        self._take_waiting()
         if self._waiting_rows and self._frames.stamp is not None:
             rows = np.array(sorted(self._waiting_rows), np.intp)
             self._waiting_rows.clear()
@@ -108,16 +140,34 @@ class JointStates:
 
     # Messages
 
-    def take(self, message: JointState) -> None:
-        """Take positions of joints, and publish what they move."""
-        names, values = message.name, np.asarray(message.position)
-        if len(values) != len(names):
+    def _take_waiting(self) -> None:
+        """Take all messages that wait in the subscription."""
+        # Executors do the same; rclpy has no public way.
+        with self._subscription.handle:
+            while (taken := self._subscription.handle.take_message(JointState, True)) is not None:
+                self.take(taken[0])
+
+    def take(self, data: bytes) -> None:
+        """
+        Take positions of joints, and publish what they move.
+
+        :param data: a serialized message.
+        """
+        try:
+            message = joint_state_from_bytes(
+                data, b'' if self._last_plan is None else self._last_plan.names)
+        except ValueError as error:
             self._logger.warning(
-                f'a message on {self._subscription.topic_name} has {len(names)} names and '
+                f'a message on {self._subscription.topic_name} cannot be read: {error}',
+                throttle_duration_sec=_WARNING_PERIOD_S)
+            return
+        values, stamp = message.positions, message.stamp
+        if len(values) != message.name_count:
+            self._logger.warning(
+                f'a message on {self._subscription.topic_name} has {message.name_count} names and '
                 f'{len(values)} positions; it is ignored, as each name must have a position',
                 throttle_duration_sec=_WARNING_PERIOD_S)
             return
-        stamp = message.header.stamp.sec, message.header.stamp.nanosec
         if stamp[0] < 0 or stamp[1] >= _NANOSECONDS:
             self._logger.warning(
                 f'a message on {self._subscription.topic_name} has the stamp sec={stamp[0]} '
@@ -125,8 +175,8 @@ class JointStates:
                 f'be less than {_NANOSECONDS}', throttle_duration_sec=_WARNING_PERIOD_S)
             return
         plan = self._last_plan
-        if plan is None or plan.names != names:
-            plan = self._last_plan = self._plan_from_names(names, values)
+        if plan is None or plan.names != message.names:
+            plan = self._last_plan = self._plan_of_message(message)
         invalid = self._frames.positions.update(plan.selection, values)
         if invalid:
             self._logger.warning(
@@ -151,19 +201,18 @@ class JointStates:
         if self._topics_timer.is_canceled():
             self._topics_timer.reset()
 
-    def _plan_from_names(self, names: Sequence[str], values: NDArray[np.float64]) -> _Plan:
-        key = tuple(names)
-        if key in self._plans:
-            return self._plans[key]
+    def _plan_of_message(self, message: JointStateBytes) -> _Plan:
+        if message.names in self._plans:
+            return self._plans[message.names]
         positions = self._frames.positions
-        selection = positions.selection(names)
+        selection = positions.selection(message.name_list())
         if selection.unknown:
             self._logger.warning(
                 f'{self._subscription.topic_name} has {names_in_line(selection.unknown)}, not the '
                 f'name of one moving joint{positions.hint(selection.unknown[0])}',
                 throttle_duration_sec=_WARNING_PERIOD_S)
         were_known = positions.is_known.copy()
-        positions.update(selection, values)
+        positions.update(selection, message.positions)
         if len(self._plans) == _MOST_PLANS or (positions.is_known != were_known).any():
             # Other plans would publish what this one does from now on.
             self._plans.clear()
@@ -171,7 +220,8 @@ class JointStates:
         if len(selection.rows):
             unknown = np.flatnonzero(~positions.is_known).tolist()
             rows = self._frames.frames.rows_moved_by([*selection.changed, *unknown])
-        plan = self._plans[key] = _Plan(names, selection, rows, self._frames.tf_message(rows))
+        plan = self._plans[message.names] = _Plan(
+            message.names, selection, rows, self._frames.tf_message(rows))
         return plan
 
     def _publish_topics(self) -> None:

@@ -85,7 +85,6 @@ class SdfPoseBridge:
         # Simulated time may stand still.
         self._steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._joint_states: JointStates | None = None
-        self._follow_joints()
         self._again_timer: Timer | None = None
         self._publish_again_at(settings.publish_rate)
         add_services(node, lambda: self._loaded.lookup)
@@ -140,16 +139,19 @@ class SdfPoseBridge:
     def _follow_joints(self) -> None:
         """Let ``joint_states`` move the frames, if joints follow it."""
         moving = self._frames.moving
-        if self._joint_states is not None and moving is not None:
-            self._joint_states.replace(moving)
-        elif self._joint_states is not None:
-            self._joint_states.destroy()
+        is_published_later = self._settings.publish_rate > 0.0
+        current = self._joint_states
+        if current is not None and current.is_published_later is is_published_later and moving:
+            current.replace(moving)
+            return
+        if current is not None:
+            current.destroy()
             self._joint_states = None
-        elif moving is not None:
+        if moving is not None:
             # Imported here because it takes 8 ms, and most often joints do not move.
             from sdf_pose_bridge.ros.joint_states import JointStates
             self._joint_states = JointStates(
-                self._node, moving, is_published_later=self._settings.publish_rate > 0.0)
+                self._node, moving, is_published_later=is_published_later)
 
     def _publish_robot_description(self) -> None:
         self._robot_description.update(
@@ -292,8 +294,7 @@ class SdfPoseBridge:
             self._again_timer = self._node.create_timer(
                 1.0 / rate, self._publish_again, callback_group=self._changes,
                 clock=self._steady_clock)
-        if self._joint_states is not None:
-            self._joint_states.is_published_later = rate > 0.0
+        self._follow_joints()
 
     async def _publish_again(self) -> None:
         begin = time.perf_counter()

@@ -268,6 +268,10 @@ DECLARATIONS: dict[str, Declaration[Any]] = {
 """All parameters by their names, in the order in which they are explained to people."""
 
 
+FREQUENCY = 'publish_frequency'
+"""The name of ``publish_rate`` in robot_state_publisher, which is understood at the start."""
+
+
 def settings_from_node(node: Node) -> Settings:
     """
     Declare all parameters on a node and convert their values.
@@ -319,6 +323,8 @@ def warnings_about_unknown_parameters(node: Node) -> list[str]:
     # rclpy shows this in no public way but to declare all of it, with any type and unexplained.
     given = node._parameter_overrides  # noqa: SLF001
     return [
+        f'parameter {name} is called publish_rate here; its value is taken for that'
+        if name == FREQUENCY else
         f'there is no parameter "{name}", so it has no effect{hint_from_names(name, DECLARATIONS)}'
         for name in given if name not in DECLARATIONS and not node.has_parameter(name)]
 
@@ -339,8 +345,18 @@ def _checked_settings(values: Mapping[str, Any], sentences: Sequence[str]) -> Se
     return Settings(values)
 
 
+def _default(node: Node, declaration: Declaration[Any]) -> Any:
+    if declaration.name == 'publish_rate':
+        given = parameter_with_type(parameter_of_any_type(node, FREQUENCY), declaration.type_)
+        if given.type_ is declaration.type_:
+            return given.value
+        if given.type_ is not Parameter.Type.NOT_SET:
+            raise ValueError(words_about_wrong_type(given, declaration.type_))
+    return declaration.default
+
+
 def _declared_value(node: Node, declaration: Declaration[Any]) -> Any:
-    name, type_, default = declaration.name, declaration.type_, declaration.default
+    name, type_, default = declaration.name, declaration.type_, _default(node, declaration)
     descriptor = ParameterDescriptor(
         type=type_.value, description=declaration.description,
         additional_constraints=declaration.constraint, read_only=declaration.is_read_only)

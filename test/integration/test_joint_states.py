@@ -294,6 +294,35 @@ def test_tf_is_published_at_most_at_the_publish_rate(start, file, joints, tf):
     assert tf.count < before + 25
 
 
+def test_no_message_of_a_period_is_lost(start, file, joints, tf):
+    start(file, 'publish_rate:=2.0')
+    tf.wait_for('slide', joints.send({'lift': 0.1}))
+    joints.send({'lift': 0.25})
+    for number in range(20):
+        last = joints.send({'turn': number / 100})
+    assert tf.wait_for('upper', last).rotation.z != 0.0
+    assert tf.wait_for('slide', last).translation.z == 1.25
+
+
+def test_lookups_do_not_wait_for_the_next_period(start, file, joints, tf):
+    start(file, 'publish_rate:=0.01')
+    joints.send({'lift': 0.25})
+    tf.listener.wait(lambda: pose_of(tf, 'slide').z == 2.25, lambda: 'the position')
+
+
+def test_the_rate_can_be_set_while_joints_move(start, file, joints, tf):
+    start(file)
+    tf.wait_for('slide', joints.send({'lift': 0.1}))
+    for rate in (20.0, 0.0):
+        result, = set_parameters(tf.listener, publish_rate=rate)
+        assert result.successful, result.reason
+        # The first messages may come before the publisher knows the new subscription.
+        tf.listener.wait(
+            lambda rate=rate: joints.send({'lift': rate / 100})
+            and tf.last['slide'].transform.translation.z == 1 + rate / 100,
+            lambda: tf.last)
+
+
 def test_following_can_be_switched_off_and_on(start, file, joints, tf):
     start(file)
     tf.wait_for('slide', joints.send({'lift': 0.1}))

@@ -85,6 +85,26 @@ def test_unknown_parameters_are_named_with_the_nearest_one(make_node):
     assert warnings_about_unknown_parameters(node) == sentences
 
 
+@pytest.mark.parametrize(('arguments', 'rate'), [
+    (['publish_frequency:=20.0'], 20.0), (['publish_frequency:=20'], 20.0),
+    (['publish_frequency:=20.0', 'publish_rate:=5.0'], 5.0)])
+def test_the_rate_of_robot_state_publisher_is_understood_with_a_warning(
+        make_node, arguments, rate):
+    node = make_node('bridge', *FILE, *(word for each in arguments for word in ('-p', each)))
+    (sentence,) = warnings_about_unknown_parameters(node)
+    assert 'publish_frequency is called publish_rate here' in sentence
+    assert settings_from_node(node).publish_rate == rate
+
+
+@pytest.mark.parametrize(('value', 'sentence'), [
+    ('fast', 'is fast, which is a string; it must be a number'),
+    ('500.0', 'must be 0.0 for never')])
+def test_a_wrong_rate_of_robot_state_publisher_is_refused(make_node, value, sentence):
+    node = make_node('bridge', *FILE, '-p', f'publish_frequency:={value}')
+    with pytest.raises(SettingsError, match=sentence):
+        settings_from_node(node)
+
+
 def test_too_many_patterns_are_refused(make_node):
     settings = settings_from_node(make_node('bridge', *FILE))
     too_many = Parameter('pose_topics', value=['x'] * 1001)
