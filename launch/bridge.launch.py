@@ -106,7 +106,9 @@ def _nodes(context: LaunchContext) -> list[Node]:
         ],
         output='screen',
     )
-    return [bridge, _rviz(context, _fixed_frame(context, given, params_file))] if with_rviz else [bridge]
+    if not with_rviz:
+        return [bridge]
+    return [bridge, _rviz(context, _fixed_frame(context, given, params_file))]
 
 
 def _parameters(given: dict[str, str]) -> dict[str, str | Command]:

@@ -305,9 +305,12 @@ def test_no_message_of_a_period_is_lost(start, file, joints, tf):
 
 
 def test_lookups_do_not_wait_for_the_next_period(start, file, joints, tf):
-    start(file, 'publish_rate:=0.01')
-    joints.send({'lift': 0.25})
-    tf.listener.wait(lambda: pose_of(tf, 'slide').z == 2.25, lambda: 'the position')
+    start(file)
+    result, = set_parameters(tf.listener, publish_rate=0.01)
+    assert result.successful, result.reason
+    tf.listener.wait(
+        lambda: joints.send({'lift': 0.25}) and pose_of(tf, 'slide').z == 2.25,
+        lambda: 'the position')
 
 
 def test_the_rate_can_be_set_while_joints_move(start, file, joints, tf):
