@@ -14,6 +14,7 @@ TFMessage, TransformStamped and PoseStamped.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 from typing import TYPE_CHECKING
@@ -53,6 +54,10 @@ class StampedMessages:
         self._numbers = numbers
         self._bounds = bounds
 
+    @cached_property
+    def _words_of_numbers(self) -> npt.NDArray[np.int64]:
+        return (self._numbers // 8)[:, np.newaxis] + np.arange(7)
+
     def __len__(self) -> int:
         return len(self._bounds)
 
@@ -63,8 +68,9 @@ class StampedMessages:
         :param nanosec: nanoseconds of the stamp, from 0 to 999,999,999.
         """
         words = self._buffer.view('<i4')
-        words[self._stamps // 4] = sec
-        words[self._stamps // 4 + 1] = nanosec
+        places = self._stamps // 4
+        words[places] = sec
+        words[places + 1] = nanosec
         data = self._buffer.tobytes()
         return [data[begin:end] for begin, end in self._bounds]
 
@@ -74,8 +80,7 @@ class StampedMessages:
 
         :param poses: shape (n, 7), in the order of the messages, in metres, quaternion x y z w.
         """
-        words = self._buffer.view('<f8')
-        words[(self._numbers // 8)[:, np.newaxis] + np.arange(7)] = poses
+        self._buffer.view('<f8')[self._words_of_numbers] = poses
 
 
 def tf_message(

@@ -99,11 +99,11 @@ class JointStates:
         self._periods_at_rest = 0
         # Simulated time may stand still.
         steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
-        self._initial_timer = node.create_timer(
-            INITIAL_PERIOD_S, lambda: self._frames.publish_all(), clock=steady_clock)
         self._topics_timer = node.create_timer(
             TOPICS_PERIOD_S, self._publish_topics, clock=steady_clock)
-        self._timers = [self._initial_timer, self._topics_timer]
+        self._initial_timer = node.create_timer(
+            INITIAL_PERIOD_S, self._publish_initially, clock=steady_clock)
+        self._timers = [self._topics_timer, self._initial_timer]
         quality, group = qos_profile_sensor_data, None
         if is_published_later:
             # The messages of a period wait in the subscription, which does not wake the executor:
@@ -188,7 +188,6 @@ class JointStates:
         if not any(stamp):
             stamp = self._node.get_clock().now().seconds_nanoseconds()
         if self._frames.stamp is None:
-            self._initial_timer.cancel()
             self._logger.info(f'following {self._subscription.topic_name}')
         self._frames.stamp = stamp
         # TF takes one transform for each time, and complains about a second one.
@@ -223,6 +222,14 @@ class JointStates:
         plan = self._plans[message.names] = _Plan(
             message.names, selection, rows, self._frames.tf_message(rows))
         return plan
+
+    def _publish_initially(self) -> None:
+        """Publish all frames on ``/tf`` until there are positions."""
+        if self._frames.stamp is None:
+            self._frames.publish_all()
+        else:
+            # If it were only cancelled, the executor would go on to wait for it.
+            self._node.destroy_timer(self._initial_timer)
 
     def _publish_topics(self) -> None:
         """Publish the topics of moving frames; at rest once more, for later listeners."""

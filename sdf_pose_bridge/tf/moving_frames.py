@@ -79,10 +79,13 @@ class MovingFrames:
         :param positions: the position of each degree of freedom, in radians or metres.
         :return: shape (m, 7), pose of each frame in its parent; unit quaternions with w >= 0.
         """
-        transforms = np.empty((len(self.indices), 7))
+        transforms = np.empty((0, 7))
         for number, (rows, dofs, motions) in enumerate(self._parts):
             poses = motions.poses(positions[dofs])
-            transforms[rows] = pose_products(transforms[rows], poses) if number else poses
+            if number:
+                transforms[rows] = pose_products(transforms[rows], poses)
+            else:
+                transforms = poses
         # They are unit already. Only the sign has to be made canonical.
         transforms[:, 3:] *= np.copysign(1.0, transforms[:, 6:])
         return transforms

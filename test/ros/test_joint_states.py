@@ -10,6 +10,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from builtin_interfaces.msg import Time
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
@@ -79,7 +80,7 @@ def make_published(make_node, states):
 
     def published(*messages):
         for message in messages:
-            states.take(message)
+            states.take(serialize_message(message))
         wait_for(lambda sec: sec == messages[-1].header.stamp.sec)
         return [each for each in found if each[0] < NOW]
 
@@ -111,15 +112,21 @@ def test_of_joints_that_are_known_those_that_move_are_published(published):
 
 def test_a_message_without_a_stamp_gets_the_time_of_the_node(published, states):
     published(joint_state(0, {'turn': 0.5}), joint_state(6, {'turn': 0.25}))
-    states.take(joint_state(0, {'turn': 0.5}))
+    states.take(serialize_message(joint_state(0, {'turn': 0.5})))
     assert states._frames.stamp[0] > NOW
 
 
 def test_messages_that_are_published_later_are_published_together(published, states):
     states.is_published_later = True
-    states.take(joint_state(5, {'turn': 0.5, 'lift': 0.5, 'grip': 0.5}))
-    states.take(joint_state(6, {'turn': 0.25}))
+    states.take(serialize_message(joint_state(5, {'turn': 0.5, 'lift': 0.5, 'grip': 0.5})))
+    states.take(serialize_message(joint_state(6, {'turn': 0.25})))
     states.publish_waiting()
     states.is_published_later = False
     assert published(joint_state(7, {'turn': 0.5})) == [
         (6, {'upper', 'slide', 'finger'}), (7, {'upper'})]
+
+
+def test_a_message_that_is_not_one_is_ignored(published, states):
+    states.take(b'')
+    states.take(serialize_message(joint_state(5, {'turn': 0.5}))[:30])
+    assert [sec for sec, _ in published(joint_state(6, {'turn': 0.5}))] == [6]
