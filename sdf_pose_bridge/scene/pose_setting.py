@@ -22,6 +22,7 @@ import numpy as np
 
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import PoseNotSetError
+from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_inverse
@@ -138,13 +139,17 @@ def _change_of_own_pose(
         written = Pose(*written[:3], *canonical_quaternion(written[3:]))
         new_text = text.with_pose(target, written, tolerance) if is_written else (
             text.with_new_pose(target, written, tolerance))
-        new = load({path: new_text})
+        try:
+            new = load({path: new_text})
+        except SdfError as error:
+            msg = f'with this pose the file would not be valid: {error.errors[0].message}'
+            raise PoseNotSetError(msg, at) from error
         current, in_asked = measure(new, element), measure(new, reference)
         if _distance(current, asked) <= TOLERANCE:
             return PoseChange(path, at.line, content, new_text, new)
         tolerance /= 10.0
     msg = (f'no pose of "{scene.names[element]}" in the file puts it there: the frame that the '
-           'pose is measured in moves with it')
+           'pose is measured in moves with it, or parameters of an include decide where it is')
     raise PoseNotSetError(msg, at)
 
 

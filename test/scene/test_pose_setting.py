@@ -115,6 +115,22 @@ def test_a_pose_that_parameters_set_is_set_there(change, tmp_path):
     assert (made.path, made.line) == (str(tmp_path / 'w.sdf'), 2)
 
 
+@pytest.mark.parametrize(('params', 'reason'), [
+    ('<visual element_id="base::box" action="remove"><pose/></visual>', 'parameters of an incl'),
+    ('<link element_id="base"><visual name="box" action="modify"><layer>1</layer></visual></link>',
+     'would not be valid: .* has no <pose>'),
+])
+def test_a_pose_that_parameters_forbid_is_refused(change, tmp_path, params, reason):
+    visual = '<visual name="box">{}<layer>0</layer><geometry/></visual>'
+    pose = '<pose>1 0 0 0 0 0</pose>' if 'remove' in params else ''
+    write_files(
+        tmp_path, m=model_file(f'<link name="base">{visual.format(pose)}</link>'),
+        w=world_file('<include><uri>m.sdf</uri><experimental:params>'
+                     f'{params}</experimental:params></include>'))
+    with pytest.raises(PoseNotSetError, match=reason):
+        change('m::base::box', file='w')
+
+
 @pytest.mark.parametrize(('text', 'name', 'relative_to', 'reason'), [
     (MODEL, 'm::a', 'm::f', 'moves with it'),
     (MODEL, '__root__', '', 'all others are placed'),
