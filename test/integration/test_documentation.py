@@ -43,7 +43,6 @@ NOT_RUN = {
     'export ROS_': "sets variables of the reader's shell",
     'export ': "sets variables of the reader's shell",
     'pip install': 'needs the network',
-    'sudo apt install': 'needs the network',
     'rosdep install': 'needs the network',
     'colcon build': 'the setup of the tests has built the packages',
     'cd ws': "the workspace is the reader's",
