@@ -39,9 +39,9 @@ BYTES_OF_STEP = 4
 """How many bytes that are read allow one more step of work."""
 
 STEPS_OF_INCLUDE = 100
-"""Steps of work that each include counts for, without what it copies."""
+"""Steps of work that each include counts for, without what it copies; one that merges twice."""
 
-STEPS_OF_MERGE = 400
+STEPS_OF_MERGE = 500
 """Further steps for an include that merges a model, which is checked by itself."""
 
 STEPS_OF_PLACE = 8

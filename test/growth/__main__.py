@@ -81,7 +81,7 @@ def size_of(files: Files) -> int:
 def largest_n(family: Callable[[int], Files], most_bytes: int) -> int:
     """Return for which n the files of a family have about so many bytes."""
     n = 4
-    while n < 1_000_000 and size_of(family(2 * n)) <= most_bytes:
+    while n < 50_000 and size_of(family(2 * n)) <= most_bytes:
         n *= 2
     step = n // 2
     while step >= max(n // 16, 1):

@@ -147,7 +147,7 @@ def test_a_config_map_that_is_replaced_is_noticed(start, listener, tmp_path):
 
 def test_a_change_without_descriptors_is_read_once_there_are_some(start, file, listener):
     bridge = start(file)
-    wait_for_x(listener, 1.0)
+    assert reload(listener).success  # nothing has to be imported any more
     soft, hard = resource.prlimit(bridge.pid, resource.RLIMIT_NOFILE)
     resource.prlimit(bridge.pid, resource.RLIMIT_NOFILE, (4, hard))
     replace(file, world(2))
@@ -165,9 +165,9 @@ def address_space(pid):
 
 def test_without_memory_for_a_change_the_bridge_goes_on_or_ends(start, file, listener):
     bridge = start(file)
-    wait_for_x(listener, 1.0)
+    assert reload(listener).success
     _, hard = resource.prlimit(bridge.pid, resource.RLIMIT_AS)
-    limit = address_space(bridge.pid) + 30_000_000
+    limit = address_space(bridge.pid) + 12_000_000
     resource.prlimit(bridge.pid, resource.RLIMIT_AS, (limit, hard))
     replace(file, world(2, extra=''.join(
         f'<model name="m{i}"><link name="l"/></model>' for i in range(60_000))))

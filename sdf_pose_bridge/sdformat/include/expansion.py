@@ -329,6 +329,7 @@ class IncludeExpansion:
         """Merge a copy of a model; includes with the same text have the same canonical link."""
         text = etree.tostring(include, with_tail=False)
         key = chosen, self._sources.path(include), text
+        self._count(STEPS_OF_INCLUDE, include)
 
         def canonical_link_of(root: XmlElement) -> str | None:
             if key not in self._canonical_links:
