@@ -3,8 +3,8 @@
 """
 Change one pose in the text of a file, and no other byte.
 
-The reader says where a pose stands by the line in which its start tag ends. Several tags can end
-in one line. So the place is read from the same text with a line for each tag.
+The reader says where a pose stands by the line in which its start tag begins. Several tags can
+begin in one line. So the place is read from the same text with a line for each tag.
 """
 
 from __future__ import annotations
