@@ -72,7 +72,6 @@ def apply_params(
     Change an included element.
 
     :param params: the ``<experimental:params>``; it is not changed.
-    :param top: the included element.
     :param problems: takes what is wrong with the parameters. What has an error is not applied.
     :return: the elements that were added.
     """
@@ -247,8 +246,7 @@ class _Changer:
 
     def _check_before_change(self, target: XmlElement) -> None:
         """Check what goes, as libsdformat reads the file, and each change, before the next one."""
-        definition = self._definition(target)
-        if definition is not None:
+        if definition := self._definition(target):
             check_element(target, definition, self._sources, self._problems)
 
     def _set_text(self, text: str, xml: XmlElement, target: XmlElement) -> None:
