@@ -261,7 +261,8 @@ class _Conversion:
                 return False
             self._warning(f'{msg}; it is fixed here', joint.xml)
             joint_type = 'fixed'
-        elif joint.name in self._settings.revolute_joints and not self._for_ros:
+        elif (joint.type == 'fixed' and joint.name in self._settings.revolute_joints
+                and not self._for_ros):
             joint_type = 'revolute'
         base = self._bases[joint.parent]
         parent = self._counted(base.link.name, joint.xml)

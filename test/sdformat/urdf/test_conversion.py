@@ -196,6 +196,20 @@ def test_fixed_joint_is_kept_on_demand(option, expected):
     assert converted(text, is_included=False).find('joint').get('type') == 'fixed'
 
 
+def test_revolute_joint_in_place_of_a_fixed_one_has_the_axis_of_sdformat():
+    option = '<disableFixedJointLumping>1</disableFixedJointLumping>'
+    joint_xml = converted(robot(TWO + FIXED + gazebo(option, 'j'))).find('joint')
+    assert joint_xml.findtext('axis/xyz') == '0 0 1'
+    assert joint_xml.findtext('axis/limit/upper') == '0'
+
+
+def test_only_fixed_joints_become_revolute():
+    option = '<disableFixedJointLumping>1</disableFixedJointLumping>'
+    limit = '<limit lower="0" upper="1" effort="1" velocity="1"/>'
+    text = robot(TWO + joint('j', 'a', 'b', 'prismatic', limit) + gazebo(option, 'j'))
+    assert converted(text).find('joint').get('type') == 'prismatic'
+
+
 @pytest.mark.parametrize(('tag', 'expected'), [
     ('visual', ['a_visual', 'a_fixed_joint_lump__b_visual_1', 'a_fixed_joint_lump__v_visual_2']),
     ('collision', ['a_collision', 'a_fixed_joint_lump__b_collision_1',
