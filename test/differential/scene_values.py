@@ -40,6 +40,9 @@ TYPES = {
     'joint': 'revolute', 'light': 'point', 'sensor': 'imu', 'particle_emitter': 'box',
     'atmosphere': 'adiabatic', 'physics': 'ode', 'shader': 'pixel', 'noise': 'none'}
 ENDS = {'parent': 'l', 'child': 'k'}
+NOT_READ = frozenset({
+    ('actor', 'link'), ('actor', 'joint'), ('population', 'model'), ('noise', '@type')})
+"""What the package does not read as a part of its own, as no frame depends on it."""
 
 
 def odd_scene(dice: Random) -> SceneFiles:
@@ -76,10 +79,12 @@ def _add_paths(
 ) -> None:
     if path and definition.value_type is not None:
         found.append((path, ''))
-    found += [(path, name) for name in definition.attributes if path]
+    found += [(path, name) for name in definition.attributes
+              if path and (*path[-1:], f'@{name}') not in NOT_READ]
     for tag, child in definition.children.items():
         # Each of these holds what has been seen in the one around it.
-        if tag not in path and tag not in ('include', 'plugin') and len(path) < 8:
+        if (tag not in path and tag not in ('include', 'plugin') and len(path) < 8
+                and (*path[-1:], tag) not in NOT_READ):
             _add_paths(child, (*path, str(tag)), found)
 
 
