@@ -37,6 +37,7 @@ from differential.scene_text import SEEDS
 from differential.scene_urdf import RobotBuilder
 from differential.scene_urdf import text_from_robot
 from differential.scene_values import odd_scene
+from differential.scene_values import ODD_VALUES
 from differential.scene_xml import with_oddities
 
 
@@ -156,6 +157,8 @@ class SceneBuilder:
         builder = RobotBuilder(self.draw, self.last_body)
         built = builder.robot(taken, merged=merged)
         self.last_body = builder.last_body
+        if builder.is_odd:
+            self.traits.add(ODD_VALUES)
         return built
 
     def place(self, built: Built, available: list[Visible], *, merge: bool = False) -> None:

@@ -28,6 +28,15 @@ SHAPES = {'box': {'size': '1 2 3'}, 'sphere': {'radius': '1'}, 'mesh': {'filenam
           'cylinder': {'radius': '1', 'length': '2'}}
 
 
+NUMBERED = {
+    'origin': ('xyz', 'rpy'), 'axis': ('xyz',), 'limit': ('lower', 'upper', 'effort', 'velocity'),
+    'mass': ('value',), 'inertia': ('ixx', 'ixy'), 'box': ('size',), 'sphere': ('radius',),
+    'cylinder': ('radius', 'length')}
+ODD_NUMBERS = (
+    '', ' ', '1,0', '0x10', '1e', 'nan', 'inf', '1.5abc', '1e999', '1e-400', '1 2', '1 2 3 4',
+    '1 2 x', '1,2,3', '1 2 nan', ' 1  2\t3 ', '1.2.3 4 5', '1 2 3abc', '+1', '.5', '5.', '\u0661')
+
+
 class RobotBuilder:
     """Draws one robot: its file, and what can be said of the model that it becomes."""
 
@@ -38,6 +47,8 @@ class RobotBuilder:
         self.root = ElementTree.Element('robot')
         self.bases: dict[str, str] = {}
         """The link that each one is lumped into."""
+        self.is_odd = False
+        """Whether a number is odd, so that only libsdformat can say whether the robot is valid."""
 
     def robot(self, taken: set[str], *, merged: bool) -> Built:
         """
@@ -72,6 +83,7 @@ class RobotBuilder:
                 is_lumped and self.dice.random() < 0.3))
         static = not merged and self.dice.random() < 0.2
         self.extensions(links, [link for link in links if link != 'world'], names, static=static)
+        self.is_odd = self.dice.random() < 0.15 and self.write_odd_number()
         order = self.in_order(links[0], children)
         canonical = next(bodies[link] for link in order if link in bodies and link != 'world')
         inner = [Visible(MODEL, OWN)]
@@ -80,6 +92,15 @@ class RobotBuilder:
         self.last_body += 1
         return Built(self.root, self.root.get('name', ''), static, canonical, self.last_body,
                      inner, [Visible(link, bodies[link]) for link in kept])
+
+    def write_odd_number(self) -> bool:
+        """Replace one number by what may be none; return whether there is a number."""
+        places = [(element, name) for element in self.root.iter() for name in element.attrib
+                  if element.tag in NUMBERED and name in NUMBERED[element.tag]]
+        if places:
+            element, name = self.dice.choice(places)
+            element.set(name, self.dice.choice(ODD_NUMBERS))
+        return bool(places)
 
     def name(self, taken: set[str]) -> str:
         """Draw a name on which libsdformat does not crash."""
