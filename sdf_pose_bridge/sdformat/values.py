@@ -35,6 +35,7 @@ _STREAM_NUMBER = re.compile(rf'[{WHITE_SPACE}]*([+-]?{_DECIMAL})')
 """What a C++ stream takes; it leaves the rest for the next number."""
 _STREAM_INTEGER = re.compile(rf'[{WHITE_SPACE}]*([+-]?[0-9]+)')
 _PLAIN = r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)'
+_PLAIN_NUMBER = re.compile(_PLAIN)
 _PLAIN_NUMBERS = re.compile(rf'{_PLAIN}(?:[{WHITE_SPACE}]+{_PLAIN})*')
 """Numbers that everybody reads alike."""
 _SHORTEST_AXIS = 1e-6
@@ -113,6 +114,9 @@ def judged_value(text: str, definition: Definition) -> Judgment:
     :return: what is wrong with it.
     """
     value_type = definition.value_type
+    if (value_type is ValueType.NUMBER and definition.minimum == -math.inf
+            and len(text) < LONGEST_PLAIN and _PLAIN_NUMBER.fullmatch(text)):
+        return _RIGHT
     stripped = text.strip(WHITE_SPACE)
     if not stripped and definition.is_required and value_type is not None:
         return Judgment(f'<{definition.identifier}> is empty; it must have a value')

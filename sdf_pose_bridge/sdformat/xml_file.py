@@ -8,6 +8,7 @@ Depth and sizes are limited as libxml2 does without its option ``huge``.
 
 from __future__ import annotations
 
+import bisect
 from collections.abc import Mapping
 import errno
 from itertools import chain
@@ -251,14 +252,17 @@ def _lines_and_warnings(
     line_ends = np.flatnonzero(np.frombuffer(text, np.uint8) == ord('\n'))
     first_lines = np.searchsorted(line_ends, [tag.start() for tag in tags]) + 1
     last_lines = np.searchsorted(line_ends, [tag.end(1) for tag in tags]) + 1
+    is_chosen = (first_lines != last_lines) | (last_lines >= _LAST_LINE)
+    if b'\t' in text:
+        is_chosen |= [b'\t' in tag[1] for tag in tags]
     # Nothing after the outermost element belongs to the tree.
-    elements = zip(
-        root.iter(etree.Element), tags, first_lines.tolist(), last_lines.tolist(), strict=False)
+    chosen = np.flatnonzero(is_chosen).tolist()
+    elements = list(root.iter(etree.Element))
     lines = {}
     warnings = []
-    for element, tag, line, last_line in elements:
-        if line != last_line or last_line >= _LAST_LINE:
-            lines[element] = line
+    for index in chosen[:bisect.bisect_left(chosen, len(elements))]:
+        element, tag, line = elements[index], tags[index], int(first_lines[index])
+        lines[element] = line
         name = _NAME.search(tag[1]) if b'\n' in tag[1] or b'\t' in tag[1] else None
         value = name[1][1:-1].strip(WHITE_SPACE.encode()).decode() if name else ''
         found = [label for character, label in _BREAKS.items() if character in value]
