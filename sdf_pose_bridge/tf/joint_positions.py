@@ -39,6 +39,9 @@ if TYPE_CHECKING:
 LARGEST_POSITION = 1e9
 """The largest position, in radians or metres, that counts as one."""
 
+_MOST_STEPS = 10
+"""How many innermost steps of a name may stand for it."""
+
 
 class Follower(NamedTuple):
     """A degree of freedom whose position follows from that of another one."""
@@ -218,7 +221,8 @@ def _indices_from_names(
         before = scoped.removesuffix(JOINT_SUFFIX)
         for each in {scoped, before} if before in all_names else {scoped}:
             steps = each.split(SEPARATOR)
-            for count in range(len(steps)):
+            # All endings of names that are nested deep would take the square of their memory.
+            for count in {0, *range(max(len(steps) - _MOST_STEPS, 0), len(steps))}:
                 for separator in (SEPARATOR, '/'):
                     alias = separator.join(steps[count:]) + suffix
                     shorter.setdefault(alias, set()).add(index)

@@ -301,6 +301,11 @@ def deep_links_with_errors(n: int) -> str:
 
 
 @content
+def deep_joints(n: int) -> str:
+    return nested(min(n, DEEPEST), '<model name="dj#"><link name="l"/>', joints(n), '</model>')
+
+
+@content
 def deep_scoped_names(n: int) -> str:
     return nested(min(n, DEEPEST), '<model name="b::c#">', scoped_names(n), '</model>')
 
