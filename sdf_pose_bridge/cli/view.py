@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from collections.abc import Mapping
 import importlib
 import os
+import signal
 import sys
 import time
 from typing import Any
@@ -74,6 +75,8 @@ def run(options: argparse.Namespace) -> int:
             importlib.import_module(f'{_ROOM}.{name}') for name in ('server', 'page', 'meshes'))
     except ImportError:
         return _fail(_NEEDS_VISER)
+    # Else a browser that draws a picture would outlive this process.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     path = options.files[0]
     scene = scene_of(path, options, shapes=True)
     if scene is None:
