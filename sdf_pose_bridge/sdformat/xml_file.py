@@ -8,10 +8,10 @@ Depth and sizes are limited as libxml2 does without its option ``huge``.
 
 from __future__ import annotations
 
-import bisect
 from collections.abc import Mapping
 import errno
 from itertools import chain
+from itertools import islice
 import os
 import re
 import stat
@@ -252,17 +252,20 @@ def _lines_and_warnings(
     line_ends = np.flatnonzero(np.frombuffer(text, np.uint8) == ord('\n'))
     first_lines = np.searchsorted(line_ends, [tag.start() for tag in tags]) + 1
     last_lines = np.searchsorted(line_ends, [tag.end(1) for tag in tags]) + 1
-    is_chosen = (first_lines != last_lines) | (last_lines >= _LAST_LINE)
+    has_break = first_lines != last_lines
     if b'\t' in text:
-        is_chosen |= [b'\t' in tag[1] for tag in tags]
+        has_break |= [b'\t' in tag[1] for tag in tags]
+    chosen = np.flatnonzero(has_break | (last_lines >= _LAST_LINE))
+    start = int(chosen[0]) if len(chosen) else len(tags)
     # Nothing after the outermost element belongs to the tree.
-    chosen = np.flatnonzero(is_chosen).tolist()
-    elements = list(root.iter(etree.Element))
-    lines = {}
+    elements = list(islice(root.iter(etree.Element), start, None))
+    chosen = chosen[:np.searchsorted(chosen, start + len(elements))]
+    lines = {
+        elements[index - start]: line
+        for index, line in zip(chosen.tolist(), first_lines[chosen].tolist(), strict=True)}
     warnings = []
-    for index in chosen[:bisect.bisect_left(chosen, len(elements))]:
-        element, tag, line = elements[index], tags[index], int(first_lines[index])
-        lines[element] = line
+    for index in chosen[has_break[chosen]].tolist():
+        element, tag, line = elements[index - start], tags[index], int(first_lines[index])
         name = _NAME.search(tag[1]) if b'\n' in tag[1] or b'\t' in tag[1] else None
         value = name[1][1:-1].strip(WHITE_SPACE.encode()).decode() if name else ''
         found = [label for character, label in _BREAKS.items() if character in value]
