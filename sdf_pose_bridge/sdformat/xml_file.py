@@ -248,13 +248,13 @@ def _lines_and_warnings(
     """
     if text.count(b'\n') < _LAST_LINE and _BREAK_IN_TAG.search(text) is None:
         return {}, []
-    tags = [tag for tag in START_TAG.finditer(text) if tag[1]]
+    tags = np.array([tag.span(1) for tag in START_TAG.finditer(text) if tag[1]])
     line_ends = np.flatnonzero(np.frombuffer(text, np.uint8) == ord('\n'))
-    first_lines = np.searchsorted(line_ends, [tag.start() for tag in tags]) + 1
-    last_lines = np.searchsorted(line_ends, [tag.end(1) for tag in tags]) + 1
+    first_lines = np.searchsorted(line_ends, tags[:, 0]) + 1
+    last_lines = np.searchsorted(line_ends, tags[:, 1]) + 1
     has_break = first_lines != last_lines
     if b'\t' in text:
-        has_break |= [b'\t' in tag[1] for tag in tags]
+        has_break |= [b'\t' in text[begin:end] for begin, end in tags.tolist()]
     chosen = np.flatnonzero(has_break | (last_lines >= _LAST_LINE))
     start = int(chosen[0]) if len(chosen) else len(tags)
     # Nothing after the outermost element belongs to the tree.
@@ -265,8 +265,8 @@ def _lines_and_warnings(
         for index, line in zip(chosen.tolist(), first_lines[chosen].tolist(), strict=True)}
     warnings = []
     for index in chosen[has_break[chosen]].tolist():
-        element, tag, line = elements[index - start], tags[index], int(first_lines[index])
-        name = _NAME.search(tag[1]) if b'\n' in tag[1] or b'\t' in tag[1] else None
+        element, line = elements[index - start], int(first_lines[index])
+        name = _NAME.search(text, *tags[index].tolist())
         value = name[1][1:-1].strip(WHITE_SPACE.encode()).decode() if name else ''
         found = [label for character, label in _BREAKS.items() if character in value]
         if found and not is_foreign(element):
