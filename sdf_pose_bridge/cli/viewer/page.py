@@ -101,7 +101,6 @@ class Page:
         self._lock = threading.RLock()
         self._is_moved = threading.Event()
         self._nodes = SceneNodes(server, meshes, self._select)
-        self._opacity = 1.0
         self._positions: dict[str, float] = {}
         self._selected = self._reference = ''
         self._dragged: Pose | None = None
@@ -207,7 +206,7 @@ class Page:
                 self._add_switch(node_of_kind(label), f'{label} ({labels.count(label)})')
             for name in GROUPS:
                 self._add_switch(name, name[1:])
-            opacity = gui.add_slider('opacity', 0.1, 1.0, 0.05, self._opacity)
+            opacity = gui.add_slider('opacity', 0.1, 1.0, 0.05, self._nodes.opacity)
         opacity.on_update(lambda _: self._set_opacity(opacity.value))
         models = [
             element for element in dict.fromkeys(self._tops.tolist())
@@ -266,7 +265,6 @@ class Page:
 
     def _set_opacity(self, opacity: float) -> None:
         with self._lock, self._server.atomic():
-            self._opacity = opacity
             self._nodes.set_opacity(opacity)
 
     # Frames

@@ -59,7 +59,8 @@ class SceneNodes:
     ) -> None:
         self._server, self._meshes, self._select = server, meshes, select
         self._nodes: dict[str, Any] = {}
-        self._opacity: float | None = None
+        self.opacity = 0.6
+        """That of surfaces, so that the frames in them are seen."""
         self.hidden = {'/collisions'}
         """The names of nodes and of models that are hidden."""
 
@@ -127,10 +128,10 @@ class SceneNodes:
             self._place_names(tree)
 
     def set_opacity(self, opacity: float) -> None:
-        """Make surfaces transparent, so that the frames in them are seen."""
-        self._opacity = opacity if opacity < 1.0 else None
+        """Make surfaces more or less transparent."""
+        self.opacity = opacity
         for copies in self._copies:
-            copies.opacity = self._opacity
+            copies.opacity = opacity if opacity < 1.0 else None
 
     def mark(self, pose: Pose | None) -> None:
         """Show larger axes at a pose in the root frame; none for None."""
@@ -164,7 +165,8 @@ class SceneNodes:
             poses[:, _WXYZ], poses[:, :3], batched_scales=surface.scales,
             batched_colors=np.round(255.0 * rgba[:, :3]).astype(np.uint8),
             batched_opacities=rgba[:, 3] if (rgba[:, 3] < 1.0).any() else None,
-            opacity=self._opacity, lod='off', flat_shading=True, side='double')
+            opacity=self.opacity if self.opacity < 1.0 else None, lod='off', flat_shading=True,
+            side='double')
         copies.on_click(lambda event: self._select(int(frames[event.instance_index or 0])))
         return copies
 
