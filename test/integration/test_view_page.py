@@ -70,7 +70,7 @@ def page(shown):
     """The page of the file as it was at first."""
     if shown.file.read_text() != TEXT:
         shown.file.write_text(TEXT)
-    shown.page.wait_for(f'{ROWS}.length === 5')
+    shown.page.wait_for(f"{ROWS}.length === 5 && !document.querySelector('.errors')")
     return shown.page
 
 
@@ -146,6 +146,8 @@ def point_on_screen(page, point):
 
 def test_frame_is_dragged_and_written(page, shown):
     select(page, HOSTILE)
+    # Nothing says when the gizmo is drawn; until then there is nothing to drag.
+    page.run('new Promise(drawn => requestAnimationFrame(() => requestIdleCallback(drawn)))')
     page.mouse(*(point_on_screen(page, (1.0, 0.0, 0.38 + height)) for height in (
         0.0, 0.02, 0.05, 0.08, 0.1)))
     write = "[...document.querySelectorAll('button')].find(b => b.innerText === 'write to file')"
