@@ -21,8 +21,9 @@ _ATTRIBUTE = re.compile(rf'(\s*)((?:{_NAME})\s*=\s*)("[^"]*"|\'[^\']*\')')
 _TOKEN = re.compile(
     rf'(?P<comment><!--.*?-->)|(?P<verbatim><!\[CDATA\[.*?\]\]>)|(?P<instruction><\?.*?\?>)'
     rf'|(?P<other><!(?!--|\[CDATA\[)[^>]*>)|(?P<text>[^<]+)'
-    rf'|<(?P<end>/?)(?P<tag>{_NAME})(?![\w:.\-])(?P<attributes>(?:{_ATTRIBUTE.pattern})*)'
-    rf'(?P<rest>\s*(?P<empty>/?)>)', re.DOTALL)
+    rf'|<(?P<end>/?)(?P<tag>{_NAME})(?![\w:.\-])', re.DOTALL)
+"""A token, or the beginning of a tag, which attributes and ``_REST_OF_TAG`` follow."""
+_REST_OF_TAG = re.compile(r'\s*(?P<empty>/?)>')
 _BARE_AMPERSAND = re.compile(r'&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)')
 _ESCAPED_BYTE = re.compile('[\udc80-\udcff]')
 """What the error handler ``surrogateescape`` makes of a byte that is not UTF-8."""
@@ -72,7 +73,10 @@ class _Repairer:
             token = _TOKEN.match(decoded, position)
             if token is None:
                 return None
-            position = token.end()
+            rest = _rest_of_tag(token) if token['tag'] else token
+            if rest is None:
+                return None
+            begin, position = position, rest.end()
             if token['instruction'] and not self._may_declare:
                 return None
             is_last = position == len(decoded)
@@ -80,8 +84,9 @@ class _Repairer:
                 return None
             self._may_declare &= bool(token['instruction']) or (
                 not (token['text'] or 'x').strip('\ufeff \t\r\n'))
-            parts.append(self._repaired_token(token))
-            self._line += token[0].count('\n')
+            parts.append(
+                self._repaired_tag(token, rest) if token['tag'] else self._repaired_token(token))
+            self._line += decoded.count('\n', begin, position)
         return Repair(
             ''.join(parts).encode(errors='replace'),
             sorted((line, fault) for fault, line in self._faults.items()))
@@ -99,8 +104,6 @@ class _Repairer:
                 return whole
             self._note('a comment holds two hyphens in a row')
             return f'<!--{_blank(inside)}-->'
-        if token['tag']:
-            return self._repaired_tag(token)
         if token['text']:
             if not is_outside:
                 return self._repaired_text(whole)
@@ -119,19 +122,19 @@ class _Repairer:
             return _blank(whole)
         return whole
 
-    def _repaired_tag(self, token: re.Match[str]) -> str:
+    def _repaired_tag(self, token: re.Match[str], rest: re.Match[str]) -> str:
         if self._is_after_root():
             self._note('elements after the outermost element')
-            return _blank(token[0])
+            return _blank(token.string[token.start():rest.end()])
         if token['end']:
             self._depth -= 1
-        elif not token['empty']:
+        elif not rest['empty']:
             self._depth += 1
         self._has_root = True
         attributes = ''.join(
-            f'{self._space(space)}{name}{self._repaired_value(value)}'
-            for space, name, value in _ATTRIBUTE.findall(token['attributes']))
-        return f'<{token["end"]}{token["tag"]}{attributes}{token["rest"]}'
+            f'{self._space(each[1])}{each[2]}{self._repaired_value(each[3])}'
+            for each in _ATTRIBUTE.finditer(token.string, token.end(), rest.start()))
+        return f'{token[0]}{attributes}{rest[0]}'
 
     def _space(self, space: str) -> str:
         if not space:
@@ -184,6 +187,14 @@ class _Repairer:
     def _note(self, fault: str, line: int = 0) -> None:
         """Note the first line with a fault."""
         self._faults.setdefault(fault, line or self._line)
+
+
+def _rest_of_tag(token: re.Match[str]) -> re.Match[str] | None:
+    """Skip attributes one by one: a pattern that repeats them would take memory for each."""
+    text, position = token.string, token.end()
+    while attribute := _ATTRIBUTE.match(text, position):
+        position = attribute.end()
+    return _REST_OF_TAG.match(text, position)
 
 
 def _blank(text: str) -> str:

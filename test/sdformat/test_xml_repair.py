@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Text that libsdformat reads although it is not well-formed XML."""
 
+import tracemalloc
+
 from lxml import etree
 import pytest
 
@@ -62,3 +64,15 @@ def test_each_sort_of_fault_has_the_line_of_the_first():
 ])
 def test_well_formed_text_has_no_faults(text):
     assert repaired(text).faults == []
+
+
+@pytest.mark.parametrize('attribute', [b'a="1" ', b'a="1"'])
+def test_tag_that_does_not_end_takes_little_memory(attribute):
+    text = b'<a ' + attribute * 10_000
+    tracemalloc.start()
+    try:
+        assert repaired(text) is None
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak < 10 * len(text)
