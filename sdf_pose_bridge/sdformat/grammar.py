@@ -187,6 +187,7 @@ class Definition:
         # Python takes longer to look up a member of an Enum than to read an attribute.
         self.is_pose = self.value_type is ValueType.POSE
         self.is_text = self.value_type is ValueType.STRING
+        self.takes_any_number = self.value_type is ValueType.NUMBER and minimum == -math.inf
 
     @cached_property
     def takes_any_children(self) -> bool:

@@ -34,13 +34,15 @@ _C_INTEGER = re.compile(r'0x[0-9a-f]+|[+-]?[0-9]+', re.IGNORECASE)
 _STREAM_NUMBER = re.compile(rf'[{WHITE_SPACE}]*([+-]?{_DECIMAL})')
 """What a C++ stream takes; it leaves the rest for the next number."""
 _STREAM_INTEGER = re.compile(rf'[{WHITE_SPACE}]*([+-]?[0-9]+)')
-_PLAIN = r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)'
+_PLAIN = r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,2})?'
 _PLAIN_NUMBER = re.compile(_PLAIN)
 _PLAIN_NUMBERS = re.compile(rf'{_PLAIN}(?:[{WHITE_SPACE}]+{_PLAIN})*')
 """Numbers that everybody reads alike."""
 _SHORTEST_AXIS = 1e-6
 LONGEST_PLAIN = 200
-"""A number with fewer characters, and without an exponent, is in the range of a double."""
+"""
+A number with fewer characters, and an exponent of two digits at most, is in the range of a double.
+"""
 _NOT_ZERO = re.compile(r'[^eE]*[1-9]')
 _FEWEST_COLOR_NUMBERS = 3
 _BOOLEANS = {'true': 1.0, 'false': 0.0}
@@ -49,8 +51,9 @@ _INTEGER_RANGES = {
     # A negative number is taken modulo 2 ** 64.
     ValueType.UNSIGNED: (-2 ** 64 + 1, 2 ** 64 - 1),
 }
-_FLOATING_TYPES = frozenset({
-    ValueType.AXIS, ValueType.NUMBER, ValueType.THREE_NUMBERS, ValueType.TWO_NUMBERS})
+_FLOATING_TYPES = (
+    ValueType.NUMBER, ValueType.THREE_NUMBERS, ValueType.COLOR, ValueType.AXIS,
+    ValueType.TWO_NUMBERS)
 _TYPES_BY_COUNT = {
     1: ValueType.NUMBER, 2: ValueType.TWO_NUMBERS, 3: ValueType.THREE_NUMBERS}
 
@@ -114,20 +117,21 @@ def judged_value(text: str, definition: Definition) -> Judgment:
     :return: what is wrong with it.
     """
     value_type = definition.value_type
-    if (value_type is ValueType.NUMBER and definition.minimum == -math.inf
-            and len(text) < LONGEST_PLAIN and _PLAIN_NUMBER.fullmatch(text)):
+    if value_type is None or (
+            definition.takes_any_number and len(text) < LONGEST_PLAIN
+            and _PLAIN_NUMBER.fullmatch(text)):
         return _RIGHT
     stripped = text.strip(WHITE_SPACE)
-    if not stripped and definition.is_required and value_type is not None:
+    if not stripped and definition.is_required:
         return Judgment(f'<{definition.identifier}> is empty; it must have a value')
-    if not stripped or value_type is None or definition.is_text:
+    if not stripped or definition.is_text:
         return _RIGHT
     if definition.choice is not None:
         fault = choice_fault(stripped, definition.choice)
         return Judgment(f'"{stripped}" of <{definition.identifier}> {fault}' if fault else '')
     plain_numbers = _plain_numbers(stripped, value_type)
     numbers = plain_numbers or numbers_from_text(stripped, value_type)
-    if not _is_of_type(stripped, numbers, value_type):
+    if not plain_numbers and not _is_of_type(stripped, numbers, value_type):
         return Judgment(f'"{stripped[:80]}" is not {value_type.description}')
     if value_type is ValueType.AXIS and math.hypot(*numbers) <= _SHORTEST_AXIS:
         return Judgment(f'"{stripped}" is not a valid axis: its length is zero')
@@ -183,7 +187,7 @@ def is_of_type(text: str, value_type: ValueType) -> bool:
 
 def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> bool:
     if value_type is ValueType.COLOR:
-        return len(numbers) >= _FEWEST_COLOR_NUMBERS and all(
+        return _FEWEST_COLOR_NUMBERS <= len(numbers) <= value_type.count and all(
             not (number < 0.0 or number > 1.0) for number in numbers)
     if value_type is ValueType.BOOLEAN:
         return boolean_from_text(text) is not None
@@ -202,17 +206,17 @@ def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
     """
     if value_type.count == 0:
         return ()
-    if value_type is ValueType.COLOR:
-        words = text.split()
-        numbers = [number for word in words for number in _number(word)]
-        return numbers if len(numbers) == len(words) <= value_type.count else ()
     stripped = text.strip(WHITE_SPACE)
-    boolean = None if value_type.count > 1 else _BOOLEANS.get(stripped.lower())
-    if boolean is not None:
-        return (boolean,)
     plain_numbers = _plain_numbers(stripped, value_type)
     if plain_numbers:
         return plain_numbers
+    if value_type is ValueType.COLOR:
+        words = text.split()
+        numbers = [number for word in words for number in _number(word)]
+        return numbers if len(numbers) == len(words) else ()
+    boolean = None if value_type.count > 1 else _BOOLEANS.get(stripped.lower())
+    if boolean is not None:
+        return (boolean,)
     if value_type is ValueType.NUMBER:
         return _number(stripped)
     if value_type in _INTEGER_RANGES:
@@ -227,8 +231,8 @@ def _plain_numbers(text: str, value_type: ValueType) -> Sequence[float]:
     if (value_type not in _FLOATING_TYPES or len(text) >= LONGEST_PLAIN
             or not _PLAIN_NUMBERS.fullmatch(text)):
         return ()
-    words = text.split()
-    return [float(word) for word in words] if len(words) == value_type.count else ()
+    numbers = [float(word) for word in text.split()]
+    return numbers if _is_of_type(text, numbers, value_type) else ()
 
 
 def _number(word: str) -> Sequence[float]:

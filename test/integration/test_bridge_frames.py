@@ -212,7 +212,8 @@ def test_a_deep_history_keeps_every_transform_for_a_late_listener(
     path = tmp_path / 'many.sdf'
     path.write_text(f'<sdf version="1.10"><model name="m">{links}</model></sdf>', encoding='utf-8')
     start_bridge(
-        '--ros-args', '-p', f'sdf_file:={path}', '-p', 'pose_topics:=[]').wait_until_started()
+        '--ros-args', '-p', f'sdf_file:={path}', '-p', 'pose_topics:=[]',
+        '-p', 'anchor_models:=all').wait_until_started()
     listener = start_listener()
     from geometry_msgs.msg import TransformStamped
     from listener import latched

@@ -68,7 +68,7 @@ def test_a_bad_file_has_a_line_for_each_error(start_bridge, write_file):
     ([], 'parameter sdf_file is not set'),
     (['-p', 'sdf_file:=42'], 'parameter sdf_file is 42, which is an integer'),
     (['-p', 'sdf_file:=a.sdf', '-p', 'anchor_models:=many'],
-     'parameter anchor_models is "many"; it must be one of all, static, none'),
+     'parameter anchor_models is "many"; it must be one of auto, all, static, none'),
     (['-p', 'sdf_file:=package://no_such_package/a.sdf'], 'the package "no_such_package"'),
 ])
 def test_what_prevents_the_start_is_one_line(start_bridge, arguments, text):
@@ -127,7 +127,7 @@ def test_the_first_line_tells_what_is_published(start_bridge, write_file):
     path = write_file(GOOD)
     line = start_bridge('--ros-args', '-p', f'sdf_file:={path}').wait_for_line('publishing')
     assert '[INFO]' in line
-    assert f'2 frames of {path} with 2 transforms, root frame "world"' in line
+    assert f'2 frames of {path} with 1 transform, root frame "world"' in line
 
 
 @pytest.mark.parametrize(('value', 'text'), [

@@ -202,7 +202,7 @@ def test_a_link_that_is_led_elsewhere_is_noticed(start, start_listener, file, tm
 @pytest.mark.parametrize(('address', 'frame'), [('w.sdf', 'box/l'), ('box', 'l')])
 def test_a_manifest_that_names_another_file_is_noticed(
         start, start_listener, models, address, frame):
-    start(models / address)
+    start(models / address, 'anchor_models:=all')
     listener = start_listener()
     listen_to_tf(listener)
     wait_for_x(listener, 1.0, frame)
