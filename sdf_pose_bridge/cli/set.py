@@ -133,7 +133,8 @@ def _set(scene: Scene, numbers: list[float], options: argparse.Namespace) -> int
         printable(difference.name) for difference in differences_of_scenes(scene, change.scene)
         if difference.change is Change.MOVED and difference.name != scene.names[element]]
     if moved:
-        print(f'moved with it: {", ".join(moved)}')
+        # A visual and a collision may have the same name.
+        print(f'moved with it: {", ".join(dict.fromkeys(moved))}')
     return 0
 
 

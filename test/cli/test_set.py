@@ -22,6 +22,16 @@ def test_the_file_says_the_pose(run_main, path):
     assert done.stdout.endswith('moved with it: m, m::l\n')
 
 
+def test_a_name_that_two_elements_have_is_printed_once(run_main, path):
+    shapes = ''.join(
+        f'<{tag} name="s"><geometry><sphere><radius>1</radius></sphere></geometry></{tag}>'
+        for tag in ('visual', 'collision'))
+    path.write_text(
+        f'<sdf version="1.9"><model name="m"><link name="l">{shapes}</link></model></sdf>')
+    done = run_main('set', 'good.sdf', 'm', *'100000')
+    assert done.stdout.endswith('moved with it: m::l, m::l::s\n')
+
+
 def test_a_dry_run_writes_nothing(run_main, path):
     text = path.read_text()
     done = run_main('set', '--dry-run', 'good.sdf', 'f', *'000000')
