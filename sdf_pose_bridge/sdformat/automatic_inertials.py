@@ -19,6 +19,7 @@ from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.values import numbers_of_child
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
@@ -39,14 +40,17 @@ class CollisionMass(NamedTuple):
 
 def collision_masses(
     inertial: XmlElement, sources: Sources, problems: Problems,
-) -> tuple[CollisionMass, ...]:
+) -> tuple[CollisionMass, ...] | None:
     """
-    Return the masses of the collisions of a link.
+    Return the masses of the collisions of a link, if its inertial is automatic.
 
-    :param inertial: an ``<inertial auto="true">`` in its link.
+    :param inertial: an ``<inertial>`` in its link.
     :param problems: takes collisions whose mass cannot be computed.
-    :return: the mass of each collision in file order; empty if one cannot be computed.
+    :return: the mass of each collision in file order; None if the inertial is not automatic, or
+        if no mass, or not each, can be computed.
     """
+    if not boolean_from_text(inertial.get('auto', '')):
+        return None
     link = inertial.getparent()
     collisions = [] if link is None else list(child_elements(link, 'collision'))
     if not collisions:
@@ -65,7 +69,7 @@ def collision_masses(
             msg = (f'the automatic inertial of link "{name}" has its pose as written, as the mass '
                    'of a mesh is not computed')
             problems.warning(msg, sources.place(collision))
-            return ()
+            return None
         # An empty density is the default of the element, and not that of the inertial.
         has_density = first_child(collision, 'density') is not None
         (density,) = numbers_of_child(collision, 'density', (DEFAULT_DENSITY_KG_M3,))
@@ -77,7 +81,7 @@ def collision_masses(
             problems.error(LinkInertiaError(msg, sources.place(collision)))
         else:
             masses.append(mass)
-    return tuple(masses)
+    return tuple(masses) or None
 
 
 def _mass(shape: Shape, density_kg_m3: float) -> CollisionMass | None:

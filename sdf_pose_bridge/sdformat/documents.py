@@ -133,8 +133,8 @@ def _declared_version(root: XmlElement, path: str, line: int) -> str:
 
 
 def _may_hold_scoped_names(text: bytes) -> bool:
-    # A colon may be written as a character reference.
-    return SEPARATOR.encode() in text or b'&#' in text
+    # A colon may be written as a character reference. Python finds one byte much faster than two.
+    return b'&' in text or (b':' in text and SEPARATOR.encode() in text)
 
 
 def _check_top_model(root: XmlElement, sources: Sources, problems: Problems) -> None:

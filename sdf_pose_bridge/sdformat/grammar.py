@@ -186,6 +186,7 @@ class Definition:
         """What the value can be, of a choice."""
         # Python takes longer to look up a member of an Enum than to read an attribute.
         self.is_pose = self.value_type is ValueType.POSE
+        self.is_scope = self.kind in (Kind.WORLD, Kind.MODEL)
         self.is_text = self.value_type is ValueType.STRING
         self.takes_any_number = self.value_type is ValueType.NUMBER and minimum == -math.inf
 

@@ -9,7 +9,9 @@ of the table, a value is checked, and what the grammar does not know is skipped.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import AttributeMissingError
@@ -41,11 +43,12 @@ from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sibling_names import SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
-from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.values import choice_fault
 from sdf_pose_bridge.sdformat.values import frame_of_attribute
 from sdf_pose_bridge.sdformat.values import is_of_type
 from sdf_pose_bridge.sdformat.values import judged_value
+from sdf_pose_bridge.sdformat.values import Judgment
+from sdf_pose_bridge.sdformat.values import RIGHT
 from sdf_pose_bridge.sdformat.versions import allows_scoped_names
 from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import is_foreign
@@ -113,19 +116,33 @@ class _Reader:
     ) -> None:
         self._sources = sources
         self._problems = problems
-        self._reads_shapes = shapes
         self._deepest = sources.usage.limits.depth
         self._builder = ElementsBuilder(sources.paths)
         self._names = SiblingNames(self._builder, sources, problems)
         self._undefined = UndefinedReporter(sources, problems)
         self._file_indices = {path: index for index, path in enumerate(sources.paths)}
+        builder = self._builder
+        self._readers_of_details: dict[
+            Kind, tuple[dict[int, Any], Callable[[XmlElement], Any]]] = {
+            Kind.MODEL: (builder.models, model_details_from_element),
+            Kind.FRAME: (builder.frames, frame_details_from_element),
+            Kind.JOINT: (builder.joints, partial(
+                joint_details_from_element, sources=sources, problems=problems)),
+            Kind.SENSOR: (builder.sensors, sensor_details_from_element),
+            Kind.INERTIAL: (builder.automatic_inertials, partial(
+                collision_masses, sources=sources, problems=problems)),
+        }
+        """What only some kinds have: where it is kept, and what reads it; None for nothing."""
+        if shapes:
+            for kind in (Kind.VISUAL, Kind.COLLISION):
+                self._readers_of_details[kind] = (builder.shapes, shape_of)
 
     def check(self, xml: XmlElement, definition: Definition) -> None:
         self._check_attributes(xml, definition)
         if definition.is_pose:
             self._check_pose(xml)
         elif definition.value_type is not None:
-            self._check_value(xml, definition)
+            self._report_judgment(xml, judged_value(text_of(xml), definition))
         else:
             self._read(xml, definition, NO_ELEMENT, NO_ELEMENT, '', 1)
 
@@ -203,9 +220,13 @@ class _Reader:
         include = self._sources.include_of(xml)
         if include is not None:
             self._builder.includes[index] = include
-        if kind is Kind.WORLD or kind is Kind.MODEL:
+        if definition.is_scope:
             scope = index
-        self._read_details(xml, kind, index)
+        if kind in self._readers_of_details:
+            details, details_from_element = self._readers_of_details[kind]
+            read = details_from_element(xml)
+            if read is not None:
+                details[index] = read
         self._read_children(xml, definition, index, scope, path, depth)
 
     def _read_children(
@@ -237,29 +258,12 @@ class _Reader:
                 else:
                     self._read_pose(child, child_definition, parent)
             elif child_definition.is_required or not child_definition.is_text:
-                self._check_value(child, child_definition)
+                judgment = judged_value(text_of(child), child_definition)
+                if judgment is not RIGHT:
+                    self._report_judgment(child, judgment)
             if len(child) and child_definition.value_type is not None:
                 for grandchild in child:
                     self._undefined.report_element(grandchild, child_definition)
-
-    def _read_details(self, xml: XmlElement, kind: Kind, index: int) -> None:
-        if kind is Kind.MODEL:
-            self._builder.models[index] = model_details_from_element(xml)
-        elif kind is Kind.FRAME:
-            self._builder.frames[index] = frame_details_from_element(xml)
-        elif kind is Kind.JOINT:
-            self._builder.joints[index] = joint_details_from_element(
-                xml, self._sources, self._problems)
-        elif kind is Kind.SENSOR:
-            self._builder.sensors[index] = sensor_details_from_element(xml)
-        elif kind is Kind.INERTIAL and boolean_from_text(xml.get('auto', '')):
-            masses = collision_masses(xml, self._sources, self._problems)
-            if masses:
-                self._builder.automatic_inertials[index] = masses
-        elif self._reads_shapes and kind in (Kind.VISUAL, Kind.COLLISION):
-            shape = shape_of(xml)
-            if shape is not None:
-                self._builder.shapes[index] = shape
 
     # Attributes and poses
 
@@ -288,12 +292,11 @@ class _Reader:
                     msg = f'{name}="{value.strip(WHITE_SPACE)}" of <{written_tag(xml)}> {fault}'
                     self._problems.error(error(msg, self._sources.place(xml)))
 
-    def _check_value(self, xml: XmlElement, definition: Definition) -> None:
-        fault, doubt = judged_value(text_of(xml), definition)
-        if fault:
-            self._problems.error(ElementInvalidError(fault, self._sources.place(xml)))
-        elif doubt:
-            self._problems.warning(doubt, self._sources.place(xml))
+    def _report_judgment(self, xml: XmlElement, judgment: Judgment) -> None:
+        if judgment.fault:
+            self._problems.error(ElementInvalidError(judgment.fault, self._sources.place(xml)))
+        elif judgment.doubt:
+            self._problems.warning(judgment.doubt, self._sources.place(xml))
 
     def _read_pose(self, xml: XmlElement, definition: Definition, index: int) -> None:
         pose_format: PoseFormat | None = _DEFAULT_FORMAT

@@ -125,7 +125,8 @@ class Sources:
         :param xml: the included element itself, not one in it.
         :return: the place of the ``<include>``; None for other elements.
         """
-        return self._origin(xml).include
+        origin = self._origins.get(xml)
+        return None if origin is None else origin.include
 
     def set_named_by_include(self, xml: XmlElement) -> None:
         """Set that the name of an included element is written in the file that includes it."""

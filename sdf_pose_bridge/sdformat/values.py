@@ -34,10 +34,9 @@ _C_INTEGER = re.compile(r'0x[0-9a-f]+|[+-]?[0-9]+', re.IGNORECASE)
 _STREAM_NUMBER = re.compile(rf'[{WHITE_SPACE}]*([+-]?{_DECIMAL})')
 """What a C++ stream takes; it leaves the rest for the next number."""
 _STREAM_INTEGER = re.compile(rf'[{WHITE_SPACE}]*([+-]?[0-9]+)')
-_PLAIN = r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,2})?'
-_PLAIN_NUMBER = re.compile(_PLAIN)
-_PLAIN_NUMBERS = re.compile(rf'{_PLAIN}(?:[{WHITE_SPACE}]+{_PLAIN})*')
-"""Numbers that everybody reads alike."""
+_PLAIN_NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,2})?')
+"""A number that everybody reads alike."""
+_NOT_IN_DECIMALS = re.compile(rf'[^-+.0-9{WHITE_SPACE}]')
 _SHORTEST_AXIS = 1e-6
 LONGEST_PLAIN = 200
 """
@@ -105,7 +104,8 @@ class Judgment(NamedTuple):
     """How a value is read that probably means something else; empty if it is plain."""
 
 
-_RIGHT = Judgment()
+RIGHT = Judgment()
+"""The one judgment of all values that are right and plain."""
 
 
 def judged_value(text: str, definition: Definition) -> Judgment:
@@ -120,12 +120,12 @@ def judged_value(text: str, definition: Definition) -> Judgment:
     if value_type is None or (
             definition.takes_any_number and len(text) < LONGEST_PLAIN
             and _PLAIN_NUMBER.fullmatch(text)):
-        return _RIGHT
+        return RIGHT
     stripped = text.strip(WHITE_SPACE)
     if not stripped and definition.is_required:
         return Judgment(f'<{definition.identifier}> is empty; it must have a value')
     if not stripped or definition.is_text:
-        return _RIGHT
+        return RIGHT
     if definition.choice is not None:
         fault = choice_fault(stripped, definition.choice)
         return Judgment(f'"{stripped}" of <{definition.identifier}> {fault}' if fault else '')
@@ -141,7 +141,7 @@ def judged_value(text: str, definition: Definition) -> Judgment:
         rule = (f'at least {minimum:g}' if maximum == math.inf
                 else f'from {minimum:g} to {maximum:g}')
         return Judgment(f'"{stripped}" must be {rule}')
-    return _RIGHT if plain_numbers else Judgment(doubt=_doubt(stripped, numbers))
+    return RIGHT if plain_numbers else Judgment(doubt=_doubt(stripped, numbers))
 
 
 def _doubt(text: str, numbers: Sequence[float]) -> str:
@@ -187,13 +187,13 @@ def is_of_type(text: str, value_type: ValueType) -> bool:
 
 def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> bool:
     if value_type is ValueType.COLOR:
-        return _FEWEST_COLOR_NUMBERS <= len(numbers) <= value_type.count and all(
-            not (number < 0.0 or number > 1.0) for number in numbers)
+        return _FEWEST_COLOR_NUMBERS <= len(numbers) <= value_type.count and not [
+            number for number in numbers if number < 0.0 or number > 1.0]
+    if value_type.count > 0:
+        return len(numbers) == value_type.count
     if value_type is ValueType.BOOLEAN:
         return boolean_from_text(text) is not None
-    if value_type is ValueType.FRAME:
-        return text != ROOT_FRAME
-    return len(numbers) == value_type.count  # 0 for a text
+    return value_type is not ValueType.FRAME or text != ROOT_FRAME
 
 
 def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
@@ -229,9 +229,12 @@ def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
 def _plain_numbers(text: str, value_type: ValueType) -> Sequence[float]:
     """Return the numbers of a text that needs no closer look; none for any other text."""
     if (value_type not in _FLOATING_TYPES or len(text) >= LONGEST_PLAIN
-            or not _PLAIN_NUMBERS.fullmatch(text)):
+            or _NOT_IN_DECIMALS.search(text)):
         return ()
-    numbers = [float(word) for word in text.split()]
+    try:
+        numbers = [float(word) for word in text.split()]
+    except ValueError:
+        return ()
     return numbers if _is_of_type(text, numbers, value_type) else ()
 
 
