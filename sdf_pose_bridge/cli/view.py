@@ -6,11 +6,11 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
-from collections.abc import Callable
 from collections.abc import Iterable
-from collections.abc import Mapping
+from functools import partial
 import importlib
 import os
+from pathlib import Path
 import signal
 import sys
 import time
@@ -27,11 +27,8 @@ from sdf_pose_bridge.cli.printing import printed_errors
 from sdf_pose_bridge.cli.printing import units_from_arguments
 from sdf_pose_bridge.cli.set import set_pose
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
-from sdf_pose_bridge.tf.joint_positions import scene_at_positions
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 
 _FORMATS = ('.html', '.png')
@@ -85,14 +82,17 @@ def run(options: argparse.Namespace) -> int:
     server = servers.server_for_this_machine(0 if options.output else options.port)
     page = pages.Page(
         server, tf_options_from_arguments(options), units_from_arguments(options), reader,
-        _pose_setter(options) if options.edit else None)
-    not_drawn = None
-    with printed_errors():
-        not_drawn = page.show(scene)
+        partial(set_pose, options=options) if options.edit else None)
+    reasons = None
     try:
-        if not_drawn is None:
+        with printed_errors():
+            reasons = page.show(scene)
+        if reasons is None:
             return 1
-        _print_reasons(reason for _, reason in not_drawn)
+        for reason, count in Counter(reasons).items():
+            what = '1 shape is' if count == 1 else f'{count} shapes are'
+            print(f'sdf_pose view: {what} not drawn as the file means it: {printable(reason)}',
+                  file=sys.stderr)
         if options.output is None:
             _open(f'http://{servers.ADDRESS}:{server.get_port()}')
             _follow(page, scene.files, options)
@@ -109,28 +109,9 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _pose_setter(options: argparse.Namespace) -> Callable[..., None]:
-    def put(
-        scene: Scene, element: int, pose: Pose, positions: Mapping[str, float], *, dry_run: bool,
-    ) -> None:
-        def measured(scene: Scene, element: int) -> Pose:
-            return scene_at_positions(scene, positions).pose_of(element)
-
-        set_pose(scene, element, pose, measured, options, dry_run=dry_run)
-
-    return put
-
-
 def _fail(message: str) -> int:
     print(f'sdf_pose view: {printable(message)}', file=sys.stderr)
     return 1
-
-
-def _print_reasons(reasons: Iterable[str]) -> None:
-    for reason, count in Counter(reasons).items():
-        what = '1 shape is' if count == 1 else f'{count} shapes are'
-        print(f'sdf_pose view: {what} not drawn as the file means it: '
-              f'{printable(reason)}', file=sys.stderr)
 
 
 def _open(address: str) -> None:
@@ -170,7 +151,7 @@ def _signatures(paths: Iterable[str]) -> list[tuple[int, ...] | None]:
 
 def _signature(path: str) -> tuple[int, ...] | None:
     try:
-        status = os.stat(path)  # noqa: PTH116 - a third of the time of Path.stat
+        status = Path(path).stat()
     except OSError:
         return None
     return status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import NamedTuple
 
@@ -134,7 +133,6 @@ def _forms_from_shape(
         return (Form('SPHERE', tuple(2.0 * radius_m for radius_m in sizes_m)),)
     if shape.type in ('cone', 'plane'):
         triangles = triangles_from_shape(shape)
-        assert triangles is not None
         return (Form('TRIANGLE_LIST', points=triangles.points[triangles.faces.reshape(-1)]),)
     # The other shapes are round. A capsule that is not longer than its ends is a sphere.
     diameter_m, length_m = 2.0 * sizes_m[0], max((*sizes_m, 0.0)[1], 0.0)
@@ -156,8 +154,6 @@ def _has_materials_that_rviz_shows(shape: Shape) -> bool:
 
 
 def _form_of_mesh(shape: Shape, file: str, finder: ResourceFinder) -> tuple[Form] | str:
-    if not all(map(math.isfinite, shape.mesh_scale)):
-        return f'the scale of the mesh "{shortened(shape.mesh_uri)}" is not finite'
     uri = shape.mesh_uri
     # RViz may run on another machine, where the package is elsewhere.
     if not uri.startswith('package://'):

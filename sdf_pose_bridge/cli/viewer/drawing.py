@@ -1,47 +1,74 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Choose what is drawn of a scene, in arrays: surfaces, and the names of frames."""
+"""Draw a scene by viser: axes, names, lines and surfaces."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from collections.abc import Iterator
 from collections.abc import Sequence
+import dataclasses
+import math
+from typing import Any
 from typing import NamedTuple
 from typing import TYPE_CHECKING
 
 import numpy as np
+import trimesh
+import viser
 
+from sdf_pose_bridge.cli.printing import kind_labels_of
+from sdf_pose_bridge.cli.viewer.meshes import Mesh
+from sdf_pose_bridge.cli.viewer.meshes import MeshPart
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.scene.triangles import Points
-from sdf_pose_bridge.scene.triangles import Triangles
 from sdf_pose_bridge.scene.triangles import triangles_from_shape
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.shapes import Shape
+from sdf_pose_bridge.tf.parents import NO_PARENT
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
+from sdf_pose_bridge.tf.tree import TfTree
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-MOST_SURFACES = 20_000
-"""How many visuals and collisions are drawn, and how many parts of meshes."""
+MOST_SURFACES = 5_000
+"""How many surfaces that differ are drawn."""
 MOST_TRIANGLES = 3_000_000
-"""How many triangles all surfaces that differ may have together."""
+"""How many triangles these may have together."""
 MOST_NAMES = 500
 """How many names are shown at once."""
 
+LINES = '/lines to parents'
+GROUPS = ('/names', LINES, '/visuals', '/collisions')
+"""The nodes that can be hidden, besides one for each kind of frame."""
+
+_WXYZ = [6, 3, 4, 5]
+_DIRECTION_TO_EYE = np.array([0.75, -0.5, 0.45])
+_FIELD_OF_VIEW_RAD = 0.8
 _GRAY = (0.7, 0.7, 0.7, 1.0)
 _MISSING = (0.88, 0.19, 0.19, 0.5)
-_MOST_AT_A_PLACE = 3
-_BOX = Shape('box', (1.0, 1.0, 1.0), (0.0, 0.0, 1.0), '', '', (1.0, 1.0, 1.0), None)
+_LINE_COLOR = (134, 142, 150)
+_LIGHT_FROM_BELOW = (160, 160, 160)
+
+_SCALE_OF_NAMES = 0.8
+_LINE_HEIGHT, _CHARACTER_WIDTH = 0.018, 0.0062
+"""Size of a name, as a part of the height of the picture."""
+_MOST_IN_A_LABEL = 4
 
 
 class Surface(NamedTuple):
     """The surface of visuals or collisions that differ only in place, size and color."""
 
     kind: Kind
-    triangles: Triangles
-    elements: NDArray[np.intp]
+    part: MeshPart
+    elements: list[int]
     """The visual or collision of each copy."""
     scales: Points
     """Shape (n, 3): the factors of each copy along x, y and z."""
@@ -49,16 +76,181 @@ class Surface(NamedTuple):
     """Shape (n, 4): the color of each copy, components from 0 to 1."""
 
 
-class NotDrawn(NamedTuple):
-    """A shape that is drawn as a red box, or not at all."""
+def node_of_kind(label: str) -> str:
+    """Return the node of all frames of a kind."""
+    return f'/frames/{label}'
 
-    element: int
-    reason: str
+
+class Drawing:
+    """
+    The nodes that show a scene.
+
+    :param server: the server that shows them.
+    :param meshes: reads the meshes.
+    :param select: is called with the frame that is clicked, an index into the TF tree.
+    """
+
+    def __init__(
+        self, server: viser.ViserServer, meshes: MeshReader, select: Callable[[int], None],
+    ) -> None:
+        self._server, self._meshes, self._select = server, meshes, select
+        self._nodes: dict[str, Any] = {}
+        self.opacity = 0.6
+        """That of surfaces, so that the frames in them are seen."""
+        self.hidden = {'/collisions'}
+        """The names of nodes and of models that are hidden."""
+        self.camera: Any = None
+        """The camera for which names are placed."""
+
+    def draw(self, scene: Scene, tree: TfTree, is_shown: NDArray[np.bool_]) -> list[str]:
+        """
+        Draw a scene instead of the one before.
+
+        :param is_shown: whether to draw each element of the scene.
+        :return: why visuals and collisions are not drawn as the file means them, for each of them.
+        """
+        nodes, labels = self._server.scene, kind_labels_of(scene, tree)
+        nodes.reset()
+        nodes.add_light_hemisphere('/light', ground_color=_LIGHT_FROM_BELOW, intensity=1.5)
+        origins = tree.poses[:, :3]
+        extent_m = float(np.ptp(origins, axis=0).max()) if len(origins) else 0.0
+        self._surfaces, reasons = surfaces_from_scene(
+            scene, [element for element in scene.shapes if is_shown[element]], extent_m or 1.0,
+            self._meshes)
+        bounds = bounds_of_scene(scene, origins, self._surfaces)
+        self._size_m = float(np.ptp(bounds, axis=0).max()) or 1.0
+        # A floor is often much larger than what stands on it.
+        self._view_m = max(extent_m, 0.3 * self._size_m)
+        self._middle = 0.5 * np.sum(
+            bounds if extent_m == 0.0 else (origins.min(axis=0), origins.max(axis=0)), axis=0)
+        if self.camera is None:
+            self._look_at_everything()
+        self._length_m = length_m = self._length_of_axes(tree)
+        shown = np.flatnonzero(is_shown[_elements_of_frames(tree)]).tolist()
+        self._frames = {
+            label: np.array([frame for frame in shown if labels[frame] == label], int)
+            for label in dict.fromkeys(labels)}
+        self._nodes = {
+            name: nodes.add_frame(name, show_axes=False) for name in ('/frames', *GROUPS)}
+        self._nodes[LINES] = nodes.add_line_segments(
+            LINES, self._lines(tree), _LINE_COLOR, thickness=0.002 * self._view_m)
+        for label, frames in self._frames.items():
+            poses = tree.poses[frames]
+            axes = self._nodes[node_of_kind(label)] = nodes.add_batched_axes(
+                node_of_kind(label), poses[:, _WXYZ], poses[:, :3], axes_length=length_m,
+                axes_radius=0.05 * length_m)
+            axes.on_click(
+                lambda event, frames=frames: self._select(int(frames[event.instance_index])))
+        for name in self.hidden & self._nodes.keys():
+            self._nodes[name].visible = False
+        self._copies = [
+            self._add_surface(number, surface, scene, tree)
+            for number, surface in enumerate(self._surfaces)]
+        self._labels: list[viser.LabelHandle] = []
+        self.place_names(tree)
+        return reasons
+
+    def place(self, scene: Scene, tree: TfTree) -> None:
+        """Move what is drawn to the poses of a scene that differs in nothing else."""
+        for label, frames in self._frames.items():
+            _set_poses(self._nodes[node_of_kind(label)], tree.poses[frames])
+        for copies, surface in zip(self._copies, self._surfaces, strict=True):
+            _set_poses(copies, scene.poses[surface.elements])
+        self._nodes[LINES].points = self._lines(tree)
+        self.place_names(tree)
+
+    def set_visible(self, name: str, tree: TfTree, *, visible: bool) -> None:
+        """Show or hide a node."""
+        if name in self._nodes:
+            self._nodes[name].visible = visible
+            self.place_names(tree)
+
+    def set_opacity(self, opacity: float) -> None:
+        """Make surfaces more or less transparent."""
+        self.opacity = opacity
+        for copies in self._copies:
+            copies.opacity = opacity if opacity < 1.0 else None
+
+    def mark(self, pose: Pose | None) -> None:
+        """Show larger axes at a pose in the root frame; none for None."""
+        if '/selected' in self._nodes:
+            self._nodes.pop('/selected').remove()
+        if pose is not None:
+            self._nodes['/selected'] = self._server.scene.add_frame(
+                '/selected', axes_length=2.0 * self._length_m,
+                axes_radius=0.08 * self._length_m, position=pose[:3],
+                wxyz=(pose.qw, *pose[3:6]))
+
+    def add_gizmo(self, pose: Pose) -> Any:
+        """Return a gizmo at a pose in the root frame."""
+        return self._server.scene.add_transform_controls(
+            '/gizmo', 4.0 * self._length_m, position=pose[:3], wxyz=(pose.qw, *pose[3:6]),
+            depth_test=False)
+
+    def place_names(self, tree: TfTree) -> None:
+        """Show the names of frames, where the camera sees them."""
+        if '/names' in self.hidden:
+            return
+        frames = [
+            frame for label, each in self._frames.items()
+            if node_of_kind(label) not in self.hidden for frame in each.tolist()][:MOST_NAMES]
+        names = [
+            printable(shortened(tree.frame_ids[frame].rpartition('/')[2])) for frame in frames]
+        labels = list(labels_from_names(
+            names, tree.poses[frames, :3], self.camera.position, self.camera.look_at))
+        while len(self._labels) > len(labels):
+            self._labels.pop().remove()
+        for number, (text, point) in enumerate(labels):
+            if number == len(self._labels):
+                self._labels.append(self._server.scene.add_label(
+                    f'/names/{number}', text, position=point, font_screen_scale=_SCALE_OF_NAMES))
+                continue
+            self._labels[number].position = point
+            if self._labels[number].text != text:
+                self._labels[number].text = text
+
+    def _look_at_everything(self) -> None:
+        """Choose what a browser sees at first."""
+        camera = self._server.initial_camera
+        camera.look_at = self._middle
+        camera.position = self._middle + 1.6 * self._view_m * _DIRECTION_TO_EYE
+        camera.near, camera.far = 0.001 * self._size_m, 100.0 * self._size_m
+        camera.fov = _FIELD_OF_VIEW_RAD
+        self.camera = camera
+
+    def _add_surface(self, number: int, surface: Surface, scene: Scene, tree: TfTree) -> Any:
+        poses, rgba = scene.poses[surface.elements], np.clip(surface.rgba, 0.0, 1.0)
+        frames = tree.nearest_frames[surface.elements]
+        copies = self._server.scene.add_batched_meshes_simple(
+            f'/{surface.kind.label}s/{number}', surface.part.points, surface.part.faces,
+            poses[:, _WXYZ], poses[:, :3], batched_scales=surface.scales,
+            batched_colors=np.round(255.0 * rgba[:, :3]).astype(np.uint8),
+            batched_opacities=rgba[:, 3] if (rgba[:, 3] < 1.0).any() else None,
+            opacity=self.opacity if self.opacity < 1.0 else None, lod='off', flat_shading=True,
+            side='double')
+        copies.on_click(lambda event: self._select(int(frames[event.instance_index or 0])))
+        return copies
+
+    def _lines(self, tree: TfTree) -> Points:
+        """Return lines from the parents of frames to the frames, shape (n, 2, 3)."""
+        shown = np.concatenate([np.zeros(0, int), *self._frames.values()])
+        frames = shown[tree.parents[shown] != NO_PARENT]
+        # The last entry is the root frame, which the index of the root as a parent means.
+        origins = np.concatenate([tree.poses[:, :3], np.zeros((1, 3))])
+        assert ROOT_IS_PARENT == -1
+        return np.stack([origins[tree.parents[frames]], origins[frames]], axis=1)
+
+    def _length_of_axes(self, tree: TfTree) -> float:
+        """Return the length of axes, in metres: short where frames are near to one another."""
+        distances_m = np.linalg.norm(tree.transforms[:, :3], axis=1)
+        distances_m = distances_m[distances_m > 1e-6 * self._size_m]
+        typical_m = float(np.median(distances_m)) if len(distances_m) else self._size_m
+        return min(max(0.4 * typical_m, 0.01 * self._size_m), 0.1 * self._size_m)
 
 
 def surfaces_from_scene(
     scene: Scene, elements: Sequence[int], size_m: float, meshes: MeshReader,
-) -> tuple[list[Surface], list[NotDrawn]]:
+) -> tuple[list[Surface], list[str]]:
     """
     Choose the surfaces of visuals and collisions.
 
@@ -67,73 +259,69 @@ def surfaces_from_scene(
     :param size_m: extent of the frames; no side of a plane is much longer, and a mesh of which
         nothing is known is a box of a small part of it.
     :param meshes: reads meshes.
-    :return: the surfaces, and what is not drawn as the file means it.
+    :return: the surfaces, and for each element that is not drawn as the file means it, why.
     """
-    copies: dict[object, list[tuple[int, tuple[float, ...], tuple[float, ...]]]] = {}
-    forms: dict[object, tuple[Kind, Triangles]] = {}
-    not_drawn: list[NotDrawn] = []
-    copy_count = triangle_count = 0
+    copies: dict[tuple[Kind, Shape, str], list[int]] = {}
     for element in elements:
-        shape, kind = scene.shapes[element], Kind(scene.kinds[element])
-        if not shape.is_visible:
+        shape = scene.shapes[element]
+        if shape.is_visible:
+            form = shape._replace(
+                rgba=None, opacity=1.0, mesh_scale=(1.0,) * 3,
+                sizes_m=(1.0,) * 3 if shape.type == 'box' and shape.has_extent else shape.sizes_m)
+            file = scene.place(element).file if shape.type == 'mesh' else ''
+            copies.setdefault((Kind(scene.kinds[element]), form, file), []).append(element)
+    surfaces: list[Surface] = []
+    reasons: list[str] = []
+    triangle_count = 0
+    for (kind, form, file), same in copies.items():
+        mesh = _mesh_of_shape(form, file, size_m, meshes)
+        reasons += [mesh.reason] * len(same) * bool(mesh.reason)
+        triangle_count += sum(len(part.faces) for part in mesh.parts)
+        if len(surfaces) + len(mesh.parts) > MOST_SURFACES or triangle_count > MOST_TRIANGLES:
+            reasons += ['there are too many surfaces'] * len(same)
             continue
-        parts, reason = _parts(shape, scene.place(element).file, size_m, meshes)
-        for form, triangles, scale, rgba in parts:
-            key = (kind, form)
-            new_count = len(triangles.faces) if key not in forms else 0
-            if copy_count >= MOST_SURFACES or triangle_count + new_count > MOST_TRIANGLES:
-                reason = 'there are too many surfaces'
-                break
-            copy_count += 1
-            triangle_count += new_count
-            forms.setdefault(key, (kind, triangles))
-            copies.setdefault(key, []).append((element, scale, rgba))
-        if reason:
-            not_drawn.append(NotDrawn(element, reason))
-    return [
-        Surface(kind, triangles, *map(np.array, zip(*copies[key], strict=True)))
-        for key, (kind, triangles) in forms.items()], not_drawn
+        shapes = [scene.shapes[element] for element in same]
+        scales = np.array([
+            shape.sizes_m if shape.type == 'box' else shape.mesh_scale for shape in shapes])
+        surfaces += [
+            Surface(kind, part, same, scales, np.array([
+                part.rgba if mesh.reason else shape.rgba_or(part.rgba or _GRAY)
+                for shape in shapes]))
+            for part in mesh.parts]
+    return surfaces, reasons
 
 
-def _parts(
-    shape: Shape, file: str, size_m: float, meshes: MeshReader,
-) -> tuple[list[tuple[object, Triangles, tuple[float, ...], tuple[float, ...]]], str]:
-    """Return form, triangles, scale and color of each part, and what is wrong with the shape."""
+def _mesh_of_shape(shape: Shape, file: str, size_m: float, meshes: MeshReader) -> Mesh:
+    """Return what is drawn of a shape, and why it is not the shape."""
     if shape.type != 'mesh':
         if shape.reason_without_surface:
-            return [], shape.reason_without_surface
-        unit, scale = _unit_shape(shape._replace(rgba=None, opacity=1.0), 2.0 * size_m)
-        triangles = triangles_from_shape(unit)
-        assert triangles is not None
-        return [(unit, triangles, scale, shape.rgba_or(_GRAY))], ''
+            return Mesh(reason=shape.reason_without_surface)
+        surface = _surface_of_shape(shape, 2.0 * size_m)
+        return Mesh((MeshPart(np.asarray(surface[0]), np.asarray(surface[1])),))
     mesh = meshes.mesh(shape, file)
     if mesh.parts:
-        return [
-            ((id(part.triangles.points),), part.triangles, shape.mesh_scale,
-             shape.rgba_or(part.rgba or _GRAY)) for part in mesh.parts], ''
-    box = triangles_from_shape(_BOX)
-    assert box is not None
-    reason = f'the mesh "{shape.mesh_uri}": {mesh.reason}'
-    if mesh.bounds is None:
-        return [(_BOX, box, (0.03 * size_m,) * 3, _MISSING)], reason
-    middle, sides = mesh.bounds.mean(axis=0), np.ptp(mesh.bounds, axis=0)
-    around = Triangles(box.points * sides + middle, box.faces)
-    return [((shape.mesh_uri, file), around, shape.mesh_scale, _MISSING)], reason
+        return mesh
+    bounds = 0.015 * size_m * np.array([[-1.0], [1.0]]) * np.ones(3)
+    box = trimesh.creation.box(bounds=bounds if mesh.bounds is None else mesh.bounds)
+    return Mesh((MeshPart(box.vertices, box.faces, _MISSING),),
+                f'the mesh "{shape.mesh_uri}": {mesh.reason}')
 
 
-def _unit_shape(shape: Shape, largest_m: float) -> tuple[Shape, tuple[float, ...]]:
-    """Split a shape into one that many share, and the factors to its own size."""
-    sizes = shape.sizes_m
-    if shape.type in ('box', 'ellipsoid'):
-        return shape._replace(sizes_m=(1.0, 1.0, 1.0)), sizes
-    if shape.type == 'sphere':
-        return shape._replace(sizes_m=(1.0,)), sizes * 3
-    if shape.type in ('cylinder', 'cone'):
-        return shape._replace(sizes_m=(1.0, 1.0)), (sizes[0], sizes[0], sizes[1])
-    if shape.type == 'capsule':
-        return shape._replace(sizes_m=(1.0, sizes[1] / sizes[0])), sizes[:1] * 3
-    # Planes are often much larger than what stands on them.
-    return shape._replace(sizes_m=tuple(min(size, largest_m) for size in sizes)), (1.0, 1.0, 1.0)
+def _surface_of_shape(shape: Shape, largest_m: float) -> tuple[Points, Any]:
+    if shape.type in ('cone', 'plane'):
+        # Planes are often much larger than what stands on them.
+        size_m = tuple(min(size, largest_m) for size in shape.sizes_m)
+        return triangles_from_shape(shape._replace(sizes_m=size_m) if shape.type == 'plane' else (
+            shape))
+    surface = {
+        'box': lambda *sides: trimesh.creation.box(sides),
+        'capsule': lambda radius, length: trimesh.creation.capsule(
+            max(length, 0.0), radius, (12, 24)),
+        'cylinder': trimesh.creation.cylinder,
+        'ellipsoid': lambda *radii: trimesh.creation.icosphere().apply_scale(radii),
+        'sphere': lambda radius: trimesh.creation.icosphere(radius=radius),
+    }[shape.type](*shape.sizes_m)
+    return surface.vertices, surface.faces
 
 
 def bounds_of_scene(scene: Scene, origins: Points, surfaces: Sequence[Surface]) -> Points:
@@ -145,7 +333,7 @@ def bounds_of_scene(scene: Scene, origins: Points, surfaces: Sequence[Surface]) 
     """
     points = [origins, np.zeros((1, 3))]
     for surface in surfaces:
-        half = np.abs(surface.triangles.points).max(axis=0) * np.abs(surface.scales)
+        half = np.abs(surface.part.points).max(axis=0) * np.abs(surface.scales)
         poses = scene.poses[surface.elements]
         reach = np.abs(matrix_from_quaternion(poses[:, 3:])) @ half[:, :, np.newaxis]
         points += [poses[:, :3] - reach[:, :, 0], poses[:, :3] + reach[:, :, 0]]
@@ -153,22 +341,61 @@ def bounds_of_scene(scene: Scene, origins: Points, surfaces: Sequence[Surface]) 
     return np.array([together.min(axis=0), together.max(axis=0)])
 
 
-def names_at_places(
-    names: Sequence[str], points: Points, distance_m: float,
+def _set_poses(node: Any, poses: PoseArray) -> None:
+    node.batched_positions = poses[:, :3].astype(np.float32)
+    node.batched_wxyzs = poses[:, _WXYZ].astype(np.float32)
+
+
+def _elements_of_frames(tree: TfTree) -> NDArray[np.intp]:
+    """Return the element of each frame; of an optical frame that of its parent."""
+    return np.where(tree.elements < 0, tree.elements[tree.parents], tree.elements)
+
+
+@dataclasses.dataclass
+class _Label:
+    """Names in a rectangle of the picture, in parts of its height."""
+
+    point: Points
+    left: float
+    right: float
+    bottom: float
+    names: list[str]
+
+
+def labels_from_names(
+    names: Sequence[str], points: Points, eye: Points, look_at: Points,
 ) -> Iterator[tuple[str, Points]]:
     """
-    Join names that would lie on one another.
+    Join names that would lie on one another in the picture, as lines of one text.
 
     :param names: the names of frames.
     :param points: shape (n, 3), their origins.
-    :param distance_m: names nearer than this are joined.
-    :return: the texts, and where they are.
+    :param eye: shape (3,), where the camera is.
+    :param look_at: shape (3,), what is in the middle of the picture, not above or below the eye.
+    :return: the texts, and their points: each text is right of its point and below it.
     """
-    left = np.arange(min(len(names), MOST_NAMES))
-    while len(left):
-        is_near = np.linalg.norm(points[left] - points[left[0]], axis=1) < distance_m
-        near = left[is_near]
-        text = ', '.join(names[index] for index in near[:_MOST_AT_A_PLACE])
-        more = len(near) - _MOST_AT_A_PLACE
-        yield f'{text} and {more} more' if more > 0 else text, points[left[0]]
-        left = left[~is_near]
+    forward = np.asarray(look_at) - eye
+    right = np.cross(forward, (0.0, 0.0, 1.0))
+    axes = np.array([
+        axis / np.linalg.norm(axis) for axis in (right, np.cross(forward, right), forward)])
+    x, y, depth = ((points - eye) @ axes.T).T
+    seen = np.flatnonzero(depth > 0.0)
+    scale = 0.5 / (math.tan(0.5 * _FIELD_OF_VIEW_RAD) * depth[seen])
+    labels: list[_Label] = []
+    places = scale * np.stack([y[seen], x[seen]])
+    for top, left, index in sorted(zip(*places.tolist(), seen.tolist(), strict=True)):
+        end = left + _CHARACTER_WIDTH * len(names[index])
+        label = next((label for label in labels if top < label.bottom and left < label.right
+                      and label.left < end), None)
+        if label is None:
+            labels.append(
+                _Label(points[index], left, end, top + _LINE_HEIGHT, [names[index]]))
+            continue
+        label.names.append(names[index])
+        if len(label.names) <= _MOST_IN_A_LABEL + 1:
+            label.bottom += _LINE_HEIGHT
+            label.right = max(label.right, label.left + end - left)
+    for label in labels:
+        more = len(label.names) - _MOST_IN_A_LABEL
+        last = [f'and {more} more'] if more > 0 else []
+        yield '\n'.join(label.names[:_MOST_IN_A_LABEL] + last), label.point

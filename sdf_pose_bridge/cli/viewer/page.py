@@ -5,14 +5,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 from itertools import islice
 import math
 import threading
 from typing import Any
-from typing import Protocol
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,15 +18,14 @@ import viser
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
 from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.viewer.drawing import NotDrawn
+from sdf_pose_bridge.cli.viewer.drawing import Drawing
+from sdf_pose_bridge.cli.viewer.drawing import GROUPS
+from sdf_pose_bridge.cli.viewer.drawing import node_of_kind
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_frame
 from sdf_pose_bridge.cli.viewer.frame_texts import pose_of_frame
 from sdf_pose_bridge.cli.viewer.frame_texts import rows_of_tree
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
-from sdf_pose_bridge.cli.viewer.scene_nodes import GROUPS
-from sdf_pose_bridge.cli.viewer.scene_nodes import node_of_kind
-from sdf_pose_bridge.cli.viewer.scene_nodes import SceneNodes
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
@@ -38,7 +35,6 @@ from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.joint_positions import scene_at_positions
-from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 from sdf_pose_bridge.tf.tree import elements_in_model
@@ -63,23 +59,6 @@ _HOW_TO_SELECT = '<div style="margin:0 1em;font-size:0.8em">Click one above or i
 _ERROR_STYLE = 'color:#c92a2a;white-space:pre-wrap;overflow-wrap:anywhere;margin:0 1em;'
 
 
-class SetPose(Protocol):
-    """Puts a pose into the file."""
-
-    def __call__(
-        self, scene: Scene, element: int, pose: Pose, positions: Mapping[str, float], *,
-        dry_run: bool,
-    ) -> None:
-        """
-        Put the pose of an element into the file that says it.
-
-        :param scene: the scene as it was loaded.
-        :param pose: where the element shall be in the root, with the joints at ``positions``.
-        :param dry_run: whether only to check that the file can say this.
-        :raises SdfError: if it cannot, or cannot be written.
-        """
-
-
 class Page:
     """
     The page of a file.
@@ -88,40 +67,41 @@ class Page:
     :param options: which elements are frames, and how they are named.
     :param units: the units of poses and sliders.
     :param meshes: reads the meshes.
-    :param set_pose: puts poses into the file; None if frames cannot be dragged.
+    :param set_pose: puts a pose into the file, as ``sdf_pose_bridge.cli.set.set_pose`` does, of
+        which it has the arguments but for the options; None if frames cannot be dragged.
     """
 
     def __init__(
         self, server: viser.ViserServer, options: TfOptions, units: Units, meshes: MeshReader,
-        set_pose: SetPose | None = None,
+        set_pose: Callable[..., object] | None = None,
     ) -> None:
         self._server, self._options, self._units = server, options, units
         self._set_pose = set_pose
         # The functions that viser calls run in many threads.
         self._lock = threading.RLock()
         self._is_moved = threading.Event()
-        self._nodes = SceneNodes(server, meshes, self._select)
+        self._drawing = Drawing(server, meshes, self._select)
         self._positions: dict[str, float] = {}
         self._selected = self._reference = ''
         self._dragged: Pose | None = None
         self._loaded: Scene | None = None
         threading.Thread(target=self._follow_sliders, name='sliders', daemon=True).start()
+        server.on_client_connect(self._follow_camera)
 
-    def show(self, scene: Scene) -> list[NotDrawn]:
+    def show(self, scene: Scene) -> list[str]:
         """
         Show a scene instead of the one before.
 
         What is hidden, the frame that is selected and the positions of joints stay.
 
         :param scene: the scene, loaded with its shapes.
-        :return: what is not drawn as the file means it.
+        :return: why shapes are not drawn as the file means them, for each of them.
         :raises SdfError: if the scene has no TF tree, or a model to show does not exist; then the
             page stays as it is.
         """
         tree = tf_tree_from_scene(scene, self._options)
         is_in_model = elements_in_model(scene, self._options.model) & (scene.roots == 0)
         with self._lock, self._server.atomic():
-            is_first = self._loaded is None
             self._loaded = self._scene = scene
             self._tree, self._is_in_model = tree, is_in_model
             self._tops = _tops_of_scene(scene)
@@ -130,23 +110,21 @@ class Page:
                 name: value for name, value in self._positions.items() if name in self._dofs}
             self._move()
             self._add_controls()
-            not_drawn = self._draw()
-            if is_first:
-                self._nodes.look_at_everything()
-        return not_drawn
+            return self._draw()
 
-    def show_errors(self, lines: Sequence[str]) -> None:
+    def show_errors(self, lines: Iterable[str]) -> None:
         """Show the errors of a file, a line for each, above its last scene."""
         with self._lock:
             text = '\n'.join(map(escaped, lines))
             self._errors.content = f'<pre class="errors" style="{_ERROR_STYLE}">{text}</pre>'
 
-    def _draw(self) -> list[NotDrawn]:
-        hidden = [self._scene.index(name) for name in self._nodes.hidden if self._scene.has(name)]
+    def _draw(self) -> list[str]:
+        hidden = [
+            self._scene.index(name) for name in self._drawing.hidden if self._scene.has(name)]
         is_shown = self._is_in_model & ~np.isin(self._tops, hidden)
-        not_drawn = self._nodes.draw(self._scene, self._tree, is_shown)
+        reasons = self._drawing.draw(self._scene, self._tree, is_shown)
         self._show_frame()
-        return not_drawn
+        return reasons
 
     # Joints
 
@@ -161,18 +139,28 @@ class Page:
 
     def _move(self) -> None:
         assert self._loaded is not None
-        self._scene = scene_at_positions(self._loaded, self._positions)
+        self._drawn_positions = dict(self._positions)
+        self._scene = scene_at_positions(self._loaded, self._drawn_positions)
         self._tree = tf_tree_from_scene(self._scene, self._options)
 
     def _follow_sliders(self) -> None:
-        """Draw the newest positions; those that are older by then are never drawn."""
+        """Draw what is newest; what is older by then is never drawn."""
         while True:
             self._is_moved.wait()
             self._is_moved.clear()
             with self._lock, self._server.atomic():
-                self._move()
-                self._nodes.place(self._scene, self._tree)
-                self._show_frame()
+                if self._drawn_positions != self._positions:
+                    self._move()
+                    self._drawing.place(self._scene, self._tree)
+                    self._show_frame()
+                else:
+                    self._drawing.place_names(self._tree)
+
+    def _follow_camera(self, client: viser.ClientHandle) -> None:
+        @client.camera.on_update
+        def _(camera: viser.CameraHandle) -> None:
+            self._drawing.camera = camera
+            self._is_moved.set()
 
     def _add_slider(self, name: str, dof: DegreeOfFreedom) -> Any:
         turns, units = dof.rad_per_unit != 0.0, self._units
@@ -206,7 +194,7 @@ class Page:
                 self._add_switch(node_of_kind(label), f'{label} ({labels.count(label)})')
             for name in GROUPS:
                 self._add_switch(name, name[1:])
-            opacity = gui.add_slider('opacity', 0.1, 1.0, 0.05, self._nodes.opacity)
+            opacity = gui.add_slider('opacity', 0.1, 1.0, 0.05, self._drawing.opacity)
         opacity.on_update(lambda _: self._set_opacity(opacity.value))
         models = [
             element for element in dict.fromkeys(self._tops.tolist())
@@ -251,7 +239,7 @@ class Page:
     def _add_switch(
         self, name: str, label: str, redraw: Callable[[], object] | None = None,
     ) -> None:
-        hidden = self._nodes.hidden
+        hidden = self._drawing.hidden
         switch = self._server.gui.add_checkbox(label, name not in hidden)
 
         @switch.on_update
@@ -259,13 +247,13 @@ class Page:
             with self._lock, self._server.atomic():
                 (hidden.discard if switch.value else hidden.add)(name)
                 if redraw is None:
-                    self._nodes.set_visible(name, self._tree, visible=switch.value)
+                    self._drawing.set_visible(name, self._tree, visible=switch.value)
                 else:
                     redraw()
 
     def _set_opacity(self, opacity: float) -> None:
         with self._lock, self._server.atomic():
-            self._nodes.set_opacity(opacity)
+            self._drawing.set_opacity(opacity)
 
     # Frames
 
@@ -299,34 +287,32 @@ class Page:
         """Describe the selected frame, and mark it in the scene."""
         ids, self._dragged = self._tree.frame_ids, None
         self._write.visible = False
-        frame = ids.index(self._selected) if self._selected in ids else NO_PARENT
-        if frame == NO_PARENT:
-            self._nodes.mark(None)
+        if self._selected not in ids:
+            self._drawing.mark(None)
             self._description.content = _HOW_TO_SELECT
             return
-        pose = pose_of_frame(self._tree, frame)
-        self._nodes.mark(pose)
+        frame = ids.index(self._selected)
+        pose, element = pose_of_frame(self._tree, frame), int(self._tree.elements[frame])
         self._describe(frame, pose)
-        element = int(self._tree.elements[frame])
-        if self._set_pose is None or element < 0 or self._loaded is None:
+        if self._set_pose is None or element < 0:
             return
         try:
-            self._set_pose(self._loaded, element, pose, self._positions, dry_run=True)
+            self._put(element, pose, dry_run=True)
         except SdfError as error:
             self._description.content += f'<pre style="{_ERROR_STYLE}">{escaped(str(error))}</pre>'
             return
-        gizmo = self._nodes.add_gizmo(pose)
+        gizmo = self._drawing.add_gizmo(pose)
 
         @gizmo.on_update
         def _(_: object) -> None:
             with self._lock:
                 w, x, y, z = gizmo.wxyz.tolist()
                 self._dragged = Pose(*(*gizmo.position.tolist(), x, y, z, w))
-                self._nodes.mark(self._dragged)
                 self._describe(frame, self._dragged)
                 self._write.visible = True
 
     def _describe(self, frame: int, pose: Pose) -> None:
+        self._drawing.mark(pose)
         poses = self._tree.poses.copy()
         poses[frame] = pose
         ids = self._tree.frame_ids
@@ -336,15 +322,20 @@ class Page:
 
     def _write_pose(self) -> None:
         with self._lock:
-            if self._dragged is None or self._set_pose is None or self._loaded is None:
+            if self._dragged is None:
                 return
             frame = self._tree.frame_ids.index(self._selected)
             try:
-                self._set_pose(
-                    self._loaded, int(self._tree.elements[frame]), self._dragged, self._positions,
-                    dry_run=False)
+                self._put(int(self._tree.elements[frame]), self._dragged)
             except SdfError as error:
-                self.show_errors(list(map(str, error.errors)))
+                self.show_errors(map(str, error.errors))
+
+    def _put(self, element: int, pose: Pose, *, dry_run: bool = False) -> None:
+        def measured(scene: Scene, element: int) -> Pose:
+            return scene_at_positions(scene, self._positions).pose_of(element)
+
+        if self._set_pose is not None:
+            self._set_pose(self._loaded, element, pose, measured, dry_run=dry_run)
 
 
 def _tops_of_scene(scene: Scene) -> NDArray[np.intp]:

@@ -9,7 +9,7 @@ import pytest
 from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.viewer import drawing
 from sdf_pose_bridge.cli.viewer.drawing import bounds_of_scene
-from sdf_pose_bridge.cli.viewer.drawing import names_at_places
+from sdf_pose_bridge.cli.viewer.drawing import labels_from_names
 from sdf_pose_bridge.cli.viewer.drawing import surfaces_from_scene
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
@@ -40,48 +40,50 @@ MESH = geometry('<mesh><uri>a.stl</uri><scale>1 1 -2</scale></mesh>')
 
 
 def test_shape_that_is_not_supported(drawn):
-    _, surfaces, ((_, reason),) = drawn(geometry('<heightmap/>'))
+    _, surfaces, (reason,) = drawn(geometry('<heightmap/>'))
     assert (surfaces, reason) == ([], 'a heightmap is not supported')
 
 
 def test_missing_mesh_is_a_small_box(drawn):
-    _, (surface,), ((_, reason),) = drawn(MESH)
-    assert surface.scales.tolist() == [[pytest.approx(0.06)] * 3]
+    _, (surface,), (reason,) = drawn(MESH)
+    assert np.ptp(surface.part.points, axis=0) == pytest.approx(0.06)
     assert reason == 'the mesh "a.stl": it is not found'
 
 
 def test_more_surfaces_than_are_drawn(drawn, monkeypatch):
-    monkeypatch.setattr(drawing, 'MOST_SURFACES', 2)
-    _, (surface,), not_drawn = drawn(*[geometry('<sphere/>')] * 5)
+    monkeypatch.setattr(drawing, 'MOST_SURFACES', 1)
+    _, (surface,), reasons = drawn(*[geometry('<sphere/>')] * 2, *[geometry('<cone/>')] * 3)
     assert len(surface.elements) == 2
-    assert [reason for _, reason in not_drawn] == ['there are too many surfaces'] * 3
+    assert reasons == ['there are too many surfaces'] * 3
 
 
 def test_more_triangles_than_are_drawn(drawn, monkeypatch):
     monkeypatch.setattr(drawing, 'MOST_TRIANGLES', 12)
-    _, (surface,), not_drawn = drawn(geometry('<sphere/>'), geometry('<box/>'))
-    assert len(surface.triangles.faces) == 12
-    assert len(not_drawn) == 1
+    _, (surface,), reasons = drawn(geometry('<box/>'), geometry('<sphere/>'))
+    assert len(surface.part.faces) == 12
+    assert len(reasons) == 1
 
 
-def test_shapes_of_any_size_share_a_surface(drawn):
+def test_boxes_of_any_size_share_a_surface(drawn):
     _, (surface,), _ = drawn(*(
-        geometry(f'<sphere><radius>{radius}</radius></sphere>') for radius in (1, 2)))
-    assert surface.scales.tolist() == [[1, 1, 1], [2, 2, 2]]
+        geometry(f'<box><size>{size} 1 1</size></box>') for size in (1, 2)))
+    assert surface.scales.tolist() == [[1, 1, 1], [2, 1, 1]]
 
 
 @pytest.mark.parametrize(('shape', 'half'), [
     ('<box><size>1 2 3</size></box>', (0.5, 1, 1.5)),
+    ('<sphere><radius>2</radius></sphere>', (2, 2, 2)),
     ('<cylinder><radius>1</radius><length>4</length></cylinder>', (1, 1, 2)),
     ('<cone><radius>1</radius><length>4</length></cone>', (1, 1, 2)),
     ('<capsule><radius>2</radius><length>4</length></capsule>', (2, 2, 4)),
+    ('<capsule><radius>2</radius><length>0</length></capsule>', (2, 2, 2)),
     ('<ellipsoid><radii>1 2 3</radii></ellipsoid>', (1, 2, 3)),
     ('<plane><size>2 1000</size></plane>', (1, 2, 0)),
 ])
 def test_size_of_a_shape(drawn, shape, half):
     scene, surfaces, _ = drawn(geometry(shape))
     bounds = bounds_of_scene(scene, np.zeros((1, 3)), surfaces)
-    assert bounds == pytest.approx(np.array([-np.array(half), half]))
+    assert bounds == pytest.approx(np.array([-np.array(half), half]), rel=0.01)
 
 
 def test_color_of_the_material(drawn):
@@ -115,12 +117,35 @@ def test_bounds_contain_what_is_turned(drawn):
     assert bounds == pytest.approx(np.array([(-3, -1, 0), (3, 1, 5.5)]))
 
 
-def test_names_of_one_place_are_joined():
-    points = np.array([(0, 0, 0), (9, 0, 0), *[(0, 0, 0.01)] * 4])
-    found = list(names_at_places(list('abcdef'), points, 0.1))
-    assert [text for text, _ in found] == ['a, c, d and 2 more', 'b']
-    assert found[1][1].tolist() == [9, 0, 0]
+EYE, MIDDLE = np.array((0.0, -10.0, 0.0)), np.zeros(3)
+
+
+def labels(*names_and_points):
+    names, points = zip(*names_and_points, strict=True)
+    return list(labels_from_names(names, np.array(points, float), EYE, MIDDLE))
+
+
+def test_names_that_would_lie_on_one_another_are_joined():
+    found = labels(
+        ('c', (0.05, 0, -0.05)), ('left', (-5, 0, 0)), ('behind', (0.01, 5, -0.01)),
+        ('a', (0, 0, 0)))
+    assert [text for text, _ in found] == ['left', 'a\nbehind\nc']
+    assert found[1][1].tolist() == [0, 0, 0]
+
+
+def test_many_names_of_one_place_are_counted():
+    ((text, _),) = labels(*((name, (0, 0, 0)) for name in 'abcdef'))
+    assert text == 'a\nb\nc\nd\nand 2 more'
+
+
+@pytest.mark.parametrize(('name', 'is_joined'), [('a', False), ('a' * 40, True)])
+def test_long_names_reach_others(name, is_joined):
+    assert (len(labels((name, (0, 0, 0)), ('b', (1, 0, -0.01)))) == 1) is is_joined
+
+
+def test_names_behind_the_camera_are_not_shown():
+    assert labels(('a', (0, -20, 0))) == []
 
 
 def test_no_names():
-    assert list(names_at_places([], np.zeros((0, 3)), 0.1)) == []
+    assert list(labels_from_names([], np.zeros((0, 3)), EYE, MIDDLE)) == []

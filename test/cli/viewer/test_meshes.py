@@ -1,16 +1,134 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The process that reads meshes: what ends it, and that another one follows."""
+"""Meshes of all formats, broken and hostile ones, and the process that reads them."""
+
+import os
 
 import mesh_texts
+import numpy as np
 import pytest
 
+pytest.importorskip('trimesh', reason='needs trimesh')
+pytest.importorskip('collada', reason='needs pycollada')
 from sdf_pose_bridge.cli.viewer import meshes
+from sdf_pose_bridge.cli.viewer.meshes import mesh_from_file
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.shapes import Shape
 
-pytest.importorskip('trimesh', reason='needs trimesh')
+
+@pytest.fixture
+def mesh(tmp_path):
+    """Returns the mesh with this text in a file of this name, read by this process."""
+    def read(name, text, submesh=''):
+        (tmp_path / name).write_bytes(text if isinstance(text, bytes) else text.encode())
+        return mesh_from_file(str(tmp_path / name), submesh)
+    return read
+
+
+def extent(mesh):
+    assert not mesh.reason
+    return np.ptp(np.concatenate([part.points for part in mesh.parts]), axis=0)
+
+
+def test_missing_file(tmp_path):
+    assert 'No such file' in mesh_from_file(str(tmp_path / 'none.stl'), '').reason
+
+
+@pytest.mark.parametrize('name', ['mesh.zip', 'mesh.3mf', 'mesh.xyz', 'mesh'])
+def test_other_formats(mesh, name):
+    assert 'its name must end with one of .dae, ' in mesh(name, b'PK\3\4').reason
+
+
+def test_empty_file(mesh):
+    assert mesh('mesh.obj', '').reason
+
+
+def test_coordinate_that_is_not_finite(mesh):
+    assert 'it has no surface' in mesh('mesh.stl', mesh_texts.STL.format(y='inf')).reason
+
+
+@pytest.mark.parametrize('scale', [1e300, float('nan')])
+def test_coordinate_that_is_too_large(mesh, scale):
+    text = mesh_texts.gltf(mesh_texts.IN_FILE, scale=scale)
+    assert 'a coordinate is larger than 1e' in mesh('mesh.gltf', text).reason
+
+
+def test_named_pipe(tmp_path):
+    os.mkfifo(tmp_path / 'mesh.stl')
+    assert 'not a regular file' in mesh_from_file(str(tmp_path / 'mesh.stl'), '').reason
+
+
+def test_buffer_that_is_a_named_pipe(mesh, tmp_path):
+    os.mkfifo(tmp_path / 'points.bin')
+    assert 'not a regular file' in mesh('mesh.gltf', mesh_texts.gltf()).reason
+
+
+def test_buffer_that_is_no_buffer(mesh):
+    assert '/etc/hostname' in mesh('mesh.gltf', mesh_texts.gltf('/etc/hostname')).reason
+
+
+def test_material_that_is_a_named_pipe(mesh, tmp_path):
+    os.mkfifo(tmp_path / 'colors.mtl')
+    assert len(mesh('mesh.obj', mesh_texts.OBJ).parts) == 2
+
+
+def test_size_counts_named_files(mesh, tmp_path, monkeypatch):
+    monkeypatch.setattr(meshes, 'MOST_BYTES', 2000)
+    (tmp_path / 'points.bin').write_bytes(mesh_texts.BUFFER + b'\0' * 2000)
+    assert 'bytes_read' in mesh('mesh.gltf', mesh_texts.gltf()).reason
+
+
+def test_document_type_of_a_dae_file(mesh):
+    text = mesh_texts.DAE.replace('<COLLADA', '<!DOCTYPE d [<!ENTITY a "b">]><COLLADA', 1)
+    assert 'document type' in mesh('mesh.dae', text).reason
+
+
+def test_too_many_triangles_are_a_box(mesh, monkeypatch):
+    monkeypatch.setattr(meshes, 'MOST_TRIANGLES', 1)
+    found = mesh('mesh.obj', mesh_texts.OBJ)
+    assert found.reason == 'it has 2 triangles, more than 1'
+    assert found.bounds == pytest.approx(np.array([(0, 0, 0), (1, 2, 5)]))
+
+
+def test_unknown_part(mesh):
+    reason = mesh('mesh.obj', mesh_texts.OBJ, 'middle').reason
+    assert 'it has no part "middle", but left, right' in reason
+
+
+def test_part(mesh):
+    assert mesh('mesh.obj', mesh_texts.OBJ, 'right').parts[0].points[:, 2] == pytest.approx(5.0)
+
+
+def test_part_by_the_name_that_exporters_change(mesh):
+    assert extent(mesh('mesh.dae', mesh_texts.DAE, 'part')) == pytest.approx((1, 2, 0))
+
+
+def test_stl(mesh):
+    found = mesh('mesh.STL', mesh_texts.STL.format(y=2))
+    assert extent(found) == pytest.approx((1, 2, 0))
+    assert found.parts[0].rgba == ()
+
+
+def test_colors_of_materials(mesh, tmp_path):
+    (tmp_path / 'colors.mtl').write_text(mesh_texts.MTL)
+    found = mesh('mesh.obj', mesh_texts.OBJ)
+    assert sorted(part.rgba for part in found.parts) == [(0, 0, 1, 1), (1, 0, 0, 1)]
+
+
+def test_texture_is_not_read(mesh, tmp_path):
+    (tmp_path / 'colors.mtl').write_text('newmtl red\nmap_Kd texture.png\n')
+    os.mkfifo(tmp_path / 'texture.png')
+    assert extent(mesh('mesh.obj', mesh_texts.OBJ)) == pytest.approx((1, 2, 5))
+
+
+def test_unit_of_a_dae_file_counts_and_its_up_axis_does_not(mesh):
+    assert extent(mesh('mesh.dae', mesh_texts.DAE)) == pytest.approx((1, 2, 0))
+
+
+def test_gltf_with_a_buffer_beside_it(mesh, tmp_path):
+    (tmp_path / 'points.bin').write_bytes(mesh_texts.BUFFER)
+    assert extent(mesh('mesh.gltf', mesh_texts.gltf())) == pytest.approx((1, 2, 0))
 
 
 @pytest.fixture
@@ -22,8 +140,8 @@ def reader():
 
 
 @pytest.fixture
-def mesh(reader, tmp_path):
-    """Returns what is known of the mesh of this name, or of one with this text."""
+def named(reader, tmp_path):
+    """Returns the mesh of this name, or one with this text, read by a process of its own."""
     def read(name, text=None):
         if text is not None:
             (tmp_path / name).write_text(text)
@@ -32,28 +150,28 @@ def mesh(reader, tmp_path):
     return read
 
 
-def test_missing_mesh(mesh):
-    assert mesh('none.stl').reason == 'it is not found'
+def test_missing_mesh(named):
+    assert named('none.stl').reason == 'it is not found'
 
 
-def test_mesh_that_cannot_be_read(mesh):
-    assert mesh('a.stl', 'solid').reason
+def test_mesh_that_cannot_be_read(named):
+    assert named('a.stl', 'solid').reason
 
 
-def test_small_file_that_needs_much_memory(mesh):
-    assert 'bytes' in mesh('a.gltf', mesh_texts.gltf(
+def test_small_file_that_needs_much_memory(named):
+    assert 'bytes' in named('a.gltf', mesh_texts.gltf(
         mesh_texts.IN_FILE, count=10**9, with_view=False)).reason
-    assert mesh('b.stl', mesh_texts.STL.format(y=1)).parts
+    assert named('b.stl', mesh_texts.STL.format(y=1)).parts
 
 
-def test_mesh_that_takes_too_long(mesh, monkeypatch):
+def test_mesh_that_takes_too_long(named, monkeypatch):
     monkeypatch.setattr(meshes, 'MOST_SECONDS', 0.0)
-    assert mesh('a.stl', mesh_texts.STL.format(y=1)).reason == 'it takes too long to read'
+    assert 'takes more than' in named('a.stl', mesh_texts.STL.format(y=1)).reason
     monkeypatch.undo()
-    assert mesh('b.stl', mesh_texts.STL.format(y=1)).parts
+    assert named('b.stl', mesh_texts.STL.format(y=1)).parts
 
 
-def test_mesh_is_remembered_until_its_file_changes(mesh):
-    first = mesh('a.stl', mesh_texts.STL.format(y=1))
-    assert mesh('a.stl') is first
-    assert mesh('a.stl', mesh_texts.STL.format(y=10)) is not first
+def test_mesh_is_remembered_until_its_file_changes(named):
+    first = named('a.stl', mesh_texts.STL.format(y=1))
+    assert named('a.stl') is first
+    assert named('a.stl', mesh_texts.STL.format(y=10)) is not first
