@@ -61,6 +61,7 @@ REFUSED = Answer(False, ('DUPLICATE_NAME',), 'twice', {})
 @pytest.mark.parametrize(('own', 'expected', 'kind'), [
     (ACCEPTED, REFUSED, 'accepted'),
     (REFUSED, ACCEPTED, 'refused'),
+    (REFUSED, Answer(False, ('RESERVED_NAME',), 'world', {}), 'code'),
     (Answer(True, (), '', {}), ACCEPTED, 'missing'),
     (ACCEPTED, Answer(True, (), '', {}), 'extra'),
     (ACCEPTED, Answer(False, (CRASH,), 'exit code -6', {}), 'crash'),
@@ -68,6 +69,14 @@ REFUSED = Answer(False, ('DUPLICATE_NAME',), 'twice', {})
 ])
 def test_disagreement_is_found(own, expected, kind):
     assert difference_between(own, expected, '12.3.0').kind == kind
+
+
+@pytest.mark.parametrize(('own', 'expected'), [
+    (Answer(False, ('RESERVED_NAME', 'DUPLICATE_NAME'), 'world', {}), REFUSED),
+    (ACCEPTED, Answer(False, ('LINK_INERTIA_INVALID',), 'A link named l has invalid inertia', {})),
+])
+def test_what_may_differ(own, expected):
+    assert difference_between(own, expected, '12.3.0') is None
 
 
 @pytest.mark.parametrize('pose', [

@@ -142,6 +142,9 @@ _ITEM = re.compile(
     r'(?P<attribute>@?)(?P<name>[\w*]*)(?P<required>[!+]?)(?:=(?P<identifier>\w+(?:/\w+)?))?'
     r'(?::(?P<type>\w+))?(?:\[(?P<minimum>[^,]*),(?P<maximum>.*)\])?')
 _KINDS = {kind.label: kind for kind in Kind}
+_UNREAD = frozenset({'population', 'road', 'state', *_KINDS})
+"""Elements that hold no frames; kinds are among them where the content of another one names them,
+such as the links of an actor."""
 
 
 class Attribute(NamedTuple):
@@ -150,8 +153,7 @@ class Attribute(NamedTuple):
     value_type: ValueType
     is_required: bool
     choice: Choice | None = None
-    """What the value can be, of a choice; None for the type of an element in a state, which is
-    not read."""
+    """What the value can be, of a choice; None for an element that is not read."""
 
 
 class Definition:
@@ -160,7 +162,8 @@ class Definition:
 
     :param identifier: the tag, ``parent/tag`` or another name that tells definitions apart.
     :param content: what the element holds, as this module describes it.
-    :param has_frames: whether kinds of elements are frames here, and not parts of a state.
+    :param has_frames: whether kinds of elements are frames here. Otherwise they are parts of what
+        libsdformat compares with the specification, but does not read, such as a state.
     :param value_type: type of the value as definitions name it, if the content does not tell.
     :param is_required: whether the value may not be blank.
     """
@@ -176,7 +179,7 @@ class Definition:
         self.maximum = maximum
         self.kind = _KINDS.get(identifier) if has_frames else None
         """The kind of the element; None for an element that is no frame."""
-        self._has_frames = has_frames
+        self.has_frames = has_frames
         self._items = [item for item in map(_ITEM.fullmatch, content.split()) if item]
         own_types = [item['type'] for item in self._items if not item['name']]
         type_name = own_types[0] if own_types else value_type
@@ -198,11 +201,10 @@ class Definition:
     @cached_property
     def attributes(self) -> Mapping[str, Attribute]:
         """The attributes by name."""
-        is_in_state = self.kind is None and self.identifier in _KINDS
         return {
             item['name']: Attribute(
                 _value_type(item['type'] or 'string'), bool(item['required']),
-                None if is_in_state else CHOICES.get(item['type']))
+                CHOICES.get(item['type']) if self.has_frames else None)
             for item in self._items if item['attribute']}
 
     @cached_property
@@ -225,7 +227,7 @@ class Definition:
             item['name']: self._child(item) for item in self._child_items()}
         for kind in Kind:
             if self.identifier in kind.parents:
-                children[kind.label] = definition_of(kind.label, has_frames=self._has_frames)
+                children[kind.label] = definition_of(kind.label, has_frames=self.has_frames)
         return children
 
     @cached_property
@@ -243,7 +245,9 @@ class Definition:
         if not item['type']:
             for identifier in (item['identifier'], f'{self.identifier}/{tag}', tag):
                 if identifier in ELEMENTS or (identifier and item['identifier']):
-                    return definition_of(identifier, is_required=item['required'] == '!')
+                    return definition_of(
+                        identifier, is_required=item['required'] == '!',
+                        has_frames=self.has_frames and identifier not in _UNREAD)
         return Definition(
             tag, '', value_type=item['type'] or 'string',
             minimum=float(item['minimum'] or -math.inf),

@@ -64,6 +64,9 @@ have; empty if any unknown name may come from it."""
 MISSING_URI = '{sdf_pose_bridge}missing_uri'
 """Attribute of such an ``<include>``: the URI that it names."""
 
+_CHECKS = {'material': check_material, 'submesh': check_submesh}
+"""Functions that check elements without a frame, by the identifiers of these."""
+
 _DEFAULT_FORMAT = PoseFormat()
 
 
@@ -196,10 +199,9 @@ class _Reader:
                 self._builder.missing_includes.setdefault(parent, {})[
                     xml.get(MISSING_NAME, '')] = xml.get(MISSING_URI, '')
         else:
-            if definition.identifier == 'material':
-                check_material(xml, self._sources, self._problems)
-            elif definition.identifier == 'submesh':
-                check_submesh(xml, self._sources, self._problems)
+            check = _CHECKS.get(definition.identifier) if definition.has_frames else None
+            if check is not None:
+                check(xml, self._sources, self._problems)
             self._read_children(xml, definition, NO_ELEMENT, scope, path, depth)
 
     def _read_frame(

@@ -212,13 +212,13 @@ def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
         return plain_numbers
     if value_type is ValueType.COLOR:
         words = text.split()
-        numbers = [number for word in words for number in _number(word)]
+        numbers = [number for word in words for number in number_from_word(word)]
         return numbers if len(numbers) == len(words) else ()
     boolean = None if value_type.count > 1 else _BOOLEANS.get(stripped.lower())
     if boolean is not None:
         return (boolean,)
     if value_type is ValueType.NUMBER:
-        return _number(stripped)
+        return number_from_word(stripped)
     if value_type in _INTEGER_RANGES:
         return _integer(stripped, *_INTEGER_RANGES[value_type])
     if value_type is ValueType.TIME:
@@ -238,8 +238,8 @@ def _plain_numbers(text: str, value_type: ValueType) -> Sequence[float]:
     return numbers if _is_of_type(text, numbers, value_type) else ()
 
 
-def _number(word: str) -> Sequence[float]:
-    """Read a number as ``std::stod`` does."""
+def number_from_word(word: str) -> Sequence[float]:
+    """Return the number that a text begins with, as ``std::stod`` reads it; or nothing."""
     match = _C_NUMBER.match(word)
     if match is None:
         return ()

@@ -63,7 +63,8 @@ def main() -> int:
             told = time.monotonic()
             print(f'  {tally.scenes} scenes, {len(tally.differences)} differences', flush=True)
     report(tally, time.monotonic() - started)
-    write_differences(tally, reference, arguments.folder / 'differences', arguments.show)
+    folder = arguments.folder / 'differences' / f'seed_{arguments.seed}'
+    write_differences(tally, reference, folder, arguments.show)
     return 1 if tally.differences else 0
 
 
@@ -73,16 +74,13 @@ def report(tally: Tally, seconds: float) -> None:
     print(f'{tally.scenes} scenes ({len(tally.distinct)} distinct'
           f'{", " + traits if traits else ""}), {tally.poses} poses, {tally.refused} refused, '
           f'{seconds:.0f} s')
-    if tally.same_first_code or tally.first_codes:
-        print(f'first error code: the same for {tally.same_first_code} refused scenes, another '
-              f'for {sum(tally.first_codes.values())}')
-        for (defect, own, other), count in tally.first_codes.most_common():
-            print(f'  {count:5d} {defect}: {own} here, {other} by libsdformat')
+    print(f'first error of libsdformat: also the first one here in {tally.same_first_code} '
+          f'refused scenes, a later one in {tally.later_first_code}')
     print(f'{len(tally.differences)} differences')
 
 
 def write_differences(tally: Tally, reference: Reference, folder: Path, most: int) -> None:
-    """Cut differences down, one of each sort first, and write them where they can be read."""
+    """Write all scenes that differ, and cut some of them down, one of each sort first."""
     shutil.rmtree(folder, ignore_errors=True)
     seen: dict[str, int] = {}
     ranked = []
@@ -90,14 +88,17 @@ def write_differences(tally: Tally, reference: Reference, folder: Path, most: in
         sort = f'{entry[2].kind} {entry[1].defect}'
         seen[sort] = seen.get(sort, 0) + 1
         ranked.append((seen[sort], entry))
+        path = write_scene(entry[1].files, folder / 'whole', entry[0])
+        text = f'{sort}\n{entry[2].text}\n'
+        (path.parent / 'difference.txt').write_text(text, encoding='utf-8')
+        print(f'{entry[0]}: {sort}: {entry[2].text}')
     for _, (name, scene, difference) in sorted(ranked, key=lambda pair: pair[0])[:most]:
         print(f'\n{name} ({difference.kind}{", " if scene.defect else ""}{scene.defect})')
-        write_scene(scene.files, folder / 'whole', name)
         files, text = scene.files, difference.text
         if difference.kind != 'intent':
             # What a scene is meant to be does not survive cutting.
             files, text = minimal_scene(scene, reference)
-        path = write_scene(files, folder, name)
+        path = write_scene(files, folder / 'cut', name)
         (path.parent / 'difference.txt').write_text(text + '\n', encoding='utf-8')
         print(f'  {text}\n  {path}')
         for part in sorted(files):

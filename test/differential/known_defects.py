@@ -53,6 +53,12 @@ KNOWN_DEFECTS = (
         'fixed joint or its child link in URDF with one of "\'&< in its name', '',
         Remedy.NOT_DRAWN, 'it crashes'),
     KnownDefect(
+        'number out of range in the <origin> of a URDF robot', '', Remedy.NOT_DRAWN,
+        'an exception leaves the library'),
+    KnownDefect(
+        'tab between numbers in URDF', '', Remedy.NOT_DRAWN,
+        'it separates nothing, though XML makes a blank of it'),
+    KnownDefect(
         'version 1.12', '15.0', Remedy.NOT_DRAWN,
         'releases 13 and 14 refuse it, though its poses are those of 1.11'),
     KnownDefect(

@@ -128,6 +128,7 @@ std::string CodeName(sdf::ErrorCode _code)
     CODE(CONVERSION_ERROR);
     CODE(PARSING_ERROR);
     CODE(JOINT_AXIS_EXPRESSED_IN_INVALID);
+    CODE(JOINT_AXIS_MIMIC_INVALID);
     CODE(WARNING);
 #endif
     default:

@@ -144,6 +144,18 @@ def test_submesh_without_a_name_is_refused():
     load_text(link_with(visual.format('<submesh><name>n</name></submesh>')))
 
 
+@pytest.mark.parametrize('place', [
+    '<road name="r">{}</road>',
+    '<population name="p">{}</population>',
+    '<state world_name="w"><insertions>{}</insertions></state>',
+])
+def test_material_that_libsdformat_does_not_read_is_not_checked(place):
+    material = '<material><script/><shader type="round"/></material>'
+    model = f'<model name="m"><link name="l"><visual name="v">{material}</visual></link></model>'
+    content = place.format(material if 'road' in place else model)
+    load_text(f'<sdf version="1.9"><world name="w">{content}</world></sdf>')
+
+
 @pytest.mark.parametrize('content', [
     '<script><uri>u</uri><name>n</name></script>',
     '<shader type="pixel"/>',

@@ -320,17 +320,10 @@ class _Conversion:
         origin = first_child(self._root, 'origin')
         if origin is None:
             return
-        numbers = {'xyz': [0.0] * 3, 'rpy': [0.0] * 3}
-        for attribute in ('xyz:3', 'rpy:3'):
-            try:
-                numbers.update(numbers_of(origin, attribute))
-            except ValueError as error:
-                self._warning(f'{error}; libsdformat takes zeros for it', origin)
         pose = first_child(self._model, 'pose')
         if pose is not None:
             self._model.remove(pose)
-        robot_pose = pose_from_numbers([*numbers['xyz'], *numbers['rpy']])
-        self._add_pose(self._model, origin, robot_pose, rpy_by_urdfdom)
+        self._add_pose(self._model, origin, self._robot.origin, rpy_by_urdfdom)
 
     def _add_pose(
         self, xml: XmlElement, source: XmlElement, pose: Pose,

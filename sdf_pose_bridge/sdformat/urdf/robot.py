@@ -14,12 +14,14 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import DuplicateNameError
+from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.joint_types import URDF_JOINT_TYPES
 from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.urdf.values import NotFiniteError
 from sdf_pose_bridge.sdformat.urdf.values import numbers_of
 from sdf_pose_bridge.sdformat.urdf.values import pose_from_numbers
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
@@ -91,6 +93,8 @@ class Robot(NamedTuple):
     """A tree of links and joints."""
 
     name: str
+    origin: Pose
+    """Where the file places it."""
     root: Link
     links: Mapping[str, Link]
     parent_joints: Mapping[str, Joint]
@@ -139,6 +143,7 @@ class _RobotReader:
         if not links:
             self._error(self._root, 'the robot has no <link>')
         joints = [self._joint(name, xml, links) for name, xml in self._check_names('joint')]
+        origin = self._robot_origin()
         self._errors.raise_errors()
         parent_joints: dict[str, Joint] = {}
         child_joints: dict[str, list[Joint]] = {}
@@ -156,7 +161,7 @@ class _RobotReader:
                         f'here these have none: {names or "no link"}')
         self._errors.raise_errors()
         robot = Robot(
-            self._root.get('name', ''), roots[0], links, parent_joints, child_joints,
+            self._root.get('name', ''), origin, roots[0], links, parent_joints, child_joints,
             {joint.name: joint.name for joint in parent_joints.values()})
         self._warn_of_cycles(robot)
         return robot
@@ -178,6 +183,21 @@ class _RobotReader:
                 named[name] = xml
         return list(named.items())
 
+    def _robot_origin(self) -> Pose:
+        numbers = {'xyz': [0.0] * 3, 'rpy': [0.0] * 3}
+        origin = first_child(self._root, 'origin')
+        if origin is None:
+            return Pose()
+        for attribute in ('xyz:3', 'rpy:3'):
+            try:
+                numbers.update(numbers_of(origin, attribute))
+            except NotFiniteError as error:
+                self._error(origin, str(error), ElementInvalidError)
+            except ValueError as error:
+                self._problems.warning(
+                    f'{error}; libsdformat takes zeros for it', self._sources.place(origin))
+        return pose_from_numbers([*numbers['xyz'], *numbers['rpy']])
+
     def _warn_of_cycles(self, robot: Robot) -> None:
         reached = {robot.root.name}
         names = [robot.root.name]
@@ -198,13 +218,15 @@ class _RobotReader:
             inertial_xml = first_child(xml, 'inertial')
             if inertial_xml is not None:
                 inertial = Inertial()
-                origin = _origin(inertial_xml)
+                inertial = Inertial(origin=_origin(inertial_xml))
                 mass = numbers_of(_required_child(inertial_xml, 'mass'), 'value!')
-                inertial = Inertial(mass['value'][0], origin)
+                inertial = inertial._replace(mass=mass['value'][0])
                 numbers_of(_required_child(inertial_xml, 'inertia'), _INERTIA)
             for tag, shapes_of_tag in shapes.items():
                 for shape in child_elements(xml, tag):
                     shapes_of_tag.append(_shape(shape))
+        except NotFiniteError as error:
+            self._error(xml, str(error), ElementInvalidError)
         except ValueError as error:
             self._problems.warning(
                 f'{error}; libsdformat reads the link no further', self._sources.place(xml))
@@ -242,7 +264,8 @@ class _RobotReader:
             return Joint(
                 xml, name, type_name, _origin(xml), ends['parent'], ends['child'], values)
         except ValueError as error:
-            self._error(xml, str(error))
+            is_finite = not isinstance(error, NotFiniteError)
+            self._error(xml, str(error), ParsingError if is_finite else ElementInvalidError)
             return None
 
 

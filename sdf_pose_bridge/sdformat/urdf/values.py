@@ -11,7 +11,7 @@ import re
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
-from sdf_pose_bridge.sdformat.values import is_representable
+from sdf_pose_bridge.sdformat.values import number_from_word
 from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
@@ -23,6 +23,10 @@ _LEADING_NUMBER = re.compile(
 _URDFDOM_GIMBAL_LOCK = 1e-5
 _GZ_MATH_GIMBAL_LOCK = 1e-15
 """Where 1 - |sin(pitch)| is less, libsdformat writes angles that are only nearly the same."""
+
+
+class NotFiniteError(ValueError):
+    """Numbers that URDF may have, but not the SDFormat that it is converted to."""
 
 
 def is_true(xml: XmlElement) -> bool:
@@ -53,6 +57,7 @@ def numbers_of(xml: XmlElement, attributes: str) -> dict[str, list[float]]:
 
     :param attributes: names, with ``!`` for a required one, and ``:3`` for three numbers.
     :return: the numbers of those that it has.
+    :raises NotFiniteError: if one of three numbers is not finite.
     :raises ValueError: if one is missing or is not numbers.
     """
     tag = written_tag(xml)
@@ -69,15 +74,17 @@ def numbers_of(xml: XmlElement, attributes: str) -> dict[str, list[float]]:
 
 
 def _numbers_from_text(text: str, count: int, what: str) -> list[float]:
-    words = text.split()
-    numbers = leading_numbers(text, len(words))
-    if (len(numbers) != len(words) or len(words) != count
-            or not all(map(is_representable, words, numbers))
-            or (count > 1 and not all(map(math.isfinite, numbers)))):
-        type_name = 'a number' if count == 1 else f'{count} finite numbers'
+    # What follows a single number does not matter.
+    words = [text.lstrip(WHITE_SPACE)] if count == 1 else text.split()
+    numbers = [number for word in words for number in number_from_word(word)]
+    if not len(numbers) == len(words) == count:
+        type_name = 'a number' if count == 1 else f'{count} numbers'
         msg = f'{what} is "{text[:80]}", which is not {type_name}'
         raise ValueError(msg)
-    return list(numbers)
+    if count > 1 and not all(map(math.isfinite, numbers)):
+        msg = f'{what} is "{text[:80]}"; the numbers must be finite'
+        raise NotFiniteError(msg)
+    return numbers
 
 
 def pose_from_numbers(numbers: Sequence[float]) -> Pose:

@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reading URDF: what is refused, and what is left out with a warning."""
 
+import math
+
 import pytest
 from sdf_texts import errors_of
 from sdf_texts import only_error
 from urdf_texts import joint
 from urdf_texts import link
 from urdf_texts import robot
+from urdf_texts import shape
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.problems import MOST_PROBLEMS
@@ -38,9 +41,7 @@ LIMIT = '<limit effort="1" velocity="1"/>'
     (robot(TWO + joint('j', 'a', 'b', 'continuous', '<limit effort="x" velocity="1"/>')),
      'effort of <limit> is "x", which is not a number'),
     (robot(TWO + joint('j', 'a', 'b', 'continuous', '<axis xyz="1 0"/>')),
-     'xyz of <axis> is "1 0", which is not 3 finite numbers'),
-    (robot(TWO + joint('j', 'a', 'b', 'fixed', '<origin xyz="0 0 inf"/>')),
-     'xyz of <origin> is "0 0 inf", which is not 3 finite numbers'),
+     'xyz of <axis> is "1 0", which is not 3 numbers'),
     (robot(TWO + joint('j', 'a', 'b', 'continuous', '<mimic/>')), 'the <mimic> names no joint'),
     (robot(TWO + joint('j', 'a', 'b', 'continuous', '<dynamics/>')), 'neither damping nor'),
     (robot(TWO + joint('j', 'a', 'b', 'continuous', '<safety_controller/>')),
@@ -50,6 +51,21 @@ def test_broken_robot_is_refused(text, message):
     error = only_error(text)
     assert error.code == 'PARSING_ERROR'
     assert message in error.message
+
+
+NOT_FINITE = '<origin xyz="0 0 inf"/>'
+
+
+@pytest.mark.parametrize('text', [
+    robot(TWO + joint('j', 'a', 'b', 'fixed', NOT_FINITE)),
+    robot(link('a', shape('visual', NOT_FINITE))),
+    robot(link('a', '<visual><geometry><box size="nan 1 1"/></geometry></visual>')),
+    robot(NOT_FINITE + link('a')),
+])
+def test_vector_that_is_not_finite_is_refused(text):
+    error = only_error(text)
+    assert error.code == 'ELEMENT_INVALID'
+    assert 'the numbers must be finite' in error.message
 
 
 def test_link_with_two_parents_is_refused():
@@ -95,6 +111,12 @@ def test_mass_counts_though_the_moments_are_missing():
     scene = load_text(text)
     assert 'r::a' in scene.names
     assert '<inertial> has no <inertia>' in scene.warnings[0].message
+
+
+def test_center_of_mass_counts_though_the_mass_is_missing():
+    turned = '<inertial><origin rpy="0 0 0.3"/></inertial>'
+    text = robot(f'<link name="a">{turned}</link>' + link('b') + joint('j', 'a', 'b'))
+    assert load_text(text).pose('r::a::inertial')[5] == pytest.approx(math.sin(0.15))
 
 
 def test_links_in_a_cycle_are_left_out_with_a_warning():

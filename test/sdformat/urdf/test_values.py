@@ -13,6 +13,7 @@ import pytest
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import matrix_from_rpy
 from sdf_pose_bridge.sdformat.urdf.values import is_true
+from sdf_pose_bridge.sdformat.urdf.values import NotFiniteError
 from sdf_pose_bridge.sdformat.urdf.values import numbers_of
 from sdf_pose_bridge.sdformat.urdf.values import pose_from_numbers
 from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math
@@ -24,15 +25,34 @@ ANGLES = st.floats(-4, 4) | st.sampled_from([0.0, math.pi / 2, -math.pi / 2, 1.5
 
 @pytest.mark.parametrize(('text', 'numbers'), [
     ('1 2 3', [1, 2, 3]), (' 1.  -2e1   +3 ', [1, -20, 3]), ('1m 2 3', [1, 2, 3]),
+    ('0x10 2 3', [16, 2, 3]),
 ])
 def test_numbers_are_read_as_by_strtod(text, numbers):
     assert numbers_of(etree.Element('a', x=text), 'x:3 y') == {'x': numbers}
 
 
-@pytest.mark.parametrize('text', ['', '1 2', '1 2 3 4', '1 2 x', '1 2 1e999', '1 2 nan'])
+@pytest.mark.parametrize('text', ['', '1 2', '1 2 3 4', '1 2 x', '1 2 1e999'])
 def test_what_is_not_three_numbers(text):
-    with pytest.raises(ValueError, match='is not 3 finite numbers'):
+    with pytest.raises(ValueError, match='is not 3 numbers'):
         numbers_of(etree.Element('a', x=text), 'x:3')
+
+
+@pytest.mark.parametrize('text', ['1 2 nan', '-inf 0 0'])
+def test_three_numbers_must_be_finite(text):
+    with pytest.raises(NotFiniteError, match='must be finite'):
+        numbers_of(etree.Element('a', x=text), 'x:3')
+
+
+@pytest.mark.parametrize(('text', 'number'), [
+    (' 1  2 3', 1), ('\t0x10', 16), ('1.5kg', 1.5), ('1 x', 1), ('inf 0', math.inf)])
+def test_single_number_is_what_the_text_begins_with(text, number):
+    assert numbers_of(etree.Element('a', x=text), 'x!') == {'x': [number]}
+
+
+@pytest.mark.parametrize('text', ['', ' ', 'x 1', '1e999', 'true'])
+def test_what_is_no_number(text):
+    with pytest.raises(ValueError, match='is not a number'):
+        numbers_of(etree.Element('a', x=text), 'x!')
 
 
 def test_missing_number():
