@@ -10,7 +10,6 @@ parts of x - p along the axis and normal to it. The quaternion is ``(a sin(r/2),
 
 from __future__ import annotations
 
-from typing import Any
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,8 +26,9 @@ class ScrewMotions:
     """
     Poses that are products of a constant pose, a screw motion and a constant pose.
 
-    Both parts of such a product, position and quaternion, are linear in the sines and cosines of
-    the angles and in the distances. The factors are computed once, here.
+    Both parts of such a product are linear in sines and cosines: the position in those of the
+    angle, and in the distance; the quaternion in those of half the angle. The factors are
+    computed once, here.
 
     :param before: shape (n, 7), the poses before the motions.
     :param axes: shape (n, 3), unit vectors.
@@ -45,16 +45,18 @@ class ScrewMotions:
         arms = after[:, :3] - points
         along = (arms * axes).sum(axis=1, keepdims=True) * axes
         normal = arms - along
-        self._fixed = pose_products(before, _translations(points + along))[:, :3]
-        self._with_cosine = _rotated(before, normal)
-        self._with_sine = _rotated(before, np.cross(axes, normal))
-        self._with_distance = _rotated(before, axes)
         half_turns = np.zeros((len(axes), 7))
         half_turns[:, 3:6] = axes
-        self._quat_with_cosine = pose_products(before, after)[:, 3:]
-        self._quat_with_sine = pose_products(pose_products(before, half_turns), after)[:, 3:]
-        self._half_rad_per_unit = 0.5 * rad_per_unit
-        self._m_per_unit = m_per_unit
+        # Shape (n, 6, 7): the factors of 1, the position, and the cosines and sines of the angle
+        # and of its half.
+        self._factors = np.zeros((len(axes), 6, 7))
+        self._factors[:, 0, :3] = pose_products(before, _translations(points + along))[:, :3]
+        self._factors[:, 1, :3] = _rotated(before, m_per_unit[:, np.newaxis] * axes)
+        self._factors[:, 2, :3] = _rotated(before, normal)
+        self._factors[:, 3, 3:] = pose_products(before, after)[:, 3:]
+        self._factors[:, 4, :3] = _rotated(before, np.cross(axes, normal))
+        self._factors[:, 5, 3:] = pose_products(pose_products(before, half_turns), after)[:, 3:]
+        self._angles_per_unit = np.stack([rad_per_unit, 0.5 * rad_per_unit], axis=1)
 
     def poses(self, positions: Floats) -> PoseArray:
         """
@@ -63,14 +65,13 @@ class ScrewMotions:
         :param positions: shape (n,), the position of each motion.
         :return: shape (n, 7), the poses; unit quaternions.
         """
-        half_angles = (self._half_rad_per_unit * positions)[:, np.newaxis]
-        cosine, sine = np.cos(half_angles), np.sin(half_angles)
-        poses: np.ndarray[Any, np.dtype[np.float64]] = np.empty((len(positions), 7))
-        poses[:, :3] = (
-            self._fixed + (1.0 - 2.0 * sine * sine) * self._with_cosine
-            + 2.0 * sine * cosine * self._with_sine
-            + (self._m_per_unit * positions)[:, np.newaxis] * self._with_distance)
-        poses[:, 3:] = cosine * self._quat_with_cosine + sine * self._quat_with_sine
+        angles = self._angles_per_unit * positions[:, np.newaxis]
+        terms = np.empty((len(positions), 6))
+        terms[:, 0] = 1.0
+        terms[:, 1] = positions
+        np.cos(angles, out=terms[:, 2:4])
+        np.sin(angles, out=terms[:, 4:])
+        poses: PoseArray = np.einsum('nt,ntk->nk', terms, self._factors)
         return poses
 
 

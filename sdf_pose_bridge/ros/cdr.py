@@ -55,6 +55,10 @@ class StampedMessages:
         self._bounds = bounds
 
     @cached_property
+    def _words_of_stamps(self) -> npt.NDArray[np.int64]:
+        return (self._stamps // 4)[:, np.newaxis] + np.arange(2)
+
+    @cached_property
     def _words_of_numbers(self) -> npt.NDArray[np.int64]:
         return (self._numbers // 8)[:, np.newaxis] + np.arange(7)
 
@@ -67,10 +71,7 @@ class StampedMessages:
 
         :param nanosec: nanoseconds of the stamp, from 0 to 999,999,999.
         """
-        words = self._buffer.view('<i4')
-        places = self._stamps // 4
-        words[places] = sec
-        words[places + 1] = nanosec
+        self._buffer.view('<i4')[self._words_of_stamps] = sec, nanosec
         data = self._buffer.tobytes()
         return [data[begin:end] for begin, end in self._bounds]
 

@@ -11,6 +11,7 @@ joints are published where the file puts them.
 from __future__ import annotations
 
 from dataclasses import dataclass
+import time
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -96,14 +97,16 @@ class JointStates:
         self._plans: dict[bytes, _Plan] = {}
         self._last_plan: _Plan | None = None
         self._waiting_rows: set[int] = set()
+        self._topics_due = 0.0
+        self._are_topics_behind = False
         self._periods_at_rest = 0
         # Simulated time may stand still.
         steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
-        self._topics_timer = node.create_timer(
-            TOPICS_PERIOD_S, self._publish_topics, clock=steady_clock)
+        self._rest_timer = node.create_timer(
+            TOPICS_PERIOD_S, self._follow_to_rest, clock=steady_clock)
         self._initial_timer = node.create_timer(
             INITIAL_PERIOD_S, self._publish_initially, clock=steady_clock)
-        self._timers = [self._topics_timer, self._initial_timer]
+        self._timers = [self._rest_timer, self._initial_timer]
         quality, group = qos_profile_sensor_data, None
         if is_published_later:
             # The messages of a period wait in the subscription, which does not wake the executor:
@@ -196,9 +199,7 @@ class JointStates:
             self._waiting_rows.update(plan.rows.tolist())
         elif not is_repeated:
             self._frames.publish_tf(plan.rows, plan.message, stamp)
-        self._periods_at_rest = 0
-        if self._topics_timer.is_canceled():
-            self._topics_timer.reset()
+        self._publish_topics_if_due()
 
     def _plan_of_message(self, message: JointStateBytes) -> _Plan:
         if message.names in self._plans:
@@ -231,11 +232,24 @@ class JointStates:
             # If it were only cancelled, the executor would go on to wait for it.
             self._node.destroy_timer(self._initial_timer)
 
-    def _publish_topics(self) -> None:
-        """Publish the topics of moving frames; at rest once more, for later listeners."""
+    def _publish_topics_if_due(self) -> None:
+        """Publish the topics of moving frames now, or leave it to a message or timer."""
+        now = time.monotonic()
+        self._are_topics_behind = now < self._topics_due
+        if not self._are_topics_behind:
+            # A late one does not delay those that follow.
+            self._topics_due = max(self._topics_due + TOPICS_PERIOD_S, now)
+            self._frames.publish_topics(only_listeners=True)
+        # While messages follow one another, the timer need not wake the executor.
+        self._rest_timer.reset()
+        self._periods_at_rest = 0
+
+    def _follow_to_rest(self) -> None:
+        """Publish the last positions on topics; at rest once more, for later listeners."""
+        self._periods_at_rest += 1
         is_at_rest = self._periods_at_rest == _PERIODS_UNTIL_REST
         if is_at_rest:
-            self._topics_timer.cancel()
-        if is_at_rest or self._periods_at_rest == 0:
+            self._rest_timer.cancel()
+        if is_at_rest or self._are_topics_behind:
+            self._are_topics_behind = False
             self._frames.publish_topics(only_listeners=not is_at_rest)
-        self._periods_at_rest += 1

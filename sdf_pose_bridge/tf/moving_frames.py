@@ -87,7 +87,8 @@ class MovingFrames:
             else:
                 transforms = poses
         # They are unit already. Only the sign has to be made canonical.
-        transforms[:, 3:] *= np.copysign(1.0, transforms[:, 6:])
+        quaternions = transforms[:, 3:]
+        quaternions *= np.copysign(1.0, quaternions[:, 3:])
         return transforms
 
     def poses(self, positions: NDArray[np.float64]) -> PoseArray:
