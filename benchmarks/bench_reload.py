@@ -22,6 +22,7 @@ from benchmarks.bench_services import Client
 from benchmarks.bench_services import MINIMAL_NODE
 from benchmarks.harness import AtMostTimes
 from benchmarks.harness import benchmark
+from benchmarks.harness import DOMAINS
 from benchmarks.harness import Function
 from benchmarks.harness import TimesAsFast
 from benchmarks.harness import Took
@@ -79,7 +80,7 @@ class RunningBridge:
 
     def __init__(self, stack: contextlib.ExitStack, file: Path, *parameters: str) -> None:
         from ament_index_python.packages import get_package_prefix
-        self.domain = random.randint(1, 100)
+        self.domain = random.choice(DOMAINS)
         os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
         self.environment = dict(os.environ, ROS_DOMAIN_ID=str(self.domain))
         self.file = file

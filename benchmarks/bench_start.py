@@ -19,6 +19,7 @@ import time
 
 from benchmarks.harness import AtMostTimes
 from benchmarks.harness import benchmark
+from benchmarks.harness import DOMAINS
 from benchmarks.harness import Function
 from benchmarks.harness import Medians
 from benchmarks.harness import RUNS
@@ -88,7 +89,7 @@ class Starter:
         self._environment.pop('PYTHONDONTWRITEBYTECODE', None)
         self._folder = folder
         self._processes: list[subprocess.Popen] = []
-        self._domains = itertools.cycle(random.sample(range(1, 101), 100))
+        self._domains = itertools.cycle(random.sample(DOMAINS, len(DOMAINS)))
 
     def start(self, command: list[str], domain: int, **options: object) -> subprocess.Popen:
         """Start a program."""
@@ -98,19 +99,24 @@ class Starter:
         self._processes.append(process)
         return process
 
-    def until_published(self, command: list[str]) -> None:
-        """Start a program and wait until it has published."""
+    def until_published(self, command: list[str]) -> float:
+        """Start a program; return the seconds until it has published."""
         reader, writer = os.pipe()
+        begin = time.perf_counter()
         process = self.start(
             [sys.executable, '-c', RUNNER, str(writer), *command], next(self._domains),
             pass_fds=[writer])
         os.close(writer)
         published = os.read(reader, 1)
+        seconds = time.perf_counter() - begin
         os.close(reader)
+        # The next start must not share the processors with its end.
         process.kill()
+        process.wait()
         if not published:
             msg = f'{command[0]} ended before it published anything'
             raise Unavailable(msg)
+        return seconds
 
     def until_received(self, command: list[str]) -> float:
         """Start a program for a listener that waits; return the seconds until it got something."""
@@ -125,6 +131,7 @@ class Starter:
                     raise Unavailable(msg)
             seconds = time.perf_counter() - begin
             process.kill()
+            process.wait()
         return seconds
 
     def imports(self, program: str) -> dict[str, float]:
@@ -220,7 +227,11 @@ def prepared_starter() -> Iterator[tuple[Starter, list[str], list[str]]]:
     counterpart='a minimal node that publishes an empty message', goal=AtMostTimes(1.08))
 def start_and_minimal_node() -> Iterator[tuple[Function, Function | None]]:
     with prepared_starter() as (starter, ours, theirs):
-        yield lambda: starter.until_published(ours), lambda: starter.until_published(theirs)
+        def fastest(command: list[str]) -> Took:
+            # Whatever else the machine does only makes a start longer.
+            return Took(min(starter.until_published(command) for _ in range(STARTS_PER_RUN)))
+
+        yield lambda: fastest(ours), lambda: fastest(theirs)
         report_imports(starter)
 
 

@@ -34,6 +34,9 @@ RUNS = 9
 SHORTEST_RUN_S = 0.02
 """Short functions are called in a loop until a run takes this long, so that the clock is exact."""
 
+DOMAINS = range(215, 233)
+"""ROS domains of benchmarks; tests, which may run meanwhile, have others."""
+
 Function: TypeAlias = Callable[[], object]
 Preparation: TypeAlias = Callable[[], Iterator[tuple[Function, Function | None]]]
 

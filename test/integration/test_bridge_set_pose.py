@@ -54,9 +54,9 @@ def test_a_pose_measured_by_a_moving_tool(
     wait_for_x(observer, 5.0, 'fixture')
     joints = JointPublisher()
     try:
-        joints.send({'turn': pi / 2})
-
         def tool_y():
+            # The first messages are lost, until the bridge has discovered the publisher.
+            joints.send({'turn': pi / 2})
             request = LookupPose.Request(frame='arm/tool')
             return client.call(
                 LookupPose, f'{BRIDGE}/lookup_pose', request).pose.pose.position.y
