@@ -9,7 +9,10 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from builtin_interfaces.msg import Time
+from geometry_msgs.msg import TransformStamped
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import DurabilityPolicy
+from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
@@ -17,6 +20,7 @@ from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.joint_states import JointStates
+from sdf_pose_bridge.ros.joint_states import TOPICS_PERIOD_S
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.tf.joint_positions import JointPositions
@@ -47,45 +51,57 @@ def joint_states(make_node):
     node = make_node('bridge')
     scene = load_text(ARM)
     tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
-    frames = PublishedFrames(
-        Publishers(node), tree, JointPositions(scene, tree.moving.dofs), {})
+    publishers = Publishers(node)
+    frames = PublishedFrames(publishers, tree, JointPositions(scene, tree.moving.dofs), {})
+    publishers.opened(frames.moving.transforms_topic)
     return JointStates(node, frames.moving, is_published_later=False)
 
 
+@pytest.fixture
+def listener(make_node):
+    return make_node('listener')
+
+
+@pytest.fixture(name='wait_until')
+def make_wait_until(listener, states):
+    """Runs both nodes until a condition is true; ``wait_until(condition, collection)``."""
+    executor = SingleThreadedExecutor(context=listener.context)
+    for node in (listener, states._node):
+        executor.add_node(node)
+
+    def wait_until(condition, collection):
+        deadline = time.monotonic() + 20.0
+        while not condition():
+            assert time.monotonic() < deadline, collection
+            executor.spin_once(timeout_sec=0.1)
+
+    yield wait_until
+    executor.shutdown()
+
+
 @pytest.fixture(name='published')
-def make_published(make_node, states):
+def make_published(listener, wait_until, states):
     """
     Returns what messages put on ``/tf``; ``published(*messages)``.
 
     The last message must be published. The result has the stamp and the frames of each.
     """
-    listener = make_node('listener')
-    executor = SingleThreadedExecutor(context=listener.context)
-    for node in (listener, states._node):
-        executor.add_node(node)
     found = []
 
     def add(message):
         first = message.transforms[0].header.stamp.sec
         found.append((first, {each.child_frame_id for each in message.transforms}))
 
-    def wait_for(is_last):
-        deadline = time.monotonic() + 20.0
-        while not found or not is_last(found[-1][0]):
-            assert time.monotonic() < deadline, found
-            executor.spin_once(timeout_sec=0.1)
-
     listener.create_subscription(TFMessage, '/tf', add, 100)
-    wait_for(lambda _: True)  # what is published before the first message
+    wait_until(lambda: found, found)  # what is published before the first message
 
     def published(*messages):
         for message in messages:
             states.take(serialize_message(message))
-        wait_for(lambda sec: sec == messages[-1].header.stamp.sec)
+        wait_until(lambda: found[-1][0] == messages[-1].header.stamp.sec, found)
         return [each for each in found if each[0] < NOW]
 
-    yield published
-    executor.shutdown()
+    return published
 
 
 def test_a_message_with_another_number_of_positions_is_ignored(published):
@@ -130,3 +146,21 @@ def test_a_message_that_is_not_one_is_ignored(published, states):
     states.take(b'')
     states.take(serialize_message(joint_state(5, {'turn': 0.5}))[:30])
     assert [sec for sec, _ in published(joint_state(6, {'turn': 0.5}))] == [6]
+
+
+def test_topics_have_few_of_many_messages_and_the_last_one_again_at_rest(
+        listener, wait_until, states):
+    stamps = []
+    listener.create_subscription(
+        TransformStamped, '/bridge/transforms',
+        lambda each: each.child_frame_id == 'upper' and stamps.append(each.header.stamp.sec),
+        QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+    # At rest, before the first message, they have the time of the node.
+    wait_until(lambda: stamps, stamps)
+    begin = time.monotonic()
+    for sec in range(1, 201):
+        states.take(serialize_message(joint_state(sec, {'turn': 0.5})))
+    seconds = time.monotonic() - begin
+    wait_until(lambda: stamps[-2:] == [200, 200], stamps)
+    assert stamps[1] == 1
+    assert len(stamps) <= 4 + seconds / TOPICS_PERIOD_S
