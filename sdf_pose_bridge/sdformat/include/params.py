@@ -32,6 +32,7 @@ from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
 from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import text_of
+from sdf_pose_bridge.sdformat.xml_tree import with_ancestors
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
@@ -372,7 +373,7 @@ class _Changer:
         self._problems.warning(message, self._place(xml))
 
     def _place(self, xml: XmlElement) -> Place:
-        steps = [_step(each) for each in (xml, *xml.iterancestors())]
+        steps = [_step(each) for each in with_ancestors(xml)]
         return self._sources.place(xml)._replace(element='/' + '/'.join(reversed(steps)))
 
 
