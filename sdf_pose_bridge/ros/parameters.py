@@ -231,11 +231,6 @@ class Settings:
         choice_setting(MissingInclude),
     )
 
-    @property
-    def source(self) -> str:
-        """The name of what is published, for people: that of the file or of the parameter."""
-        return self.sdf_file or 'robot_description'
-
     allow_set_pose = Declaration(
         False,
         'Offers the service ~/set_pose, which writes a measured pose into the file that places a '
@@ -245,6 +240,11 @@ class Settings:
         needs_load=False,
         is_read_only=True,
     )
+
+    @property
+    def source(self) -> str:
+        """The name of what is published, for people: that of the file or of the parameter."""
+        return self.sdf_file or 'robot_description'
 
     @property
     def tf_options(self) -> TfOptions:
