@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 _ORDERS = {b'\0\0': '>', b'\0\1': '<'}
 """The order of bytes in plain CDR, by the first two bytes."""
 
+MOST_BYTES = 1_000_000
+"""The size of a message; other callbacks wait while it is read."""
+
 _START = 4
 """Where the fields begin, and what alignment is counted from."""
 
@@ -57,8 +60,11 @@ def joint_state_from_bytes(data: bytes, known_names: bytes = b'') -> JointStateB
     :param data: the serialized message.
     :param known_names: ``names`` of a message before; if the names are the same, they need not be
         walked through.
-    :raises ValueError: if it is not a whole message in plain CDR.
+    :raises ValueError: if it is not a whole message in plain CDR, or if it is too large.
     """
+    if len(data) > MOST_BYTES:
+        msg = f'it has {len(data)} bytes, more than {MOST_BYTES}'
+        raise ValueError(msg)
     order = _ORDERS.get(data[:2])
     if order is None:
         msg = f'it begins with 0x{data[:2].hex()}, which is not plain CDR'

@@ -144,10 +144,13 @@ class JointStates:
     # Messages
 
     def _take_waiting(self) -> None:
-        """Take all messages that wait in the subscription."""
+        """Take all messages that wait in the subscription, for one period at most."""
+        # Other callbacks would wait for ever for the end of messages that come too fast.
+        ends_at = time.monotonic() + TOPICS_PERIOD_S
         # Executors do the same; rclpy has no public way.
         with self._subscription.handle:
-            while (taken := self._subscription.handle.take_message(JointState, True)) is not None:
+            while time.monotonic() < ends_at and (
+                    taken := self._subscription.handle.take_message(JointState, True)) is not None:
                 self.take(taken[0])
 
     def take(self, data: bytes) -> None:

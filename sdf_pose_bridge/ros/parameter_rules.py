@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.sdformat.grammar import Kind
 
 Choice = TypeVar('Choice', bound=enum.Enum)
@@ -27,8 +28,18 @@ PUBLISHED_KINDS = {
 LOWEST_RATE, HIGHEST_RATE = 0.001, 100.0
 """The limits of ``publish_rate`` in Hz."""
 
-MOST_PATTERNS = 1000
-"""How many patterns a parameter may have."""
+MOST_VALUES = 1000
+"""How many patterns or directories a parameter may have. Each pattern is compared with each frame,
+and each directory is looked into for each include."""
+
+MOST_CHARACTERS = 255
+"""How long a name or a pattern may be; a prefix is a part of every frame id."""
+
+MOST_CHARACTERS_OF_PATH = 4096
+"""How long the path of a directory may be, as in Linux."""
+
+MOST_CHARACTERS_OF_SEPARATOR = 8
+"""How long a separator may be, which stands many times in a frame id."""
 
 
 def root_frame_setting(value: str) -> str:
@@ -42,14 +53,14 @@ def prefix_setting(value: str) -> str:
     """Refuse what frame ids cannot begin with."""
     if value.startswith('/'):
         raise _refusal(value, 'without a leading slash, which TF does not allow')
-    return _without_control_characters(value)
+    return _name_setting(value, MOST_CHARACTERS)
 
 
 def separator_setting(value: str) -> str:
     """Refuse what cannot separate the parts of frame ids."""
     if not value:
         raise _refusal(value, 'at least one character, or names run together')
-    return _without_control_characters(value)
+    return _name_setting(value, MOST_CHARACTERS_OF_SEPARATOR)
 
 
 def rate_setting(value: float) -> float:
@@ -81,25 +92,40 @@ def kinds_setting(values: Sequence[str]) -> frozenset[Kind]:
 
 
 def patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
-    """Refuse too many patterns."""
-    if len(values) > MOST_PATTERNS:
-        # Each is compared with each frame, while other changes wait.
-        msg = f'has {len(values)} patterns; it must have at most {MOST_PATTERNS}'
-        raise ValueError(msg)
+    """Refuse too many patterns, and long ones."""
+    _check_count(values, 'patterns')
+    for value in values:
+        _check_length(value, MOST_CHARACTERS)
     return tuple(values)
 
 
 def directories_setting(values: Sequence[str]) -> tuple[Path, ...]:
-    """Make paths, without those that are empty."""
+    """Make paths, without those that are empty; refuse too many, and long ones."""
+    _check_count(values, 'directories')
+    for value in values:
+        _check_length(value, MOST_CHARACTERS_OF_PATH)
     return tuple(Path(value).expanduser() for value in values if value)
 
 
-def _without_control_characters(value: str) -> str:
+def _check_count(values: Sequence[str], what: str) -> None:
+    if len(values) > MOST_VALUES:
+        msg = f'has {len(values)} {what}; it must have at most {MOST_VALUES}'
+        raise ValueError(msg)
+
+
+def _check_length(value: str, most: int) -> None:
+    if len(value) > most:
+        msg = f'has a value of {len(value)} characters; it must have at most {most}'
+        raise ValueError(msg)
+
+
+def _name_setting(value: str, most: int) -> str:
+    _check_length(value, most)
     if not value.isprintable():
         raise _refusal(value, 'without control characters')
     return value
 
 
 def _refusal(value: object, rule: str) -> ValueError:
-    shown = f'"{printable(value)}"' if isinstance(value, str) else value
+    shown = f'"{printable(shortened(value))}"' if isinstance(value, str) else value
     return ValueError(f'is {shown}; it must be {rule}')

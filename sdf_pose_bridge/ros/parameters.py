@@ -127,7 +127,7 @@ class Settings:
     root_frame = Declaration(
         'world',
         'The TF frame of the SDF world, or of the implicit root of a model file.',
-        'not empty, no leading slash',
+        'not empty, no leading slash, at most 255 characters',
         root_frame_setting,
     )
     anchor_models = Declaration(
@@ -156,13 +156,13 @@ class Settings:
         '/',
         'Replaces "::" in frame ids. ros_gz_bridge uses "/". To keep "::", quote it twice on the '
         'command line: -p "frame_separator:=\'::\'".',
-        'not empty',
+        'not empty, at most 8 characters',
         separator_setting,
     )
     frame_prefix = Declaration(
         '',
         'Precedes every frame id but that of root_frame, with nothing in between.',
-        'no leading slash',
+        'no leading slash, at most 255 characters',
         prefix_setting,
     )
     kinds = Declaration(
@@ -181,8 +181,8 @@ class Settings:
         ['*'],
         'Which frames get a topic ~/poses/<frame> with their pose in pose_frame.',
         'glob patterns for frame ids, such as robot/* (which matches robot/arm/tool too); '
-        'none if empty; at most 1000 of them; * alone means none where there are more than 1000 '
-        'frames, ?* means all',
+        'none if empty; at most 1000 of them, of at most 255 characters; * alone means none '
+        'where there are more than 1000 frames, ?* means all',
         patterns_setting,
         needs_load=False,
     )
@@ -204,7 +204,7 @@ class Settings:
         [],
         'Directories searched for model:// and relative URIs before those of '
         'GZ_SIM_RESOURCE_PATH and SDF_PATH.',
-        'paths of directories; empty ones are ignored',
+        'paths of directories, at most 1000; empty ones are ignored',
         directories_setting,
     )
     publish_rate = Declaration(

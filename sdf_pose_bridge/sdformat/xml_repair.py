@@ -33,7 +33,6 @@ _NOT_XML = re.compile('[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]')
 _REPLACEMENT = '\ufffd'
 _LONGEST_REFERENCE = 8
 """Digits of a character reference; longer ones without zeros before them mean no character."""
-_NOT_NEW_LINE = re.compile(r'[^\n]')
 
 
 class Repair(NamedTuple):
@@ -198,4 +197,4 @@ def _rest_of_tag(token: re.Match[str]) -> re.Match[str] | None:
 
 
 def _blank(text: str) -> str:
-    return _NOT_NEW_LINE.sub(' ', text)
+    return '\n'.join(' ' * len(line) for line in text.split('\n'))

@@ -60,11 +60,11 @@ def load_bytes(data: bytes) -> None:
 @given(scenes())
 def load_scene(scene):
     """Load a scene of one or several files, some of which are wrong."""
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory(dir=MEMORY) as folder:
         for name, text in scene.files.items():
             path = Path(folder, name)
             path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding='utf-8')
+            path.write_bytes(text.encode(errors='surrogateescape'))
         with limited():
             load(Path(folder, 'scene.sdf'), resource_paths=[folder])
 

@@ -442,6 +442,13 @@ def includes_of_many_files(n: int) -> Files:
 
 
 @family
+def includes_of_a_directory(n: int) -> Files:
+    manifest = '<sdf version="1.9">model.sdf</sdf>' * n
+    return {'scene.sdf': world(each(n, include('<name>m#</name>', uri='part'))),
+            'part/model.config': f'<model>{manifest}</model>', 'part/model.sdf': model('')}
+
+
+@family
 def includes_that_are_missing(n: int) -> Files:
     return {'scene.sdf': world(each(n, include(uri='none#.sdf')))}
 
@@ -712,17 +719,15 @@ def world_joints(n: int) -> Files:
 
 def included_contents(name: str, n: int) -> Files:
     """Return a world that includes a file with a content, as often as the content is long."""
-    root = max(int((20 * n) ** 0.5), 1)
-    return {'scene.sdf': world(each(root, include('<name>m#</name>'))),
-            'part.sdf': model(CONTENTS[name](root))}
+    return {'scene.sdf': world(each(n, include('<name>m#</name>'))),
+            'part.sdf': model(CONTENTS[name](n))}
 
 
 def merged_contents(name: str, n: int) -> Files:
     """Return models that each merge a file with a content, as often as the content is long."""
-    root = max(int((20 * n) ** 0.5), 1)
     return {'scene.sdf': world(each(
-        root, '<model name="m#">' + include('<name>n#</name>', MERGE) + '</model>')),
-        'part.sdf': model(CONTENTS[name](root))}
+        n, '<model name="m#">' + include('<name>n#</name>', MERGE) + '</model>')),
+        'part.sdf': model(CONTENTS[name](n))}
 
 
 def changed_contents(name: str, n: int) -> Files:

@@ -5,11 +5,14 @@
 from math import isclose
 from math import nan
 from math import pi
+import signal
+import sys
 
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from bridge_process import LoggedProcess
 from changes import BRIDGE
 from changes import listen_to_tf
 from changes import reload
@@ -37,6 +40,25 @@ ARM = """<sdf version="1.11"><model name="arm">
   <axis><xyz>1 0 0</xyz><mimic joint="lift"><multiplier>2</multiplier><offset>0</offset>
   <reference>0</reference></mimic></axis></joint>
 </model></sdf>"""
+FLOODING = """
+import time
+import rclpy
+from rclpy.serialization import serialize_message
+from sensor_msgs.msg import JointState
+
+rclpy.init()
+publisher = rclpy.create_node('flooding').create_publisher(JointState, 'joint_states', 10)
+messages = [
+    serialize_message(JointState(
+        name=[f'{row}_{number}' for row in range(10_000)], position=[0.0] * 10_000))
+    for number in range(30)]
+while True:
+    for message in messages:
+        publisher.publish(message)
+        time.sleep(0.002)
+"""
+"""A program whose messages all have other names, and come faster than they can be taken."""
+
 MOVED = {'upper', 'slide', 'finger'}
 
 
@@ -163,6 +185,19 @@ def test_a_wrong_message_is_reported_and_the_next_one_taken(
     bridge.wait_for_line(line)
     sec = joints.send({'lift': 0.5})
     assert tf.wait_for('slide', sec).translation.z == 1.5
+
+
+@pytest.mark.parametrize('rate', ['0.0', '10.0'])
+def test_a_flood_of_messages_does_not_keep_callers_waiting(start, file, tf, rate):
+    bridge = start(file, f'publish_rate:={rate}')
+    flooding = LoggedProcess([sys.executable, '-c', FLOODING])
+    try:
+        bridge.wait_for_line('not the name of one moving joint')
+        for _ in range(3):
+            pose_of(tf, 'slide')
+    finally:
+        flooding.send(signal.SIGKILL)
+        flooding.end()
 
 
 def test_time_that_goes_back_is_followed(start, file, joints, tf):

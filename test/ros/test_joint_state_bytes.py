@@ -15,6 +15,7 @@ from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 
 from sdf_pose_bridge.ros.joint_state_bytes import joint_state_from_bytes
+from sdf_pose_bridge.ros.joint_state_bytes import MOST_BYTES
 
 TEXTS = st.text(st.characters(exclude_characters='\0', exclude_categories=['Cs']), max_size=9)
 NUMBERS = st.lists(st.floats(allow_nan=False), max_size=5)
@@ -41,6 +42,12 @@ def test_a_message_that_says_it_has_more_than_it_has_is_refused(count):
     place = 4 + 12 + 4
     with pytest.raises(ValueError, match='ends too early'):
         joint_state_from_bytes(whole[:place] + struct.pack('<I', count) + whole[place + 4:])
+
+
+def test_a_message_that_is_too_large_is_refused():
+    whole = message([], [], frame_id='x' * MOST_BYTES)
+    with pytest.raises(ValueError, match=f'more than {MOST_BYTES}'):
+        joint_state_from_bytes(whole)
 
 
 def test_another_encoding_is_refused():

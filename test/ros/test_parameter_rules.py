@@ -20,6 +20,9 @@ from sdf_pose_bridge.tf.tree import AnchorModels
     (rules.prefix_setting, 'r\x001', 'it must be without control characters'),
     (rules.separator_setting, '', 'is ""; it must be at least one character'),
     (rules.separator_setting, '\t', 'it must be without control characters'),
+    (rules.root_frame_setting, 'x' * 256, 'has a value of 256 characters; it must have at'),
+    (rules.prefix_setting, 'x' * 256, 'has a value of 256 characters; it must have at most 255'),
+    (rules.separator_setting, '_' * 9, 'has a value of 9 characters; it must have at most 8'),
     (rules.rate_setting, 0.0009, 'is 0.0009; it must be 0.0 for never, or from 0.001 to 100.0'),
     (rules.rate_setting, 100.1, 'is 100.1; it must be 0.0 for never'),
     (rules.rate_setting, -1.0, 'is -1.0; it must be 0.0 for never'),
@@ -29,6 +32,9 @@ from sdf_pose_bridge.tf.tree import AnchorModels
     (rules.kinds_setting, ['link', 'links'], 'is "links"; it must be made of model, '),
     (rules.kinds_setting, ['world'], 'is "world"; it must be made of model, '),
     (rules.patterns_setting, ['a'] * 1001, 'has 1001 patterns; it must have at most 1000'),
+    (rules.patterns_setting, ['*', 'x' * 256], 'has a value of 256 characters; it must have at'),
+    (rules.directories_setting, ['a'] * 1001, 'has 1001 directories; it must have at most 1000'),
+    (rules.directories_setting, ['x' * 4097], 'has a value of 4097 characters; it must have at'),
 ])
 def test_refused(rule, value, words):
     with pytest.raises(ValueError, match=r'it must|is not set') as refusal:
@@ -41,6 +47,7 @@ def test_refused(rule, value, words):
     (rules.root_frame_setting, 'map', 'map'),
     (rules.prefix_setting, '', ''),
     (rules.prefix_setting, 'r1/', 'r1/'),
+    (rules.prefix_setting, 'x' * 255, 'x' * 255),
     (rules.separator_setting, '::', '::'),
     (rules.rate_setting, 0.0, 0.0),
     (rules.rate_setting, 0.001, 0.001),

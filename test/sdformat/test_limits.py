@@ -88,6 +88,14 @@ def test_model_that_is_merged_often_is_checked_once(tmp_path):
     assert len(scene.names) == 1 + 3 * 100
 
 
+def test_includes_that_are_searched_in_many_directories_are_limited(tmp_path):
+    write_files(tmp_path, main=world_file(''.join(
+        f'<include><uri>model://none{number}</uri></include>' for number in range(300))))
+    directories = [str(tmp_path / str(number)) for number in range(1000)]
+    errors = errors_of_file(tmp_path / 'main.sdf', resource_paths=directories)
+    assert errors[-1].code == 'LIMIT'
+
+
 def test_included_pipe_is_refused(tmp_path):
     os.mkfifo(tmp_path / 'pipe.sdf')
     write_files(tmp_path, main=world_file('<include><uri>pipe.sdf</uri></include>'))

@@ -38,7 +38,9 @@ from sdf_pose_bridge.sdformat.include.merge import merge
 from sdf_pose_bridge.sdformat.include.params import apply_params
 from sdf_pose_bridge.sdformat.include.params import params_of
 from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
+from sdf_pose_bridge.sdformat.include.uris import ModelFile
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_DIRECTORY
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_INCLUDE
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_MERGE
@@ -83,11 +85,14 @@ class IncludeExpansion:
         self.may_hold_scoped_names = False
         """Whether a name in what was included may hold ``::``."""
         self._finder = finder
+        self._steps_of_directories = STEPS_OF_DIRECTORY * (
+            len(finder.search_paths) + len(finder.environment_paths))
         self._sources = sources
         self._problems = problems
         self._skips_missing = skips_missing
         self._canonical_link_of = canonical_link_of
         self._files: dict[str, Document | None] = {}
+        self._model_files: dict[str, ModelFile | str] = {}
         self._missing_uris: set[str] = set()
         self._canonical_links: dict[tuple[XmlElement, str, bytes], str | None] = {}
         self._undefined = UndefinedReporter(sources, problems)
@@ -123,7 +128,7 @@ class IncludeExpansion:
         include.set(MISSING_URI, uri)
 
     def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
-        self._count(STEPS_OF_INCLUDE, include)
+        self._count(STEPS_OF_INCLUDE + self._steps_of_directories, include)
         is_merge = self._is_merge(include)
         self._undefined.report_content(include, definition_of('include'))
         for plugin in child_elements(include, 'plugin'):
@@ -187,12 +192,10 @@ class IncludeExpansion:
         if path is None:
             return self._finder.reason_not_found(uri)
         if os.path.isdir(path):  # noqa: PTH112
-            try:
-                path, manifest, warnings = model_file_from_directory(path, self._sources.usage)
-            except (FileReadError, ParsingError) as error:
-                return f'{error.place}: {error.message}'
-            self._sources.add_path(manifest)
-            self._problems.extend(warnings)
+            chosen = self._model_file(path)
+            if isinstance(chosen, str):
+                return chosen
+            path = chosen.path
         real_path = os.path.realpath(path)
         if real_path in files:
             cycle = [*files[files.index(real_path):], real_path]
@@ -204,6 +207,20 @@ class IncludeExpansion:
             self._sources.includes[path] = self._sources.place(include)
             self._files[real_path] = self._read(path, (*files, real_path))
         return self._files[real_path]
+
+    def _model_file(self, directory: str) -> ModelFile | str:
+        """Return the file that a directory offers, or why there is none; each is read once."""
+        key = os.path.realpath(directory)
+        chosen = self._model_files.get(key)
+        if chosen is None:
+            try:
+                chosen = model_file_from_directory(directory, self._sources.usage)
+                self._sources.add_path(chosen.manifest)
+                self._problems.extend(chosen.warnings)
+            except (FileReadError, ParsingError) as error:
+                chosen = f'{error.place}: {error.message}'
+            self._model_files[key] = chosen
+        return chosen
 
     def _read(self, path: str, files: tuple[str, ...]) -> Document | None:
         try:

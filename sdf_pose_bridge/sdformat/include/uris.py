@@ -69,7 +69,7 @@ class ResourceFinder(NamedTuple):
         """
         # Unlike Path.exists, this returns False for a name that is too long.
         found = (
-            os.fspath(path) for path in self._candidates(uri, including_file)
+            str(Path(path)) for path in self._candidates(uri, including_file)
             if os.path.exists(path))  # noqa: PTH110
         return next(found, None)
 
@@ -143,7 +143,7 @@ class ResourceFinder(NamedTuple):
         return ('nothing of that name was found beside the file or in the resource paths, to '
                 'which the variable GZ_SIM_RESOURCE_PATH adds')
 
-    def _candidates(self, uri: str, including_file: str) -> Iterator[Path]:
+    def _candidates(self, uri: str, including_file: str) -> Iterator[str | Path]:
         scheme = _SCHEME.match(uri)
         name = uri[scheme.end():] if scheme else uri
         scheme_name = scheme[1].lower() if scheme else ''
@@ -152,18 +152,19 @@ class ResourceFinder(NamedTuple):
             return
         if not name:
             return
-        # Joined to another path, an absolute path stays as it is.
+        # Joined to another path, an absolute path stays as it is. A Path is made only of what is
+        # found, as that takes long for a name with many slashes.
         for directory in self.search_paths:
-            yield Path(directory, name)
+            yield os.path.join(directory, name)  # noqa: PTH118
         if scheme_name == 'package':
             package, _, rest = name.partition('/')
             for share in self._package_shares(package):
                 yield share / rest
         if scheme_name in ('', 'file'):
-            yield Path(Path(including_file).parent, name)
+            yield os.path.join(os.path.dirname(including_file), name)  # noqa: PTH118, PTH120
         for directory in self.environment_paths:
-            yield Path(directory, name)
-        yield Path(name)
+            yield os.path.join(directory, name)  # noqa: PTH118
+        yield name
 
     def _package_shares(self, package: str) -> Iterator[Path]:
         """Find the share directories of a ROS package, by the markers in ament's index."""

@@ -14,6 +14,7 @@ from sdf_texts import TWO_LINKS
 from sdf_texts import world_file
 from sdf_texts import write_files
 
+from sdf_pose_bridge import Limits
 from sdf_pose_bridge import load
 
 LEAF = """<sdf version="1.9"><model name="leaf"><pose>0 0 1 0 0 0</pose>
@@ -133,6 +134,20 @@ def test_directory_without_a_manifest_is_named_in_the_message(errors_in, tmp_pat
     (error,) = errors_in(include('box'))
     assert error.code == 'URI_LOOKUP'
     assert 'the directory has no model.config' in error.message
+
+
+def test_manifest_is_read_once(tmp_path):
+    manifest = '<model><sdf version="1.99">new.sdf</sdf><sdf version="1.9">leaf.sdf</sdf></model>'
+    (tmp_path / 'box').mkdir()
+    (tmp_path / 'box' / 'model.config').write_text(manifest + ' ' * 10_000)
+    (tmp_path / 'box' / 'leaf.sdf').write_text(LEAF)
+    uris = ('box', 'box/', './box', 'box/../box')
+    write_files(tmp_path, world=world_file(''.join(
+        include(uri, f'<name>m{number}</name>') for number, uri in enumerate(uris))))
+    scene = load(tmp_path / 'world.sdf', limits=Limits(bytes_read=20_000))
+    assert len(scene.names) == 1 + 2 * len(uris)
+    (warning,) = scene.warnings
+    assert 'version 1.99 of the model is newer' in warning.message
 
 
 def test_missing_file_is_named_in_the_message(errors_in):
