@@ -212,6 +212,17 @@ def test_unwatched_files_are_read_again_only_when_asked(start_bridge, file, star
     wait_for_x(listener, 7.0)
 
 
+def test_a_reload_that_fails_is_reported_at_once(start_bridge, file, start_listener):
+    # Nobody looks at the file a second time.
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={file}', '-p', 'watch:=false'
+                          ).wait_until_started()
+    file.write_text('not XML')
+    listener = start_listener()
+    assert not reload(listener).success
+    assert f'{file}:1: FILE_READ' in bridge.wait_for_line('FILE_READ')
+    Monitor(listener).wait_for(DiagnosticStatus.ERROR)
+
+
 def test_reloading_a_bad_file_answers_with_the_reason(bridge, file, start_listener):
     file.write_text('not XML')
     answer = reload(start_listener())

@@ -185,6 +185,19 @@ def test_a_thread_calls_once_until_it_is_resumed(calls):
     thread.resume()
 
 
+def test_a_look_that_has_to_wait_is_soon_followed_by_another(calls):
+    looks = threading.Semaphore(0)
+
+    def is_due():
+        # As a disk on the network may let it.
+        looks.release()
+        return threading.Event().wait(0.1)
+
+    PollingThread(is_due, calls.release)
+    for _ in range(3):
+        assert looks.acquire(timeout=20)
+
+
 def test_a_thread_calls_nothing_while_the_condition_is_false(calls):
     looks = threading.Semaphore(0)
 
