@@ -155,8 +155,8 @@ def _has_materials_that_rviz_shows(shape: Shape) -> bool:
 
 def _form_of_mesh(shape: Shape, file: str, finder: ResourceFinder) -> tuple[Form] | str:
     uri = shape.mesh_uri
-    # RViz may run on another machine, where the package is elsewhere.
-    if not uri.startswith('package://'):
+    # RViz may run on another machine, where the package is elsewhere. It knows no third slash.
+    if not uri.startswith('package://') or uri.startswith('package:///'):
         path = finder.file_from_uri(uri, file)
         if path is None:
             return f'the mesh "{shortened(uri)}" is not found'

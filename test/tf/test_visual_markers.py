@@ -155,12 +155,13 @@ def test_mesh_beside_a_file_with_a_relative_path_is_named_by_its_absolute_path(
     assert marker.form.mesh_resource == (tmp_path / 'a.stl').as_uri()
 
 
-def test_mesh_of_a_model_is_found_in_the_resource_paths(tmp_path):
+@pytest.mark.parametrize('uri', ['model://arm/meshes/a.dae', 'package:///arm/meshes/a.dae'])
+def test_mesh_of_a_model_is_found_in_the_resource_paths(uri, tmp_path):
     mesh = tmp_path / 'arm/meshes/a.dae'
     mesh.parent.mkdir(parents=True)
     mesh.touch()
     marker = only_marker(
-        visual(MESH.format('model://arm/meshes/a.dae', '')), resource_paths=[tmp_path])
+        visual(MESH.format(uri, '')), resource_paths=[tmp_path])
     assert marker.form.mesh_resource == mesh.as_uri()
 
 

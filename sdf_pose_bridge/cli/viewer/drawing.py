@@ -45,8 +45,8 @@ MOST_TRIANGLES = 3_000_000
 MOST_NAMES = 500
 """How many names are shown at once."""
 
-LINES = '/lines to parents'
-GROUPS = ('/names', LINES, '/visuals', '/collisions')
+NAMES, LINES = '/names', '/lines to parents'
+GROUPS = (NAMES, LINES, '/visuals', '/collisions')
 """The nodes that can be hidden, besides one for each kind of frame."""
 
 _WXYZ = [6, 3, 4, 5]
@@ -189,7 +189,7 @@ class Drawing:
 
     def place_names(self, tree: TfTree) -> None:
         """Show the names of frames, where the camera sees them."""
-        if '/names' in self.hidden:
+        if NAMES in self.hidden:
             return
         frames = [
             frame for label, each in self._frames.items()
@@ -203,7 +203,7 @@ class Drawing:
         for number, (text, point) in enumerate(labels):
             if number == len(self._labels):
                 self._labels.append(self._server.scene.add_label(
-                    f'/names/{number}', text, position=point, font_screen_scale=_SCALE_OF_NAMES))
+                    f'{NAMES}/{number}', text, position=point, font_screen_scale=_SCALE_OF_NAMES))
                 continue
             self._labels[number].position = point
             if self._labels[number].text != text:

@@ -153,17 +153,18 @@ class ResourceFinder(NamedTuple):
         if not name:
             return
         # Joined to another path, an absolute path stays as it is. A Path is made only of what is
-        # found, as that takes long for a name with many slashes.
+        # found, as that takes long for a name with many slashes. Gazebo ignores a third slash.
+        relative = name.lstrip('/') if scheme_name in ('model', 'package') else name
         for directory in self.search_paths:
-            yield os.path.join(directory, name)  # noqa: PTH118
+            yield os.path.join(directory, relative)  # noqa: PTH118
         if scheme_name == 'package':
-            package, _, rest = name.partition('/')
+            package, _, rest = relative.partition('/')
             for share in self._package_shares(package):
                 yield share / rest
         if scheme_name in ('', 'file'):
             yield os.path.join(os.path.dirname(including_file), name)  # noqa: PTH118, PTH120
         for directory in self.environment_paths:
-            yield os.path.join(directory, name)  # noqa: PTH118
+            yield os.path.join(directory, relative)  # noqa: PTH118
         yield name
 
     def _package_shares(self, package: str) -> Iterator[Path]:

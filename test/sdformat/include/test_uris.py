@@ -70,9 +70,10 @@ def test_what_is_no_file_is_not_found_as_one(uri, tmp_path):
     assert resource_finder([tmp_path], {}).file_from_uri(uri, 'm.sdf') is None
 
 
-def test_file_is_found(tmp_path):
+@pytest.mark.parametrize('uri', ['model://arm/a.stl', 'model:///arm/a.stl', 'package:///arm/a.stl'])
+def test_file_is_found(uri, tmp_path):
     mesh = write(tmp_path, 'arm/a.stl')
-    assert resource_finder([tmp_path], {}).file_from_uri('model://arm/a.stl', 'm.sdf') == mesh
+    assert resource_finder([tmp_path], {}).file_from_uri(uri, 'm.sdf') == mesh
 
 
 @pytest.mark.parametrize('scheme', ['', 'file://'])
