@@ -14,11 +14,9 @@ from typing import NamedTuple
 from typing import TYPE_CHECKING
 
 import numpy as np
-import trimesh
 import viser
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
-from sdf_pose_bridge.cli.viewer.meshes import Mesh
 from sdf_pose_bridge.cli.viewer.meshes import MeshPart
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.geometry.poses import Pose
@@ -28,7 +26,6 @@ from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.scene.triangles import Points
-from sdf_pose_bridge.scene.triangles import triangles_from_shape
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.tf.parents import NO_PARENT
@@ -53,7 +50,6 @@ _WXYZ = [6, 3, 4, 5]
 _DIRECTION_TO_EYE = np.array([0.75, -0.5, 0.45])
 _FIELD_OF_VIEW_RAD = 0.8
 _GRAY = (0.7, 0.7, 0.7, 1.0)
-_MISSING = (0.88, 0.19, 0.19, 0.5)
 _LINE_COLOR = (134, 142, 150)
 _LIGHT_FROM_BELOW = (160, 160, 160)
 
@@ -95,6 +91,7 @@ class Drawing:
     ) -> None:
         self._server, self._meshes, self._select = server, meshes, select
         self._nodes: dict[str, Any] = {}
+        self._labels: list[viser.LabelHandle] = []
         self.opacity = 0.6
         """That of surfaces, so that the frames in them are seen."""
         self.hidden = {'/collisions'}
@@ -126,9 +123,11 @@ class Drawing:
         if self.camera is None:
             self._look_at_everything()
         self._length_m = length_m = self._length_of_axes(tree)
-        shown = np.flatnonzero(is_shown[_elements_of_frames(tree)]).tolist()
+        # An optical frame is shown with its parent.
+        elements = np.where(
+            tree.elements < 0, tree.elements[np.maximum(tree.parents, 0)], tree.elements)
         self._frames = {
-            label: np.array([frame for frame in shown if labels[frame] == label], int)
+            label: np.flatnonzero(is_shown[elements] & (np.array(labels) == label))
             for label in dict.fromkeys(labels)}
         self._nodes = {
             name: nodes.add_frame(name, show_axes=False) for name in ('/frames', *GROUPS)}
@@ -146,7 +145,7 @@ class Drawing:
         self._copies = [
             self._add_surface(number, surface, scene, tree)
             for number, surface in enumerate(self._surfaces)]
-        self._labels: list[viser.LabelHandle] = []
+        self._labels.clear()
         self.place_names(tree)
         return reasons
 
@@ -161,9 +160,8 @@ class Drawing:
 
     def set_visible(self, name: str, tree: TfTree, *, visible: bool) -> None:
         """Show or hide a node."""
-        if name in self._nodes:
-            self._nodes[name].visible = visible
-            self.place_names(tree)
+        self._nodes[name].visible = visible
+        self.place_names(tree)
 
     def set_opacity(self, opacity: float) -> None:
         """Make surfaces more or less transparent."""
@@ -244,8 +242,8 @@ class Drawing:
         """Return the length of axes, in metres: short where frames are near to one another."""
         distances_m = np.linalg.norm(tree.transforms[:, :3], axis=1)
         distances_m = distances_m[distances_m > 1e-6 * self._size_m]
-        typical_m = float(np.median(distances_m)) if len(distances_m) else self._size_m
-        return min(max(0.4 * typical_m, 0.01 * self._size_m), 0.1 * self._size_m)
+        typical_m = np.median(distances_m) if len(distances_m) else self._size_m
+        return float(np.clip(0.4 * typical_m, 0.01 * self._size_m, 0.1 * self._size_m))
 
 
 def surfaces_from_scene(
@@ -274,7 +272,7 @@ def surfaces_from_scene(
     reasons: list[str] = []
     triangle_count = 0
     for (kind, form, file), same in copies.items():
-        mesh = _mesh_of_shape(form, file, size_m, meshes)
+        mesh = meshes.mesh(form, file, size_m)
         reasons += [mesh.reason] * len(same) * bool(mesh.reason)
         triangle_count += sum(len(part.faces) for part in mesh.parts)
         if len(surfaces) + len(mesh.parts) > MOST_SURFACES or triangle_count > MOST_TRIANGLES:
@@ -283,45 +281,14 @@ def surfaces_from_scene(
         shapes = [scene.shapes[element] for element in same]
         scales = np.array([
             shape.sizes_m if shape.type == 'box' else shape.mesh_scale for shape in shapes])
+        if mesh.reason and mesh.bounds is None:
+            scales[:] = 1.0
         surfaces += [
             Surface(kind, part, same, scales, np.array([
                 part.rgba if mesh.reason else shape.rgba_or(part.rgba or _GRAY)
                 for shape in shapes]))
             for part in mesh.parts]
     return surfaces, reasons
-
-
-def _mesh_of_shape(shape: Shape, file: str, size_m: float, meshes: MeshReader) -> Mesh:
-    """Return what is drawn of a shape, and why it is not the shape."""
-    if shape.type != 'mesh':
-        if shape.reason_without_surface:
-            return Mesh(reason=shape.reason_without_surface)
-        surface = _surface_of_shape(shape, 2.0 * size_m)
-        return Mesh((MeshPart(np.asarray(surface[0]), np.asarray(surface[1])),))
-    mesh = meshes.mesh(shape, file)
-    if mesh.parts:
-        return mesh
-    bounds = 0.015 * size_m * np.array([[-1.0], [1.0]]) * np.ones(3)
-    box = trimesh.creation.box(bounds=bounds if mesh.bounds is None else mesh.bounds)
-    return Mesh((MeshPart(box.vertices, box.faces, _MISSING),),
-                f'the mesh "{shape.mesh_uri}": {mesh.reason}')
-
-
-def _surface_of_shape(shape: Shape, largest_m: float) -> tuple[Points, Any]:
-    if shape.type in ('cone', 'plane'):
-        # Planes are often much larger than what stands on them.
-        size_m = tuple(min(size, largest_m) for size in shape.sizes_m)
-        return triangles_from_shape(shape._replace(sizes_m=size_m) if shape.type == 'plane' else (
-            shape))
-    surface = {
-        'box': lambda *sides: trimesh.creation.box(sides),
-        'capsule': lambda radius, length: trimesh.creation.capsule(
-            max(length, 0.0), radius, (12, 24)),
-        'cylinder': trimesh.creation.cylinder,
-        'ellipsoid': lambda *radii: trimesh.creation.icosphere().apply_scale(radii),
-        'sphere': lambda radius: trimesh.creation.icosphere(radius=radius),
-    }[shape.type](*shape.sizes_m)
-    return surface.vertices, surface.faces
 
 
 def bounds_of_scene(scene: Scene, origins: Points, surfaces: Sequence[Surface]) -> Points:
@@ -344,11 +311,6 @@ def bounds_of_scene(scene: Scene, origins: Points, surfaces: Sequence[Surface]) 
 def _set_poses(node: Any, poses: PoseArray) -> None:
     node.batched_positions = poses[:, :3].astype(np.float32)
     node.batched_wxyzs = poses[:, _WXYZ].astype(np.float32)
-
-
-def _elements_of_frames(tree: TfTree) -> NDArray[np.intp]:
-    """Return the element of each frame; of an optical frame that of its parent."""
-    return np.where(tree.elements < 0, tree.elements[tree.parents], tree.elements)
 
 
 @dataclasses.dataclass

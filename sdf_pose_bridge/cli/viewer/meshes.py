@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Read meshes, in a process that has little memory and little time.
+Make the surfaces of shapes, and read meshes in a process that has little memory and little time.
 
 Readers of mesh formats trust their files.
 """
@@ -29,6 +29,7 @@ from trimesh.resolvers import Resolver
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.scene.triangles import triangles_from_shape
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.limits import Usage
@@ -49,6 +50,7 @@ FORMATS = ('.dae', '.glb', '.gltf', '.obj', '.stl')
 """What is read. Archives are not, as they can unpack to any size."""
 
 _LARGEST_M = 1e9
+_MISSING = (0.88, 0.19, 0.19, 0.5)
 _NAMED_FORMATS = ('.bin', '.mtl')
 
 
@@ -68,9 +70,9 @@ class Mesh(NamedTuple):
 
     parts: tuple[MeshPart, ...] = ()
     reason: str = ''
-    """Why it has no parts; empty if it has."""
+    """Why these are not its surfaces; empty if they are."""
     bounds: Any = None
-    """Shape (2, 3): its lowest and its highest corner, if they are known in place of parts."""
+    """Shape (2, 3): its lowest and its highest corner, if nothing else of it is known."""
 
 
 class MeshReader:
@@ -85,21 +87,23 @@ class MeshReader:
         self._executor: ProcessPoolExecutor | None = None
         self._meshes: dict[object, Mesh] = {}
 
-    def mesh(self, shape: Shape, file: str) -> Mesh:
+    def mesh(self, shape: Shape, file: str, size_m: float) -> Mesh:
         """
-        Return a mesh.
+        Return what is drawn of a shape.
 
         :param file: path of the file that names it.
-        :return: its surfaces, or why there are none.
+        :param size_m: extent of the scene; no side of a plane is much longer.
+        :return: its surfaces, or a box where these are not known.
         """
-        path = self._finder.file_from_uri(shape.mesh_uri, file)
-        if path is None:
-            return Mesh(reason='it is not found')
-        status = os.stat(path)  # noqa: PTH116
-        key = (path, shape.submesh, status.st_mtime_ns, status.st_size)
-        if key not in self._meshes:
-            self._meshes[key] = self._read(path, shape.submesh)
-        return self._meshes[key]
+        if shape.type != 'mesh':
+            return _mesh_of_shape(shape, 2.0 * size_m)
+        mesh = self._mesh_of_file(shape, file)
+        if mesh.parts:
+            return mesh
+        unknown = np.array([[-1.0], [1.0]]) * np.full(3, 0.015 * size_m)
+        box = trimesh.creation.box(bounds=unknown if mesh.bounds is None else mesh.bounds)
+        return mesh._replace(parts=(MeshPart(box.vertices, box.faces, _MISSING),),
+                             reason=f'the mesh "{shape.mesh_uri}": {mesh.reason}')
 
     def close(self) -> None:
         """End the process."""
@@ -108,6 +112,16 @@ class MeshReader:
                 process.kill()
             self._executor.shutdown()
             self._executor = None
+
+    def _mesh_of_file(self, shape: Shape, file: str) -> Mesh:
+        path = self._finder.file_from_uri(shape.mesh_uri, file)
+        if path is None:
+            return Mesh(reason='it is not found')
+        status = os.stat(path)  # noqa: PTH116
+        key = (path, shape.submesh, status.st_mtime_ns, status.st_size)
+        if key not in self._meshes:
+            self._meshes[key] = self._read(path, shape.submesh)
+        return self._meshes[key]
 
     def _read(self, path: str, submesh: str) -> Mesh:
         if self._executor is None:
@@ -121,6 +135,26 @@ class MeshReader:
             self.close()
             return Mesh(reason=f'to read it takes more than {MOST_CPU_SECONDS:g} s of processor '
                                'time, or ends the process that does so')
+
+
+def _mesh_of_shape(shape: Shape, largest_m: float) -> Mesh:
+    if shape.reason_without_surface:
+        return Mesh(reason=shape.reason_without_surface)
+    sizes_m, creation = shape.sizes_m, trimesh.creation
+    if shape.type == 'plane':
+        # Planes are often much larger than what stands on them.
+        sizes_m = tuple(min(size_m, largest_m) for size_m in sizes_m)
+    if shape.type in ('cone', 'plane'):
+        return Mesh((MeshPart(*triangles_from_shape(shape._replace(sizes_m=sizes_m))),))
+    if shape.type == 'box':
+        surface = creation.box(sizes_m)
+    elif shape.type == 'cylinder':
+        surface = creation.cylinder(*sizes_m)
+    elif shape.type == 'capsule':
+        surface = creation.capsule(max(sizes_m[1], 0.0), sizes_m[0], count=(12, 24))
+    else:  # A sphere has one radius, an ellipsoid three.
+        surface = creation.icosphere().apply_scale(sizes_m if len(sizes_m) == 3 else sizes_m[0])
+    return Mesh((MeshPart(np.asarray(surface.vertices), np.asarray(surface.faces)),))
 
 
 def _limit_this_process() -> None:

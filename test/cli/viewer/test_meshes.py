@@ -146,12 +146,12 @@ def named(reader, tmp_path):
         if text is not None:
             (tmp_path / name).write_text(text)
         shape = Shape('mesh', (), (0.0, 0.0, 1.0), name, '', (1.0, 1.0, 1.0), None)
-        return reader.mesh(shape, str(tmp_path / 'model.sdf'))
+        return reader.mesh(shape, str(tmp_path / 'model.sdf'), 1.0)
     return read
 
 
 def test_missing_mesh(named):
-    assert named('none.stl').reason == 'it is not found'
+    assert named('none.stl').reason == 'the mesh "none.stl": it is not found'
 
 
 def test_mesh_that_cannot_be_read(named):
@@ -161,14 +161,14 @@ def test_mesh_that_cannot_be_read(named):
 def test_small_file_that_needs_much_memory(named):
     assert 'bytes' in named('a.gltf', mesh_texts.gltf(
         mesh_texts.IN_FILE, count=10**9, with_view=False)).reason
-    assert named('b.stl', mesh_texts.STL.format(y=1)).parts
+    assert not named('b.stl', mesh_texts.STL.format(y=1)).reason
 
 
 def test_mesh_that_takes_too_long(named, monkeypatch):
     monkeypatch.setattr(meshes, 'MOST_SECONDS', 0.0)
     assert 'takes more than' in named('a.stl', mesh_texts.STL.format(y=1)).reason
     monkeypatch.undo()
-    assert named('b.stl', mesh_texts.STL.format(y=1)).parts
+    assert not named('b.stl', mesh_texts.STL.format(y=1)).reason
 
 
 def test_mesh_is_remembered_until_its_file_changes(named):
