@@ -32,7 +32,7 @@ def test_missing_library_is_an_error_of_one_line(run_main, monkeypatch):
 
 
 def test_missing_browser_is_an_error_of_one_line(run_main, monkeypatch):
-    monkeypatch.setattr('shutil.which', lambda name: None)
+    monkeypatch.setattr('shutil.which', lambda name, **_: None)
     done = run_main('view', 'good.sdf', '-o', 'page.png')
     assert done.returncode == 1
     assert done.stderr.startswith(
