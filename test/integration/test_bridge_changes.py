@@ -257,6 +257,13 @@ def test_everything_is_published_again_at_a_rate(start_bridge, start_listener, f
     assert stamps == sorted(set(stamps))
 
 
+def test_a_rate_that_is_not_reached_is_reported(start_bridge, file):
+    frames = ''.join(f'<frame name="f{number}"/>' for number in range(5000))
+    file.write_text(world(1, extra=frames))
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={file}', '-p', 'publish_rate:=100.0')
+    bridge.wait_for_line('publish_rate 100.0 Hz is not reached: to publish everything takes ')
+
+
 def test_two_bridges_share_a_domain_by_prefixes(start_bridge, start_listener, file):
     for name in ('left', 'right'):
         start_bridge('--ros-args', '-r', f'__ns:=/{name}', '-p', f'sdf_file:={file}',

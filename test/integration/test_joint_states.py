@@ -273,6 +273,14 @@ def test_the_frame_of_poses_can_be_set_while_joints_move(start, file, joints, tf
     wait_for_z(tf, poses, 'upper', base=-1.0, tool=1.5)
 
 
+def test_topics_follow_a_reload_before_any_message(start_bridge, file, tf):
+    start_bridge('--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true')
+    poses = listen_to_poses(tf, 'tool')
+    tf.listener.wait(lambda: poses, lambda: 'a pose')
+    replace(file, ARM.format(tool=2))
+    tf.listener.wait(lambda: poses['tool'].pose.position.x == 2.0, lambda: poses)
+
+
 def test_listeners_get_poses_while_joints_move(start, file, joints, tf):
     start(file)
     listeners = {name: [] for name in ('transforms', 'poses/tool')}

@@ -13,6 +13,7 @@ from geometry_msgs.msg import TransformStamped
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy
 from rclpy.qos import QoSProfile
+from rclpy.qos import ReliabilityPolicy
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
@@ -104,10 +105,21 @@ def make_published(listener, wait_until, states):
     return published
 
 
-def test_a_message_with_another_number_of_positions_is_ignored(published):
+def test_messages_with_another_number_of_positions_are_ignored(published, capfd):
     wrong = joint_state(5, {'turn': 1.0})
     wrong.name.append('lift')
-    assert [sec for sec, _ in published(wrong, joint_state(6, {'turn': 0.0}))] == [6]
+    assert [sec for sec, _ in published(wrong, wrong, joint_state(6, {'turn': 0.0}))] == [6]
+    assert capfd.readouterr().err.count('has 2 names and 1 positions') == 1, 'not at a high rate'
+
+
+@pytest.mark.parametrize('is_published_later', [False, True])
+def test_publishers_that_are_best_effort_are_heard(states, is_published_later):
+    node = states._node
+    states.destroy()
+    JointStates(node, states._frames, is_published_later=is_published_later)
+    subscription, = node.subscriptions
+    assert node.resolve_topic_name('joint_states') == subscription.topic_name
+    assert subscription.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
 
 
 def test_a_second_message_with_one_stamp_is_not_published(published):
@@ -164,3 +176,11 @@ def test_topics_have_few_of_many_messages_and_the_last_one_again_at_rest(
     wait_until(lambda: stamps[-2:] == [200, 200], stamps)
     assert stamps[1] == 1
     assert len(stamps) <= 5 + seconds / TOPICS_PERIOD_S
+
+
+@pytest.mark.parametrize('is_published_later', [False, True])
+def test_what_was_created_for_it_is_destroyed_with_it(states, is_published_later):
+    node = states._node
+    states.destroy()
+    JointStates(node, states._frames, is_published_later=is_published_later).destroy()
+    assert [*node.timers, *node.subscriptions] == []

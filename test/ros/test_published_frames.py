@@ -77,6 +77,14 @@ def test_publishers_of_topics_that_stay_are_kept(publish, node):
     assert new.topic_name == '/bridge/transforms', 'which keeps another number of messages'
 
 
+def test_another_tree_gets_another_stamp(node):
+    publishers = Publishers(node)
+    first = PublishedFrames(publishers, tree_of_frames('a'), None, {})
+    same = PublishedFrames(publishers, first.tree, None, {}, first)
+    other = PublishedFrames(publishers, tree_of_frames('a'), None, {}, first)
+    assert first.stamp == same.stamp < other.stamp
+
+
 def test_many_topics_are_made_between_other_callbacks(publish, node):
     calls = []
     node.create_timer(0.0, lambda: calls.append(len(topics_of(node))))

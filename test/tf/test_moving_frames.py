@@ -79,6 +79,13 @@ def test_fixed_joints_move_nothing():
     assert not moving_ids(moving_tree(model_file(links + fixed_joint('j', 'a', 'b'))))
 
 
+def test_quaternions_have_the_canonical_sign():
+    moving = moving_tree(model_file(ARM)).moving
+    positions = np.array([4.0, -4.0])
+    assert (moving.transforms(positions)[:, 6] > 0.0).all()
+    assert (moving.poses(positions)[:, 6] >= 0.0).all()
+
+
 def test_rows_moved_by_a_degree_of_freedom():
     moving = moving_tree(model_file(ARM)).moving
     assert [moving.rows_moved_by([dof]).tolist() for dof in (0, 1)] == [[0], [1]]
