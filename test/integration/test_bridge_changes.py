@@ -257,6 +257,15 @@ def test_everything_is_published_again_at_a_rate(start_bridge, start_listener, f
     assert stamps == sorted(set(stamps))
 
 
+def test_a_rate_can_be_set(bridge, start_listener):
+    listener = start_listener()
+    listener.node.create_subscription(
+        TFMessage, '/tf_static', listener.tf_messages.append, 10)
+    result, = set_parameters(listener, publish_rate=20.0)
+    assert result.successful, result.reason
+    listener.wait(lambda: len(listener.tf_messages) > 2, lambda: 'messages without latching')
+
+
 def test_a_rate_that_is_not_reached_is_reported(start_bridge, file):
     frames = ''.join(f'<frame name="f{number}"/>' for number in range(5000))
     file.write_text(world(1, extra=frames))

@@ -2,17 +2,30 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frames published by a real node: which topics there are, and which publishers stay."""
 
+import time
+
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from geometry_msgs.msg import PoseStamped
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import DurabilityPolicy
+from rclpy.qos import QoSProfile
 from tf_checks import tree_of
 
+from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
+from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
 
 OTHERS = {'/tf_static', '/bridge/transforms'}
+LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+ARM = """<sdf version="1.11"><model name="arm"><link name="base"/><link name="upper"/>
+<joint name="turn" type="revolute"><parent>base</parent><child>upper</child>
+  <axis><xyz>0 0 1</xyz></axis></joint></model></sdf>"""
 WORLD = '<sdf version="1.10"><world name="w">{}</world></sdf>'
 
 
@@ -83,6 +96,33 @@ def test_another_tree_gets_another_stamp(node):
     same = PublishedFrames(publishers, first.tree, None, {}, first)
     other = PublishedFrames(publishers, tree_of_frames('a'), None, {}, first)
     assert first.stamp == same.stamp < other.stamp
+
+
+def test_moving_frames_are_not_published_with_the_fixed_ones(node, make_node):
+    scene = load_text(ARM)
+    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
+    frames = PublishedFrames(
+        Publishers(node), tree, JointPositions(scene, tree.moving.dofs),
+        {'upper': 'upper', 'base': 'base'})
+    node.executor.create_task(frames.publish_topics)
+    listener, found = make_node('listener'), []
+    for name in ('upper', 'base'):
+        listener.create_subscription(
+            PoseStamped, f'/bridge/poses/{name}',
+            lambda _, name=name: found.append(name), LATCHED)
+    node.executor.add_node(listener)
+
+    def wait_until(condition):
+        deadline = time.monotonic() + 20.0
+        while not condition():
+            assert time.monotonic() < deadline, found
+            node.executor.spin_once(timeout_sec=0.1)
+
+    wait_until(lambda: set(found) == {'upper', 'base'})
+    for _ in range(2):
+        node.executor.create_task(frames.publish_fixed_again)
+    wait_until(lambda: found.count('base') == 3)
+    assert found.count('upper') == 1
 
 
 def test_many_topics_are_made_between_other_callbacks(publish, node):
