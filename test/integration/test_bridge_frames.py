@@ -177,7 +177,9 @@ def test_topics_are_reliable_and_latched(late_listener, topic):
 
 
 def test_models_that_are_not_anchored_still_have_poses(start_bridge, start_listener, sdf_file):
-    start_bridge('--ros-args', '-p', f'sdf_file:={sdf_file}', '-p', 'anchor_models:=static')
+    bridge = start_bridge(
+        '--ros-args', '-p', f'sdf_file:={sdf_file}', '-p', 'anchor_models:=static')
+    bridge.wait_for_line('no transform from "world" to "robot"')
     listener = start_listener()
     listener.listen_to_frames()
     listener.listen_to_poses(TOPICS.values())

@@ -37,6 +37,7 @@ ARM = """<sdf version="1.11"><model name="arm">
 <joint name="grip" type="prismatic"><parent>base</parent><child>finger</child>
   <axis><xyz>1 0 0</xyz></axis></joint>
 </model></sdf>"""
+LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 NOW = 10**9
 """Seconds of a time that the clock has passed."""
 
@@ -47,15 +48,25 @@ def joint_state(sec, positions):
         position=list(positions.values()))
 
 
-@pytest.fixture(name='states')
-def joint_states(make_node):
+@pytest.fixture(name='moving_frames')
+def make_moving_frames(make_node):
+    """Makes frames that move; ``moving_frames(text)`` returns the node and the frames."""
     node = make_node('bridge')
-    scene = load_text(ARM)
-    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
     publishers = Publishers(node)
-    frames = PublishedFrames(publishers, tree, JointPositions(scene, tree.moving.dofs), {})
-    publishers.opened(frames.moving.transforms_topic)
-    return JointStates(node, frames.moving, is_published_later=False)
+
+    def moving_frames(text):
+        scene = load_text(text)
+        tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
+        frames = PublishedFrames(publishers, tree, JointPositions(scene, tree.moving.dofs), {})
+        publishers.opened(frames.moving.transforms_topic)
+        return node, frames.moving
+
+    return moving_frames
+
+
+@pytest.fixture(name='states')
+def joint_states(moving_frames):
+    return JointStates(*moving_frames(ARM), is_published_later=False)
 
 
 @pytest.fixture
@@ -154,6 +165,14 @@ def test_messages_that_are_published_later_are_published_together(published, sta
         (6, {'upper', 'slide', 'finger'}), (7, {'upper'})]
 
 
+def test_the_same_names_can_move_other_frames_later(published, states, moving_frames):
+    positions = {'turn': 0.5, 'lift': 0.5, 'grip': 0.5}
+    published(joint_state(5, positions))
+    _, frames = moving_frames(ARM.replace('type="revolute"', 'type="fixed"'))
+    states.replace(frames)
+    assert published(joint_state(6, positions))[-1] == (6, {'slide', 'finger'})
+
+
 def test_a_message_that_is_not_one_is_ignored(published, states):
     states.take(b'')
     states.take(serialize_message(joint_state(5, {'turn': 0.5}))[:30])
@@ -166,7 +185,7 @@ def test_topics_have_few_of_many_messages_and_the_last_one_again_at_rest(
     listener.create_subscription(
         TransformStamped, '/bridge/transforms',
         lambda each: each.child_frame_id == 'upper' and stamps.append(each.header.stamp.sec),
-        QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+        LATCHED)
     # At rest, before the first message, they have the time of the node.
     wait_until(lambda: stamps, stamps)
     begin = time.monotonic()
@@ -176,6 +195,20 @@ def test_topics_have_few_of_many_messages_and_the_last_one_again_at_rest(
     wait_until(lambda: stamps[-2:] == [200, 200], stamps)
     assert stamps[1] == 1
     assert len(stamps) <= 5 + seconds / TOPICS_PERIOD_S
+
+
+def test_after_a_message_frames_have_its_time_alone(listener, wait_until, states):
+    on_tf, on_transforms = [], []
+    listener.create_subscription(
+        TFMessage, '/tf', lambda each: on_tf.append(each.transforms[0].header.stamp.sec), 100)
+    listener.create_subscription(
+        TransformStamped, '/bridge/transforms',
+        lambda each: on_transforms.append(each.header.stamp.sec), LATCHED)
+    wait_until(lambda: on_tf, on_tf)
+    states.take(serialize_message(joint_state(5, {'turn': 0.5})))
+    # At once, and again at rest, for three frames.
+    wait_until(lambda: 5 in on_tf and on_transforms.count(5) == 6, on_transforms)
+    assert on_tf[on_tf.index(5):] == [5]
 
 
 @pytest.mark.parametrize('is_published_later', [False, True])
