@@ -36,7 +36,7 @@ MOST_CHARACTERS = 255
 """How long a name or a pattern may be; a prefix is a part of every frame id."""
 
 MOST_CHARACTERS_OF_PATH = 4096
-"""How long the path of a directory may be, as in Linux."""
+"""How long a path may be, as in Linux."""
 
 MOST_CHARACTERS_OF_SEPARATOR = 8
 """How long a separator may be, which stands many times in a frame id."""
@@ -99,12 +99,16 @@ def patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
     return tuple(values)
 
 
+def path_setting(value: str) -> str:
+    """Refuse what is too long for a path."""
+    _check_length(value, MOST_CHARACTERS_OF_PATH)
+    return value
+
+
 def directories_setting(values: Sequence[str]) -> tuple[Path, ...]:
     """Make paths, without those that are empty; refuse too many, and long ones."""
     _check_count(values, 'directories')
-    for value in values:
-        _check_length(value, MOST_CHARACTERS_OF_PATH)
-    return tuple(Path(value).expanduser() for value in values if value)
+    return tuple(Path(path_setting(value)).expanduser() for value in values if value)
 
 
 def _check_count(values: Sequence[str], what: str) -> None:

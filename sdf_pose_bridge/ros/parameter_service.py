@@ -23,6 +23,9 @@ from rclpy.parameter import Parameter
 from rclpy.parameter_service import ParameterService
 
 from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.ros.parameter_rules import MOST_VALUES
 from sdf_pose_bridge.ros.parameter_types import parameter_with_type
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.ros.services import SERVICE_QOS
@@ -78,12 +81,15 @@ def _parameters_from_messages(
 
     :return: the parameters, without read-only ones that keep their values, which "ros2 param load"
         of a dump sets too.
-    :raises ValueError: if there is no such parameter, or no such type.
+    :raises ValueError: if there is no such parameter, or no such type, or if there are too many.
     """
+    if len(messages) > MOST_VALUES:
+        msg = f'a call can set at most {MOST_VALUES} parameters, and this one has {len(messages)}'
+        raise ValueError(msg)
     parameters = []
     for message in messages:
         if not node.has_parameter(message.name):
-            msg = (f'there is no parameter "{message.name}"'
+            msg = (f'there is no parameter "{printable(shortened(message.name))}"'
                    f'{hint_from_names(message.name, DECLARATIONS)}')
             raise ValueError(msg)
         parameter = Parameter.from_parameter_msg(message)

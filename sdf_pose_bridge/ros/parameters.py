@@ -25,6 +25,7 @@ from sdf_pose_bridge.ros.parameter_rules import directories_setting
 from sdf_pose_bridge.ros.parameter_rules import HIGHEST_RATE
 from sdf_pose_bridge.ros.parameter_rules import kinds_setting
 from sdf_pose_bridge.ros.parameter_rules import LOWEST_RATE
+from sdf_pose_bridge.ros.parameter_rules import path_setting
 from sdf_pose_bridge.ros.parameter_rules import patterns_setting
 from sdf_pose_bridge.ros.parameter_rules import prefix_setting
 from sdf_pose_bridge.ros.parameter_rules import PUBLISHED_KINDS
@@ -107,7 +108,7 @@ class Settings:
         'The file to publish, of SDFormat or URDF.',
         'the path of a file or of a model directory, or a file://, package:// or model:// URI, '
         'such as package://name/worlds/cell.sdf; either this or robot_description is required',
-        str,
+        path_setting,
     )
     robot_description = Declaration(
         '',

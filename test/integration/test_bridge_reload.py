@@ -300,6 +300,7 @@ REFUSED = [
     ({'frame_prefix': 'a', 'kinds': ['linc']}, 'parameter kinds is "linc"'),
     ({'frame_prefix': 'a', 'frame_name': 'b'},
      'there is no parameter "frame_name"; did you mean "frame_names"?'),
+    ({'x' * 1000: 'a'}, f'there is no parameter "{"x" * 38}...{"x" * 38}"'),
 ]
 
 
@@ -313,6 +314,17 @@ def test_what_cannot_be_taken_is_answered_and_changes_nothing(bridge, listener):
     monitor.wait_for(DiagnosticStatus.OK)
     assert len(listener.tf_messages) == 1
     assert not error_lines(bridge)
+
+
+def test_more_parameters_than_a_call_can_set_are_refused(listener):
+    parameter = Parameter(
+        name='watch', value=ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=False))
+    answer = listener.call(
+        SetParameters, f'{BRIDGE}/set_parameters',
+        SetParameters.Request(parameters=[parameter] * 1001))
+    assert len(answer.results) == 1001
+    assert answer.results[0].reason == (
+        'a call can set at most 1000 parameters, and this one has 1001')
 
 
 @pytest.mark.parametrize('service', [SetParameters, SetParametersAtomically])

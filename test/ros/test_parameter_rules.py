@@ -32,6 +32,7 @@ from sdf_pose_bridge.tf.tree import AnchorModels
     (rules.kinds_setting, ['link', 'links'], 'is "links"; it must be made of model, '),
     (rules.kinds_setting, ['world'], 'is "world"; it must be made of model, '),
     (rules.patterns_setting, ['a'] * 1001, 'has 1001 patterns; it must have at most 1000'),
+    (rules.path_setting, 'x' * 4097, 'has a value of 4097 characters; it must have at'),
     (rules.patterns_setting, ['*', 'x' * 256], 'has a value of 256 characters; it must have at'),
     (rules.directories_setting, ['a'] * 1001, 'has 1001 directories; it must have at most 1000'),
     (rules.directories_setting, ['x' * 4097], 'has a value of 4097 characters; it must have at'),
