@@ -34,7 +34,7 @@ class JointStateBytes(NamedTuple):
     stamp: tuple[int, int]
     """Seconds and nanoseconds."""
     names: bytes
-    """The serialized names: the same bytes for the same names."""
+    """The serialized names. The bytes that align them may differ from message to message."""
     name_count: int
     positions: NDArray[np.float64]
     order: str

@@ -68,7 +68,7 @@ class _Plan:
     """What messages with the same names change."""
 
     names: bytes
-    """The serialized names."""
+    """The serialized names in the last message."""
     selection: Selection
     """The degrees of freedom that the names mean."""
     rows: NDArray[np.intp]
@@ -94,7 +94,7 @@ class JointStates:
         self._node = node
         self._logger = node.get_logger()
         self._frames = frames
-        self._plans: dict[bytes, _Plan] = {}
+        self._plans: dict[tuple[str, ...], _Plan] = {}
         self._last_plan: _Plan | None = None
         self._waiting_rows: set[int] = set()
         self._topics_due = 0.0
@@ -205,10 +205,12 @@ class JointStates:
         self._publish_topics_if_due()
 
     def _plan_of_message(self, message: JointStateBytes) -> _Plan:
-        if message.names in self._plans:
-            return self._plans[message.names]
+        names = tuple(message.name_list())
+        if names in self._plans:
+            self._plans[names].names = message.names
+            return self._plans[names]
         positions = self._frames.positions
-        selection = positions.selection(message.name_list())
+        selection = positions.selection(names)
         if selection.unknown:
             self._logger.warning(
                 f'{self._subscription.topic_name} has {names_in_line(selection.unknown)}, not the '
@@ -223,7 +225,7 @@ class JointStates:
         if len(selection.rows):
             unknown = np.flatnonzero(~positions.is_known).tolist()
             rows = self._frames.frames.rows_moved_by([*selection.changed, *unknown])
-        plan = self._plans[message.names] = _Plan(
+        plan = self._plans[names] = _Plan(
             message.names, selection, rows, self._frames.tf_message(rows))
         return plan
 
