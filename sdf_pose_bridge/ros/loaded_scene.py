@@ -10,6 +10,7 @@ from pathlib import Path
 import time
 from typing import NamedTuple
 
+from lxml import etree
 import numpy as np
 
 from sdf_pose_bridge.errors import PassingReadError
@@ -24,6 +25,7 @@ from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
+from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
@@ -37,6 +39,8 @@ class LoadedScene(NamedTuple):
     """The path of the file; of a text, the name of its parameter."""
     text: str | bytes
     """What was read; bytes are in the encoding that they declare."""
+    description: str
+    """The text for the topic ``robot_description``; empty for a world."""
     scene: Scene
     tree: TfTree
     lookup: PoseLookup
@@ -71,6 +75,7 @@ def loaded_scene_from_settings(
     return LoadedScene(
         path=path,
         text=text,
+        description='' if tree.world else unicode_text(text),
         scene=scene,
         tree=tree,
         lookup=PoseLookup(
@@ -101,6 +106,21 @@ def scene_with_shapes(loaded: LoadedScene, settings: Settings) -> Scene | None:
     is_same = scene.names == loaded.scene.names and np.array_equal(
         scene.poses, loaded.scene.poses)
     return scene if is_same else None
+
+
+def unicode_text(text: str | bytes) -> str:
+    """
+    Return XML as text.
+
+    :param text: XML; bytes are in the encoding that they declare.
+    :return: the text; of bytes that are not UTF-8 without the declaration, which is wrong for it.
+    """
+    if isinstance(text, str):
+        return text
+    try:
+        return text.decode('utf-8-sig')
+    except UnicodeDecodeError:
+        return str(etree.tostring(xml_from_bytes(text, '').root, encoding='unicode'))
 
 
 def _scene_from_text(

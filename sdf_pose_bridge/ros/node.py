@@ -155,7 +155,7 @@ class SdfPoseBridge:
 
     def _publish_robot_description(self) -> None:
         self._robot_description.update(
-            self._loaded if self._settings.publish_robot_description else None)
+            self._loaded.description if self._settings.publish_robot_description else '')
 
     def _report_success(self) -> None:
         loaded = self._loaded

@@ -32,6 +32,8 @@ class MeasuredChange(NamedTuple):
     """What a request changes."""
 
     change: PoseChange
+    diff: str
+    """The change as a unified diff. A large one takes long, and so is not left to the executor."""
     moved_frames: list[str]
     """Frame ids of the other frames that move."""
 
@@ -72,7 +74,7 @@ def set_pose(
         difference.name for difference in differences_of_scenes(scene, change.scene)
         if difference.change is Change.MOVED}
     elements = loaded.tree.elements.tolist()
-    return MeasuredChange(change, [
+    return MeasuredChange(change, change.diff, [
         frame_id for frame_id, other in zip(loaded.tree.frame_ids, elements, strict=True)
         if other not in (-1, element) and scene.names[other] in moved])
 
@@ -81,7 +83,7 @@ def fill_response(response: SetPose.Response, measured: MeasuredChange) -> None:
     """Answer that a change was made."""
     change = measured.change
     response.success = True
-    response.file, response.line, response.diff = change.path, change.line, change.diff
+    response.file, response.line, response.diff = change.path, change.line, measured.diff
     response.moved_frames = measured.moved_frames
 
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a load leaves in memory, as a node may load thousands of times; and paths that fail."""
+"""What a load leaves in memory, paths that fail, and texts in any encoding."""
 
 import gc
 
@@ -8,6 +8,7 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from lxml import etree
 from rclpy.parameter import Parameter
 from sdf_texts import model_file
 from sdf_texts import world_file
@@ -15,11 +16,14 @@ from sdf_texts import world_file
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.loaded_scene import scene_with_shapes
+from sdf_pose_bridge.ros.loaded_scene import unicode_text
 from sdf_pose_bridge.ros.parameters import changed_settings
 from sdf_pose_bridge.ros.parameters import settings_from_node
 
 GOOD = '<model name="m"><link name="l"><pose>1 0 0 0 0 0</pose></link><frame name="f"/></model>'
 BAD = GOOD.replace('<pose>', '<pose relative_to="x">')
+
+TEXT = '<robot name="größe"/>'
 
 
 @pytest.mark.parametrize('text', [GOOD, BAD], ids=['good', 'bad'])
@@ -105,3 +109,14 @@ def test_a_text_has_the_name_of_its_parameter_and_no_file(make_node):
 def test_shapes_are_read_again(reread):
     (shape,) = reread(WITH_SHAPE).shapes.values()
     assert shape.type == 'box'
+
+
+@pytest.mark.parametrize('text', [TEXT, TEXT.encode(), TEXT.encode('utf-8-sig')])
+def test_a_text_stays_as_it_is(text):
+    assert unicode_text(text) == TEXT
+
+
+@pytest.mark.parametrize('encoding', ['latin-1', 'utf-16'])
+def test_another_encoding_is_converted(encoding):
+    text = unicode_text(f'<?xml version="1.0" encoding="{encoding}"?>{TEXT}'.encode(encoding))
+    assert etree.fromstring(text).get('name') == 'größe'

@@ -1,24 +1,36 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The text for the topic, whatever the encoding of the file."""
+"""The topic of a robot's text: latched, and there only while there is a text."""
+
+import time
 
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from lxml import etree
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import DurabilityPolicy
+from rclpy.qos import QoSProfile
+from std_msgs.msg import String
 
-from sdf_pose_bridge.ros.robot_description import unicode_text
-
-TEXT = '<robot name="größe"/>'
-
-
-@pytest.mark.parametrize('text', [TEXT, TEXT.encode(), TEXT.encode('utf-8-sig')])
-def test_a_text_stays_as_it_is(text):
-    assert unicode_text(text) == TEXT
+from sdf_pose_bridge.ros.robot_description import RobotDescription
 
 
-@pytest.mark.parametrize('encoding', ['latin-1', 'utf-16'])
-def test_another_encoding_is_converted(encoding):
-    text = unicode_text(f'<?xml version="1.0" encoding="{encoding}"?>{TEXT}'.encode(encoding))
-    assert etree.fromstring(text).get('name') == 'größe'
+def test_a_text_is_published_once_and_nothing_without_one(make_node):
+    node = make_node('bridge')
+    quality = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    received = []
+    node.create_subscription(
+        String, 'robot_description', lambda message: received.append(message.data), quality)
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    description = RobotDescription(node)
+    for text in ('<robot/>', '<robot/>', '', '<robot name="r"/>'):
+        description.update(text)
+        assert node.count_publishers('robot_description') == bool(text)
+        if text:
+            deadline = time.monotonic() + 20
+            while not received or received[-1] != text:
+                assert time.monotonic() < deadline
+                executor.spin_once(timeout_sec=0.1)
+    assert received == ['<robot/>', '<robot name="r"/>']

@@ -84,7 +84,7 @@ def test_a_frame_that_a_joint_moves_away_is_refused(ask, path):
 
 
 def test_a_dry_run_writes_nothing(ask, path):
-    assert ask('mark', (3.0, 0.0, 0.0), dry_run=True).change.diff
+    assert ask('mark', (3.0, 0.0, 0.0), dry_run=True).diff
     assert path.read_text(encoding='utf-8') == ARM
 
 
