@@ -173,13 +173,13 @@ def test_the_same_names_can_move_other_frames_later(published, states, moving_fr
     assert published(joint_state(6, positions))[-1] == (6, {'slide', 'finger'})
 
 
-def test_bytes_that_align_names_mean_nothing(published, states, capfd):
+def test_bytes_that_align_names_mean_nothing(published, states):
     for sec, padding in (5, b'\0\0'), (6, b'ab'), (7, b'cd'):
-        data = serialize_message(joint_state(sec, {'turns': 0.5, 'lift': 0.5}))
-        begin = data.index(b'turns\0') + 6
+        data = serialize_message(joint_state(sec, {'slide': 0.5, 'lift': 0.5}))
+        begin = data.index(b'slide\0') + 6
         states.take(data[:begin] + padding + data[begin + 2:])
+    assert len(states._plans) == 1, 'as each takes time'
     assert published(joint_state(8, {'lift': 0.5}))[-1] == (8, {'slide', 'upper', 'finger'})
-    assert capfd.readouterr().err.count('has "turns", not the name') == 1
 
 
 def test_a_message_that_is_not_one_is_ignored(published, states):
