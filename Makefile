@@ -37,7 +37,7 @@ help:
 	@echo 'make licenses       licences of everything that is installed for this, as in docs/licenses.md'
 	@echo 'make audit          known vulnerabilities of it, by pip-audit; needs the network'
 	@echo 'make docs           the documentation, into docs/_build/html'
-	@echo 'make pictures       the pictures in the documentation; needs Chromium and Graphviz'
+	@echo 'make pictures       the pictures in the documentation but rviz.png; needs Chromium and Graphviz'
 	@echo 'make setup          only the environment in .underlay, which all of these share'
 	@echo 'make clean          remove the environment and everything that was built'
 	@echo ''
@@ -104,6 +104,7 @@ audit: setup
 docs: setup
 	@$(in_shell) python -m sphinx --fail-on-warning --keep-going --quiet docs docs/_build/html
 
+# Not rviz.png, which is a window of RViz on the command above it in README.md.
 pictures: setup
 	@. underlay/setup.bash \
 	  && python -m sdf_pose_bridge view examples/work_cell.sdf -o docs/pictures/work_cell.png \
