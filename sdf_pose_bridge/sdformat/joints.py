@@ -8,6 +8,7 @@ Source: ``Joint::Load`` and ``JointAxis::Load`` of libsdformat 14.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 import math
 from typing import NamedTuple
 
@@ -97,6 +98,16 @@ def joint_details_from_element(
         _end(xml, 'child', joint_type, sources, problems),
         (axis, axis2),
         _screw_pitch_m(xml) if has_thread else 0.0)
+
+
+def check_children_of_joint(
+    xml: XmlElement, sources: Sources, problems: Problems, tags: Sequence[str],
+) -> None:
+    """Check that a joint without a frame, such as one in a state, has what it must have."""
+    for tag in tags:
+        if attribute_of(xml, 'type') != 'ball' and first_child(xml, tag) is None:
+            msg = f'the joint has no <{tag}>'
+            problems.error(ElementMissingError(msg, sources.place(xml)))
 
 
 def _end(

@@ -29,6 +29,7 @@ from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.joints import check_children_of_joint
 from sdf_pose_bridge.sdformat.joints import joint_details_from_element
 from sdf_pose_bridge.sdformat.models import frame_details_from_element
 from sdf_pose_bridge.sdformat.models import model_details_from_element
@@ -66,6 +67,10 @@ MISSING_URI = '{sdf_pose_bridge}missing_uri'
 
 _CHECKS = {'material': check_material, 'submesh': check_submesh}
 """Functions that check elements without a frame, by the identifiers of these."""
+_CHECKS_OF_UNREAD = {
+    'joint': partial(check_children_of_joint, tags=('parent', 'child')),
+    'joint_state': partial(check_children_of_joint, tags=('angle',))}
+"""The same for elements in what libsdformat does not read, such as a state."""
 
 _DEFAULT_FORMAT = PoseFormat()
 
@@ -199,7 +204,8 @@ class _Reader:
                 self._builder.missing_includes.setdefault(parent, {})[
                     xml.get(MISSING_NAME, '')] = xml.get(MISSING_URI, '')
         else:
-            check = _CHECKS.get(definition.identifier) if definition.has_frames else None
+            checks = _CHECKS if definition.has_frames else _CHECKS_OF_UNREAD
+            check = checks.get(definition.identifier)
             if check is not None:
                 check(xml, self._sources, self._problems)
             self._read_children(xml, definition, NO_ELEMENT, scope, path, depth)

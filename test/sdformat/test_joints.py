@@ -8,7 +8,9 @@ import pytest
 from sdf_texts import codes_of
 from sdf_texts import joint
 from sdf_texts import model_file
+from sdf_texts import only_error
 from sdf_texts import TWO_LINKS
+from sdf_texts import world_file
 
 from sdf_pose_bridge import load_text
 
@@ -47,6 +49,26 @@ def test_joint_has_a_type(joint_type):
 ])
 def test_joint_without_an_end_is_refused(content, joint_type, code):
     assert codes_of(model_file(TWO_LINKS + joint(content, joint_type=joint_type))) == [code]
+
+
+STATE = '<state world_name="w">{}</state>'
+INSERTION = STATE.format('<insertions><model name="m">{}</model></insertions>')
+
+
+@pytest.mark.parametrize(('place', 'content', 'missing'), [
+    (STATE.format('<model name="m">{}</model>'), '<joint name="j"/>', 'angle'),
+    (INSERTION, '<joint name="j" type="fixed"><child>x</child></joint>', 'parent'),
+    ('<actor name="a">{}</actor>', '<joint name="j" type="fixed"><parent>x</parent></joint>',
+     'child'),
+])
+def test_joint_without_a_frame_must_have_its_parts(place, content, missing):
+    error = only_error(world_file(place.format(content)))
+    assert error.code == 'ELEMENT_MISSING'
+    assert f'the joint has no <{missing}>' in error.message
+
+
+def test_ball_joint_without_a_frame_may_have_no_ends():
+    load_text(world_file(INSERTION.format('<joint name="j" type="ball"/>')))
 
 
 def test_joint_without_both_ends_has_two_errors():
