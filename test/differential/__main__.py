@@ -75,7 +75,8 @@ def report(tally: Tally, seconds: float) -> None:
           f'{", " + traits if traits else ""}), {tally.poses} poses, {tally.refused} refused, '
           f'{seconds:.0f} s')
     print(f'first error of libsdformat: also the first one here in {tally.same_first_code} '
-          f'refused scenes, a later one in {tally.later_first_code}')
+          f'refused scenes, a later one in {tally.later_first_code}; moments of inertia, which '
+          f'are not checked here, in {tally.wrong_moments}')
     print(f'{len(tally.differences)} differences')
 
 
