@@ -15,7 +15,6 @@ MODULES = sorted(
 PAGES = [ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').glob('*.md'))]
 
 TESTED_AS_A_WHOLE = {
-    'cli/viewer/page.py': ['integration/test_view_page.py'],
     'cli/viewer/server.py': ['integration/test_view_page.py'],
     'ros/node.py': [
         'integration/test_bridge_changes.py', 'integration/test_bridge_reload.py',

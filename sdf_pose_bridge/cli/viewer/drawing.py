@@ -42,7 +42,7 @@ MOST_TRIANGLES = 3_000_000
 MOST_NAMES = 500
 """How many names are shown at once."""
 
-NAMES, LINES = '/names', '/lines to parents'
+NAMES, LINES, GIZMO, _SELECTED = '/names', '/lines to parents', '/gizmo', '/selected'
 GROUPS = (NAMES, LINES, '/visuals', '/collisions')
 """The nodes that can be hidden, besides one for each kind of frame."""
 
@@ -171,19 +171,23 @@ class Drawing:
 
     def mark(self, pose: Pose | None) -> None:
         """Show larger axes at a pose in the root frame; none for None."""
-        if '/selected' in self._nodes:
-            self._nodes.pop('/selected').remove()
+        self.remove(_SELECTED)
         if pose is not None:
-            self._nodes['/selected'] = self._server.scene.add_frame(
-                '/selected', axes_length=2.0 * self._length_m,
-                axes_radius=0.08 * self._length_m, position=pose[:3],
-                wxyz=(pose.qw, *pose[3:6]))
+            self._nodes[_SELECTED] = self._server.scene.add_frame(
+                _SELECTED, axes_length=2.0 * self._length_m, axes_radius=0.08 * self._length_m,
+                position=pose[:3], wxyz=(pose.qw, *pose[3:6]))
 
     def add_gizmo(self, pose: Pose) -> Any:
         """Return a gizmo at a pose in the root frame."""
-        return self._server.scene.add_transform_controls(
-            '/gizmo', 4.0 * self._length_m, position=pose[:3], wxyz=(pose.qw, *pose[3:6]),
+        self._nodes[GIZMO] = self._server.scene.add_transform_controls(
+            GIZMO, 4.0 * self._length_m, position=pose[:3], wxyz=(pose.qw, *pose[3:6]),
             depth_test=False)
+        return self._nodes[GIZMO]
+
+    def remove(self, name: str) -> None:
+        """Remove a node, if there is one of this name."""
+        if name in self._nodes:
+            self._nodes.pop(name).remove()
 
     def place_names(self, tree: TfTree) -> None:
         """Show the names of frames, where the camera sees them."""
@@ -203,7 +207,8 @@ class Drawing:
                 self._labels.append(self._server.scene.add_label(
                     f'{NAMES}/{number}', text, position=point, font_screen_scale=_SCALE_OF_NAMES))
                 continue
-            self._labels[number].position = point
+            if not np.array_equal(self._labels[number].position, point):
+                self._labels[number].position = point
             if self._labels[number].text != text:
                 self._labels[number].text = text
 

@@ -19,6 +19,7 @@ import viser
 from sdf_pose_bridge.cli.printing import kind_labels_of
 from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.viewer.drawing import Drawing
+from sdf_pose_bridge.cli.viewer.drawing import GIZMO
 from sdf_pose_bridge.cli.viewer.drawing import GROUPS
 from sdf_pose_bridge.cli.viewer.drawing import node_of_kind
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped
@@ -86,7 +87,6 @@ class Page:
         self._dragged: Pose | None = None
         self._loaded: Scene | None = None
         threading.Thread(target=self._follow_sliders, name='sliders', daemon=True).start()
-        server.on_client_connect(self._follow_camera)
 
     def show(self, scene: Scene) -> list[str]:
         """
@@ -102,6 +102,7 @@ class Page:
         tree = tf_tree_from_scene(scene, self._options)
         is_in_model = elements_in_model(scene, self._options.model) & (scene.roots == 0)
         with self._lock, self._server.atomic():
+            is_first = self._loaded is None
             self._loaded = self._scene = scene
             self._tree, self._is_in_model = tree, is_in_model
             self._tops = _tops_of_scene(scene)
@@ -110,7 +111,11 @@ class Page:
                 name: value for name, value in self._positions.items() if name in self._dofs}
             self._move()
             self._add_controls()
-            return self._draw()
+            reasons = self._draw()
+        if is_first:
+            # This calls the function for browsers that have connected already, too.
+            self._server.on_client_connect(self._follow_camera)
+        return reasons
 
     def show_errors(self, lines: Iterable[str]) -> None:
         """Show the errors of a file, a line for each, above its last scene."""
@@ -287,6 +292,7 @@ class Page:
         """Describe the selected frame, and mark it in the scene."""
         ids, self._dragged = self._tree.frame_ids, None
         self._write.visible = False
+        self._drawing.remove(GIZMO)
         if self._selected not in ids:
             self._drawing.mark(None)
             self._description.content = _HOW_TO_SELECT

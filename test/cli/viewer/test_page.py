@@ -1,0 +1,42 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the page shows, without a browser; integration/test_view_page.py uses it in one."""
+
+import pytest
+
+pytest.importorskip('viser', reason='needs viser')
+from sdf_pose_bridge import load
+from sdf_pose_bridge.cli.printing import Units
+from sdf_pose_bridge.cli.viewer.meshes import MeshReader
+from sdf_pose_bridge.cli.viewer.page import Page
+from sdf_pose_bridge.cli.viewer.server import server_for_this_machine
+from sdf_pose_bridge.errors import ElementInvalidError
+from sdf_pose_bridge.sdformat.include.uris import resource_finder
+from sdf_pose_bridge.tf.tree import TfOptions
+
+TEXT = """<sdf version="1.11"><model name="m"><link name="l"/>
+  <frame name="free"><pose>0 0 1 0 0 0</pose></frame><frame name="fixed"/></model></sdf>"""
+
+
+@pytest.fixture
+def server():
+    """A server on a free port."""
+    of_page = server_for_this_machine(0)
+    yield of_page
+    of_page.stop()
+
+
+def put(scene, element, pose, measured, *, dry_run):
+    """Refuse to place one of the frames, as the file cannot say some poses."""
+    if scene.names[element].endswith('fixed'):
+        raise ElementInvalidError('no', scene.place(element))
+
+
+def test_gizmo_is_there_for_frames_that_can_be_placed_only(server, tmp_path):
+    (tmp_path / 'm.sdf').write_text(TEXT)
+    page = Page(server, TfOptions(), Units(False, False), MeshReader(resource_finder([], {})), put)
+    assert page.show(load(tmp_path / 'm.sdf', shapes=True)) == []
+    frames = page._tree.frame_ids
+    for name, has_gizmo in (('free', True), ('fixed', False), ('free', True)):
+        page._select(frames.index(name))
+        assert (server.scene.get_handle_by_name('/gizmo') is not None) is has_gizmo
