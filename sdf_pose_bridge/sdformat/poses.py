@@ -146,7 +146,7 @@ def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> list[float]:
     count = len(layout.split())
     words = _words(text) or _IDENTITY_TEXTS[count].split()
     shown = _shown(text)
-    for word in words:
+    for word in words[:count]:
         if not _DECIMAL_NUMBER.fullmatch(word):
             msg = f'"{word[:80]}" in the pose "{shown}" is not a finite decimal number'
             raise PoseTextError(msg)

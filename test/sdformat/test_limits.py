@@ -88,6 +88,13 @@ def test_model_that_is_merged_often_is_checked_once(tmp_path):
     assert len(scene.names) == 1 + 3 * 100
 
 
+def test_long_text_that_is_included_often_is_refused(tmp_path):
+    write_files(
+        tmp_path, long=model_file(f'<link name="l"><pose>{"1 " * 100_000}</pose></link>'),
+        main=world_file('<include><uri>long.sdf</uri></include>' * 100))
+    assert exceeded_limit(tmp_path / 'main.sdf') == 'work'
+
+
 def test_includes_that_are_searched_in_many_directories_are_limited(tmp_path):
     write_files(tmp_path, main=world_file(''.join(
         f'<include><uri>model://none{number}</uri></include>' for number in range(300))))

@@ -40,6 +40,7 @@ from sdf_pose_bridge.sdformat.include.params import params_of
 from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
 from sdf_pose_bridge.sdformat.include.uris import ModelFile
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
+from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_DIRECTORY
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_INCLUDE
@@ -93,6 +94,7 @@ class IncludeExpansion:
         self._canonical_link_of = canonical_link_of
         self._files: dict[str, Document | None] = {}
         self._model_files: dict[str, ModelFile | str] = {}
+        self._steps_of_copies: dict[XmlElement, int] = {}
         self._missing_uris: set[str] = set()
         self._canonical_links: dict[tuple[XmlElement, str, bytes], str | None] = {}
         self._undefined = UndefinedReporter(sources, problems)
@@ -146,7 +148,9 @@ class IncludeExpansion:
         if chosen is None or is_merge is None:
             return
         self.may_hold_scoped_names |= found.may_hold_scoped_names
-        self._count_copy(include, chosen)
+        if chosen not in self._steps_of_copies:
+            self._steps_of_copies[chosen] = _steps_of_copy(chosen)
+        self._count(self._steps_of_copies[chosen], include)
         top = self._sources.copy_of(chosen)
         self._sources.set_include(top, include)
         self._override(include, top)
@@ -162,12 +166,6 @@ class IncludeExpansion:
 
     def _count(self, steps: int, include: XmlElement) -> None:
         self._sources.usage.add('work', steps, lambda: self._sources.place(include))
-
-    def _count_copy(self, include: XmlElement, top: XmlElement) -> None:
-        """Count the work of copying an element and reading the copy."""
-        elements = int(top.xpath('count(descendant-or-self::*)'))
-        named = int(top.xpath('count(descendant-or-self::*[@name])'))
-        self._count(STEPS_OF_ELEMENT * elements + STEPS_OF_NAMED_ELEMENT * named, include)
 
     # What an include names
 
@@ -350,8 +348,7 @@ class IncludeExpansion:
 
         def canonical_link_of(root: XmlElement) -> str | None:
             if key not in self._canonical_links:
-                self._count_copy(include, root)
-                self._count(STEPS_OF_MERGE, include)
+                self._count(STEPS_OF_MERGE + _steps_of_copy(root), include)
                 self._canonical_links[key] = self._canonical_link_of(root)
             return self._canonical_links[key]
 
@@ -367,6 +364,19 @@ class IncludeExpansion:
             parent.remove(include)
         else:
             parent.replace(include, top)
+
+
+def _steps_of_copy(top: XmlElement) -> int:
+    """Return the work of copying an element and reading the copy."""
+    elements, named, nodes, attributes = (
+        int(top.xpath(f'count({path})')) for path in (
+            'descendant-or-self::*', 'descendant-or-self::*[@name]', 'descendant::node()',
+            'descendant-or-self::*/@*'))
+    # Mostly the first is the largest: few elements have long texts, or comments between them.
+    return max(
+        STEPS_OF_ELEMENT * elements + STEPS_OF_NAMED_ELEMENT * named,
+        STEPS_OF_ELEMENT * (nodes + attributes),
+        len(etree.tostring(top, with_tail=False)) // CHARACTERS_OF_STEP)
 
 
 def _may_hold_includes(xml: XmlElement) -> bool:
