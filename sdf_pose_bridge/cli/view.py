@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import argparse
-from collections import Counter
 from collections.abc import Iterable
 from functools import partial
 import importlib
@@ -83,16 +82,14 @@ def run(options: argparse.Namespace) -> int:
     page = pages.Page(
         server, tf_options_from_arguments(options), units_from_arguments(options), reader,
         partial(set_pose, options=options) if options.edit else None)
-    reasons = None
+    lines = None
     try:
         with printed_errors():
-            reasons = page.show(scene)
-        if reasons is None:
+            lines = page.show(scene)
+        if lines is None:
             return 1
-        for reason, count in Counter(reasons).items():
-            what = '1 shape is' if count == 1 else f'{count} shapes are'
-            print(f'sdf_pose view: {what} not drawn as the file means it: {printable(reason)}',
-                  file=sys.stderr)
+        for line in lines:
+            print(f'sdf_pose view: {line}', file=sys.stderr)
         if options.output is None:
             _open(f'http://{servers.ADDRESS}:{server.get_port()}')
             _follow(page, scene.files, options)

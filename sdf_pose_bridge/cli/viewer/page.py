@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from collections.abc import Iterable
 from dataclasses import replace
@@ -95,7 +96,7 @@ class Page:
         What is hidden, the frame that is selected and the positions of joints stay.
 
         :param scene: the scene, loaded with its shapes.
-        :return: why shapes are not drawn as the file means them, for each of them.
+        :return: lines that say which shapes are not drawn as the file means them.
         :raises SdfError: if the scene has no TF tree, or a model to show does not exist; then the
             page stays as it is.
         """
@@ -111,17 +112,24 @@ class Page:
                 name: value for name, value in self._positions.items() if name in self._dofs}
             self._move()
             self._add_controls()
-            reasons = self._draw()
+            lines = [
+                f'{"1 shape is" if count == 1 else f"{count} shapes are"} not drawn as the file '
+                f'means it: {printable(reason)}'
+                for reason, count in Counter(self._draw()).items()]
+            self._show_lines('reasons', lines)
         if is_first:
             # This calls the function for browsers that have connected already, too.
             self._server.on_client_connect(self._follow_camera)
-        return reasons
+        return lines
 
     def show_errors(self, lines: Iterable[str]) -> None:
         """Show the errors of a file, a line for each, above its last scene."""
         with self._lock:
-            text = '\n'.join(map(escaped, lines))
-            self._errors.content = f'<pre class="errors" style="{_ERROR_STYLE}">{text}</pre>'
+            self._show_lines('errors', lines)
+
+    def _show_lines(self, name: str, lines: Iterable[str]) -> None:
+        text = '\n'.join(map(escaped, lines))
+        self._lines.content = text and f'<pre class="{name}" style="{_ERROR_STYLE}">{text}</pre>'
 
     def _draw(self) -> list[str]:
         hidden = [
@@ -193,7 +201,7 @@ class Page:
         gui, labels = self._server.gui, kind_labels_of(self._scene, self._tree)
         gui.reset()
         gui.set_panel_label(printable(self._scene.path))
-        self._errors = gui.add_html('')
+        self._lines = gui.add_html('')
         with gui.add_folder('Show'):
             for label in dict.fromkeys(labels):
                 self._add_switch(node_of_kind(label), f'{label} ({labels.count(label)})')

@@ -32,9 +32,22 @@ def put(scene, element, pose, measured, *, dry_run):
         raise ElementInvalidError('no', scene.place(element))
 
 
-def test_gizmo_is_there_for_frames_that_can_be_placed_only(server, tmp_path):
+@pytest.fixture
+def page(server):
+    """A page, the frames of which can be dragged."""
+    return Page(server, TfOptions(), Units(False, False), MeshReader(resource_finder([], {})), put)
+
+
+def test_page_says_what_it_does_not_draw(page, tmp_path):
+    geometry = '<visual name="v"><geometry><mesh><uri>&lt;b&gt;</uri></mesh></geometry></visual>'
+    (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{geometry}</link>'))
+    assert page.show(load(tmp_path / 'm.sdf', shapes=True)) == [
+        '1 shape is not drawn as the file means it: the mesh "<b>": it is not found']
+    assert '&lt;b&gt;&quot;: it is not found' in page._lines.content
+
+
+def test_gizmo_is_there_for_frames_that_can_be_placed_only(page, server, tmp_path):
     (tmp_path / 'm.sdf').write_text(TEXT)
-    page = Page(server, TfOptions(), Units(False, False), MeshReader(resource_finder([], {})), put)
     assert page.show(load(tmp_path / 'm.sdf', shapes=True)) == []
     frames = page._tree.frame_ids
     for name, has_gizmo in (('free', True), ('fixed', False), ('free', True)):
