@@ -250,6 +250,8 @@ def _lines_and_warnings(
     # Most texts have nothing like it, which this tells in a fraction of the time of the search.
     rest = text.translate(None, _NOT_TAGS_AND_BREAKS)
     has_break = (b'<\n' in rest or b'<\t' in rest) and _BREAK_IN_TAG.search(text) is not None
+    # A value may hold a ">" before the break.
+    has_break = has_break or rest.count(b'<') != rest.count(b'>')
     if not has_break and text.count(b'\n') < _LAST_LINE:
         return {}, []
     tags = np.array([tag.span(1) for tag in START_TAG.finditer(text) if tag[1]])

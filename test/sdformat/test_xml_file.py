@@ -290,6 +290,12 @@ def test_processing_instruction_before_the_outermost_element_is_accepted():
     assert names_in('<?x y?>' + model_file(LINK)) == ['m', 'm::l']
 
 
+@pytest.mark.parametrize('attributes', ['\nnot_defined="1"', ' alias="a>b"\nnot_defined="1"'])
+def test_tag_over_several_lines_has_the_line_of_its_beginning(attributes):
+    scene = load_text(model_file(f'\n<link name="l"{attributes}/>'))
+    assert {warning.place.line for warning in scene.warnings} == {2}
+
+
 # Comments
 
 @pytest.mark.parametrize('comment', [
