@@ -16,7 +16,9 @@ import subprocess
 import sys
 import tempfile
 import time
+from typing import NamedTuple
 
+from benchmarks.bench_idle import processor_time_ns
 from benchmarks.harness import AtMostTimes
 from benchmarks.harness import benchmark
 from benchmarks.harness import DOMAINS
@@ -75,6 +77,13 @@ exec(program)
 """
 
 
+class Start(NamedTuple):
+    """How long a program took from its start until it published."""
+
+    seconds: float
+    processor_s: float
+
+
 class Starter:
     """
     Starts programs, each in a domain of its own, and ends all of them.
@@ -99,8 +108,8 @@ class Starter:
         self._processes.append(process)
         return process
 
-    def until_published(self, command: list[str]) -> float:
-        """Start a program; return the seconds until it has published."""
+    def until_published(self, command: list[str]) -> Start:
+        """Start a program and wait until it has published."""
         reader, writer = os.pipe()
         begin = time.perf_counter()
         process = self.start(
@@ -108,7 +117,7 @@ class Starter:
             pass_fds=[writer])
         os.close(writer)
         published = os.read(reader, 1)
-        seconds = time.perf_counter() - begin
+        start = Start(time.perf_counter() - begin, 1e-9 * processor_time_ns(process))
         os.close(reader)
         # The next start must not share the processors with its end.
         process.kill()
@@ -116,7 +125,7 @@ class Starter:
         if not published:
             msg = f'{command[0]} ended before it published anything'
             raise Unavailable(msg)
-        return seconds
+        return start
 
     def until_received(self, command: list[str]) -> float:
         """Start a program for a listener that waits; return the seconds until it got something."""
@@ -229,10 +238,20 @@ def start_and_minimal_node() -> Iterator[tuple[Function, Function | None]]:
     with prepared_starter() as (starter, ours, theirs):
         def fastest(command: list[str]) -> Took:
             # Whatever else the machine does only makes a start longer.
-            return Took(min(starter.until_published(command) for _ in range(STARTS_PER_RUN)))
+            return Took(min(
+                starter.until_published(command).seconds for _ in range(STARTS_PER_RUN)))
 
         yield lambda: fastest(ours), lambda: fastest(theirs)
         report_imports(starter)
+
+
+@benchmark(
+    'start to /tf_static of the work cell published, processor time',
+    counterpart='a minimal node that publishes an empty message', goal=AtMostTimes(1.08))
+def processor_time_of_start() -> Iterator[tuple[Function, Function | None]]:
+    with prepared_starter() as (starter, ours, theirs):
+        yield (lambda: Took(starter.until_published(ours).processor_s),
+               lambda: Took(starter.until_published(theirs).processor_s))
 
 
 class LateStarts:
