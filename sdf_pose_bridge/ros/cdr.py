@@ -50,16 +50,18 @@ class StampedMessages:
         numbers: npt.NDArray[np.int64], bounds: Sequence[tuple[int, int]],
     ) -> None:
         self._buffer = buffer
+        self._integers = buffer.view('<i4')
+        self._floats = buffer.view('<f8')
         self._stamps = stamps
         self._numbers = numbers
         self._bounds = bounds
 
     @cached_property
-    def _words_of_stamps(self) -> npt.NDArray[np.int64]:
+    def _places_of_stamps(self) -> npt.NDArray[np.int64]:
         return (self._stamps // 4)[:, np.newaxis] + np.arange(2)
 
     @cached_property
-    def _words_of_numbers(self) -> npt.NDArray[np.int64]:
+    def _places_of_numbers(self) -> npt.NDArray[np.int64]:
         return (self._numbers // 8)[:, np.newaxis] + np.arange(7)
 
     def __len__(self) -> int:
@@ -71,7 +73,7 @@ class StampedMessages:
 
         :param nanosec: nanoseconds of the stamp, from 0 to 999,999,999.
         """
-        self._buffer.view('<i4')[self._words_of_stamps] = sec, nanosec
+        self._integers[self._places_of_stamps] = sec, nanosec
         data = self._buffer.tobytes()
         return [data[begin:end] for begin, end in self._bounds]
 
@@ -81,7 +83,7 @@ class StampedMessages:
 
         :param poses: shape (n, 7), in the order of the messages, in metres, quaternion x y z w.
         """
-        self._buffer.view('<f8')[self._words_of_numbers] = poses
+        self._floats[self._places_of_numbers] = poses
 
 
 def tf_message(

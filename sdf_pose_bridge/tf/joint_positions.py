@@ -138,9 +138,11 @@ class JointPositions:
         :return: the names whose values are not finite or too large; their positions stay.
         """
         dofs, new = selection.dofs, values[selection.rows]
-        is_valid = np.abs(new) <= LARGEST_POSITION
         invalid: list[str] = []
-        if not is_valid.all():
+        sizes = np.abs(new)
+        # One that is not a number is the largest.
+        if not sizes.max(initial=0.0) <= LARGEST_POSITION:
+            is_valid = sizes <= LARGEST_POSITION
             invalid = [self.names[dof] for dof in dofs[~is_valid].tolist()]
             dofs, new = dofs[is_valid], new[is_valid]
         self.values[dofs] = new
