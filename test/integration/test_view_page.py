@@ -134,8 +134,8 @@ def test_names_and_errors_are_text(page, shown):
 def point_on_screen(page, point):
     """Return where a point of the scene is in the picture, as the camera stands at first."""
     width, height = page.run('[window.innerWidth, window.innerHeight]')
-    middle = np.array([0.5, 0.0, 0.0])
-    to_scene = -1.6 * np.array([0.75, -0.5, 0.45])
+    middle = np.array([0.45, 0.0, 0.0])
+    to_scene = -1.6 * 1.1 * np.array([0.75, -0.5, 0.45])
     forward = to_scene / np.linalg.norm(to_scene)
     right = np.cross(forward, (0, 0, 1))
     right /= np.linalg.norm(right)

@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from collections.abc import Iterator
 from collections.abc import Sequence
-import dataclasses
 import math
 from typing import Any
 from typing import NamedTuple
@@ -117,9 +116,10 @@ class Drawing:
         bounds = bounds_of_scene(scene, origins, self._surfaces)
         self._size_m = float(np.ptp(bounds, axis=0).max()) or 1.0
         # A floor is often much larger than what stands on it.
-        self._view_m = max(extent_m, 0.3 * self._size_m)
+        is_floor = 0.0 < extent_m < 0.4 * self._size_m
+        self._view_m = max(extent_m, 0.3 * self._size_m) if is_floor else self._size_m
         self._middle = 0.5 * np.sum(
-            bounds if extent_m == 0.0 else (origins.min(axis=0), origins.max(axis=0)), axis=0)
+            (origins.min(axis=0), origins.max(axis=0)) if is_floor else bounds, axis=0)
         if self.camera is None:
             self._look_at_everything()
         self._length_m = length_m = self._length_of_axes(tree)
@@ -318,15 +318,30 @@ def _set_poses(node: Any, poses: PoseArray) -> None:
     node.batched_wxyzs = poses[:, _WXYZ].astype(np.float32)
 
 
-@dataclasses.dataclass
-class _Label:
+class _Label(NamedTuple):
     """Names in a rectangle of the picture, in parts of its height."""
 
-    point: Points
+    top: float
     left: float
-    right: float
-    bottom: float
+    point: Points
     names: list[str]
+
+    @property
+    def lines(self) -> list[str]:
+        """Return the lines of the text."""
+        more = len(self.names) - _MOST_IN_A_LABEL
+        return self.names[:_MOST_IN_A_LABEL] + ([f'and {more} more'] if more > 0 else [])
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Return the height and the width."""
+        return _LINE_HEIGHT * len(self.lines), _CHARACTER_WIDTH * max(map(len, self.lines))
+
+    def is_on(self, other: _Label) -> bool:
+        """Return whether a part of one would lie on the other."""
+        (height, width), (other_height, other_width) = self.size, other.size
+        return (self.top < other.top + other_height and other.top < self.top + height
+                and self.left < other.left + other_width and other.left < self.left + width)
 
 
 def labels_from_names(
@@ -351,18 +366,11 @@ def labels_from_names(
     labels: list[_Label] = []
     places = scale * np.stack([y[seen], x[seen]])
     for top, left, index in sorted(zip(*places.tolist(), seen.tolist(), strict=True)):
-        end = left + _CHARACTER_WIDTH * len(names[index])
-        label = next((label for label in labels if top < label.bottom and left < label.right
-                      and label.left < end), None)
-        if label is None:
-            labels.append(
-                _Label(points[index], left, end, top + _LINE_HEIGHT, [names[index]]))
-            continue
-        label.names.append(names[index])
-        if len(label.names) <= _MOST_IN_A_LABEL + 1:
-            label.bottom += _LINE_HEIGHT
-            label.right = max(label.right, label.left + end - left)
+        label = _Label(top, left, points[index], [names[index]])
+        while other := next(filter(label.is_on, labels), None):
+            labels = [each for each in labels if each is not other]
+            higher, lower = sorted((other, label), key=lambda each: each.top)
+            label = higher._replace(names=higher.names + lower.names)
+        labels.append(label)
     for label in labels:
-        more = len(label.names) - _MOST_IN_A_LABEL
-        last = [f'and {more} more'] if more > 0 else []
-        yield '\n'.join(label.names[:_MOST_IN_A_LABEL] + last), label.point
+        yield '\n'.join(label.lines), label.point

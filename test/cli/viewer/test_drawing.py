@@ -133,6 +133,11 @@ def test_names_that_would_lie_on_one_another_are_joined():
     assert found[1][1].tolist() == [0, 0, 0]
 
 
+def test_label_that_grows_joins_the_one_that_it_reaches():
+    found = labels(('a', (0, 0, 0)), ('right', (0.3, 0, -0.05)), ('b' * 40, (0, 0, -0.1)))
+    assert [text for text, _ in found] == ['a\n' + 'b' * 40 + '\nright']
+
+
 def test_many_names_of_one_place_are_counted():
     ((text, _),) = labels(*((name, (0, 0, 0)) for name in 'abcdef'))
     assert text == 'a\nb\nc\nd\nand 2 more'
