@@ -116,7 +116,7 @@ class Drawing:
         bounds = bounds_of_scene(scene, origins, self._surfaces)
         self._size_m = float(np.ptp(bounds, axis=0).max()) or 1.0
         # A floor is often much larger than what stands on it.
-        is_floor = 0.0 < extent_m < 0.4 * self._size_m
+        is_floor = 0.0 < extent_m < 0.55 * self._size_m
         self._view_m = max(extent_m, 0.3 * self._size_m) if is_floor else self._size_m
         self._middle = 0.5 * np.sum(
             (origins.min(axis=0), origins.max(axis=0)) if is_floor else bounds, axis=0)
