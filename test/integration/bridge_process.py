@@ -26,11 +26,13 @@ class LoggedProcess:
     """
 
     def __init__(self, command, *, with_children=False):
+        # Imported here, as processes that tests start import this module without that folder.
+        from ros_domain import claims
         self._with_children = with_children
         self._process = subprocess.Popen(
             list(map(str, command)), stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-            start_new_session=with_children)
+            start_new_session=with_children, pass_fds=claims())
         self.pid = self._process.pid
         self.lines = []
         self._has_changed = threading.Condition()

@@ -13,8 +13,9 @@ class JointPublisher:
     """A process that publishes positions of joints."""
 
     def __init__(self):
+        from ros_domain import claims
         self._process = subprocess.Popen(
-            [sys.executable, __file__], stdin=subprocess.PIPE, text=True)
+            [sys.executable, __file__], stdin=subprocess.PIPE, text=True, pass_fds=claims())
         self._sec = 1000
 
     def send(self, positions, *, sec=None, nanosec=0, names=None):
