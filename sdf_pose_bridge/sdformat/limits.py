@@ -47,6 +47,9 @@ STEPS_OF_DIRECTORY = 5
 STEPS_OF_MERGE = 500
 """Further steps for an include that merges a model, which is checked by itself."""
 
+STEPS_OF_MOVED_CHILD = 4
+"""Further steps for each child of a model that is merged, which gets another parent."""
+
 STEPS_OF_PLACE = 8
 """Steps of work to find the place of an error or a warning, and to report it."""
 
@@ -55,6 +58,9 @@ STEPS_OF_ELEMENT = 2
 
 STEPS_OF_NAMED_ELEMENT = 8
 """Further steps for one with a name, as most elements with a frame have one."""
+
+CHARACTERS_OF_LOOK = 1000
+"""How many characters of a model count for one step of each look for a name in it."""
 
 CHARACTERS_OF_STEP = 16
 """How many characters of a name, or of an element that is copied, count for one step of work."""

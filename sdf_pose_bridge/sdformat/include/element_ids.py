@@ -19,6 +19,7 @@ from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
+from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
@@ -45,9 +46,10 @@ def element_by_id(
     while True:
         match: XmlElement | None = None
         for child in children:
-            if child.get('name') is None:
+            written = child.get('name')
+            if written is None:
                 continue
-            name = attribute_of(child, 'name')
+            name = written.strip(WHITE_SPACE)
             if not tag and name == element_id:
                 return child
             last = start + len(name) - 1

@@ -40,11 +40,13 @@ from sdf_pose_bridge.sdformat.include.params import params_of
 from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
 from sdf_pose_bridge.sdformat.include.uris import ModelFile
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
+from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_LOOK
 from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_DIRECTORY
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_INCLUDE
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_MERGE
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_MOVED_CHILD
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_NAMED_ELEMENT
 from sdf_pose_bridge.sdformat.reader import check_element
 from sdf_pose_bridge.sdformat.reader import MISSING_NAME
@@ -156,6 +158,9 @@ class IncludeExpansion:
         self._override(include, top)
         params = params_of(include)
         if params is not None:
+            looks = int(params.xpath('count(.//*)'))
+            characters = len(etree.tostring(top, with_tail=False))
+            self._count(looks * characters // CHARACTERS_OF_LOOK, include)
             for added in apply_params(params, top, self._sources, self._problems):
                 self.may_hold_scoped_names = True
                 self._expand_in(added, files)
@@ -344,7 +349,7 @@ class IncludeExpansion:
         """Merge a copy of a model; includes with the same text have the same canonical link."""
         text = etree.tostring(include, with_tail=False)
         key = chosen, self._sources.path(include), text
-        self._count(STEPS_OF_INCLUDE, include)
+        self._count(STEPS_OF_INCLUDE + STEPS_OF_MOVED_CHILD * len(top), include)
 
         def canonical_link_of(root: XmlElement) -> str | None:
             if key not in self._canonical_links:

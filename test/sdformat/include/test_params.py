@@ -325,6 +325,15 @@ def test_work_of_many_parameters_on_many_siblings_is_limited(write, tmp_path, pa
     assert errors[-1].code == 'LIMIT'
 
 
+def test_work_of_looking_among_many_attributes_is_limited(write, tmp_path):
+    attributes = ' '.join(f'a{i}="1"' for i in range(3000))
+    errors = errors_of_file(
+        write('<link element_id="none" action="remove"/>' * 3000,
+              arm=ARM.replace('</model>', f'<x:y {attributes}/></model>')),
+        resource_paths=[tmp_path], limits=sdf_pose_bridge.Limits(work=20_000))
+    assert [error.code for error in errors] == ['LIMIT']
+
+
 def test_work_of_many_attributes_is_not_that_of_all_siblings_for_each(load):
     attributes = ' '.join(f'a{i}="x"' for i in range(300))
     scene = load(f'<link element_id="base" action="modify" {attributes}/>',
