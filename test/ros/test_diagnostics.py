@@ -8,6 +8,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from diagnostic_msgs.msg import DiagnosticStatus
 
+from sdf_pose_bridge.ros.diagnostics import Diagnostics
 from sdf_pose_bridge.ros.diagnostics import status_from_scene
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.parameters import settings_from_node
@@ -62,3 +63,11 @@ def test_the_values_describe_what_is_served_and_what_is_wrong(status_of, tmp_pat
         'file': str(tmp_path / 'cell.sdf'), 'root frame': 'map', 'frames': '2', 'transforms': '1',
         'files read': '1', 'last good load': '2026-01-02T03:04:05+00:00', 'warnings': '0',
         'first warning': '', 'last error': 'first\nsecond'}
+
+
+def test_each_message_has_the_time_of_the_node(make_node):
+    node = make_node('bridge')
+    diagnostics = Diagnostics(node)
+    before = node.get_clock().now().to_msg()
+    diagnostics.publish()
+    assert diagnostics._message.header.stamp.sec >= before.sec > 0

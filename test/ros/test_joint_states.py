@@ -160,6 +160,7 @@ def test_messages_that_are_published_later_are_published_together(published, sta
     states.take(serialize_message(joint_state(5, {'turn': 0.5, 'lift': 0.5, 'grip': 0.5})))
     states.take(serialize_message(joint_state(6, {'turn': 0.25})))
     states.publish_waiting()
+    states.publish_waiting()  # nothing has changed since
     states.is_published_later = False
     assert published(joint_state(7, {'turn': 0.5})) == [
         (6, {'upper', 'slide', 'finger'}), (7, {'upper'})]
