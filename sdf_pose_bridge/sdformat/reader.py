@@ -128,7 +128,7 @@ class _Reader:
         self._builder = ElementsBuilder(sources.paths)
         self._names = SiblingNames(self._builder, sources, problems)
         self._undefined = UndefinedReporter(sources, problems)
-        self._file_indices = {path: index for index, path in enumerate(sources.paths)}
+        self._file_indices = sources.file_indices
         builder = self._builder
         self._readers_of_details: dict[
             Kind, tuple[dict[int, Any], Callable[[XmlElement], Any]]] = {

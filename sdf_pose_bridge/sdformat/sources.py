@@ -67,6 +67,8 @@ class Sources:
         """What to read instead of the files at some paths."""
         self.paths: list[str] = []
         """All files that were read, in the order of reading."""
+        self.file_indices: dict[str, int] = {}
+        """The index of each of them."""
         self.versions: dict[str, Version] = {}
         """The version of each SDFormat file by its path."""
         self.includes: dict[str, Place] = {}
@@ -79,7 +81,8 @@ class Sources:
 
     def add_path(self, path: str) -> None:
         """Add a file, unless it is known already."""
-        if path not in self.paths:
+        if path not in self.file_indices:
+            self.file_indices[path] = len(self.paths)
             self.paths.append(path)
 
     def add_tree(
@@ -114,9 +117,9 @@ class Sources:
         origin = self._origin(xml)
         self._origins[xml] = origin._replace(file=path, line=origin.line if line is None else line)
 
-    def set_include(self, xml: XmlElement, include: XmlElement) -> None:
-        """Set which include an element came from. The include has to be in its tree still."""
-        self._origins[xml] = self._origin(xml)._replace(include=self.place(include))
+    def set_include(self, xml: XmlElement, include: Place) -> None:
+        """Set which include an element came from."""
+        self._origins[xml] = self._origin(xml)._replace(include=include)
 
     def include_of(self, xml: XmlElement) -> Place | None:
         """

@@ -24,6 +24,7 @@ from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import LimitError
 from sdf_pose_bridge.errors import ParsingError
+from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import PlacementFrameError
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.errors import SdfError
@@ -66,6 +67,11 @@ _MOST_TOPS_SHOWN = 5
 
 _TOP_TAGS = ('model', 'actor', 'light')
 """What can be included, in the order of preference."""
+
+_COUNTS = tuple(etree.XPath(f'count({path})') for path in (
+    'descendant-or-self::*', 'descendant-or-self::*[@name]', 'descendant::node()',
+    'descendant-or-self::*/@*'))
+"""Count the elements, those with a name, the nodes and the attributes of what is copied."""
 
 
 class IncludeExpansion:
@@ -140,9 +146,10 @@ class IncludeExpansion:
         uri = self._uri(include)
         if uri is None:
             return
-        found = self._included_file(include, uri, files)
+        place = self._sources.place(include)
+        found = self._included_file(place, uri, files)
         if isinstance(found, str):
-            self._report_missing(include, uri, found)
+            self._report_missing(place, uri, found)
             return
         if found is None:
             return
@@ -154,7 +161,7 @@ class IncludeExpansion:
             self._steps_of_copies[chosen] = _steps_of_copy(chosen)
         self._count(self._steps_of_copies[chosen], include)
         top = self._sources.copy_of(chosen)
-        self._sources.set_include(top, include)
+        self._sources.set_include(top, place)
         self._override(include, top)
         params = params_of(include)
         if params is not None:
@@ -188,10 +195,10 @@ class IncludeExpansion:
         return uri
 
     def _included_file(
-        self, include: XmlElement, uri: str, files: tuple[str, ...],
+        self, place: Place, uri: str, files: tuple[str, ...],
     ) -> Document | str | None:
         """Return a file; the reason why it is not found; or None if it cannot be read."""
-        path = self._finder.path_from_uri(uri, self._sources.path(include))
+        path = self._finder.path_from_uri(uri, place.file)
         if path is None:
             return self._finder.reason_not_found(uri)
         if os.path.isdir(path):  # noqa: PTH112
@@ -207,7 +214,7 @@ class IncludeExpansion:
         if len(files) >= self._sources.usage.limits.include_depth:
             return f'files include one another more than {len(files)} levels deep'
         if real_path not in self._files:
-            self._sources.includes[path] = self._sources.place(include)
+            self._sources.includes[path] = place
             self._files[real_path] = self._read(path, (*files, real_path))
         return self._files[real_path]
 
@@ -247,9 +254,8 @@ class IncludeExpansion:
         for xml in too_deep:
             self._sources.usage.check('depth', depth + 1, self._sources.place(xml))
 
-    def _report_missing(self, include: XmlElement, uri: str, reason: str) -> None:
+    def _report_missing(self, place: Place, uri: str, reason: str) -> None:
         msg = f'"{shortened(uri)}" cannot be included: {reason}'
-        place = self._sources.place(include)
         if not self._skips_missing:
             self._problems.error(UriLookupError(msg, place))
         elif uri not in self._missing_uris:
@@ -373,10 +379,7 @@ class IncludeExpansion:
 
 def _steps_of_copy(top: XmlElement) -> int:
     """Return the work of copying an element and reading the copy."""
-    elements, named, nodes, attributes = (
-        int(top.xpath(f'count({path})')) for path in (
-            'descendant-or-self::*', 'descendant-or-self::*[@name]', 'descendant::node()',
-            'descendant-or-self::*/@*'))
+    elements, named, nodes, attributes = (int(count(top)) for count in _COUNTS)
     # Mostly the first is the largest: few elements have long texts, or comments between them.
     return max(
         STEPS_OF_ELEMENT * elements + STEPS_OF_NAMED_ELEMENT * named,

@@ -93,7 +93,7 @@ def _proxy_frame(
     proxy.append(proxy_pose)
     place = sources.place(model)
     sources.set_source(proxy, place.file, place.line)
-    sources.set_include(proxy, include)
+    sources.set_include(proxy, sources.place(include))
     if first_child(include, 'name') is not None:
         sources.set_named_by_include(proxy)
     return proxy

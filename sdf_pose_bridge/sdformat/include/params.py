@@ -57,8 +57,7 @@ _DEFINED_ALONE = frozenset(
     'model_state navsat noise particle_emitter physics plane_shape plugin polyline_shape '
     'population pose projector ray rfid rfidtag road root scene sensor sonar sphere_shape '
     'spherical_coordinates state surface transceiver visual world'.split())
-"""The elements that parameters can add, replace or change child by child: those that have a file
-of the specification to themselves."""
+"""The elements that parameters can add or replace: those with a file of the specification."""
 
 
 def params_of(include: XmlElement) -> XmlElement | None:
