@@ -282,7 +282,8 @@ class SdfPoseBridge:
             self._publish_again_at(settings.publish_rate)
         if loaded is not self._loaded or settings.pose_topics != before.pose_topics:
             await self._show(loaded)
-        self._publish_robot_description()
+        if settings.publish_robot_description != before.publish_robot_description:
+            self._publish_robot_description()
 
     # Publishing again
 

@@ -25,20 +25,17 @@ class RobotDescription:
     def __init__(self, node: Node) -> None:
         self._node = node
         self._publisher: Publisher | None = None
-        self._text = ''
 
     def update(self, text: str) -> None:
         """
-        Publish a text, unless it is published already.
+        Publish a text.
 
         :param text: the text; if it is empty, there is no topic, so that nobody gets a text of the
             past.
         """
-        if not text:
-            if self._publisher is not None:
-                self._node.destroy_publisher(self._publisher)
-                self._publisher = None
-        elif text != self._text:
+        if text:
             self._publisher = self._publisher or new_publisher(self._node, TOPIC)
             self._publisher.publish(String(data=text))
-        self._text = text
+        elif self._publisher is not None:
+            self._node.destroy_publisher(self._publisher)
+            self._publisher = None
