@@ -46,10 +46,8 @@ def main(args: Sequence[str] | None = None) -> int:
     # Look up the functions of ROS's libraries when they are called, as programs in C++ do.
     sys.setdlopenflags(os.RTLD_LAZY)
     try:
-        from sdf_pose_bridge.ros.middleware import use_profile
-        sentence_about_profile = use_profile(os.environ)
         from sdf_pose_bridge.ros.process import run
-        return run(list(sys.argv if args is None else args), sentence_about_profile)
+        return run(list(sys.argv if args is None else args))
     except ImportError as error:
         print(f'sdf_pose_bridge: {sentence_from_import_error(error)}', file=sys.stderr)
         return 1

@@ -25,9 +25,9 @@ from rclpy.qos import QoSProfile
 from rclpy.qos import ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
+from sdf_pose_bridge.ros.cdr import joint_state_from_bytes
+from sdf_pose_bridge.ros.cdr import JointStateBytes
 from sdf_pose_bridge.ros.cdr import StampedMessages
-from sdf_pose_bridge.ros.joint_state_bytes import joint_state_from_bytes
-from sdf_pose_bridge.ros.joint_state_bytes import JointStateBytes
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.publishers import Stamp

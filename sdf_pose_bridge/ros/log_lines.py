@@ -16,11 +16,8 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
-MOST_WARNINGS = 20
-"""How many warnings of a load are logged."""
-
-MOST_ERRORS = 20
-"""How many errors of a load are logged; a broken generated file may have thousands."""
+MOST_LINES = 20
+"""How many errors, warnings or names are logged; a broken generated file may have thousands."""
 
 
 def lines_from_error(error: Exception) -> list[str]:
@@ -28,12 +25,12 @@ def lines_from_error(error: Exception) -> list[str]:
     Return one line for each error.
 
     :param error: an error of this package; lines about a file start with its path and line.
-    :return: at least one line and at most ``MOST_ERRORS``, and one more if there are more errors.
+    :return: at least one line and at most ``MOST_LINES``, and one more if there are more errors.
     """
     if isinstance(error, SdfError):
-        return _first_lines(error.errors, '; "sdf_pose check" shows all of them')
+        return _first_lines(error.errors, 'error', '; "sdf_pose check" shows all of them')
     if isinstance(error, SettingsError):
-        return _first_lines(error.sentences, '')
+        return _first_lines(error.sentences, 'error')
     return [printable(str(error))]
 
 
@@ -42,25 +39,19 @@ def lines_from_warnings(warnings: Sequence[object]) -> list[str]:
     Return one line for each warning.
 
     :param warnings: objects that ``str`` makes a text of.
-    :return: at most ``MOST_WARNINGS`` lines, and one more if there are more warnings.
+    :return: at most ``MOST_LINES`` lines, and one more if there are more warnings.
     """
-    lines = [printable(str(warning)) for warning in warnings[:MOST_WARNINGS]]
-    rest = len(warnings) - len(lines)
-    if rest:
-        lines.append(
-            f'{_at_least(warnings)}{rest} more {"warning is" if rest == 1 else "warnings are"} '
-            'not shown')
-    return lines
+    return _first_lines(warnings, 'warning')
 
 
 def names_in_line(names: Sequence[str]) -> str:
     """
     Return names separated by commas.
 
-    :return: at most ``MOST_WARNINGS`` names, and how many more there are.
+    :return: at most ``MOST_LINES`` names, and how many more there are.
     """
-    shown = ', '.join(f'"{shortened(name)}"' for name in names[:MOST_WARNINGS])
-    rest = len(names) - MOST_WARNINGS
+    shown = ', '.join(f'"{shortened(name)}"' for name in names[:MOST_LINES])
+    rest = len(names) - MOST_LINES
     return printable(f'{shown} and {rest} more' if rest > 0 else shown)
 
 
@@ -109,15 +100,11 @@ def _children(tree: TfTree) -> set[str]:
     return set(compress(tree.frame_ids, (tree.parents != NO_PARENT).tolist()))
 
 
-def _first_lines(errors: Sequence[object], hint: str) -> list[str]:
-    lines = [printable(str(each)) for each in errors[:MOST_ERRORS]]
-    rest = len(errors) - len(lines)
+def _first_lines(problems: Sequence[object], what: str, hint: str = '') -> list[str]:
+    lines = [printable(str(each)) for each in problems[:MOST_LINES]]
+    rest = len(problems) - len(lines)
     if rest:
+        at_least = 'at least ' if len(problems) > MOST_PROBLEMS else ''
         lines.append(
-            f'{_at_least(errors)}{rest} more {"error is" if rest == 1 else "errors are"} '
-            f'not shown{hint}')
+            f'{at_least}{rest} more {what}{" is" if rest == 1 else "s are"} not shown{hint}')
     return lines
-
-
-def _at_least(problems: Sequence[object]) -> str:
-    return 'at least ' if len(problems) > MOST_PROBLEMS else ''

@@ -25,8 +25,8 @@ from rclpy.parameter_service import ParameterService
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
-from sdf_pose_bridge.ros.parameter_rules import MOST_VALUES
-from sdf_pose_bridge.ros.parameter_types import parameter_with_type
+from sdf_pose_bridge.ros.parameter_values import MOST_VALUES
+from sdf_pose_bridge.ros.parameter_values import parameter_with_type
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.ros.services import SERVICE_QOS
 

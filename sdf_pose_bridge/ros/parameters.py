@@ -14,29 +14,27 @@ from typing import TypeVar
 
 from rcl_interfaces.msg import FloatingPointRange
 from rcl_interfaces.msg import ParameterDescriptor
-from rclpy.exceptions import InvalidParameterTypeException
 from rclpy.exceptions import InvalidParameterValueException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from sdf_pose_bridge.names import hint_from_names
-from sdf_pose_bridge.ros.parameter_rules import choice_setting
-from sdf_pose_bridge.ros.parameter_rules import directories_setting
-from sdf_pose_bridge.ros.parameter_rules import HIGHEST_RATE
-from sdf_pose_bridge.ros.parameter_rules import kinds_setting
-from sdf_pose_bridge.ros.parameter_rules import LOWEST_RATE
-from sdf_pose_bridge.ros.parameter_rules import path_setting
-from sdf_pose_bridge.ros.parameter_rules import patterns_setting
-from sdf_pose_bridge.ros.parameter_rules import prefix_setting
-from sdf_pose_bridge.ros.parameter_rules import PUBLISHED_KINDS
-from sdf_pose_bridge.ros.parameter_rules import rate_setting
-from sdf_pose_bridge.ros.parameter_rules import root_frame_setting
-from sdf_pose_bridge.ros.parameter_rules import separator_setting
-from sdf_pose_bridge.ros.parameter_types import hint_about_command_line
-from sdf_pose_bridge.ros.parameter_types import parameter_of_any_type
-from sdf_pose_bridge.ros.parameter_types import parameter_with_type
-from sdf_pose_bridge.ros.parameter_types import TYPES
-from sdf_pose_bridge.ros.parameter_types import words_about_wrong_type
+from sdf_pose_bridge.ros.parameter_values import choice_setting
+from sdf_pose_bridge.ros.parameter_values import directories_setting
+from sdf_pose_bridge.ros.parameter_values import HIGHEST_RATE
+from sdf_pose_bridge.ros.parameter_values import hint_about_command_line
+from sdf_pose_bridge.ros.parameter_values import kinds_setting
+from sdf_pose_bridge.ros.parameter_values import LOWEST_RATE
+from sdf_pose_bridge.ros.parameter_values import parameter_with_type
+from sdf_pose_bridge.ros.parameter_values import path_setting
+from sdf_pose_bridge.ros.parameter_values import patterns_setting
+from sdf_pose_bridge.ros.parameter_values import prefix_setting
+from sdf_pose_bridge.ros.parameter_values import PUBLISHED_KINDS
+from sdf_pose_bridge.ros.parameter_values import rate_setting
+from sdf_pose_bridge.ros.parameter_values import root_frame_setting
+from sdf_pose_bridge.ros.parameter_values import separator_setting
+from sdf_pose_bridge.ros.parameter_values import TYPES
+from sdf_pose_bridge.ros.parameter_values import words_about_wrong_type
 from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.tree import AnchorModels
@@ -321,13 +319,12 @@ def changed_settings(settings: Settings, parameters: Iterable[Parameter]) -> Set
 
 def warnings_about_unknown_parameters(node: Node) -> list[str]:
     """Find parameters that were given when the node was started, but that it does not have."""
-    # rclpy shows this in no public way but to declare all of it, with any type and unexplained.
-    given = node._parameter_overrides  # noqa: SLF001
     return [
         f'parameter {name} is called publish_rate here; its value is taken for that'
         if name == FREQUENCY else
         f'there is no parameter "{name}", so it has no effect{hint_from_names(name, DECLARATIONS)}'
-        for name in given if name not in DECLARATIONS and not node.has_parameter(name)]
+        for name in _given_parameters(node)
+        if name not in DECLARATIONS and not node.has_parameter(name)]
 
 
 def _checked_settings(values: Mapping[str, Any], sentences: Sequence[str]) -> Settings:
@@ -346,18 +343,27 @@ def _checked_settings(values: Mapping[str, Any], sentences: Sequence[str]) -> Se
     return Settings(values)
 
 
-def _default(node: Node, declaration: Declaration[Any]) -> Any:
-    if declaration.name == 'publish_rate':
-        given = parameter_with_type(parameter_of_any_type(node, FREQUENCY), declaration.type_)
-        if given.type_ is declaration.type_:
-            return given.value
-        if given.type_ is not Parameter.Type.NOT_SET:
-            raise ValueError(words_about_wrong_type(given, declaration.type_))
-    return declaration.default
+def _given_parameters(node: Node) -> Mapping[str, Parameter]:
+    """Return what was given when the node was started, by names."""
+    # rclpy shows this in no public way but to declare all of it, with any type and unexplained.
+    given: Mapping[str, Parameter] = node._parameter_overrides  # noqa: SLF001
+    return given
 
 
 def _declared_value(node: Node, declaration: Declaration[Any]) -> Any:
-    name, type_, default = declaration.name, declaration.type_, _default(node, declaration)
+    name, type_, value = declaration.name, declaration.type_, declaration.default
+    parameters = _given_parameters(node)
+    given = parameters.get(name) or (
+        parameters.get(FREQUENCY) if name == 'publish_rate' else None)
+    if given is not None and given.type_ is not Parameter.Type.NOT_SET:
+        given = parameter_with_type(given, type_)
+        if given.type_ is not type_:
+            msg = words_about_wrong_type(given, type_) + hint_about_command_line(given, type_)
+            raise ValueError(msg)
+        value = given.value
+    elif given is not None and type_ is Parameter.Type.STRING_ARRAY:
+        # rclpy reads an empty list on the command line as no value.
+        value = []
     descriptor = ParameterDescriptor(
         type=type_.value, description=declaration.description,
         additional_constraints=declaration.constraint, read_only=declaration.is_read_only)
@@ -365,23 +371,13 @@ def _declared_value(node: Node, declaration: Declaration[Any]) -> Any:
         descriptor.floating_point_range = [
             FloatingPointRange(from_value=0.0, to_value=declaration.maximum)]
     try:
-        try:
-            # rclpy cannot tell the type of an empty list.
-            value = node.declare_parameter(
-                name, type_ if default == [] else default, descriptor).value
-        except InvalidParameterTypeException:
-            given = parameter_with_type(parameter_of_any_type(node, name), type_)
-            if given.type_ is not type_:
-                msg = words_about_wrong_type(given, type_) + hint_about_command_line(given, type_)
-                raise ValueError(msg) from None
-            value = node.declare_parameter(
-                name, given.value, descriptor, ignore_override=True).value
+        # rclpy cannot tell the type of an empty list.
+        node.declare_parameter(
+            name, type_ if value == [] else value, descriptor, ignore_override=True)
     except InvalidParameterValueException as error:
         msg = f'must be {declaration.constraint}: {error}'
         raise ValueError(msg) from None
-    if value is None:
-        # rclpy reads an empty list on the command line as no value.
-        value = [] if type_ is Parameter.Type.STRING_ARRAY else default
+    if value == []:
         node.set_parameters([Parameter(name, type_, value)])
     return value
 

@@ -33,6 +33,7 @@ from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
+from sdf_pose_bridge.ros.middleware import use_profile
 from sdf_pose_bridge.ros.parameters import settings_from_node
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.parameters import warnings_about_unknown_parameters
@@ -55,17 +56,17 @@ usage: ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=cell.sdf [-p name
 "ros2 param describe /sdf_pose_bridge <name>" explains each parameter of the running node."""
 
 
-def run(args: Sequence[str], sentence_about_profile: str) -> int:
+def run(args: Sequence[str]) -> int:
     """
     Run the node until a signal ends it.
 
     :param args: the command line with the program's name first.
-    :param sentence_about_profile: logged at debug level.
     :return: exit code: 0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
     # From now on a signal waits until it is unblocked or asked for, and a second one is ignored.
     # Threads that are started later inherit this.
     signal.pthread_sigmask(signal.SIG_BLOCK, STOP_SIGNALS)
+    sentence_about_profile = use_profile(os.environ)
     try:
         rclpy.init(args=list(args), signal_handler_options=SignalHandlerOptions.NO)
         words = remove_ros_args(args)[1:]

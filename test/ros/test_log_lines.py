@@ -17,8 +17,7 @@ from sdf_pose_bridge.ros.log_lines import line_about_detached_models
 from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
-from sdf_pose_bridge.ros.log_lines import MOST_ERRORS
-from sdf_pose_bridge.ros.log_lines import MOST_WARNINGS
+from sdf_pose_bridge.ros.log_lines import MOST_LINES
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -34,9 +33,9 @@ def test_each_error_of_a_file_has_its_line_with_its_place():
 
 
 def test_a_flood_of_errors_ends_with_its_size():
-    errors = [ParsingError('fact', Place('a.sdf', line)) for line in range(MOST_ERRORS + 1)]
+    errors = [ParsingError('fact', Place('a.sdf', line)) for line in range(MOST_LINES + 1)]
     lines = lines_from_error(LoadError(errors))
-    assert len(lines) == MOST_ERRORS + 1
+    assert len(lines) == MOST_LINES + 1
     assert lines[-1] == '1 more error is not shown; "sdf_pose check" shows all of them'
 
 
@@ -46,9 +45,9 @@ def test_each_sentence_about_settings_has_its_line():
 
 
 def test_a_flood_of_sentences_about_settings_ends_with_its_size():
-    error = SettingsError(['wrong'] * (MOST_ERRORS + 2))
+    error = SettingsError(['wrong'] * (MOST_LINES + 2))
     lines = lines_from_error(error)
-    assert len(lines) == MOST_ERRORS + 1
+    assert len(lines) == MOST_LINES + 1
     assert lines[-1] == '2 more errors are not shown'
 
 
@@ -71,8 +70,8 @@ def test_few_warnings_are_all_written():
 
 
 def test_a_flood_of_warnings_ends_with_its_size():
-    lines = lines_from_warnings([f'warning {number}' for number in range(MOST_WARNINGS + 7)])
-    assert len(lines) == MOST_WARNINGS + 1
+    lines = lines_from_warnings([f'warning {number}' for number in range(MOST_LINES + 7)])
+    assert len(lines) == MOST_LINES + 1
     assert lines[-1] == '7 more warnings are not shown'
 
 

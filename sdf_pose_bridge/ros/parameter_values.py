@@ -1,25 +1,42 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-The values that parameters can have.
+The values that parameters can have: their types, and the rules of single parameters.
 
-Each function makes the setting of a value. If the value is not allowed, it raises ValueError with
-the words that follow "parameter <name>" in a sentence.
+A function ``<rule>_setting`` makes the setting of a value. If the value is not allowed, it raises
+ValueError with the words that follow "parameter <name>" in a sentence.
 """
 
 from __future__ import annotations
 
+import array
 from collections.abc import Callable
 from collections.abc import Sequence
 import enum
 from pathlib import Path
 from typing import TypeVar
 
+from rclpy.parameter import Parameter
+
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.sdformat.grammar import Kind
 
 Choice = TypeVar('Choice', bound=enum.Enum)
+
+TYPES = {
+    str: Parameter.Type.STRING, bool: Parameter.Type.BOOL, float: Parameter.Type.DOUBLE,
+    list: Parameter.Type.STRING_ARRAY}
+"""The types of parameters that are used, by the type of their values in Python."""
+
+_NAMES_OF_TYPES = {
+    Parameter.Type.STRING: 'a string', Parameter.Type.BOOL: 'true or false',
+    Parameter.Type.INTEGER: 'an integer', Parameter.Type.DOUBLE: 'a number',
+    Parameter.Type.STRING_ARRAY: 'a list of strings',
+    Parameter.Type.BOOL_ARRAY: 'a list of booleans',
+    Parameter.Type.INTEGER_ARRAY: 'a list of integers',
+    Parameter.Type.DOUBLE_ARRAY: 'a list of numbers', Parameter.Type.BYTE_ARRAY: 'a list of bytes',
+}
 
 PUBLISHED_KINDS = {
     kind.label: kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD, Kind.ACTOR)}
@@ -40,6 +57,48 @@ MOST_CHARACTERS_OF_PATH = 4096
 
 MOST_CHARACTERS_OF_SEPARATOR = 8
 """How long a separator may be, which stands many times in a frame id."""
+
+
+def parameter_with_type(given: Parameter, wanted: Parameter.Type) -> Parameter:
+    """
+    Give a value another type in which it has the same meaning.
+
+    :return: an integer as a number, or an empty list of any type as a list of strings, if that is
+        the wanted type; otherwise the value as it was given.
+    """
+    if wanted is Parameter.Type.DOUBLE and given.type_ is Parameter.Type.INTEGER:
+        return Parameter(given.name, wanted, float(given.value))
+    if (wanted is Parameter.Type.STRING_ARRAY and given.type_.name.endswith('ARRAY')
+            and not len(given.value)):
+        return Parameter(given.name, wanted, [])
+    return given
+
+
+def words_about_wrong_type(given: Parameter, wanted: Parameter.Type) -> str:
+    """
+    Explain that a value has the wrong type.
+
+    :return: the words that follow "parameter <name>" in a sentence.
+    """
+    return (f'is {_shown_value(given)}, which is {_NAMES_OF_TYPES[given.type_]}; it must be '
+            f'{_NAMES_OF_TYPES[wanted]}')
+
+
+def hint_about_command_line(given: Parameter, wanted: Parameter.Type) -> str:
+    """
+    Show how to write a value of the wrong type on the command line.
+
+    :return: the end of a sentence; empty if there is nothing to show.
+    """
+    if wanted is Parameter.Type.STRING:
+        return f', so quote it twice: -p "{given.name}:=\'{_shown_value(given)}\'"'
+    if given.type_ is Parameter.Type.STRING and wanted is Parameter.Type.STRING_ARRAY:
+        return f': -p "{given.name}:=[\'{given.value}\']"'
+    return ''
+
+
+def _shown_value(given: Parameter) -> object:
+    return list(given.value) if isinstance(given.value, array.array) else given.value
 
 
 def root_frame_setting(value: str) -> str:
