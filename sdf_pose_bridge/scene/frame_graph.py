@@ -31,11 +31,11 @@ from sdf_pose_bridge.scene.joints import valid_joints
 from sdf_pose_bridge.scene.name_scopes import IS_FRAME_KIND
 from sdf_pose_bridge.scene.name_scopes import NameScopes
 from sdf_pose_bridge.sdformat.elements import Elements
+from sdf_pose_bridge.sdformat.elements import FrameDetails
+from sdf_pose_bridge.sdformat.elements import ModelDetails
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.models import FrameDetails
-from sdf_pose_bridge.sdformat.models import ModelDetails
 
 _MOST_NAMES_SHOWN = 5
 _LONGEST_CYCLE_SHOWN = 12

@@ -22,8 +22,8 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import scoped_name
+from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.sensors import SensorDetails
 from sdf_pose_bridge.sdformat.shapes import Shape
 
 if TYPE_CHECKING:

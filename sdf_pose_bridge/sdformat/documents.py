@@ -4,7 +4,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from collections.abc import Mapping
+from pathlib import Path
+import re
+import shlex
 from typing import NamedTuple
+
+from lxml import etree
 
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import FileReadError
@@ -19,8 +26,12 @@ from sdf_pose_bridge.sdformat.versions import version_from_text
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+_XACRO_DECLARATIONS = ('xacro:arg', 'xacro:property')
+_XACRO_EXPRESSION = re.compile(r'\$[({]')
 
 
 class Document(NamedTuple):
@@ -97,9 +108,7 @@ def _document_from_bytes(
     root, lines = file.root, file.lines
     problems.extend(file.warnings)
     if b'$' in text or b'xacro' in text or b'\0' in text[:4]:
-        # Most files have nothing to do with xacro and need not wait for this import.
-        from sdf_pose_bridge.sdformat.xacro import check_is_expanded
-        check_is_expanded(root, path, lines)
+        _check_is_expanded(root, path, lines)
     has_gazebo_elements = False
     if root.tag == 'robot':
         # Most files are not URDF and need not wait for this import.
@@ -148,3 +157,39 @@ def _check_top_model(root: XmlElement, sources: Sources, problems: Problems) -> 
                'implicit root, which has no frames')
         problems.error(AttributeInvalidError(msg, sources.place(pose)))
         del pose.attrib['relative_to']
+
+
+def _check_is_expanded(root: XmlElement, path: str, lines: Mapping[XmlElement, int]) -> None:
+    """
+    Refuse a file that xacro has not expanded yet.
+
+    It would be read, and would mean something else: macros are not called, and what ``<xacro:if>``
+    holds is left out. Only declarations, and expressions in plugins and names of topics, change no
+    frame.
+    """
+    for xml, found in _unexpanded(root):
+        name = Path(path).name
+        target = name.removesuffix('.xacro') if name.endswith('.xacro') else f'expanded_{name}'
+        command = f': xacro {shlex.quote(name)} -o {shlex.quote(target)}' if '.' in name else ''
+        msg = (f'{found} is for xacro, which has to be run before, and what it writes has to be '
+               f'read{command}')
+        raise ParsingError(msg, Place(path, lines.get(xml, xml.sourceline or 0)))
+
+
+def _unexpanded(root: XmlElement) -> Iterator[tuple[XmlElement, str]]:
+    """Find what is left to do; return each element, and what is in it."""
+    waiting = [root]
+    while waiting:
+        xml = waiting.pop()
+        tag = written_tag(xml)
+        if tag == 'plugin' or tag in _XACRO_DECLARATIONS:
+            continue
+        if tag.startswith('xacro:'):
+            yield xml, f'<{tag}>'
+        for name, value in xml.items():
+            if _XACRO_EXPRESSION.search(value):
+                yield xml, f'{name}="{value}" of <{tag}>'
+        text = text_of(xml)
+        if _XACRO_EXPRESSION.search(text) and not tag.endswith('topic'):
+            yield xml, f'"{text.strip()}" in <{tag}>'
+        waiting += reversed(list(xml.iterchildren(etree.Element)))

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from dataclasses import field
 from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,11 +22,8 @@ from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.automatic_inertials import CollisionMass
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.joints import JointDetails
-from sdf_pose_bridge.sdformat.models import FrameDetails
-from sdf_pose_bridge.sdformat.models import ModelDetails
 from sdf_pose_bridge.sdformat.poses import PoseFormat
 from sdf_pose_bridge.sdformat.poses import poses_from_texts
-from sdf_pose_bridge.sdformat.sensors import SensorDetails
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.sdformat.xml_tree import path_step
 
@@ -33,6 +31,39 @@ NO_ELEMENT = -1
 """Index that means no element."""
 
 _MOST_PATHS_KNOWN = 1000
+
+
+class ModelDetails(NamedTuple):
+    """What only a model has."""
+
+    is_static: bool
+    canonical_link: str
+    """Value of the attribute; empty for the default."""
+    placement_frame: str
+    """The frame that the pose places; empty for the model frame."""
+
+
+class FrameDetails(NamedTuple):
+    """What only an explicit frame has."""
+
+    attached_to: str
+    """Value of the attribute; empty for the frame of its scope."""
+    placement_frame: str = ''
+    """The frame that the pose places; empty for this one. Only proxies of merged models have
+    one."""
+
+
+class SensorDetails(NamedTuple):
+    """What only a sensor has."""
+
+    type: str
+    """As written: ``camera``, ``gpu_lidar``, ..."""
+    frame_id: str
+    """The frame id of the messages of Gazebo, where the file sets it; else empty."""
+    is_camera: bool
+    """Whether an optical frame belongs to it."""
+    optical_frame_id: str
+    """The id of the optical frame, where the file sets it; else empty."""
 
 
 @dataclass(frozen=True)

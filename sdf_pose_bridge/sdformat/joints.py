@@ -18,8 +18,8 @@ from sdf_pose_bridge.errors import JointParentError
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.joint_types import JOINT_TYPES
 from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
 from sdf_pose_bridge.sdformat.values import numbers_of_child
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import first_child

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from itertools import chain
 from typing import Any
 
 from sdf_pose_bridge.errors import AttributeInvalidError
@@ -25,25 +26,27 @@ from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.automatic_inertials import collision_masses
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
+from sdf_pose_bridge.sdformat.elements import FrameDetails
+from sdf_pose_bridge.sdformat.elements import ModelDetails
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
+from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.joints import check_children_of_joint
 from sdf_pose_bridge.sdformat.joints import joint_details_from_element
-from sdf_pose_bridge.sdformat.models import frame_details_from_element
-from sdf_pose_bridge.sdformat.models import model_details_from_element
 from sdf_pose_bridge.sdformat.poses import pose_format_of
 from sdf_pose_bridge.sdformat.poses import pose_numbers_from_text
 from sdf_pose_bridge.sdformat.poses import PoseFormat
 from sdf_pose_bridge.sdformat.poses import PoseTextError
-from sdf_pose_bridge.sdformat.sensors import sensor_details_from_element
 from sdf_pose_bridge.sdformat.shapes import check_material
 from sdf_pose_bridge.sdformat.shapes import check_submesh
 from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sibling_names import SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.specification import CAMERA_TYPES
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
+from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.values import choice_fault
 from sdf_pose_bridge.sdformat.values import frame_of_attribute
 from sdf_pose_bridge.sdformat.values import is_of_type
@@ -51,12 +54,19 @@ from sdf_pose_bridge.sdformat.values import judged_value
 from sdf_pose_bridge.sdformat.values import Judgment
 from sdf_pose_bridge.sdformat.values import RIGHT
 from sdf_pose_bridge.sdformat.versions import allows_scoped_names
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of
+from sdf_pose_bridge.sdformat.xml_tree import child_elements
 from sdf_pose_bridge.sdformat.xml_tree import described
+from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import is_foreign
 from sdf_pose_bridge.sdformat.xml_tree import text_of
+from sdf_pose_bridge.sdformat.xml_tree import value_of
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+PLACEMENT_OF_MERGED_MODEL = '{sdf_pose_bridge}placement_frame'
+"""Attribute of the frame that replaces a merged model's frame: the model's placement frame."""
 
 MISSING_NAME = '{sdf_pose_bridge}missing_name'
 """Attribute of an ``<include>`` that was not replaced: the name that the included model would
@@ -132,11 +142,11 @@ class _Reader:
         builder = self._builder
         self._readers_of_details: dict[
             Kind, tuple[dict[int, Any], Callable[[XmlElement], Any]]] = {
-            Kind.MODEL: (builder.models, model_details_from_element),
-            Kind.FRAME: (builder.frames, frame_details_from_element),
+            Kind.MODEL: (builder.models, _model_details),
+            Kind.FRAME: (builder.frames, _frame_details),
             Kind.JOINT: (builder.joints, partial(
                 joint_details_from_element, sources=sources, problems=problems)),
-            Kind.SENSOR: (builder.sensors, sensor_details_from_element),
+            Kind.SENSOR: (builder.sensors, _sensor_details),
             Kind.INERTIAL: (builder.automatic_inertials, partial(
                 collision_masses, sources=sources, problems=problems)),
         }
@@ -351,3 +361,29 @@ class _Reader:
                 '' if pose_format is None else text_of(xml), pose_format or _DEFAULT_FORMAT)
         except PoseTextError as error:
             self._problems.error(ElementInvalidError(str(error), self._sources.place(xml)))
+
+
+# What only some kinds of elements have
+
+def _model_details(xml: XmlElement) -> ModelDetails:
+    static = first_child(xml, 'static')
+    return ModelDetails(
+        static is not None and bool(boolean_from_text(value_of(static))),
+        frame_of_attribute(xml, 'canonical_link'), frame_of_attribute(xml, 'placement_frame'))
+
+
+def _frame_details(xml: XmlElement) -> FrameDetails:
+    return FrameDetails(
+        frame_of_attribute(xml, 'attached_to'), xml.get(PLACEMENT_OF_MERGED_MODEL, ''))
+
+
+def _sensor_details(xml: XmlElement) -> SensorDetails:
+    frame_ids = chain(
+        child_elements(xml, 'gz_frame_id'), child_elements(xml, 'ignition_frame_id'))
+    camera = first_child(xml, 'camera')
+    optical = None if camera is None else first_child(camera, 'optical_frame_id')
+    sensor_type = attribute_of(xml, 'type')
+    return SensorDetails(
+        sensor_type, next(filter(None, map(value_of, frame_ids)), ''),
+        camera is not None or sensor_type in CAMERA_TYPES,
+        '' if optical is None else value_of(optical))

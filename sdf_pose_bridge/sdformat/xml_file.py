@@ -27,9 +27,9 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.names import shortened_message
 from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.xml_encoding import DecodedText
-from sdf_pose_bridge.sdformat.xml_encoding import text_from_bytes
-from sdf_pose_bridge.sdformat.xml_repair import repaired
+from sdf_pose_bridge.sdformat.xml_text import DecodedText
+from sdf_pose_bridge.sdformat.xml_text import repaired
+from sdf_pose_bridge.sdformat.xml_text import text_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import is_foreign
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement

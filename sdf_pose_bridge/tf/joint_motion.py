@@ -27,9 +27,9 @@ from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.geometry.screws import ScrewMotions
 from sdf_pose_bridge.scene.scene import Joint
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.joint_types import DofType
-from sdf_pose_bridge.sdformat.joint_types import JOINT_TYPES
-from sdf_pose_bridge.sdformat.joint_types import Motion
+from sdf_pose_bridge.sdformat.specification import DofType
+from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
+from sdf_pose_bridge.sdformat.specification import Motion
 from sdf_pose_bridge.tf.parents import TfParents
 
 if TYPE_CHECKING:

@@ -1,10 +1,11 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Reading elements: the top of a file, poses and their attributes, scoped names, depth."""
+"""Reading elements: the top of a file, poses, scoped names, depth, what only some kinds have."""
 
 import pytest
 from sdf_texts import assert_at
 from sdf_texts import codes_of
+from sdf_texts import errors_of
 from sdf_texts import errors_of_file
 from sdf_texts import fixed_joint
 from sdf_texts import LINK
@@ -321,3 +322,83 @@ def test_deep_elements_over_several_files_are_read(tmp_path):
 def test_error_in_a_deep_element_has_its_path():
     error = only_error(file_of_nested_models(200, '<link name="l"><pose>1 2</pose></link>'))
     assert error.element == '/sdf' + '/model[@name="mm"]' * 200 + '/link[@name="l"]/pose'
+
+
+# The implicit root cannot be named
+
+@pytest.mark.parametrize(('text', 'code'), [
+    (model_file(posed('link', 'l', '', '__root__')), 'ATTRIBUTE_INVALID'),
+    (model_file(LINK + '<frame name="f" attached_to="__root__"/>'), 'ATTRIBUTE_INVALID'),
+    (model_file(LINK, attributes='canonical_link="__root__"'), 'ATTRIBUTE_INVALID'),
+    (model_file(LINK, attributes='placement_frame="__root__"'), 'ATTRIBUTE_INVALID'),
+    (model_file(LINK + fixed_joint('j', '__root__', 'l')), 'RESERVED_NAME'),
+    (model_file(LINK + fixed_joint('j', 'l', '__root__')), 'RESERVED_NAME'),
+])
+def test_reference_to_the_implicit_root_is_refused(text, code):
+    error = errors_of(text)[0]
+    assert error.code == code
+    assert '"__root__"' in error.message
+
+
+# Models
+
+@pytest.mark.parametrize('value', ['maybe', '2', 'yes', '-1'])
+def test_wrong_static_is_refused(value):
+    error = only_error(model_file(f'<static>{value}</static>' + LINK))
+    assert error.code == 'ELEMENT_INVALID'
+    assert f'"{value}"' in error.message
+
+
+@pytest.mark.parametrize(('value', 'is_static'), [
+    ('true', True), (' 1 ', True), ('TRUE', True), ('false', False), ('0', False), ('', False),
+])
+def test_model_is_static(value, is_static):
+    scene = load_text(model_file(f'<static>{value}</static>' + LINK))
+    assert (scene.index('m') in scene.static_models) == is_static
+
+
+def test_model_is_not_static_by_default():
+    assert not load_text(model_file(LINK)).static_models
+
+
+def test_nested_model_of_a_static_model_is_not_static():
+    scene = load_text(model_file('<static>true</static><model name="n"><link name="l"/></model>'))
+    assert scene.static_models == {scene.index('m')}
+
+
+def sensor_with(content, sensor_type='custom'):
+    scene = load_text(link_with(f'<sensor name="s" type="{sensor_type}">{content}</sensor>'))
+    return scene.sensors[scene.index('m::l::s')]
+
+
+def test_sensor_has_a_type():
+    assert sensor_with('', ' imu ').type == 'imu'
+
+
+@pytest.mark.parametrize(('content', 'frame_id'), [
+    ('', ''),
+    ('<gz_frame_id/>', ''),
+    ('<gz_frame_id>a/b</gz_frame_id>', 'a/b'),
+    ('<ignition_frame_id> a </ignition_frame_id>', 'a'),
+    ('<ignition_frame_id>old</ignition_frame_id><gz_frame_id>new</gz_frame_id>', 'new'),
+    ('<ignition_frame_id>old</ignition_frame_id><gz_frame_id/>', 'old'),
+])
+def test_sensor_has_a_frame_id(content, frame_id):
+    assert sensor_with(content).frame_id == frame_id
+
+
+@pytest.mark.parametrize(('content', 'is_camera', 'optical_frame_id'), [
+    ('', False, ''),
+    ('<optical_frame_id>eye</optical_frame_id>', False, ''),
+    ('<camera/>', True, ''),
+    ('<camera><optical_frame_id>eye</optical_frame_id></camera>', True, 'eye'),
+])
+def test_sensor_with_a_camera(content, is_camera, optical_frame_id):
+    details = sensor_with(content)
+    assert (details.is_camera, details.optical_frame_id) == (is_camera, optical_frame_id)
+
+
+@pytest.mark.parametrize(('sensor_type', 'is_camera'), [
+    ('camera', True), ('rgbd_camera', True), ('gpu_lidar', False)])
+def test_sensor_of_the_type_of_a_camera(sensor_type, is_camera):
+    assert sensor_with('', sensor_type).is_camera == is_camera

@@ -22,7 +22,7 @@ from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import ValueType
-from sdf_pose_bridge.sdformat.models import PLACEMENT_OF_MERGED_MODEL
+from sdf_pose_bridge.sdformat.reader import PLACEMENT_OF_MERGED_MODEL
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import child_elements

@@ -1,7 +1,9 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Read the robot that a URDF file describes: links and joints, and nothing that poses do not need.
+Read the robot that a URDF file describes: links, joints and what ``<gazebo>`` elements hold.
+
+Nothing is read that poses do not need.
 
 What is accepted is what the parser of libsdformat accepts, which is that of urdfdom: a joint with
 a fault is an error, but in a link the parser stops at the fault and keeps what it has read.
@@ -11,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from collections.abc import Sequence
+from itertools import count
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import DuplicateNameError
@@ -18,9 +21,11 @@ from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.names import JOINT_SUFFIX
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.joint_types import URDF_JOINT_TYPES
 from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
+from sdf_pose_bridge.sdformat.urdf.values import is_true
 from sdf_pose_bridge.sdformat.urdf.values import NotFiniteError
 from sdf_pose_bridge.sdformat.urdf.values import numbers_of
 from sdf_pose_bridge.sdformat.urdf.values import pose_from_numbers
@@ -44,6 +49,15 @@ SHAPES = {
 """Shapes, and their attributes that are numbers."""
 
 _INERTIA = 'ixx! ixy! ixz! iyy! iyz! izz!'
+
+_SETTINGS = frozenset({
+    'canonicalBody', 'cfmDamping', 'collision', 'dampingFactor', 'disableFixedJointLumping',
+    'fdir1', 'fudgeFactor', 'implicitSpringDamper', 'kd', 'kp', 'laserRetro', 'material',
+    'maxContacts', 'maxVel', 'minDepth', 'mu1', 'mu2', 'preserveFixedJoint', 'provideFeedback',
+    'selfCollide', 'springReference', 'springStiffness', 'static', 'stopCfm', 'stopErp',
+    'turnGravityOff', 'visual',
+})
+"""Children of ``<gazebo>`` that are not SDFormat."""
 
 
 class Inertial(NamedTuple):
@@ -113,6 +127,17 @@ class Robot(NamedTuple):
             links.append(self.links[name])
             names += [joint.child for joint in reversed(self.child_joints.get(name, ()))]
         return links
+
+
+class Settings(NamedTuple):
+    """What ``<gazebo>`` elements say about the conversion."""
+
+    static: str | None
+    """The text of ``<static>`` of the model; None if there is none."""
+    kept_joints: frozenset[str]
+    """Names of fixed joints that remain joints."""
+    revolute_joints: frozenset[str]
+    """Those of them that become revolute joints."""
 
 
 def robot_from_tree(root: XmlElement, sources: Sources, problems: Problems) -> Robot:
@@ -300,3 +325,73 @@ def _shape(xml: XmlElement) -> Shape:
         msg = '<material> has no name'
         raise ValueError(msg)
     return Shape(xml.get('name', ''), origin, geometry)
+
+
+def robot_with_different_names(robot: Robot, sources: Sources, problems: Problems) -> Robot:
+    """
+    Rename joints that have the name of a link, and a robot that has the name of either.
+
+    Links keep their names, which robot_state_publisher gives to frames.
+
+    :param robot: the robot.
+    :param sources: where its elements were written.
+    :param problems: takes a warning for each new name.
+    :return: the robot with the new names.
+    """
+    used = {*robot.links, *robot.joint_names}
+    names = {name: name for name in robot.joint_names}
+    for joint in robot.parent_joints.values():
+        if joint.name in robot.links:
+            names[joint.name] = _unused_name(f'{joint.name}{JOINT_SUFFIX}', used)
+            problems.warning(
+                f'the joint has the name of link "{joint.name}"; it is called '
+                f'"{names[joint.name]}" here', sources.place(joint.xml))
+
+    def renamed(joint: Joint) -> Joint:
+        return joint._replace(name=names[joint.name])
+
+    return robot._replace(
+        name=_unused_name(f'{robot.name}_model', used) if robot.name in used else robot.name,
+        joint_names=names,
+        parent_joints={
+            child: renamed(joint) for child, joint in robot.parent_joints.items()},
+        child_joints={
+            parent: [renamed(joint) for joint in joints]
+            for parent, joints in robot.child_joints.items()})
+
+
+def _unused_name(name: str, used: set[str]) -> str:
+    candidates = (f'{name}{number or ""}' for number in count())
+    new_name = next(each for each in candidates if each not in used)
+    used.add(new_name)
+    return new_name
+
+
+def settings_and_extensions_from_robot(
+    root: XmlElement,
+) -> tuple[Settings, dict[str, list[XmlElement]]]:
+    """
+    Read all ``<gazebo>`` elements.
+
+    :param root: the ``robot`` element.
+    :return: the settings; and the elements of SDFormat by the name of the link or joint that they
+        are for, which is empty for the model.
+    """
+    static: str | None = None
+    preserved: set[str] = set()
+    revolute: set[str] = set()
+    extensions: dict[str, list[XmlElement]] = {}
+    for gazebo in child_elements(root, 'gazebo'):
+        reference = gazebo.get('reference', '')
+        for child in child_elements(gazebo):
+            if child.tag not in _SETTINGS:
+                extensions.setdefault(reference, []).append(child)
+            elif child.tag == 'static' and not reference:
+                static = str(is_true(child)).lower()
+            elif child.tag == 'preserveFixedJoint' and is_true(child):
+                preserved.add(reference)
+            elif child.tag == 'disableFixedJointLumping' and is_true(child):
+                revolute.add(reference)
+    settings = Settings(
+        static, frozenset(preserved | revolute), frozenset(revolute - preserved))
+    return settings, extensions

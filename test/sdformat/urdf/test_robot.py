@@ -1,19 +1,27 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Reading URDF: what is refused, and what is left out with a warning."""
+"""Reading URDF: what is refused or left out, ``<gazebo>`` elements, joints named as links."""
 
 import math
 
+from lxml import etree
+import numpy as np
 import pytest
 from sdf_texts import errors_of
 from sdf_texts import only_error
+from urdf_texts import gazebo
 from urdf_texts import joint
 from urdf_texts import link
+from urdf_texts import origin
 from urdf_texts import robot
 from urdf_texts import shape
 
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge import scene_at_positions
 from sdf_pose_bridge.problems import MOST_PROBLEMS
+from sdf_pose_bridge.sdformat.urdf.robot import Settings
+from sdf_pose_bridge.sdformat.urdf.robot import settings_and_extensions_from_robot
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 TWO = link('a') + link('b')
 LIMIT = '<limit effort="1" velocity="1"/>'
@@ -124,3 +132,70 @@ def test_links_in_a_cycle_are_left_out_with_a_warning():
         link('c') + TWO + joint('j', 'a', 'b') + joint('k', 'b', 'a')))
     assert 'r::a' not in scene.names
     assert 'its joints form a cycle' in scene.warnings[0].message
+
+
+def test_joint_gets_another_name_than_its_link_and_its_link_keeps_it():
+    scene = load_text(robot(TWO + joint('b', 'a', 'b', 'continuous', origin('1 0 0'))))
+    assert scene.names[scene.joints[0].element] == 'r::b_joint'
+    assert scene.pose('r::b').x == 1.0
+    (warning,) = scene.warnings
+    assert 'has the name of link "b"; it is called "b_joint" here' in warning.message
+
+
+def test_new_name_is_not_that_of_another_joint():
+    scene = load_text(robot(
+        TWO + link('c') + joint('b', 'a', 'b', 'continuous') + joint('b_joint', 'b', 'c')))
+    assert {'r::b_joint', 'r::b_joint1'} <= set(scene.names)
+
+
+@pytest.mark.parametrize('name', ['b', 'b_joint'])
+def test_position_is_given_by_the_name_in_the_file_too(name):
+    scene = load_text(robot(
+        TWO + joint('b', 'a', 'b', 'continuous', '<axis xyz="0 0 1"/>')))
+    assert scene_at_positions(scene, {name: np.pi}).pose('r::b').qz == pytest.approx(1.0)
+
+
+def test_mimic_follows_a_joint_that_is_renamed():
+    scene = load_text(robot(
+        TWO + link('c') + joint('b', 'a', 'b', 'continuous', '<axis xyz="0 0 1"/>')
+        + joint('k', 'a', 'c', 'continuous', '<axis xyz="0 0 1"/><mimic joint="b"/>')))
+    assert scene_at_positions(scene, {'b': np.pi}).pose('r::c').qz == pytest.approx(1.0)
+
+
+def test_fixed_joint_of_the_name_of_its_link_leaves_two_frames():
+    scene = load_text(robot(TWO + joint('b', 'a', 'b', 'fixed', origin('1 0 0'))))
+    assert scene.pose('r::b') == scene.pose('r::b_joint')
+
+
+def test_robot_of_the_name_of_its_link_has_a_frame_beside_that_of_the_link():
+    scene = load_text(robot(link('r')))
+    assert sorted(tf_tree_from_scene(scene).frame_ids) == ['r', 'r_model']
+
+
+def read(content):
+    return settings_and_extensions_from_robot(etree.fromstring(robot(content)))
+
+
+def test_without_any_there_are_no_settings():
+    assert read('') == (Settings(None, frozenset(), frozenset()), {})
+
+
+def test_what_is_not_a_setting_is_an_extension_of_what_it_refers_to():
+    _, extensions = read(
+        gazebo('<sensor/><mu1>1</mu1>', 'a') + gazebo('<plugin/>') + gazebo('<light/>', 'a'))
+    assert {name: [each.tag for each in found] for name, found in extensions.items()} == {
+        'a': ['sensor', 'light'], '': ['plugin']}
+
+
+def test_a_joint_that_is_preserved_does_not_become_revolute():
+    settings, _ = read(
+        gazebo('<preserveFixedJoint>true</preserveFixedJoint>', 'j')
+        + gazebo('<disableFixedJointLumping>true</disableFixedJointLumping>', 'j')
+        + gazebo('<disableFixedJointLumping>true</disableFixedJointLumping>', 'k')
+        + gazebo('<preserveFixedJoint>false</preserveFixedJoint>', 'l'))
+    assert settings == Settings(None, frozenset('jk'), frozenset('k'))
+
+
+def test_only_the_model_is_static():
+    assert read(gazebo('<static>yes</static>'))[0].static == 'true'
+    assert read(gazebo('<static>yes</static>', 'a'))[0].static is None

@@ -1,9 +1,13 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Rewrite text that TinyXML-2 accepts, and libsdformat with it, but that is not well-formed XML.
+Make well-formed XML in UTF-8 of the bytes of a file, as far as libsdformat would read them.
 
-TinyXML-2 knows the five predefined entities and takes any other ``&`` as text. It takes ``<`` in
+An encoding in which ``<`` or ``:`` can be written in other ways than in ASCII would get past every
+search of the bytes, so only a few encodings are known here. libsdformat reads everything as UTF-8.
+
+TinyXML-2, and libsdformat with it, accepts text that is not well-formed XML, which is rewritten
+here. It knows the five predefined entities and takes any other ``&`` as text. It takes ``<`` in
 attribute values, ``]]>`` in text, two hyphens in comments, attributes without white space between
 them, bytes that are not UTF-8, and any XML version and encoding. In text and comments it takes
 characters that XML does not have, which are replaced here. It skips text before the outermost
@@ -12,9 +16,25 @@ element, and what follows it if that is not text alone. Lines stay where they ar
 
 from __future__ import annotations
 
+import codecs
 import re
 import sys
 from typing import NamedTuple
+
+from sdf_pose_bridge.errors import FileReadError
+from sdf_pose_bridge.errors import Place
+
+_MARKS = (
+    (codecs.BOM_UTF8, 'utf-8'), (codecs.BOM_UTF32_LE, 'utf-32-le'),
+    (codecs.BOM_UTF32_BE, 'utf-32-be'), (codecs.BOM_UTF16_LE, 'utf-16-le'),
+    (codecs.BOM_UTF16_BE, 'utf-16-be'), (b'<\0\0\0', 'utf-32-le'), (b'\0\0\0<', 'utf-32-be'),
+    (b'<\0', 'utf-16-le'), (b'\0<', 'utf-16-be'))
+"""The encodings that the first bytes show: byte order marks, and ``<`` in two or four bytes."""
+
+_DECLARATION = re.compile(rb'\s*<\?xml[^>]*?encoding\s*=\s*["\']([A-Za-z0-9._-]+)["\']')
+
+_ALLOWED = re.compile(r'utf-(8|16|32)(-[bl]e)?|ascii|iso8859-[0-9]+|cp125[0-9]')
+"""The names that Python has for the encodings that are decoded."""
 
 _NAME = r'[^\W\d][\w:.\-]*|:[\w:.\-]*'
 _ATTRIBUTE = re.compile(rf'(\s*)((?:{_NAME})\s*=\s*)("[^"]*"|\'[^\']*\')')
@@ -33,6 +53,54 @@ _NOT_XML = re.compile('[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]')
 _REPLACEMENT = '\ufffd'
 _LONGEST_REFERENCE = 8
 """Digits of a character reference; longer ones without zeros before them mean no character."""
+
+
+class DecodedText(NamedTuple):
+    """The text of a file."""
+
+    utf8: bytes
+    """In UTF-8, without a byte order mark."""
+    encoding: str
+    """Python's name of the encoding that the file is in."""
+    fault: str = ''
+    """What is wrong with the encoding; the bytes stay, and may not be UTF-8."""
+
+
+def text_from_bytes(content: bytes, path: str) -> DecodedText:
+    """
+    Decode XML.
+
+    :param content: XML, in the encoding that its first bytes show or that it declares.
+    :param path: the name to use in errors.
+    :return: the text.
+    :raises FileReadError: for an encoding that is not supported.
+    """
+    encoding = next((name for mark, name in _MARKS if content.startswith(mark)), '')
+    declared = None if encoding else _DECLARATION.match(content)
+    if declared is not None:
+        encoding = declared[1].decode()
+        if encoding.lower().startswith(('utf-16', 'utf-32', 'utf16', 'utf32')):
+            # It could not have been read in one of these.
+            return _undecoded(content, encoding)
+    try:
+        name = codecs.lookup(encoding or 'utf-8').name
+    except LookupError:
+        return _undecoded(content, encoding)
+    if name == 'utf-8':
+        return DecodedText(content.removeprefix(codecs.BOM_UTF8), name)
+    if _ALLOWED.fullmatch(name) is None:
+        msg = (f'the encoding "{encoding}" is not supported; UTF-8, UTF-16, UTF-32, ASCII, '
+               'ISO-8859 and windows-125x are')
+        raise FileReadError(msg, Place(path, 1))
+    try:
+        return DecodedText(content.decode(name).removeprefix('\ufeff').encode(), name)
+    except UnicodeDecodeError:
+        return _undecoded(content, encoding)
+
+
+def _undecoded(content: bytes, encoding: str) -> DecodedText:
+    fault = f'the text is not in the encoding "{encoding}"; UTF-8 is used'
+    return DecodedText(content, 'utf-8', fault)
 
 
 class Repair(NamedTuple):
