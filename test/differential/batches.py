@@ -69,7 +69,7 @@ def drawn_scenes(count: int, number: int, features: frozenset[Feature]) -> list[
     Draw scenes.
 
     :param count: how many.
-    :param number: seed; the same one gives the same scenes.
+    :param number: seed; the same one gives the same scenes in runs that draw the same before.
     :param features: what they may hold.
     :return: the scenes.
     """

@@ -166,14 +166,16 @@ def joint_difference(own: JointValues | None, expected: JointValues, tolerance: 
             continue
         if math.dist(own_axis.xyz, axis.xyz) > tolerance:
             return f'an axis is {own_axis.xyz} here, {axis.xyz} by libsdformat'
-        if str(own_axis[1:]) != str(AxisValues(*map(_with_floats, axis))[1:]):
+        own_values, values = (str([*map(_with_floats, each[1:])]) for each in (own_axis, axis))
+        if own_values != values:
             return f'{own_axis[1:]} here, {axis[1:]} by libsdformat'
     return ''
 
 
 def _with_floats(values: tuple[object, ...] | None) -> tuple[object, ...] | None:
+    # To add zero leaves no negative zeros.
     return values and tuple(
-        float(value) if isinstance(value, int) else value for value in values)
+        value + 0.0 if isinstance(value, (int, float)) else value for value in values)
 
 
 def is_before(version: str, other: str) -> bool:
