@@ -48,7 +48,6 @@ class SdfError(Exception):
 
     :param message: one sentence that names the value and the rule that it breaks; long values in
         it are shortened.
-    :param place: where the error is.
     """
 
     code: str = 'ERROR'

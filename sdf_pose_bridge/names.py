@@ -68,7 +68,6 @@ def shortened(value: str) -> str:
     """
     Return a value from a file for a message.
 
-    :param value: any text.
     :return: the text, without its middle if it has more than 80 characters.
     """
     if len(value) <= _LONGEST_VALUE:
@@ -81,7 +80,6 @@ def shortened_message(message: str) -> str:
     """
     Return a message without the middles of long values in double quotes.
 
-    :param message: one sentence.
     :return: the sentence with at most 2000 characters.
     """
     if len(message) <= _LONGEST_VALUE:
@@ -99,7 +97,6 @@ def printable(text: str) -> str:
     A name in a file may hold a line break, which must not forge a line, and characters that
     control a terminal or the direction of writing.
 
-    :param text: any text.
     :return: the text with escapes, such as ``\n``, for all characters that are not printable.
     """
     if text.isprintable():
@@ -113,8 +110,6 @@ def hint_from_names(wanted: str, names: Iterable[str]) -> str:
     """
     Return the end of a message about a name that was not found.
 
-    :param wanted: the name.
-    :param names: the names that exist.
     :return: ``; did you mean "..."?`` with the nearest name, or an empty string.
     """
     nearest = nearest_name(wanted, names)
@@ -125,8 +120,6 @@ def nearest_name(wanted: str, names: Iterable[str]) -> str:
     """
     Return the name that was probably meant.
 
-    :param wanted: a name that was not found.
-    :param names: the names that exist.
     :return: the nearest of them, or an empty string if none is near.
     """
     return NameIndex(names).nearest(wanted) if len(wanted) <= _LONGEST_COMPARED else ''
@@ -145,12 +138,7 @@ class NameIndex:
         self._reversed_names = sorted((name[::-1] for name in short), key=_sort_key)
 
     def nearest(self, wanted: str) -> str:
-        """
-        Return the name that was probably meant.
-
-        :param wanted: a name that was not found.
-        :return: as of :func:`nearest_name`.
-        """
+        """Return the name that was probably meant."""
         if len(wanted) > _LONGEST_COMPARED:
             return ''
         # The import takes a millisecond, and most processes do not need it.

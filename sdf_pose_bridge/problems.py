@@ -55,30 +55,20 @@ class Problems:
         self._hints = 0
 
     def error(self, error: SdfError) -> None:
-        """
-        Add an error.
-
-        :param error: the error.
-        """
+        """Add an error."""
         self._errors.add(error, self._key(error))
 
     def warning(self, message: str, place: Place, code: str = 'WARNING') -> None:
         """
         Add a warning.
 
-        :param message: one sentence.
-        :param place: where it is.
         :param code: code of the corresponding error, or ``WARNING``.
         """
         warning = SdfWarning(code, shortened_message(message), place)
         self._warnings.add(warning, self._key(warning))
 
     def extend(self, problems: Iterable[SdfError | SdfWarning]) -> None:
-        """
-        Add errors and warnings.
-
-        :param problems: any number of them.
-        """
+        """Add errors and warnings."""
         for problem in problems:
             if isinstance(problem, SdfError):
                 self.error(problem)
@@ -92,12 +82,7 @@ class Problems:
         self._parent.count_more(self._errors.more, self._warnings.more)
 
     def count_more(self, errors: int, warnings: int) -> None:
-        """
-        Count problems without keeping them.
-
-        :param errors: how many errors.
-        :param warnings: how many warnings.
-        """
+        """Count problems without keeping them."""
         self._errors.more += errors
         self._warnings.more += warnings
 

@@ -81,7 +81,6 @@ def load(
     """
     Read a file and resolve every pose in it.
 
-    :param path: path of an SDFormat file.
     :param resource_paths: directories in which included models are searched first; then come
         those of the environment variables ``GZ_SIM_RESOURCE_PATH`` and ``SDF_PATH``.
     :param on_missing_include: ``error``, or ``skip`` to leave out includes that are not found.
@@ -89,7 +88,6 @@ def load(
     :param shapes: whether to read the shapes of visuals and collisions too.
     :param texts: what to read instead of some files, by their paths as in ``Scene.files``: to see
         what a change would mean before it is made.
-    :return: the scene.
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
     """
     return _scene_from_document(
@@ -110,14 +108,8 @@ def load_text(
     """
     Resolve every pose in SDFormat text, as :func:`load` does for a file.
 
-    :param text: the content of an SDFormat file.
-    :param name: its name in errors; relative includes are searched beside it.
-    :param resource_paths: as for :func:`load`.
-    :param on_missing_include: as for :func:`load`.
-    :param limits: as for :func:`load`.
-    :param shapes: as for :func:`load`.
-    :param texts: as for :func:`load`.
-    :return: the scene.
+    :param name: its name in errors; relative includes are searched beside it. The other arguments
+        are those of :func:`load`.
     :raises SdfError: as for :func:`load`.
     """
     return _scene_from_document(
@@ -133,7 +125,6 @@ def _scene_from_document(
     """
     Read a file and make the scene.
 
-    :param read: reads the file.
     :param gazebo_errors: what is wrong with ``<gazebo>`` elements, which are left out then.
     """
     sources = Sources(limits, texts)

@@ -182,11 +182,7 @@ class Scene:
         return self.world_names.get(self._root_of[index], '')
 
     def with_poses(self, poses: PoseArray, warnings: tuple[SdfWarning, ...]) -> 'Scene':
-        """
-        Return a scene with the same elements at other poses.
-
-        :return: the scene.
-        """
+        """Return a scene with the same elements at other poses."""
         return replace(self, poses=poses, warnings=warnings)
 
     def has(self, name: str) -> bool:
@@ -194,7 +190,6 @@ class Scene:
         Return whether an element exists, in any world.
 
         :param name: absolute name such as ``robot::arm::hand``.
-        :return: True if it does.
         """
         return name in self._indices
 
@@ -206,7 +201,6 @@ class Scene:
 
         :param name: absolute name such as ``robot::arm::hand``.
         :param world: the world to look in, for a file that holds several.
-        :return: its index.
         :raises UnknownFrameError: if there is no such name, or more than one.
         """
         found = self._indices.get(name, [])
@@ -233,11 +227,7 @@ class Scene:
         return self.names[index][len(scoped_name(scope, '')):]
 
     def place(self, index: int) -> Place:
-        """
-        Return the place of an element.
-
-        :return: its file and line.
-        """
+        """Return the place of an element."""
         return Place(self.files[self.file_indices[index]], int(self.lines[index]))
 
     def with_ancestors(self, index: int) -> Iterator[int]:

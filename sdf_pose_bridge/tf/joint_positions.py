@@ -101,11 +101,7 @@ class JointPositions:
         self._followers = _followers(dofs)
 
     def selection(self, names: Sequence[str]) -> Selection:
-        """
-        Look up names.
-
-        :return: what they mean.
-        """
+        """Look up names."""
         found = [self._indices.get(name) for name in names]
         rows = [row for row, dof in enumerate(found) if dof is not None]
         dofs = [dof for dof in found if dof is not None]

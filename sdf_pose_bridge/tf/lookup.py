@@ -57,7 +57,6 @@ class PoseLookup:
 
         :param frame: a name of SDF or of TF.
         :param relative_to: the reference frame, likewise; empty for the root frame.
-        :return: the pose.
         :raises UnknownFrameError: if a name is unknown or ambiguous.
         """
         pose, _ = self._pose_in_root(frame)
@@ -71,7 +70,6 @@ class PoseLookup:
         Look up the pose of an element of the scene in a frame.
 
         :param relative_to: as for :meth:`pose`.
-        :return: the pose.
         :raises UnknownFrameError: if the name is unknown or ambiguous.
         """
         reference = self._pose_in_root(relative_to)[0] if relative_to else Pose()

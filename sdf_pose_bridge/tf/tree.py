@@ -156,7 +156,6 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
 
     :param scene: the scene; of several worlds the first one is taken.
     :param options: which elements become frames, and how the frames are named.
-    :return: the tree.
     :raises SdfError: if two frames would share an id, an id would be empty, or the model to
         publish does not exist; ``errors`` has all errors that were found.
     """
