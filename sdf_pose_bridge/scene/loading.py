@@ -4,14 +4,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from collections.abc import Iterable
 from collections.abc import Iterator
 from collections.abc import Mapping
 from collections.abc import Sequence
 import contextlib
 import enum
-from functools import partial
 import gc
 from itertools import compress
 import os
@@ -41,7 +39,6 @@ from sdf_pose_bridge.scene.scene import Mimic
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.documents import Document
 from sdf_pose_bridge.sdformat.documents import document_from_file
-from sdf_pose_bridge.sdformat.documents import document_from_text
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -76,7 +73,7 @@ def load(
     on_missing_include: MissingInclude | str = MissingInclude.ERROR,
     limits: Limits = DEFAULT_LIMITS,
     shapes: bool = False,
-    texts: Mapping[str, bytes] | None = None,
+    texts: Mapping[str, bytes | str] | None = None,
 ) -> Scene:
     """
     Read a file and resolve every pose in it.
@@ -90,9 +87,9 @@ def load(
         what a change would mean before it is made.
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
     """
-    return _scene_from_document(
-        partial(document_from_file, os.fspath(path)), resource_paths,
-        MissingInclude(on_missing_include), limits, shapes=shapes, texts=texts or {})
+    return _scene_from_file(
+        os.fspath(path), resource_paths, MissingInclude(on_missing_include), limits,
+        shapes=shapes, texts=texts or {})
 
 
 def load_text(
@@ -103,7 +100,7 @@ def load_text(
     on_missing_include: MissingInclude | str = MissingInclude.ERROR,
     limits: Limits = DEFAULT_LIMITS,
     shapes: bool = False,
-    texts: Mapping[str, bytes] | None = None,
+    texts: Mapping[str, bytes | str] | None = None,
 ) -> Scene:
     """
     Resolve every pose in SDFormat text, as :func:`load` does for a file.
@@ -112,15 +109,15 @@ def load_text(
         are those of :func:`load`.
     :raises SdfError: as for :func:`load`.
     """
-    return _scene_from_document(
-        partial(document_from_text, (texts or {}).get(name, text), name), resource_paths,
-        MissingInclude(on_missing_include), limits, shapes=shapes, texts=texts or {})
+    return load(
+        name, resource_paths=resource_paths, on_missing_include=on_missing_include, limits=limits,
+        shapes=shapes, texts={name: text, **(texts or {})})
 
 
-def _scene_from_document(
-    read: Callable[..., Document], resource_paths: Iterable[str | os.PathLike[str]],
+def _scene_from_file(
+    path: str, resource_paths: Iterable[str | os.PathLike[str]],
     on_missing_include: MissingInclude, limits: Limits, *, shapes: bool,
-    texts: Mapping[str, bytes], gazebo_errors: Sequence[SdfError] = (),
+    texts: Mapping[str, bytes | str], gazebo_errors: Sequence[SdfError] = (),
 ) -> Scene:
     """
     Read a file and make the scene.
@@ -128,23 +125,23 @@ def _scene_from_document(
     :param gazebo_errors: what is wrong with ``<gazebo>`` elements, which are left out then.
     """
     sources = Sources(limits, texts)
-    problems = Problems(sources.paths, sources.includes)
+    problems = sources.problems
     for error in gazebo_errors:
         problems.warning(
             f'{error.message}; so what <gazebo> elements hold is left out', error.place,
             error.code)
     with _without_garbage_collection(), _limit_error_last(problems):
-        document = read(sources, problems, reads_gazebo_elements=not gazebo_errors)
+        document = document_from_file(
+            path, sources, reads_gazebo_elements=not gazebo_errors)
         try:
-            return _scene(
-                document, sources, problems, resource_paths, on_missing_include, shapes=shapes)
+            return _scene(document, sources, resource_paths, on_missing_include, shapes=shapes)
         except LoadError as error:
             if gazebo_errors or not document.has_gazebo_elements:
                 raise
             errors = error.errors
     # ROS does not read what <gazebo> elements hold, so that must not keep a robot from being read.
-    return _scene_from_document(
-        read, resource_paths, on_missing_include, limits, shapes=shapes, texts=texts,
+    return _scene_from_file(
+        path, resource_paths, on_missing_include, limits, shapes=shapes, texts=texts,
         gazebo_errors=errors)
 
 
@@ -170,42 +167,39 @@ def _limit_error_last(problems: Problems) -> Iterator[None]:
 
 
 def _scene(
-    document: Document, sources: Sources, problems: Problems,
-    resource_paths: Iterable[str | os.PathLike[str]], on_missing_include: MissingInclude, *,
-    shapes: bool,
+    document: Document, sources: Sources, resource_paths: Iterable[str | os.PathLike[str]],
+    on_missing_include: MissingInclude, *, shapes: bool,
 ) -> Scene:
     may_hold_scoped_names = document.may_hold_scoped_names
     if next(document.root.iter('include'), None) is not None:
         # Many files have no includes and need not wait for this import.
         from sdf_pose_bridge.sdformat.include.expansion import IncludeExpansion
         expansion = IncludeExpansion(
-            resource_finder(resource_paths, os.environ), sources, problems,
+            resource_finder(resource_paths, os.environ), sources,
             skips_missing=on_missing_include is MissingInclude.SKIP,
-            canonical_link_of=lambda root: _canonical_link(root, sources, problems))
+            canonical_link_of=lambda root: _canonical_link(root, sources))
         expansion.expand(document)
         may_hold_scoped_names |= expansion.may_hold_scoped_names
     elements = elements_from_tree(
-        document.root, sources, problems, may_hold_scoped_names=may_hold_scoped_names,
-        shapes=shapes)
-    graph = frame_graph_from_elements(elements, sources.usage, problems)
-    problems.raise_errors()
-    return _scene_from_graph(document.path, elements, graph, problems)
+        document.root, sources, may_hold_scoped_names=may_hold_scoped_names, shapes=shapes)
+    graph = frame_graph_from_elements(elements, sources.usage, sources.problems)
+    sources.problems.raise_errors()
+    return _scene_from_graph(document.path, elements, graph, sources.problems)
 
 
-def _canonical_link(root: XmlElement, sources: Sources, problems: Problems) -> str | None:
+def _canonical_link(root: XmlElement, sources: Sources) -> str | None:
     """
     Check a model file by itself.
 
-    :param sources: where its elements were written.
-    :param problems: takes the errors of the file.
+    :param sources: where its elements were written; takes the errors of the file.
     :return: name of the canonical link in the model; empty if it has none; None if there are
         errors.
     """
-    own_problems = Problems(sources.paths, parent=problems)
-    elements = elements_from_tree(root, sources, own_problems, may_hold_scoped_names=True)
-    graph = frame_graph_from_elements(elements, sources.usage, own_problems)
-    if own_problems.errors:
-        own_problems.extend_parent()
+    part = sources.with_own_problems()
+    elements = elements_from_tree(root, part, may_hold_scoped_names=True)
+    graph = frame_graph_from_elements(elements, part.usage, part.problems)
+    if part.problems.errors:
+        part.problems.extend_parent()
         return None
     model = 1  # element 0 is the implicit root
     link = int(graph.canonical_links[model])

@@ -15,7 +15,6 @@ from typing import NamedTuple
 
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import LinkInertiaError
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sources import Sources
@@ -38,14 +37,11 @@ class CollisionMass(NamedTuple):
     """The z of the center of mass in the frame of the collision; its x and y are 0."""
 
 
-def collision_masses(
-    inertial: XmlElement, sources: Sources, problems: Problems,
-) -> tuple[CollisionMass, ...] | None:
+def collision_masses(inertial: XmlElement, sources: Sources) -> tuple[CollisionMass, ...] | None:
     """
     Return the masses of the collisions of a link, if its inertial is automatic.
 
     :param inertial: an ``<inertial>`` in its link.
-    :param problems: takes collisions whose mass cannot be computed.
     :return: the mass of each collision in file order; None if the inertial is not automatic, or
         if no mass, or not each, can be computed.
     """
@@ -55,11 +51,11 @@ def collision_masses(
     collisions = [] if link is None else list(child_elements(link, 'collision'))
     if not collisions:
         msg = 'the inertial is automatic, but its link has no <collision>'
-        problems.error(ElementMissingError(msg, sources.place(inertial)))
+        sources.error(ElementMissingError, inertial, msg)
     pose = first_child(inertial, 'pose')
     if pose is not None:
         msg = 'the pose of an automatic inertial is ignored; the collisions give it'
-        problems.warning(msg, sources.place(pose))
+        sources.warning(pose, msg)
     (default_density,) = numbers_of_child(inertial, 'density', (DEFAULT_DENSITY_KG_M3,))
     masses = []
     for collision in collisions:
@@ -68,7 +64,7 @@ def collision_masses(
             name = '' if link is None else attribute_of(link, 'name')
             msg = (f'the automatic inertial of link "{name}" has its pose as written, as the mass '
                    'of a mesh is not computed')
-            problems.warning(msg, sources.place(collision))
+            sources.warning(collision, msg)
             return None
         # An empty density is the default of the element, and not that of the inertial.
         has_density = first_child(collision, 'density') is not None
@@ -78,7 +74,7 @@ def collision_masses(
         if mass is None:
             msg = ('an automatic inertial needs collisions that are boxes, capsules, cones, '
                    'cylinders, ellipsoids or spheres, with positive dimensions and density')
-            problems.error(LinkInertiaError(msg, sources.place(collision)))
+            sources.error(LinkInertiaError, collision, msg)
         else:
             masses.append(mass)
     return tuple(masses) or None

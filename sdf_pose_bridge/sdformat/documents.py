@@ -18,7 +18,6 @@ from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.old_versions import convert
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.versions import NEWEST
@@ -48,66 +47,36 @@ class Document(NamedTuple):
 
 
 def document_from_file(
-    path: str, sources: Sources, problems: Problems, *, is_included: bool = False,
-    reads_gazebo_elements: bool = True,
+    path: str, sources: Sources, *, is_included: bool = False, reads_gazebo_elements: bool = True,
 ) -> Document:
     """
     Read a file.
 
-    :param path: path of an SDFormat file.
-    :param sources: takes the file and the places of its elements.
-    :param problems: takes what is wrong with the file but does not keep it from being read.
+    :param path: path of an SDFormat file, or the name of a text in ``sources.texts``.
+    :param sources: takes the file, the places of its elements, and what is wrong with it but does
+        not keep it from being read.
     :param is_included: whether another file includes it, so that URDF is converted as libsdformat
         does it.
     :param reads_gazebo_elements: whether to read what is SDFormat in URDF.
     :return: the file, in the newest version.
     :raises FileReadError: if it is missing, unreadable or not XML, or declares no version.
     :raises LimitError: if it is too large.
-    :raises ParsingError: if its outermost element is not ``sdf``.
+    :raises ParsingError: if its outermost element is not ``sdf``, or xacro has not expanded it.
     :raises ConversionError: if its version is not supported, or names in it cannot be converted.
     """
     sources.add_path(path)
-    text = sources.texts.get(path)
+    text, encoding = sources.texts.get(path), None
     if text is None:
         text = bytes_from_file(path, sources.usage)
-    return _document_from_bytes(
-        text, path, None, sources, problems, is_included=is_included,
-        reads_gazebo_elements=reads_gazebo_elements)
-
-
-def document_from_text(
-    text: bytes | str, path: str, sources: Sources, problems: Problems, *,
-    reads_gazebo_elements: bool = True,
-) -> Document:
-    """
-    Read the content of a file.
-
-    :param text: XML; bytes are in the encoding that it declares.
-    :param path: the name to use in errors.
-    :param sources: as for :func:`document_from_file`.
-    :param problems: as for :func:`document_from_file`.
-    :param reads_gazebo_elements: as for :func:`document_from_file`.
-    :return: as for :func:`document_from_file`.
-    :raises SdfError: as for :func:`document_from_file`.
-    """
-    encoding = None
-    if isinstance(text, str):
-        text, encoding = text.encode(errors='surrogatepass'), 'utf-8'
-    sources.usage.add('bytes_read', len(text), Place(path))
-    return _document_from_bytes(
-        text, path, encoding, sources, problems, is_included=False,
-        reads_gazebo_elements=reads_gazebo_elements)
-
-
-def _document_from_bytes(
-    text: bytes, path: str, encoding: str | None, sources: Sources, problems: Problems, *,
-    is_included: bool, reads_gazebo_elements: bool,
-) -> Document:
+    else:
+        if isinstance(text, str):
+            text, encoding = text.encode(errors='surrogatepass'), 'utf-8'
+        sources.usage.add('bytes_read', len(text), Place(path))
     sources.usage.add_elements_of(text, Place(path))
     file = xml_from_bytes(text, path, encoding)
     root, lines = file.root, file.lines
-    problems.extend(file.warnings)
-    if b'$' in text or b'xacro' in text or b'\0' in text[:4]:
+    sources.problems.extend(file.warnings)
+    if b'$' in file.text or b'xacro' in file.text:
         _check_is_expanded(root, path, lines)
     has_gazebo_elements = False
     if root.tag == 'robot':
@@ -119,13 +88,13 @@ def _document_from_bytes(
         if not reads_gazebo_elements:
             for element in gazebo_elements:
                 root.remove(element)
-        root, lines = sdf_from_urdf(root, lines, sources, problems, is_included=is_included)
+        root, lines = sdf_from_urdf(root, lines, sources, is_included=is_included)
     line = lines.get(root) or root.sourceline or 0
     version = version_from_text(_declared_version(root, path, line), Place(path, line))
     document = Document(path, root, _may_hold_scoped_names(file.text), has_gazebo_elements)
     sources.add_tree(path, root, version, lines)
     convert(root, version, sources, may_hold_scoped_names=document.may_hold_scoped_names)
-    _check_top_model(root, sources, problems)
+    _check_top_model(root, sources)
     return document
 
 
@@ -146,7 +115,7 @@ def _may_hold_scoped_names(text: bytes) -> bool:
     return b'&' in text or (b':' in text and SEPARATOR.encode() in text)
 
 
-def _check_top_model(root: XmlElement, sources: Sources, problems: Problems) -> None:
+def _check_top_model(root: XmlElement, sources: Sources) -> None:
     """Refuse ``relative_to`` in the pose of a file's top model (``checkXmlFromRoot``)."""
     model = first_child(root, 'model')
     pose = None if model is None else first_child(model, 'pose')
@@ -155,7 +124,7 @@ def _check_top_model(root: XmlElement, sources: Sources, problems: Problems) -> 
     if pose is not None and relative_to:
         msg = (f'relative_to="{relative_to}": a model at the top of a file is placed in the '
                'implicit root, which has no frames')
-        problems.error(AttributeInvalidError(msg, sources.place(pose)))
+        sources.error(AttributeInvalidError, pose, msg)
         del pose.attrib['relative_to']
 
 

@@ -17,7 +17,6 @@ from sdf_pose_bridge.errors import JointChildError
 from sdf_pose_bridge.errors import JointParentError
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
 from sdf_pose_bridge.sdformat.values import numbers_of_child
@@ -81,9 +80,7 @@ class JointDetails(NamedTuple):
 _NO_REFERENCE = Reference('')
 
 
-def joint_details_from_element(
-    xml: XmlElement, sources: Sources, problems: Problems,
-) -> JointDetails:
+def joint_details_from_element(xml: XmlElement, sources: Sources) -> JointDetails:
     """
     Read a joint.
 
@@ -94,38 +91,32 @@ def joint_details_from_element(
     axis, axis2 = (_axis(xml, tag, sources) for tag in AXIS_TAGS)
     return JointDetails(
         joint_type,
-        _end(xml, 'parent', joint_type, sources, problems),
-        _end(xml, 'child', joint_type, sources, problems),
+        _end(xml, 'parent', joint_type, sources),
+        _end(xml, 'child', joint_type, sources),
         (axis, axis2),
         _screw_pitch_m(xml) if has_thread else 0.0)
 
 
-def check_children_of_joint(
-    xml: XmlElement, sources: Sources, problems: Problems, tags: Sequence[str],
-) -> None:
+def check_children_of_joint(xml: XmlElement, sources: Sources, tags: Sequence[str]) -> None:
     """Check that a joint without a frame, such as one in a state, has what it must have."""
     for tag in tags:
         if attribute_of(xml, 'type') != 'ball' and first_child(xml, tag) is None:
-            msg = f'the joint has no <{tag}>'
-            problems.error(ElementMissingError(msg, sources.place(xml)))
+            sources.error(ElementMissingError, xml, f'the joint has no <{tag}>')
 
 
-def _end(
-    xml: XmlElement, tag: str, joint_type: str, sources: Sources, problems: Problems,
-) -> Reference:
+def _end(xml: XmlElement, tag: str, joint_type: str, sources: Sources) -> Reference:
     element = first_child(xml, tag)
     if element is None:
         # The parser of libsdformat gives a ball joint an end with a default name, which no frame
         # has; any other joint it refuses.
         error = ElementMissingError if joint_type != 'ball' else (
             JointParentError if tag == 'parent' else JointChildError)
-        msg = f'the joint has no <{tag}>; it must name a frame'
-        problems.error(error(msg, sources.place(xml)))
+        sources.error(error, xml, f'the joint has no <{tag}>; it must name a frame')
         return _NO_REFERENCE
     name = value_of(element)
     if name == ROOT_FRAME:
         msg = f'"{name}" is reserved; it cannot be the {tag} of a joint'
-        problems.error(ReservedNameError(msg, sources.place(element)))
+        sources.error(ReservedNameError, element, msg)
         name = ''
     return Reference(name, sources.line(element))
 

@@ -22,7 +22,6 @@ from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.automatic_inertials import collision_masses
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
@@ -86,7 +85,7 @@ _DEFAULT_FORMAT = PoseFormat()
 
 
 def elements_from_tree(
-    root: XmlElement, sources: Sources, problems: Problems, *, may_hold_scoped_names: bool,
+    root: XmlElement, sources: Sources, *, may_hold_scoped_names: bool,
     shapes: bool = False,
 ) -> Elements:
     """
@@ -94,7 +93,7 @@ def elements_from_tree(
 
     :param root: the ``sdf`` element of a tree in the newest version. An ``<include>`` in it is
         one that was not found.
-    :param problems: takes what is wrong with structure, names, attributes and values; references
+    :param sources: takes what is wrong with structure, names, attributes and values; references
         are not looked up here.
     :param may_hold_scoped_names: False if no name in the tree can hold ``::``.
     :param shapes: whether to read the shapes of visuals and collisions.
@@ -103,18 +102,16 @@ def elements_from_tree(
     """
     with sources.unchanged_trees():
         if may_hold_scoped_names:
-            _check_scoped_names(root, sources, problems)
-        return _Reader(sources, problems, shapes=shapes).elements(root)
+            _check_scoped_names(root, sources)
+        return _Reader(sources, shapes=shapes).elements(root)
 
 
-def check_element(
-    xml: XmlElement, definition: Definition, sources: Sources, problems: Problems,
-) -> None:
+def check_element(xml: XmlElement, definition: Definition, sources: Sources) -> None:
     """Check the attributes and values of an element that is no part of the tree."""
-    _Reader(sources, problems).check(xml, definition)
+    _Reader(sources).check(xml, definition)
 
 
-def _check_scoped_names(root: XmlElement, sources: Sources, problems: Problems) -> None:
+def _check_scoped_names(root: XmlElement, sources: Sources) -> None:
     """Report names with ``::`` in files that must not have them, or are included by such files."""
     xmls: list[XmlElement] = root.xpath('//*[contains(@name, "::")]')
     for xml in xmls:
@@ -124,20 +121,17 @@ def _check_scoped_names(root: XmlElement, sources: Sources, problems: Problems) 
                for path in sources.enclosing_paths_of_name(xml)):
             continue
         msg = f'the name "{xml.get("name")}" holds "{SEPARATOR}", which separates scopes'
-        problems.error(ReservedNameError(msg, sources.place_of_name(xml)))
+        sources.error_in_name(ReservedNameError, xml, msg)
 
 
 class _Reader:
 
-    def __init__(
-        self, sources: Sources, problems: Problems, *, shapes: bool = False,
-    ) -> None:
+    def __init__(self, sources: Sources, *, shapes: bool = False) -> None:
         self._sources = sources
-        self._problems = problems
         self._deepest = sources.usage.limits.depth
         self._builder = ElementsBuilder(sources.paths)
-        self._names = SiblingNames(self._builder, sources, problems)
-        self._undefined = UndefinedReporter(sources, problems)
+        self._names = SiblingNames(self._builder, sources)
+        self._undefined = UndefinedReporter(sources)
         self._file_indices = sources.file_indices
         builder = self._builder
         self._readers_of_details: dict[
@@ -145,10 +139,10 @@ class _Reader:
             Kind.MODEL: (builder.models, _model_details),
             Kind.FRAME: (builder.frames, _frame_details),
             Kind.JOINT: (builder.joints, partial(
-                joint_details_from_element, sources=sources, problems=problems)),
+                joint_details_from_element, sources=sources)),
             Kind.SENSOR: (builder.sensors, _sensor_details),
             Kind.INERTIAL: (builder.automatic_inertials, partial(
-                collision_masses, sources=sources, problems=problems)),
+                collision_masses, sources=sources)),
         }
         """What only some kinds have: where it is kept, and what reads it; None for nothing."""
         if shapes:
@@ -166,7 +160,7 @@ class _Reader:
 
     def elements(self, root: XmlElement) -> Elements:
         self._read_file(root)
-        return self._builder.elements(self._problems)
+        return self._builder.elements(self._sources.problems)
 
     def _read_file(self, root: XmlElement) -> None:
         """Read worlds, and the one model, light or actor that may stand beside them."""
@@ -193,11 +187,11 @@ class _Reader:
     def _report_second_top(self, xml: XmlElement, first: str) -> None:
         if described(xml) == first:
             msg = f'{first} stands at the top of this file already'
-            self._problems.error(DuplicateNameError(msg, self._sources.place_of_name(xml)))
+            self._sources.error_in_name(DuplicateNameError, xml, msg)
         else:
             msg = (f'{described(xml)} stands at the top of this file after {first}; only one '
                    'model, light or actor may')
-            self._problems.error(ElementIncorrectTypeError(msg, self._sources.place_of_name(xml)))
+            self._sources.error_in_name(ElementIncorrectTypeError, xml, msg)
 
     # The walk. ``parent`` is the index of the parent element, if that has a frame, ``scope`` that
     # of the model, world or root whose names references use, and ``path`` the file around.
@@ -217,7 +211,7 @@ class _Reader:
             checks = _CHECKS if definition.has_frames else _CHECKS_OF_UNREAD
             check = checks.get(definition.identifier)
             if check is not None:
-                check(xml, self._sources, self._problems)
+                check(xml, self._sources)
             self._read_children(xml, definition, NO_ELEMENT, scope, path, depth)
 
     def _read_frame(
@@ -272,7 +266,7 @@ class _Reader:
                 elif self._builder.pose_lines[parent]:
                     self._check_pose(child)
                     msg = 'a second <pose> is ignored; the first one counts'
-                    self._problems.warning(msg, self._sources.place(child))
+                    self._sources.warning(child, msg)
                 else:
                     self._read_pose(child, child_definition, parent)
             elif child_definition.is_required or not child_definition.is_text:
@@ -295,26 +289,26 @@ class _Reader:
             if value is None:
                 if attribute.is_required:
                     msg = f'<{written_tag(xml)}> has no {name}'
-                    self._problems.error(AttributeMissingError(msg, self._sources.place(xml)))
+                    self._sources.error(AttributeMissingError, xml, msg)
             elif value.strip() and not is_of_type(value.strip(), attribute.value_type):
                 msg = f'{name}="{value.strip()}" is not {attribute.value_type.description}'
-                self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
+                self._sources.error(AttributeInvalidError, xml, msg)
             elif attribute.is_required and not value.strip():
                 msg = f'{name}="{value}" of <{written_tag(xml)}> is empty'
-                self._problems.error(AttributeInvalidError(msg, self._sources.place(xml)))
+                self._sources.error(AttributeInvalidError, xml, msg)
             elif attribute.choice is not None:
                 fault = choice_fault(value.strip(WHITE_SPACE), attribute.choice)
                 if fault:
                     error = (
                         ElementInvalidError if definition.kind is None else AttributeInvalidError)
                     msg = f'{name}="{value.strip(WHITE_SPACE)}" of <{written_tag(xml)}> {fault}'
-                    self._problems.error(error(msg, self._sources.place(xml)))
+                    self._sources.error(error, xml, msg)
 
     def _report_judgment(self, xml: XmlElement, judgment: Judgment) -> None:
         if judgment.fault:
-            self._problems.error(ElementInvalidError(judgment.fault, self._sources.place(xml)))
+            self._sources.error(ElementInvalidError, xml, judgment.fault)
         elif judgment.doubt:
-            self._problems.warning(judgment.doubt, self._sources.place(xml))
+            self._sources.warning(xml, judgment.doubt)
 
     def _read_pose(self, xml: XmlElement, definition: Definition, index: int) -> None:
         pose_format: PoseFormat | None = _DEFAULT_FORMAT
@@ -330,7 +324,7 @@ class _Reader:
         try:
             return pose_format_of(xml)
         except PoseTextError as error:
-            self._problems.error(ElementInvalidError(str(error), self._sources.place(xml)))
+            self._sources.error(ElementInvalidError, xml, str(error))
         return None
 
     def _read_relative_to(self, xml: XmlElement, definition: Definition, index: int) -> None:
@@ -345,8 +339,7 @@ class _Reader:
         elif kind is Kind.LIGHT and builder.kinds[builder.parents[index]] == Kind.ROOT:
             reason = 'a light at the top of a file is placed in the implicit root'
         if reason:
-            msg = f'relative_to="{relative_to}" is ignored; {reason}'
-            self._problems.warning(msg, self._sources.place(xml))
+            self._sources.warning(xml, f'relative_to="{relative_to}" is ignored; {reason}')
         else:
             builder.relative_to[index] = relative_to
 
@@ -355,12 +348,12 @@ class _Reader:
         pose_format = self._pose_format(xml)
         if is_required and not text_of(xml):
             msg = f'<{written_tag(xml)}> is empty; it must have a value'
-            self._problems.error(ElementInvalidError(msg, self._sources.place(xml)))
+            self._sources.error(ElementInvalidError, xml, msg)
         try:
             pose_numbers_from_text(
                 '' if pose_format is None else text_of(xml), pose_format or _DEFAULT_FORMAT)
         except PoseTextError as error:
-            self._problems.error(ElementInvalidError(str(error), self._sources.place(xml)))
+            self._sources.error(ElementInvalidError, xml, str(error))
 
 
 # What only some kinds of elements have

@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ElementMissingError
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import numbers_from_text
@@ -143,15 +142,14 @@ def _color(xml: XmlElement) -> tuple[float, float, float, float] | None:
     return None
 
 
-def check_submesh(xml: XmlElement, sources: Sources, problems: Problems) -> None:
+def check_submesh(xml: XmlElement, sources: Sources) -> None:
     """Check that a part of a mesh has a name."""
     name = first_child(xml, 'name')
     if name is None or value_of(name) == '__default__':
-        msg = 'the <submesh> has no <name>'
-        problems.error(ElementMissingError(msg, sources.place(xml)))
+        sources.error(ElementMissingError, xml, 'the <submesh> has no <name>')
 
 
-def check_material(xml: XmlElement, sources: Sources, problems: Problems) -> None:
+def check_material(xml: XmlElement, sources: Sources) -> None:
     """Check that the script and the shader of a material have what they need."""
     script, shader = first_child(xml, 'script'), first_child(xml, 'shader')
     if script is not None:
@@ -160,9 +158,9 @@ def check_material(xml: XmlElement, sources: Sources, problems: Problems) -> Non
             value = '__default__' if element is None else value_of(element)
             if value == '__default__' or (tag == 'uri' and not value):
                 msg = f'the <script> of a material has no <{tag}>, or an empty one'
-                problems.error(error(msg, sources.place(script)))
+                sources.error(error, script, msg)
     if shader is not None and first_child(shader, 'normal_map') is None:
         shader_type = attribute_of(shader, 'type')
         if shader_type.startswith('normal_map'):
             msg = f'a shader of type="{shader_type}" needs a <normal_map>'
-            problems.error(ElementMissingError(msg, sources.place(shader)))
+            sources.error(ElementMissingError, shader, msg)

@@ -19,7 +19,6 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import is_reserved
 from sdf_pose_bridge.names import WORLD_FRAME
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.sources import Sources
@@ -37,10 +36,9 @@ class SiblingNames:
     Links, joints, frames and models of one parent share a name space. Each other kind has its own.
     """
 
-    def __init__(self, builder: ElementsBuilder, sources: Sources, problems: Problems) -> None:
+    def __init__(self, builder: ElementsBuilder, sources: Sources) -> None:
         self._builder = builder
         self._sources = sources
-        self._problems = problems
         self._used: dict[tuple[int, Kind | None, str], tuple[Kind, int]] = {}
         self._renamed: set[tuple[int, Kind, str]] = set()
         self._new_names: set[tuple[int, Kind | None, str]] = set()
@@ -72,23 +70,23 @@ class SiblingNames:
             return self._new_name(kind, xml, parent, name)
         msg = (f'the name "{name}" belongs to {_ARTICLES.get(other, "a")} {other.label} of this '
                f'scope already, {self._described_place(index)}')
-        self._problems.error(DuplicateNameError(msg, self._sources.place_of_name(xml)))
+        self._sources.error_in_name(DuplicateNameError, xml, msg)
         return None
 
     def _report_no_name(self, kind: Kind, xml: XmlElement) -> None:
-        place = self._sources.place_of_name(xml)
         if xml.get('name') is None:
-            self._problems.error(AttributeMissingError(f'the {kind.label} has no name', place))
+            msg = f'the {kind.label} has no name'
+            self._sources.error_in_name(AttributeMissingError, xml, msg)
         else:
             msg = f'the name of the {kind.label} is empty'
-            self._problems.error(AttributeInvalidError(msg, place))
+            self._sources.error_in_name(AttributeInvalidError, xml, msg)
 
     def _check_reserved_name(self, kind: Kind, xml: XmlElement, name: str) -> None:
         if kind is not Kind.ACTOR:
             rule = ('it means the frame of the world' if name == WORLD_FRAME else
                     'so are all that begin and end with two underscores')
             msg = f'the name "{name}" is reserved; {rule}'
-            self._problems.error(ReservedNameError(msg, self._sources.place_of_name(xml)))
+            self._sources.error_in_name(ReservedNameError, xml, msg)
 
     def _is_renamed(self, kind: Kind, parent: int, parent_path: str) -> bool:
         if parent < 0 or not kind.is_frame or kind is Kind.MODEL:
@@ -106,7 +104,7 @@ class SiblingNames:
         msg = (f'the name "{name}" is that of another kind of element in this scope; this '
                f'{kind.label} is called "{new_name}" instead, and references to "{name}" mean the '
                'other one')
-        self._problems.warning(msg, self._sources.place(xml))
+        self._sources.warning(xml, msg)
         return new_name
 
     def _described_place(self, index: int) -> str:

@@ -1,7 +1,9 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Remember where each XML element was written: a tree may be put together from several files.
+Remember where each XML element was written, and what is wrong with it.
+
+A tree may be put together from several files.
 
 lxml knows the line of an element, but not its file, and neither lines beyond 65,535 nor the line
 in which a start tag begins that ends in another one.
@@ -17,6 +19,8 @@ from itertools import islice
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
 from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_PLACE
@@ -50,7 +54,7 @@ _PARSED = _Origin()
 
 class Sources:
     """
-    The files of a load, and where each XML element was written.
+    The files of a load, where each XML element was written, and what is wrong with them.
 
     An element stands in the file that :meth:`set_source` gave to it or to its nearest ancestor.
 
@@ -59,12 +63,13 @@ class Sources:
     """
 
     def __init__(
-        self, limits: Limits = DEFAULT_LIMITS, texts: Mapping[str, bytes] | None = None,
+        self, limits: Limits = DEFAULT_LIMITS, texts: Mapping[str, bytes | str] | None = None,
     ) -> None:
         self.usage = Usage(limits)
         """What the load has used so far."""
         self.texts = texts or {}
-        """What to read instead of the files at some paths."""
+        """What to read instead of the files at some paths; bytes are in the encoding that they
+        declare."""
         self.paths: list[str] = []
         """All files that were read, in the order of reading."""
         self.file_indices: dict[str, int] = {}
@@ -73,11 +78,31 @@ class Sources:
         """The version of each SDFormat file by its path."""
         self.includes: dict[str, Place] = {}
         """The place of the include that first led to each included file, by its path."""
+        self.problems = Problems(self.paths, self.includes)
+        """What is wrong with these files."""
         self._origins: dict[XmlElement, _Origin] = {}
         self._parsed_lines: dict[XmlElement, int] = {}
         self._composed_trees: set[XmlElement] = set()
         self._places: dict[XmlElement, Place] = {}
         self._remembers_places = False
+
+    def with_own_problems(self) -> Sources:
+        """Return the same sources, whose problems become those of the load only when asked to."""
+        part = copy.copy(self)
+        part.problems = Problems(self.paths, parent=self.problems)
+        return part
+
+    def error(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
+        """Add an error about an element to the problems."""
+        self.problems.error(error_class(message, self.place(xml)))
+
+    def error_in_name(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
+        """Add an error about the name of an element, which an include may have given to it."""
+        self.problems.error(error_class(message, self._origin(xml).include or self.place(xml)))
+
+    def warning(self, xml: XmlElement, message: str, code: str = 'WARNING') -> None:
+        """Add a warning about an element to the problems."""
+        self.problems.warning(message, self.place(xml), code)
 
     def add_path(self, path: str) -> None:
         """Add a file, unless it is known already."""
@@ -248,14 +273,6 @@ class Sources:
                 self._places.clear()
             self._places[xml] = place
         return place
-
-    def place_of_name(self, xml: XmlElement) -> Place:
-        """
-        Return where the name of an element was decided.
-
-        :return: its place; of an included element that of the ``<include>``.
-        """
-        return self._origin(xml).include or self.place(xml)
 
     def copy_of(self, xml: XmlElement) -> XmlElement:
         """

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from sdf_pose_bridge.names import nearest_name
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
@@ -39,9 +38,8 @@ _ATTRIBUTE_HINTS = {
 class UndefinedReporter:
     """Warns of what is not defined."""
 
-    def __init__(self, sources: Sources, problems: Problems) -> None:
+    def __init__(self, sources: Sources) -> None:
         self._sources = sources
-        self._problems = problems
         self._nearest: dict[tuple[str, str, str], str] = {}
 
     def report_content(self, xml: XmlElement, definition: Definition) -> None:
@@ -69,8 +67,7 @@ class UndefinedReporter:
         if self._is_only_counted():
             return
         if tag == 'include':
-            msg = f'<include> in <{written_tag(parent_xml)}> is not read'
-            self._problems.warning(msg, self._sources.place(xml))
+            self._sources.warning(xml, f'<include> in <{written_tag(parent_xml)}> is not read')
             return
         hint = _ELEMENT_HINTS.get(f'{parent.identifier}/{tag}', '') or _ELEMENT_HINTS.get(tag, '')
         if not hint and tag in parent.attributes:
@@ -99,20 +96,19 @@ class UndefinedReporter:
 
     def _is_only_counted(self) -> bool:
         """Count a warning that is one too many to be kept, so that it need not be made."""
-        is_kept = self._problems.keeps_warnings()
+        is_kept = self._sources.problems.keeps_warnings()
         if not is_kept:
-            self._problems.count_more(errors=0, warnings=1)
+            self._sources.problems.count_more(errors=0, warnings=1)
         return not is_kept
 
     def _warn(self, xml: XmlElement, what: str, hint: str) -> None:
         ending = f'; {hint}' if hint else ''
-        self._problems.warning(
-            f'{what} is not defined in SDFormat{ending}', self._sources.place(xml))
+        self._sources.warning(xml, f'{what} is not defined in SDFormat{ending}')
 
     def _did_you_mean(self, name: str, parent: str, names: Iterable[str], form: str) -> str:
         # Most of what is undefined in a file has one of a few names.
         key = form, parent, name
-        if key not in self._nearest and self._problems.allows_hint():
+        if key not in self._nearest and self._sources.problems.allows_hint():
             self._nearest[key] = nearest_name(name, names)
         nearest = self._nearest.get(key, '')
         return f'did you mean {form.format(nearest)}?' if nearest else ''

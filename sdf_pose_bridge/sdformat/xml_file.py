@@ -163,9 +163,7 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
     return XmlFile(root, tuple(warnings), lines, text, decoded.encoding)
 
 
-def _parsed(
-    text: bytes, path: str,
-) -> tuple[XmlElement | None, FileReadError | None, bool]:
+def _parsed(text: bytes, path: str) -> tuple[XmlElement | None, FileReadError | None, bool]:
     """
     Parse text.
 

@@ -9,14 +9,13 @@ from sdf_texts import model_file
 from sdf_texts import TWO_LINKS
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.documents import document_from_text
+from sdf_pose_bridge.sdformat.documents import document_from_file
 from sdf_pose_bridge.sdformat.sources import Sources
 
 
 def converted(text):
     """Return the ``sdf`` element of a text in the newest version."""
-    return document_from_text(text, 'f', Sources(), Problems(['f'])).root
+    return document_from_file('f', Sources(texts={'f': text})).root
 
 
 # 1.6 to 1.7: references of poses

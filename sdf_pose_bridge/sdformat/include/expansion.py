@@ -31,7 +31,6 @@ from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import UriLookupError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import shortened
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.documents import Document
 from sdf_pose_bridge.sdformat.documents import document_from_file
 from sdf_pose_bridge.sdformat.grammar import definition_of
@@ -79,8 +78,7 @@ class IncludeExpansion:
     Replaces includes, and reads each included file once.
 
     :param finder: finds the files that URIs name.
-    :param sources: takes the files and where elements were written.
-    :param problems: takes what is wrong with includes and with included files.
+    :param sources: takes the files, where elements were written, and what is wrong.
     :param skips_missing: whether includes that are not found are warnings.
     :param canonical_link_of: checks a model file by itself, given its ``sdf`` element; returns
         the name of the model's canonical link, empty if it has none, or None if the file is not
@@ -88,7 +86,7 @@ class IncludeExpansion:
     """
 
     def __init__(
-        self, finder: ResourceFinder, sources: Sources, problems: Problems, *,
+        self, finder: ResourceFinder, sources: Sources, *,
         skips_missing: bool, canonical_link_of: Callable[[XmlElement], str | None],
     ) -> None:
         self.may_hold_scoped_names = False
@@ -97,7 +95,6 @@ class IncludeExpansion:
         self._steps_of_directories = STEPS_OF_DIRECTORY * (
             len(finder.search_paths) + len(finder.environment_paths))
         self._sources = sources
-        self._problems = problems
         self._skips_missing = skips_missing
         self._canonical_link_of = canonical_link_of
         self._files: dict[str, Document | None] = {}
@@ -105,7 +102,7 @@ class IncludeExpansion:
         self._steps_of_copies: dict[XmlElement, int] = {}
         self._missing_uris: set[str] = set()
         self._canonical_links: dict[tuple[XmlElement, str, bytes], str | None] = {}
-        self._undefined = UndefinedReporter(sources, problems)
+        self._undefined = UndefinedReporter(sources)
 
     def expand(self, document: Document) -> None:
         """
@@ -131,7 +128,7 @@ class IncludeExpansion:
         if boolean_from_text(include.get('merge', 'false')) is not False:
             # What is merged has names of its own.
             name = ''
-        elif not name and not self._problems.errors:
+        elif not name and not self._sources.problems.errors:
             # Where the include is an error, nothing is lost by what its file may be called.
             name = _name_from_uri(uri)
         include.set(MISSING_NAME, name)
@@ -142,7 +139,7 @@ class IncludeExpansion:
         is_merge = self._is_merge(include)
         self._undefined.report_content(include, definition_of('include'))
         for plugin in child_elements(include, 'plugin'):
-            check_element(plugin, definition_of('plugin'), self._sources, self._problems)
+            check_element(plugin, definition_of('plugin'), self._sources)
         uri = self._uri(include)
         if uri is None:
             return
@@ -168,7 +165,7 @@ class IncludeExpansion:
             looks = int(params.xpath('count(.//*)'))
             characters = len(etree.tostring(top, with_tail=False))
             self._count(looks * characters // CHARACTERS_OF_LOOK, include)
-            for added in apply_params(params, top, self._sources, self._problems):
+            for added in apply_params(params, top, self._sources):
                 self.may_hold_scoped_names = True
                 self._expand_in(added, files)
         if is_merge:
@@ -185,12 +182,11 @@ class IncludeExpansion:
         element = first_child(include, 'uri')
         if element is None:
             msg = 'the include has no <uri>, so it includes nothing'
-            self._problems.error(AttributeMissingError(msg, self._sources.place(include)))
+            self._sources.error(AttributeMissingError, include, msg)
             return None
         uri = value_of(element)
         if not uri:
-            msg = 'the <uri> of the include is empty'
-            self._problems.error(ElementInvalidError(msg, self._sources.place(element)))
+            self._sources.error(ElementInvalidError, element, 'the <uri> of the include is empty')
             return None
         return uri
 
@@ -226,7 +222,7 @@ class IncludeExpansion:
             try:
                 chosen = model_file_from_directory(directory, self._sources.usage)
                 self._sources.add_path(chosen.manifest)
-                self._problems.extend(chosen.warnings)
+                self._sources.problems.extend(chosen.warnings)
             except (FileReadError, ParsingError) as error:
                 chosen = f'{error.place}: {error.message}'
             self._model_files[key] = chosen
@@ -235,11 +231,11 @@ class IncludeExpansion:
     def _read(self, path: str, files: tuple[str, ...]) -> Document | None:
         try:
             document = document_from_file(
-                path, self._sources, self._problems, is_included=True)
+                path, self._sources, is_included=True)
         except LimitError:
             raise
         except SdfError as error:
-            self._problems.extend(error.errors)
+            self._sources.problems.extend(error.errors)
             return None
         if next(document.root.iter('include'), None) is not None:
             self._sources.set_composed(document.root)
@@ -257,9 +253,9 @@ class IncludeExpansion:
     def _report_missing(self, place: Place, uri: str, reason: str) -> None:
         msg = f'"{shortened(uri)}" cannot be included: {reason}'
         if not self._skips_missing:
-            self._problems.error(UriLookupError(msg, place))
+            self._sources.problems.error(UriLookupError(msg, place))
         elif uri not in self._missing_uris:
-            self._problems.warning(f'{msg}; it is left out', place)
+            self._sources.problems.warning(f'{msg}; it is left out', place)
         self._missing_uris.add(uri)
 
     def _top(self, include: XmlElement, document: Document) -> XmlElement | None:
@@ -271,13 +267,13 @@ class IncludeExpansion:
             rest = len(tops) - _MOST_TOPS_SHOWN
             msg = (f'{document.path} has more than one element at its top: {names}'
                    f'{f" and {rest} more" if rest > 0 else ""}')
-            self._problems.error(ElementIncorrectTypeError(msg, self._sources.place(include)))
+            self._sources.error(ElementIncorrectTypeError, include, msg)
         if tops:
             return min(tops, key=lambda xml: _TOP_TAGS.index(str(xml.tag)))
         # An include at its top that was not found is reported already.
         if first_child(document.root, 'include') is None:
             msg = f'{document.path} cannot be included: no model, light or actor is at its top'
-            self._problems.error(ElementMissingError(msg, self._sources.place(include)))
+            self._sources.error(ElementMissingError, include, msg)
         return None
 
     # What an include overrides
@@ -305,14 +301,13 @@ class IncludeExpansion:
         # The value that a model takes over is checked in the model.
         if boolean_from_text(value) is None and (top.tag != 'model' or not value):
             msg = f'"{value}" is not a boolean (true, false, 1 or 0)'
-            self._problems.error(ElementInvalidError(msg, self._sources.place(static)))
+            self._sources.error(ElementInvalidError, static, msg)
 
     def _override_value(self, include: XmlElement, tag: str) -> str:
         element = first_child(include, tag)
         value = '' if element is None else value_of(element)
         if element is not None and not value:
-            msg = f'<{tag}> of the include is empty'
-            self._problems.error(ElementInvalidError(msg, self._sources.place(element)))
+            self._sources.error(ElementInvalidError, element, f'<{tag}> of the include is empty')
         return value
 
     def _override_element(self, include: XmlElement, top: XmlElement, tag: str) -> bool:
@@ -333,11 +328,11 @@ class IncludeExpansion:
         if placement and first_child(include, 'pose') is None:
             msg = (f'<placement_frame> "{placement}" needs a <pose> in the same include, which '
                    'says where that frame is')
-            self._problems.error(PlacementFrameError(msg, self._sources.place(include)))
+            self._sources.error(PlacementFrameError, include, msg)
             return ''
         if placement == ROOT_FRAME:
             msg = f'"{placement}" is reserved; it cannot be a placement frame'
-            self._problems.error(ReservedNameError(msg, self._sources.place(include)))
+            self._sources.error(ReservedNameError, include, msg)
             return ''
         return placement
 
@@ -348,7 +343,7 @@ class IncludeExpansion:
         value = boolean_from_text(written)
         if value is None:
             msg = f'merge="{written}" is not a boolean (true, false, 1 or 0)'
-            self._problems.error(AttributeInvalidError(msg, self._sources.place(include)))
+            self._sources.error(AttributeInvalidError, include, msg)
         return value
 
     def _merge(self, include: XmlElement, top: XmlElement, chosen: XmlElement) -> None:
@@ -363,7 +358,7 @@ class IncludeExpansion:
                 self._canonical_links[key] = self._canonical_link_of(root)
             return self._canonical_links[key]
 
-        merge(include, top, self._sources, self._problems, canonical_link_of)
+        merge(include, top, self._sources, canonical_link_of)
 
     def _insert(self, include: XmlElement, top: XmlElement) -> None:
         parent = include.getparent()
@@ -371,7 +366,7 @@ class IncludeExpansion:
             return
         if parent.tag == 'model' and top.tag != 'model':
             msg = f'the included {written_tag(top)} is left out; a model can include only models'
-            self._problems.warning(msg, self._sources.place(include))
+            self._sources.warning(include, msg)
             parent.remove(include)
         else:
             parent.replace(include, top)

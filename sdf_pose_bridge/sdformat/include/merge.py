@@ -20,7 +20,6 @@ from sdf_pose_bridge.errors import MergeIncludeError
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import WORLD_FRAME
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.reader import PLACEMENT_OF_MERGED_MODEL
 from sdf_pose_bridge.sdformat.sources import Sources
@@ -37,7 +36,7 @@ _NOT_IN_WORLDS = ('gripper', 'link')
 
 
 def merge(
-    include: XmlElement, model: XmlElement, sources: Sources, problems: Problems,
+    include: XmlElement, model: XmlElement, sources: Sources,
     canonical_link_of: Callable[[XmlElement], str | None],
 ) -> None:
     """
@@ -45,7 +44,6 @@ def merge(
 
     :param include: the ``<include merge="true">``.
     :param model: the included element, with what the include overrides.
-    :param problems: takes what cannot be merged.
     :param canonical_link_of: as for
         :class:`~sdf_pose_bridge.sdformat.include.expansion.IncludeExpansion`.
     """
@@ -54,18 +52,18 @@ def merge(
     if model.tag != 'model' or parent.tag not in ('model', 'world'):
         msg = (f'merge="true" on the include of {described(model)}: only a model can be merged, '
                'into a model or a world')
-        problems.error(MergeIncludeError(msg, sources.place(include)))
+        sources.error(MergeIncludeError, include, msg)
         return
-    proxy = _proxy_frame(include, model, parent, sources, problems, canonical_link_of)
-    if proxy is not None and _fits_in(parent, model, sources, problems):
+    proxy = _proxy_frame(include, model, parent, sources, canonical_link_of)
+    if proxy is not None and _fits_in(parent, model, sources):
         include.addprevious(proxy)
-        _move_children(include, model, attribute_of(proxy, 'name'), sources, problems)
+        _move_children(include, model, attribute_of(proxy, 'name'), sources)
         parent.remove(include)
 
 
 def _proxy_frame(
     include: XmlElement, model: XmlElement, parent: XmlElement, sources: Sources,
-    problems: Problems, canonical_link_of: Callable[[XmlElement], str | None],
+    canonical_link_of: Callable[[XmlElement], str | None],
 ) -> XmlElement | None:
     """Return the frame that takes the place of the model frame; None for an invalid model."""
     pose = first_child(model, 'pose')
@@ -77,7 +75,7 @@ def _proxy_frame(
         pose.attrib.pop('relative_to', None)
     if attribute_of(proxy_pose, 'relative_to') == ROOT_FRAME:
         msg = f'relative_to="{ROOT_FRAME}" is not {ValueType.FRAME.description}'
-        problems.error(AttributeInvalidError(msg, sources.place(proxy_pose)))
+        sources.error(AttributeInvalidError, proxy_pose, msg)
         return None
     if not attribute_of(proxy_pose, 'relative_to'):
         proxy_pose.set('relative_to', MODEL_FRAME if parent.tag == 'model' else WORLD_FRAME)
@@ -109,24 +107,20 @@ def _canonical_link(
     return canonical_link_of(root)
 
 
-def _fits_in(
-    parent: XmlElement, model: XmlElement, sources: Sources, problems: Problems,
-) -> bool:
+def _fits_in(parent: XmlElement, model: XmlElement, sources: Sources) -> bool:
     misfits = list(child_elements(model, *_NOT_IN_WORLDS)) if parent.tag == 'world' else []
     for child in misfits:
         msg = f'{described(child)} cannot be merged into a world, which has no links of its own'
-        problems.error(MergeIncludeError(msg, sources.place(child)))
+        sources.error(MergeIncludeError, child, msg)
     return not misfits
 
 
-def _move_children(
-    include: XmlElement, model: XmlElement, proxy: str, sources: Sources, problems: Problems,
-) -> None:
+def _move_children(include: XmlElement, model: XmlElement, proxy: str, sources: Sources) -> None:
     for child in list(child_elements(model)):
         tag = written_tag(child)
         if tag not in _MOVED_TAGS and ':' not in tag:
             continue
-        _warn_of_model_frame_in(child, sources, problems)
+        _warn_of_model_frame_in(child, sources)
         _replace_model_frame(child, proxy)
         sources.set_source(child, sources.path(child))
         include.addprevious(child)
@@ -163,7 +157,7 @@ def _replace_reference(
         xml.set(attribute, proxy)
 
 
-def _warn_of_model_frame_in(xml: XmlElement, sources: Sources, problems: Problems) -> None:
+def _warn_of_model_frame_in(xml: XmlElement, sources: Sources) -> None:
     """Libsdformat does not adapt the poses of visuals and the like."""
     if xml.tag not in ('link', 'joint'):
         return
@@ -173,4 +167,4 @@ def _warn_of_model_frame_in(xml: XmlElement, sources: Sources, problems: Problem
                 parent is not None and parent.tag != 'inertial'):
             msg = ('relative_to="__model__" means the model that this is merged into, not the one '
                    'that it was written in')
-            problems.warning(msg, sources.place(pose))
+            sources.warning(pose, msg)

@@ -22,7 +22,6 @@ from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.element_ids import element_by_id
@@ -65,17 +64,15 @@ def params_of(include: XmlElement) -> XmlElement | None:
     return next((xml for xml in child_elements(include) if written_tag(xml) == _PARAMS), None)
 
 
-def apply_params(
-    params: XmlElement, top: XmlElement, sources: Sources, problems: Problems,
-) -> list[XmlElement]:
+def apply_params(params: XmlElement, top: XmlElement, sources: Sources) -> list[XmlElement]:
     """
     Change an included element.
 
     :param params: the ``<experimental:params>``; it is not changed.
-    :param problems: takes what is wrong with the parameters. What has an error is not applied.
+    :param sources: takes what is wrong with the parameters. What has an error is not applied.
     :return: the elements that were added.
     """
-    changer = _Changer(top, sources, problems)
+    changer = _Changer(top, sources)
     for xml in child_elements(params):
         changer.apply(xml)
     return changer.added
@@ -83,11 +80,10 @@ def apply_params(
 
 class _Changer:
 
-    def __init__(self, top: XmlElement, sources: Sources, problems: Problems) -> None:
+    def __init__(self, top: XmlElement, sources: Sources) -> None:
         self.added: list[XmlElement] = []
         self._top = top
         self._sources = sources
-        self._problems = problems
 
     # One parameter
 
@@ -247,7 +243,7 @@ class _Changer:
     def _check_before_change(self, target: XmlElement) -> None:
         """Check what goes, as libsdformat reads the file, and each change, before the next one."""
         if definition := self._definition(target):
-            check_element(target, definition, self._sources, self._problems)
+            check_element(target, definition, self._sources)
 
     def _set_text(self, text: str, xml: XmlElement, target: XmlElement) -> None:
         target[:] = []
@@ -348,7 +344,7 @@ class _Changer:
     # Errors
 
     def _hint(self, element_id: str, tag: str = '') -> str:
-        allowed = self._problems.allows_hint()
+        allowed = self._sources.problems.allows_hint()
         return hint_for_id(self._top, element_id, tag) if allowed else ''
 
     def _is_action(self, xml: XmlElement, action: str) -> bool:
@@ -366,10 +362,10 @@ class _Changer:
         return False
 
     def _error(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
-        self._problems.error(error_class(message, self._place(xml)))
+        self._sources.problems.error(error_class(message, self._place(xml)))
 
     def _warning(self, xml: XmlElement, message: str) -> None:
-        self._problems.warning(message, self._place(xml))
+        self._sources.problems.warning(message, self._place(xml))
 
     def _place(self, xml: XmlElement) -> Place:
         steps = [_step(each) for each in with_ancestors(xml)]

@@ -29,7 +29,6 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import WORLD_FRAME
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.sources import Sources
@@ -75,7 +74,7 @@ class _Base(NamedTuple):
 
 
 def sdf_from_urdf(
-    root: XmlElement, lines: Mapping[XmlElement, int], sources: Sources, problems: Problems, *,
+    root: XmlElement, lines: Mapping[XmlElement, int], sources: Sources, *,
     is_included: bool,
 ) -> tuple[XmlElement, Mapping[XmlElement, int]]:
     """
@@ -83,31 +82,29 @@ def sdf_from_urdf(
 
     :param root: the ``robot`` element; what ``<gazebo>`` elements hold is taken out of it.
     :param lines: the lines of those of its elements whose lines lxml does not know.
-    :param problems: takes what is wrong but does not keep the file from being read.
     :param is_included: whether to convert as libsdformat does, and not to read as ROS does.
     :return: the ``sdf`` element, and the lines of its elements as in ``lines``.
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
     """
-    robot = robot_from_tree(root, sources, problems)
+    robot = robot_from_tree(root, sources)
     if not is_included:
-        robot = robot_with_different_names(robot, sources, problems)
+        robot = robot_with_different_names(robot, sources)
     return _Conversion(
-        root, robot, lines, sources, problems, for_ros=not is_included).result()
+        root, robot, lines, sources, for_ros=not is_included).result()
 
 
 class _Conversion:
     """Converts one file."""
 
     def __init__(
-        self, root: XmlElement, robot: Robot, lines: Mapping[XmlElement, int], sources: Sources,
-        problems: Problems, *, for_ros: bool,
+        self, root: XmlElement, robot: Robot, lines: Mapping[XmlElement, int], sources: Sources, *,
+        for_ros: bool,
     ) -> None:
         self._for_ros = for_ros
         self._root = root
         self._robot = robot
         self._lines = dict(lines)
         self._sources = sources
-        self._problems = problems
         # libsdformat reads what <gazebo> elements hold in this version.
         self._sdf = etree.Element('sdf', version='1.11')
         self._sdf.sourceline = root.sourceline  # type: ignore[misc]  # it can be set
@@ -226,9 +223,7 @@ class _Conversion:
                 self._move_extension(child, member)
             self._add_extensions(xml, member.name)
 
-    def _add_shapes(
-        self, xml: XmlElement, tag: str, link: Link, members: Sequence[Link],
-    ) -> None:
+    def _add_shapes(self, xml: XmlElement, tag: str, link: Link, members: Sequence[Link]) -> None:
         index = 0
         for member in members:
             for shape in member.visuals if tag == 'visual' else member.collisions:
@@ -257,7 +252,7 @@ class _Conversion:
             msg = f'joint "{joint.name}" is {joint.type}, which SDFormat does not have'
             if not self._for_ros:
                 msg += f', so link "{joint.child}" has no place'
-                self._problems.error(RelativeToError(msg, self._sources.place(joint.xml)))
+                self._sources.error(RelativeToError, joint.xml, msg)
                 return False
             self._warning(f'{msg}; it is fixed here', joint.xml)
             joint_type = 'fixed'
@@ -388,4 +383,4 @@ class _Conversion:
                           'converted model has no link or joint of that name', children[0])
 
     def _warning(self, message: str, xml: XmlElement, code: str = 'WARNING') -> None:
-        self._problems.warning(message, self._sources.place(xml), code)
+        self._sources.problems.warning(message, self._sources.place(xml), code)

@@ -19,10 +19,8 @@ from typing import NamedTuple
 from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ParsingError
-from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import JOINT_SUFFIX
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
 from sdf_pose_bridge.sdformat.urdf.values import is_true
@@ -140,7 +138,7 @@ class Settings(NamedTuple):
     """Those of them that become revolute joints."""
 
 
-def robot_from_tree(root: XmlElement, sources: Sources, problems: Problems) -> Robot:
+def robot_from_tree(root: XmlElement, sources: Sources) -> Robot:
     """
     Read a robot.
 
@@ -148,62 +146,58 @@ def robot_from_tree(root: XmlElement, sources: Sources, problems: Problems) -> R
     :return: the robot.
     :raises SdfError: if it is not valid; ``errors`` on it has all errors.
     """
-    return _RobotReader(root, sources, problems).robot()
+    return _RobotReader(root, sources).robot()
 
 
 class _RobotReader:
     """Reads one file; collects its errors."""
 
-    def __init__(self, root: XmlElement, sources: Sources, problems: Problems) -> None:
+    def __init__(self, root: XmlElement, sources: Sources) -> None:
         self._root = root
         self._sources = sources
-        self._problems = problems
-        self._errors = Problems(sources.paths)
+        self._errors = sources.with_own_problems()
 
     def robot(self) -> Robot:
         if self._root.get('name') is None:
-            self._error(self._root, 'the robot has no name')
+            self._errors.error(ParsingError, self._root, 'the robot has no name')
         self._check_names('material')
         links = {name: self._link(xml) for name, xml in self._check_names('link')}
         if not links:
-            self._error(self._root, 'the robot has no <link>')
+            self._errors.error(ParsingError, self._root, 'the robot has no <link>')
         joints = [self._joint(name, xml, links) for name, xml in self._check_names('joint')]
         origin = self._robot_origin()
-        self._errors.raise_errors()
+        self._errors.problems.raise_errors()
         parent_joints: dict[str, Joint] = {}
         child_joints: dict[str, list[Joint]] = {}
         for joint in sorted(filter(None, joints), key=lambda joint: joint.name.encode()):
             if joint.child in parent_joints:
                 other = parent_joints[joint.child].name
-                self._error(joint.xml, f'link "{joint.child}" is already the child of joint '
-                            f'"{other}"', DuplicateNameError)
+                self._errors.error(
+                    DuplicateNameError, joint.xml,
+                    f'link "{joint.child}" is already the child of joint "{other}"')
             parent_joints[joint.child] = joint
             child_joints.setdefault(joint.parent, []).append(joint)
         roots = [link for name, link in links.items() if name not in parent_joints]
         if len(roots) != 1:
             names = ', '.join(f'"{link.name}"' for link in roots[:10])
-            self._error(self._root, 'the links must be one tree, in which one link has no parent; '
-                        f'here these have none: {names or "no link"}')
-        self._errors.raise_errors()
+            self._errors.error(
+                ParsingError, self._root, 'the links must be one tree, in which one link has no '
+                f'parent; here these have none: {names or "no link"}')
+        self._errors.problems.raise_errors()
         robot = Robot(
             self._root.get('name', ''), origin, roots[0], links, parent_joints, child_joints,
             {joint.name: joint.name for joint in parent_joints.values()})
         self._warn_of_cycles(robot)
         return robot
 
-    def _error(
-        self, xml: XmlElement, message: str, error_type: type[SdfError] = ParsingError,
-    ) -> None:
-        self._errors.error(error_type(message, self._sources.place(xml)))
-
     def _check_names(self, tag: str) -> list[tuple[str, XmlElement]]:
         named: dict[str, XmlElement] = {}
         for xml in child_elements(self._root, tag):
             name = xml.get('name')
             if name is None:
-                self._error(xml, f'the {tag} has no name')
+                self._errors.error(ParsingError, xml, f'the {tag} has no name')
             elif name in named:
-                self._error(xml, f'there is another {tag} named "{name}"')
+                self._errors.error(ParsingError, xml, f'there is another {tag} named "{name}"')
             else:
                 named[name] = xml
         return list(named.items())
@@ -217,10 +211,9 @@ class _RobotReader:
             try:
                 numbers.update(numbers_of(origin, attribute))
             except NotFiniteError as error:
-                self._error(origin, str(error), ElementInvalidError)
+                self._errors.error(ElementInvalidError, origin, str(error))
             except ValueError as error:
-                self._problems.warning(
-                    f'{error}; libsdformat takes zeros for it', self._sources.place(origin))
+                self._sources.warning(origin, f'{error}; libsdformat takes zeros for it')
         return pose_from_numbers([*numbers['xyz'], *numbers['rpy']])
 
     def _warn_of_cycles(self, robot: Robot) -> None:
@@ -232,9 +225,8 @@ class _RobotReader:
             reached.update(children)
         for name, link in robot.links.items():
             if name not in reached:
-                self._problems.warning(
-                    f'link "{name}" is left out: its joints form a cycle',
-                    self._sources.place(link.xml))
+                self._sources.warning(
+                    link.xml, f'link "{name}" is left out: its joints form a cycle')
 
     def _link(self, xml: XmlElement) -> Link:
         inertial = None
@@ -251,10 +243,9 @@ class _RobotReader:
                 for shape in child_elements(xml, tag):
                     shapes_of_tag.append(_shape(shape))
         except NotFiniteError as error:
-            self._error(xml, str(error), ElementInvalidError)
+            self._errors.error(ElementInvalidError, xml, str(error))
         except ValueError as error:
-            self._problems.warning(
-                f'{error}; libsdformat reads the link no further', self._sources.place(xml))
+            self._sources.warning(xml, f'{error}; libsdformat reads the link no further')
         return Link(xml, xml.get('name', ''), inertial, shapes['visual'], shapes['collision'])
 
     def _joint(self, name: str, xml: XmlElement, links: Mapping[str, Link]) -> Joint | None:
@@ -263,17 +254,17 @@ class _RobotReader:
             end = first_child(xml, tag)
             link = '' if end is None else end.get('link', '')
             if link not in links:
-                self._error(
-                    xml if end is None else end,
+                self._errors.error(
+                    ParsingError, xml if end is None else end,
                     f'"{link}" is not a link' if link else f'the joint names no {tag} link')
             ends[tag] = link
         type_name = xml.get('type', '')
         joint_type = URDF_JOINT_TYPES.get(type_name)
         if joint_type is None:
-            self._error(xml, f'type="{type_name}" of <joint> must be one of '
-                        f'{", ".join(URDF_JOINT_TYPES)}')
+            msg = f'type="{type_name}" of <joint> must be one of {", ".join(URDF_JOINT_TYPES)}'
+            self._errors.error(ParsingError, xml, msg)
         elif joint_type.has_limit and first_child(xml, 'limit') is None:
-            self._error(xml, f'the {type_name} joint has no <limit>')
+            self._errors.error(ParsingError, xml, f'the {type_name} joint has no <limit>')
         values = {}
         try:
             for tag, attributes in _JOINT_PARTS.items():
@@ -283,14 +274,16 @@ class _RobotReader:
                     continue
                 values[tag] = numbers_of(part, attributes)
                 if tag == 'mimic' and part.get('joint') is None:
-                    self._error(part, 'the <mimic> names no joint')
+                    self._errors.error(ParsingError, part, 'the <mimic> names no joint')
                 if tag == 'dynamics' and not values[tag]:
-                    self._error(part, 'the <dynamics> has neither damping nor friction')
+                    msg = 'the <dynamics> has neither damping nor friction'
+                    self._errors.error(ParsingError, part, msg)
             return Joint(
                 xml, name, type_name, _origin(xml), ends['parent'], ends['child'], values)
         except ValueError as error:
             is_finite = not isinstance(error, NotFiniteError)
-            self._error(xml, str(error), ParsingError if is_finite else ElementInvalidError)
+            self._errors.error(
+                ParsingError if is_finite else ElementInvalidError, xml, str(error))
             return None
 
 
@@ -327,15 +320,14 @@ def _shape(xml: XmlElement) -> Shape:
     return Shape(xml.get('name', ''), origin, geometry)
 
 
-def robot_with_different_names(robot: Robot, sources: Sources, problems: Problems) -> Robot:
+def robot_with_different_names(robot: Robot, sources: Sources) -> Robot:
     """
     Rename joints that have the name of a link, and a robot that has the name of either.
 
     Links keep their names, which robot_state_publisher gives to frames.
 
     :param robot: the robot.
-    :param sources: where its elements were written.
-    :param problems: takes a warning for each new name.
+    :param sources: takes a warning for each new name.
     :return: the robot with the new names.
     """
     used = {*robot.links, *robot.joint_names}
@@ -343,9 +335,9 @@ def robot_with_different_names(robot: Robot, sources: Sources, problems: Problem
     for joint in robot.parent_joints.values():
         if joint.name in robot.links:
             names[joint.name] = _unused_name(f'{joint.name}{JOINT_SUFFIX}', used)
-            problems.warning(
-                f'the joint has the name of link "{joint.name}"; it is called '
-                f'"{names[joint.name]}" here', sources.place(joint.xml))
+            sources.warning(
+                joint.xml, f'the joint has the name of link "{joint.name}"; it is called '
+                f'"{names[joint.name]}" here')
 
     def renamed(joint: Joint) -> Joint:
         return joint._replace(name=names[joint.name])

@@ -23,7 +23,6 @@ from urdf_texts import shape
 from sdf_pose_bridge import load
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge import SdfError
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.sources import Sources
@@ -42,8 +41,7 @@ def converted(text, *, is_included=True):
     sources.add_path('f')
     file = xml_from_bytes(text.encode(), 'f')
     sources.add_tree('f', file.root, NEWEST, file.lines)
-    root, _ = sdf_from_urdf(
-        file.root, file.lines, sources, Problems(['f']), is_included=is_included)
+    root, _ = sdf_from_urdf(file.root, file.lines, sources, is_included=is_included)
     return root.find('model')
 
 
