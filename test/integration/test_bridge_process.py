@@ -4,11 +4,13 @@
 
 import os
 import signal
+import sys
 
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from bridge_process import LoggedProcess
 from builtin_interfaces.msg import Time
 from changes import Monitor
 from changes import reload
@@ -32,6 +34,27 @@ BAD = """\
   </model>
 </sdf>
 """
+IDLE = """
+import signal
+
+# As the executable does, before anything that starts threads is imported.
+signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+
+from sdf_pose_bridge.ros.process import _spin_until_signal
+
+rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+node = Node('idle')
+executor = SingleThreadedExecutor()
+executor.add_node(node)
+_spin_until_signal(executor, node, executor.create_task(print, 'spins', flush=True))
+"""
+"""A node that spins as the bridge does, and has no timers."""
+
 STOP_SIGNALS = pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 
 
@@ -166,6 +189,17 @@ def test_a_signal_ends_it_before_anything_else_happens(start_bridge, start_liste
     assert_ended_well(bridge)
     listener.spin_once()
     assert monitor.count == count
+
+
+def test_a_signal_ends_it_although_nothing_else_wakes_it(ros_domain):
+    process = LoggedProcess([sys.executable, '-c', IDLE])
+    try:
+        process.wait_for_line('spins')
+        process.wait_until_sleeping()
+        process.send(signal.SIGINT)
+        assert process.wait_for_end() == 0, '\n'.join(process.lines)
+    finally:
+        process.end()
 
 
 def test_a_negative_time_on_the_clock_does_not_end_it(start_bridge, start_listener, write_file):

@@ -227,3 +227,23 @@ def test_what_was_created_for_it_is_destroyed_with_it(states, is_published_later
     states.destroy()
     JointStates(node, states._frames, is_published_later=is_published_later).destroy()
     assert [*node.timers, *node.subscriptions] == []
+
+
+def test_what_waits_in_the_subscription_is_taken_before_it_is_published(
+        listener, states):
+    states.destroy()
+    later = JointStates(states._node, states._frames, is_published_later=True)
+    found = []
+    listener.create_subscription(
+        TFMessage, '/tf', lambda each: found.append(each.transforms[0].header.stamp.sec), 100)
+    publisher = listener.create_publisher(JointState, 'joint_states', 10)
+    # The timers of the node, which take messages too, do not run.
+    executor = SingleThreadedExecutor(context=listener.context)
+    executor.add_node(listener)
+    deadline = time.monotonic() + 20.0
+    while 5 not in found:
+        assert time.monotonic() < deadline, found
+        publisher.publish(joint_state(5, {'turn': 0.5}))
+        later.publish_waiting()
+        executor.spin_once(timeout_sec=0.1)
+    executor.shutdown()

@@ -98,31 +98,67 @@ def test_another_tree_gets_another_stamp(node):
     assert first.stamp == same.stamp < other.stamp
 
 
-def test_moving_frames_are_not_published_with_the_fixed_ones(node, make_node):
+def frames_of_arm(publishers, before=None):
     scene = load_text(ARM)
     tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
-    frames = PublishedFrames(
-        Publishers(node), tree, JointPositions(scene, tree.moving.dofs),
-        {'upper': 'upper', 'base': 'base'})
-    node.executor.create_task(frames.publish_topics)
+    return PublishedFrames(
+        publishers, tree, JointPositions(scene, tree.moving.dofs),
+        {'upper': 'upper', 'base': 'base'}, before)
+
+
+@pytest.fixture(name='poses')
+def listen_to_poses(node, make_node):
+    """The names and stamps of the poses that arrive."""
     listener, found = make_node('listener'), []
     for name in ('upper', 'base'):
         listener.create_subscription(
             PoseStamped, f'/bridge/poses/{name}',
-            lambda _, name=name: found.append(name), LATCHED)
+            lambda pose, name=name: found.append((name, pose.header.stamp)), LATCHED)
     node.executor.add_node(listener)
+    return found
 
-    def wait_until(condition):
-        deadline = time.monotonic() + 20.0
-        while not condition():
-            assert time.monotonic() < deadline, found
-            node.executor.spin_once(timeout_sec=0.1)
 
-    wait_until(lambda: set(found) == {'upper', 'base'})
+def wait_until(node, condition, found):
+    deadline = time.monotonic() + 20.0
+    while not condition():
+        assert time.monotonic() < deadline, found
+        node.executor.spin_once(timeout_sec=0.1)
+
+
+def test_moving_frames_are_not_published_with_the_fixed_ones(node, poses):
+    def count(wanted):
+        return sum(name == wanted for name, _ in poses)
+
+    frames = frames_of_arm(Publishers(node))
+    node.executor.create_task(frames.publish_topics)
+    wait_until(node, lambda: count('upper') and count('base'), poses)
     for _ in range(2):
         node.executor.create_task(frames.publish_fixed_again)
-    wait_until(lambda: found.count('base') == 3)
-    assert found.count('upper') == 1
+    wait_until(node, lambda: count('base') == 3, poses)
+    assert count('upper') == 1
+
+
+def test_after_a_reload_poses_have_the_stamps_of_the_tree_and_of_the_joints(node, poses):
+    publishers = Publishers(node)
+    before = frames_of_arm(publishers)
+    before.moving.stamp = (5, 6)
+    frames = frames_of_arm(publishers, before)
+    # The time of the node goes on before anything is published.
+    assert before.stamp < frames.stamp < publishers.now()
+    node.executor.create_task(frames.publish_topics)
+    wait_until(node, lambda: {'upper', 'base'} <= dict(poses).keys(), poses)
+    stamps = {name: (stamp.sec, stamp.nanosec) for name, stamp in poses}
+    assert stamps == {'base': frames.stamp, 'upper': (5, 6)}
+
+
+def test_tf_has_the_quality_of_service_of_tf2_ros(node):
+    frames_of_arm(Publishers(node))
+    found = {
+        publisher.topic_name: publisher.qos_profile for publisher in node.publishers
+        if publisher.topic_name.startswith('/tf')}
+    assert {name: (quality.depth, quality.durability) for name, quality in found.items()} == {
+        '/tf': (100, DurabilityPolicy.VOLATILE),
+        '/tf_static': (1, DurabilityPolicy.TRANSIENT_LOCAL)}
 
 
 def test_many_topics_are_made_between_other_callbacks(publish, node):

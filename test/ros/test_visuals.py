@@ -2,21 +2,31 @@
 # SPDX-License-Identifier: Apache-2.0
 """The message of all markers, as RViz needs it."""
 
+import time
+
 import numpy as np
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import DurabilityPolicy
+from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 from rclpy.serialization import serialize_message
 from visualization_msgs.msg import Marker
 from visualization_msgs.msg import MarkerArray
 
 from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
+from sdf_pose_bridge.ros.parameters import settings_from_values
 from sdf_pose_bridge.ros.visuals import message_from_markers
+from sdf_pose_bridge.ros.visuals import VisualPublisher
 from sdf_pose_bridge.tf.visual_markers import Form
 from sdf_pose_bridge.tf.visual_markers import VisualMarker
 
+SDF = """<sdf version="1.10"><model name="m"><link name="l">
+<visual name="v"><geometry><{shape}/></geometry></visual></link></model></sdf>"""
 POSE = Pose(1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 0.0)
 BLUE = (0.0, 0.0, 1.0, 0.5)
 TRIANGLE = np.array([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 2.0, 0.0)])
@@ -84,3 +94,34 @@ def test_mesh_without_a_color_keeps_its_own():
     color = message.color
     assert (color.r, color.g, color.b, color.a) == (0.0, 0.0, 0.0, 0.0)
     assert message.mesh_use_embedded_materials
+
+
+def test_shapes_that_were_read_too_late_are_not_shown(make_node, tmp_path):
+    node, listener = make_node('bridge'), make_node('listener')
+    settings = {}
+    for shape in ('box', 'sphere'):
+        path = tmp_path / f'{shape}.sdf'
+        path.write_text(SDF.format(shape=shape), encoding='utf-8')
+        settings[shape] = settings_from_values({'sdf_file': str(path)})
+    old, new = (loaded_scene_from_settings(each) for each in settings.values())
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    visuals = VisualPublisher(node, old, settings['box'])
+    visuals.replace(new, settings['sphere'])
+    for loaded, setting in ((new, settings['sphere']), (old, settings['box'])):
+        task = executor.create_task(visuals._publish, loaded, setting)
+        executor.spin_until_future_complete(task, timeout_sec=20.0)
+        assert task.done()
+        task.result()
+    executor.remove_node(node)  # so that nothing is read again for the listener
+    executor.add_node(listener)
+    found = []
+    listener.create_subscription(
+        MarkerArray, '/bridge/visuals', found.append,
+        QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+    deadline = time.monotonic() + 20.0
+    while not found:
+        assert time.monotonic() < deadline
+        executor.spin_once(timeout_sec=0.1)
+    executor.shutdown()
+    assert [each.type for each in found[0].markers[1:]] == [Marker.SPHERE]
