@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Collection
+from collections.abc import Mapping
 import sys
 from typing import NamedTuple
 
@@ -19,9 +20,7 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.tf.frame_ids import FrameNames
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
-from sdf_pose_bridge.tf.tree import TfTree
 
 SHOWN_KINDS = tuple(kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD))
 """The kinds that ``--kinds`` takes."""
@@ -61,18 +60,30 @@ def add_loading_arguments(parser: argparse.ArgumentParser) -> None:
         help='leave out includes that are not found, with a warning')
 
 
-def load_file(path: str, options: argparse.Namespace, *, shapes: bool = False) -> LoadedFile:
+def scene_from_file(
+    path: str, options: argparse.Namespace, *, shapes: bool = False,
+    texts: Mapping[str, bytes] | None = None,
+) -> Scene:
     """
     Load a file, or what a pipe such as that of the shell's ``<(command)`` holds.
 
+    :param texts: what to read instead of some files, by their paths.
+    :raises SdfError: if the file is not valid.
+    """
+    return load_text(
+        bytes_from_file(path, Usage(), allows_pipe=True), path,
+        resource_paths=options.resource_paths, shapes=shapes, texts=texts,
+        on_missing_include=MissingInclude.SKIP if options.skip_missing else MissingInclude.ERROR)
+
+
+def load_file(path: str, options: argparse.Namespace, *, shapes: bool = False) -> LoadedFile:
+    """
+    Load a file as :func:`scene_from_file` does.
+
     :return: the scene with its warnings, or the errors of the file.
     """
-    missing = MissingInclude.SKIP if options.skip_missing else MissingInclude.ERROR
     try:
-        text = bytes_from_file(path, Usage(), allows_pipe=True)
-        scene = load_text(
-            text, path, resource_paths=options.resource_paths, on_missing_include=missing,
-            shapes=shapes)
+        scene = scene_from_file(path, options, shapes=shapes)
     except SdfError as error:
         return LoadedFile(None, error.errors, error.warnings)
     return LoadedFile(scene, (), scene.warnings)
@@ -108,7 +119,7 @@ def add_frame_arguments(
     parser: argparse.ArgumentParser, default_kinds: Collection[Kind],
 ) -> None:
     """
-    Add the arguments of :func:`tf_tree_of`, which are named like the parameters of the node.
+    Add the arguments of :func:`tf_options_from_arguments`, named like parameters of the node.
 
     :param default_kinds: the kinds of element that become frames without ``--kinds``.
     """
@@ -133,18 +144,6 @@ def tf_options_from_arguments(options: argparse.Namespace) -> TfOptions:
     return TfOptions(
         model=options.model, kinds=frozenset(options.kinds),
         frame_names=FrameNames(options.frame_names))
-
-
-def tf_tree_of(scene: Scene, options: argparse.Namespace) -> TfTree:
-    """
-    Make the TF tree of a scene and print its warnings to standard error.
-
-    :return: the tree.
-    :raises SdfError: if there is none.
-    """
-    tree = tf_tree_from_scene(scene, tf_options_from_arguments(options))
-    print_problems((), tree.warnings, sys.stderr)
-    return tree
 
 
 def _kinds_from_text(text: str) -> tuple[Kind, ...]:

@@ -5,10 +5,11 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
+from collections.abc import Sequence
 import json
 import sys
 from typing import Any
-from typing import NamedTuple
 
 from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import add_kinds_argument
@@ -25,15 +26,6 @@ from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.joint_positions import scene_at_positions
-
-
-class _FileResult(NamedTuple):
-    path: str
-    errors: tuple[SdfError, ...]
-    warnings: tuple[SdfWarning, ...]
-    elements: list[dict[str, Any]]
-    """Kind, name, world and pose of each; empty if there is an error."""
-    is_only_file: bool
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -67,17 +59,18 @@ def run(options: argparse.Namespace) -> int:
     """
     are_valid = True
     for path in options.files:
-        loaded = _load_at_positions(path, options)
-        errors = loaded.errors
+        loaded = load_file(path, options)
         elements: list[dict[str, Any]] = []
         if loaded.scene is not None:
             try:
-                elements = _elements(loaded.scene, options)
-            except UnknownFrameError as error:
-                errors = error.errors
-        are_valid = are_valid and not errors
-        options.print_file(_FileResult(
-            path, errors, loaded.warnings, elements, is_only_file=len(options.files) == 1))
+                scene = scene_at_positions(loaded.scene, dict(options.positions)) if (
+                    options.positions) else loaded.scene
+                loaded = LoadedFile(scene, (), scene.warnings)
+                elements = _elements(scene, options)
+            except (JointPositionError, UnknownFrameError) as error:
+                loaded = LoadedFile(None, error.errors, loaded.warnings)
+        are_valid = are_valid and loaded.scene is not None
+        options.print_file(path, loaded, elements, len(options.files))
     return 0 if are_valid else 1
 
 
@@ -88,17 +81,6 @@ def _position_from_text(text: str) -> tuple[str, float]:
     except ValueError:
         msg = f'"{text}" is not NAME=VALUE with a number, such as elbow=1.57'
         raise argparse.ArgumentTypeError(msg) from None
-
-
-def _load_at_positions(path: str, options: argparse.Namespace) -> LoadedFile:
-    loaded = load_file(path, options)
-    if loaded.scene is None or not options.positions:
-        return loaded
-    try:
-        scene = scene_at_positions(loaded.scene, dict(options.positions))
-    except JointPositionError as error:
-        return LoadedFile(None, error.errors, loaded.warnings)
-    return LoadedFile(scene, (), scene.warnings)
 
 
 def _elements(scene: Scene, options: argparse.Namespace) -> list[dict[str, Any]]:
@@ -126,13 +108,15 @@ def _pose(scene: Scene, index: int, relative_to: str) -> Pose:
 # Formats
 
 
-def _print_json(result: _FileResult) -> None:
+def _print_json(
+    path: str, loaded: LoadedFile, elements: Sequence[Mapping[str, Any]], _file_count: int,
+) -> None:
     print(json.dumps({
-        'file': result.path,
-        'ok': not result.errors,
-        'errors': [_problem(error) for error in result.errors],
-        'warnings': [_problem(warning) for warning in result.warnings],
-        'elements': result.elements,
+        'file': path,
+        'ok': not loaded.errors,
+        'errors': [_problem(error) for error in loaded.errors],
+        'warnings': [_problem(warning) for warning in loaded.warnings],
+        'elements': elements,
     }))
 
 
@@ -146,14 +130,15 @@ def _problem(problem: SdfError | SdfWarning) -> dict[str, Any]:
     }
 
 
-def _print_table(result: _FileResult) -> None:
+def _print_table(
+    path: str, loaded: LoadedFile, elements: Sequence[Mapping[str, Any]], file_count: int,
+) -> None:
     sys.stdout.flush()
-    print_problems(result.errors, result.warnings, sys.stderr)
-    if result.errors:
+    print_problems(loaded.errors, loaded.warnings, sys.stderr)
+    if loaded.errors:
         return
-    if not result.is_only_file:
-        print(printable(result.path))
-    elements = result.elements
+    if file_count > 1:
+        print(printable(path))
     has_worlds = len({element['world'] for element in elements}) > 1
     names = [
         printable(f'{element["world"]}: {element["name"]}' if has_worlds else element['name'])

@@ -11,6 +11,7 @@ import sys
 from sdf_pose_bridge.cli.convert import line_from_text
 from sdf_pose_bridge.cli.convert import NEGATIVE_NUMBER
 from sdf_pose_bridge.cli.loading import add_file_arguments
+from sdf_pose_bridge.cli.loading import scene_from_file
 from sdf_pose_bridge.cli.loading import scene_of
 from sdf_pose_bridge.cli.printing import printed_errors
 from sdf_pose_bridge.errors import SdfError
@@ -25,8 +26,6 @@ from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.comparison import Change
 from sdf_pose_bridge.scene.comparison import differences_of_scenes
-from sdf_pose_bridge.scene.loading import load
-from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.scene.pose_setting import Measure
 from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.pose_setting import PoseChange
@@ -103,10 +102,7 @@ def set_pose(
     :raises SdfError: if the file cannot say this, or cannot be written.
     """
     def loaded(texts: Mapping[str, bytes]) -> Scene:
-        return load(
-            options.files[0], resource_paths=options.resource_paths, texts=texts,
-            on_missing_include=MissingInclude.SKIP if options.skip_missing else (
-                MissingInclude.ERROR))
+        return scene_from_file(options.files[0], options, texts=texts)
 
     change = pose_change(scene, element, asked, measure, loaded, all_instances=all_instances)
     if not dry_run:
@@ -118,12 +114,13 @@ def _set(scene: Scene, numbers: list[float], options: argparse.Namespace) -> int
     def measured(scene: Scene, element: int) -> Pose:
         return _lookup(scene).pose_of_element(element, options.relative_to)
 
-    element, in_element = _lookup(scene).element(options.frame)
+    lookup = _lookup(scene)
+    element, in_element = lookup.element(options.frame)
     if options.format in POSE_FORMATS:
         asked = Pose(*converted_poses(numbers, options.format, 'sdf_quat_xyzw').tolist())
     else:
         quat_xyzw = converted_rotations(numbers, options.format, 'quaternion').tolist()
-        position = _lookup(scene).pose(options.frame, options.relative_to).pose[:3]
+        position = lookup.pose(options.frame, options.relative_to).pose[:3]
         asked = Pose(*position, *quat_xyzw)
     change = set_pose(
         scene, element, pose_product(asked, pose_inverse(in_element)), measured, options,

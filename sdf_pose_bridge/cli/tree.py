@@ -16,10 +16,11 @@ from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import add_frame_arguments
 from sdf_pose_bridge.cli.loading import scene_of
 from sdf_pose_bridge.cli.loading import SHOWN_KINDS
-from sdf_pose_bridge.cli.loading import tf_tree_of
+from sdf_pose_bridge.cli.loading import tf_options_from_arguments
 from sdf_pose_bridge.cli.printing import add_unit_arguments
 from sdf_pose_bridge.cli.printing import is_colored
 from sdf_pose_bridge.cli.printing import kind_labels_of
+from sdf_pose_bridge.cli.printing import print_problems
 from sdf_pose_bridge.cli.printing import printed_errors
 from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.printing import units_from_arguments
@@ -30,6 +31,7 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 from sdf_pose_bridge.tf.tree import elements_in_model
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfTree
 
 _BOLD, _DIM, _PLAIN = '\x1b[1m', '\x1b[2m', '\x1b[0m'
@@ -117,7 +119,9 @@ def _rows(scene: Scene, options: argparse.Namespace) -> list[_Row] | None:
     with printed_errors():
         if options.scope:
             return _rows_by_scope(scene, options)
-        return _rows_of_frames(scene, tf_tree_of(scene, options))
+        tree = tf_tree_from_scene(scene, tf_options_from_arguments(options))
+        print_problems((), tree.warnings, sys.stderr)
+        return _rows_of_frames(scene, tree)
     return None
 
 

@@ -17,6 +17,7 @@ from diagnostic_msgs.msg import KeyValue
 from rclpy.node import Node
 
 from sdf_pose_bridge.ros.loaded_scene import LoadedScene
+from sdf_pose_bridge.ros.log_lines import count_in_words
 from sdf_pose_bridge.ros.publishers import new_publisher
 from sdf_pose_bridge.ros.publishers import Topic
 
@@ -85,8 +86,7 @@ def status_from_scene(
         text = f'the last load failed, what was loaded before is served: {failure[0]}'
     elif warnings:
         level = DiagnosticStatus.WARN
-        number = len(warnings)
-        text = f'serving {loaded.path.name} with {number} warning{"s" if number > 1 else ""}'
+        text = f'serving {loaded.path.name} with {count_in_words(len(warnings), "warning")}'
     else:
         level = DiagnosticStatus.OK
         text = f'serving {loaded.path.name}'

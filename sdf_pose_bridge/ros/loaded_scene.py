@@ -71,7 +71,8 @@ def loaded_scene_from_settings(
     text = bytes_from_file(str(path), Usage()) if settings.sdf_file else settings.robot_description
     scene = _scene_from_text(text, path, settings, texts=texts)
     tree = tf_tree_from_scene(scene, settings.tf_options)
-    joint_positions = _joint_positions(scene, tree, settings)
+    joint_positions = None if tree.moving is None else JointPositions(
+        scene, tree.moving.dofs, settings.frame_names, settings.model)
     return LoadedScene(
         path=path,
         text=text,
@@ -130,13 +131,6 @@ def _scene_from_text(
     return load_text(
         text, str(path), resource_paths=settings.resource_paths,
         on_missing_include=settings.on_missing_include, shapes=shapes, texts=texts)
-
-
-def _joint_positions(scene: Scene, tree: TfTree, settings: Settings) -> JointPositions | None:
-    if tree.moving is None:
-        return None
-    return JointPositions(
-        scene, tree.moving.dofs, settings.frame_names, settings.model)
 
 
 def files_behind_error(error: Exception, settings: Settings) -> list[str]:

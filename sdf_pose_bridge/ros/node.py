@@ -216,18 +216,17 @@ class SdfPoseBridge:
         self, request: SetPose.Request, response: SetPose.Response,
     ) -> SetPose.Response:
         """Write a measured pose, and answer when it is published."""
-        from sdf_pose_bridge.ros.set_pose import fill_response
         from sdf_pose_bridge.ros.set_pose import set_pose
         loaded, settings = self._loaded, self._settings
         try:
-            measured = await run_in_thread(
+            answer: SetPose.Response = await run_in_thread(
                 self._node, lambda: set_pose(request, loaded, settings))
             if not request.dry_run:
                 await self._show(await self._load(settings))
-            fill_response(response, measured)
         except Exception as error:  # noqa: BLE001 - the client must be answered
             response.message = '; '.join(self._lines_from_error(error))
-        return response
+            return response
+        return answer
 
     # Changes of files
 

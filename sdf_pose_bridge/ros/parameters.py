@@ -8,6 +8,8 @@ from collections.abc import Callable
 from collections.abc import Iterable
 from collections.abc import Mapping
 from collections.abc import Sequence
+from dataclasses import dataclass
+from dataclasses import field
 from typing import Any
 from typing import Generic
 from typing import TypeVar
@@ -57,35 +59,31 @@ class SettingsError(ValueError):
         self.sentences = tuple(sentences)
 
 
+@dataclass(eq=False)
 class Declaration(Generic[Setting]):
-    """
-    The declaration of a parameter; as an attribute of :class:`Settings`, its setting.
+    """The declaration of a parameter; as an attribute of :class:`Settings`, its setting."""
 
-    :param default: default value, which also gives the type.
-    :param description: what the parameter is for.
-    :param constraint: the values that it can have.
-    :param convert: makes the setting of a value. If the value is not allowed, it raises ValueError
-        with the words that follow "parameter <name>" in a sentence.
-    :param needs_load: whether a new setting takes effect only when the file is read again.
-    :param is_read_only: whether the parameter can be set only at the start.
-    :param maximum: largest value of a number; the smallest one is 0.0.
-    """
+    default: Value
+    """The default value, which also gives the type."""
+    description: str
+    """What the parameter is for."""
+    constraint: str
+    """The values that it can have."""
+    convert: Callable[[Any], Setting]
+    """Makes the setting of a value. If the value is not allowed, it raises ValueError with the
+    words that follow "parameter <name>" in a sentence."""
+    needs_load: bool = True
+    """Whether a new setting takes effect only when the file is read again."""
+    maximum: float | None = None
+    """The largest value of a number; the smallest one is 0.0."""
+    is_read_only: bool = False
+    """Whether the parameter can be set only at the start."""
+    name: str = field(init=False)
 
-    name: str
-
-    def __init__(
-        self, default: Value, description: str, constraint: str,
-        convert: Callable[[Any], Setting], *, needs_load: bool = True,
-        maximum: float | None = None, is_read_only: bool = False,
-    ) -> None:
-        self.default = default
-        self.type_ = TYPES[type(default)]
-        self.description = description
-        self.constraint = constraint
-        self.convert = convert
-        self.needs_load = needs_load
-        self.maximum = maximum
-        self.is_read_only = is_read_only
+    @property
+    def type_(self) -> Parameter.Type:
+        """The type of its values."""
+        return TYPES[type(self.default)]
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name

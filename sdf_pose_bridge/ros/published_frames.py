@@ -20,6 +20,7 @@ import numpy as np
 from rclpy.publisher import Publisher
 from tf2_msgs.msg import TFMessage
 
+from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.ros.cdr import pose_stamped_messages
 from sdf_pose_bridge.ros.cdr import StampedMessages
 from sdf_pose_bridge.ros.cdr import tf_message
@@ -109,14 +110,13 @@ class PublishedFrames:
 
     @cached_property
     def _tf_static_message(self) -> StampedMessages:
-        indices = self.tree.fixed_indices
-        return tf_message(*self.tree.ids_of_transforms(indices), self.tree.transforms[indices])
+        return tf_message(*_transforms(self.tree, self.tree.fixed_indices))
 
     @cached_property
     def _fixed_transforms(self) -> tuple[Sequence[Topic], StampedMessages]:
         indices = self.tree.fixed_indices
-        return [self._transforms_topic] * len(indices), transform_stamped_messages(
-            *self.tree.ids_of_transforms(indices), self.tree.transforms[indices])
+        messages = transform_stamped_messages(*_transforms(self.tree, indices))
+        return [self._transforms_topic] * len(indices), messages
 
     @cached_property
     def _fixed_poses(self) -> tuple[Sequence[Topic], StampedMessages]:
@@ -155,8 +155,7 @@ class PublishedMovingFrames:
             positions.take_over(before.positions)
         self._tf = publishers.opened(TF)
         self.transforms_topic = _transforms_topic(len(moving.indices), 'moving')
-        self._transform_messages = transform_stamped_messages(
-            *tree.ids_of_transforms(moving.indices), tree.transforms[moving.indices])
+        self._transform_messages = transform_stamped_messages(*_transforms(tree, moving.indices))
         topics = [pose_topics.get(tree.frame_ids[index]) for index in moving.posed_indices]
         self._posed_rows = [row for row, topic in enumerate(topics) if topic is not None]
         self._posed_topics = [topic for topic in topics if topic is not None]
@@ -171,8 +170,7 @@ class PublishedMovingFrames:
         :param rows: which of the moving transforms it has.
         :return: the message, for :meth:`publish_tf`.
         """
-        indices = self.frames.indices[rows]
-        return tf_message(*self._tree.ids_of_transforms(indices), self._tree.transforms[indices])
+        return tf_message(*_transforms(self._tree, self.frames.indices[rows]))
 
     def publish_tf(
         self, rows: NDArray[np.intp], message: StampedMessages, stamp: Stamp,
@@ -219,6 +217,13 @@ class PublishedMovingFrames:
                     publishers, self._pose_messages.with_stamp(*stamp), strict=True):
                 if publisher is not None:
                     publisher.publish(message)
+
+
+def _transforms(
+    tree: TfTree, indices: NDArray[np.intp],
+) -> tuple[Sequence[str], Sequence[str], PoseArray]:
+    """Return the parents, the children and the transforms of frames, as messages have them."""
+    return *tree.ids_of_transforms(indices), tree.transforms[indices]
 
 
 def _transforms_topic(count: int, part: str) -> Topic:

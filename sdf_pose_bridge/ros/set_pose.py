@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import PoseNotSetError
@@ -20,7 +19,6 @@ from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.scene.comparison import Change
 from sdf_pose_bridge.scene.comparison import differences_of_scenes
 from sdf_pose_bridge.scene.pose_setting import pose_change
-from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_replacement import replace_file
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -28,25 +26,15 @@ from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge_interfaces.srv import SetPose
 
 
-class MeasuredChange(NamedTuple):
-    """What a request changes."""
-
-    change: PoseChange
-    diff: str
-    """The change as a unified diff. A large one takes long, and so is not left to the executor."""
-    moved_frames: list[str]
-    """Frame ids of the other frames that move."""
-
-
 def set_pose(
     request: SetPose.Request, loaded: LoadedScene, settings: Settings,
-) -> MeasuredChange:
+) -> SetPose.Response:
     """
     Write into a file that a frame is where it was measured, unless it is a dry run.
 
     :param loaded: the scene that is published.
     :param settings: the settings that it was loaded with.
-    :return: what changes. With it the file is valid and can be published.
+    :return: the answer: what changes. With it the file is valid and can be published.
     :raises SdfError: if the request is no pose, no pose in a file can say it, or the file cannot
         be written.
     """
@@ -74,17 +62,10 @@ def set_pose(
         difference.name for difference in differences_of_scenes(scene, change.scene)
         if difference.change is Change.MOVED}
     elements = loaded.tree.elements.tolist()
-    return MeasuredChange(change, change.diff, [
-        frame_id for frame_id, other in zip(loaded.tree.frame_ids, elements, strict=True)
-        if other not in (-1, element) and scene.names[other] in moved])
-
-
-def fill_response(response: SetPose.Response, measured: MeasuredChange) -> None:
-    """Answer that a change was made."""
-    change = measured.change
-    response.success = True
-    response.file, response.line, response.diff = change.path, change.line, measured.diff
-    response.moved_frames = measured.moved_frames
+    return SetPose.Response(
+        success=True, file=change.path, line=change.line, diff=change.diff, moved_frames=[
+            frame_id for frame_id, other in zip(loaded.tree.frame_ids, elements, strict=True)
+            if other not in (-1, element) and scene.names[other] in moved])
 
 
 def _pose_from_request(request: SetPose.Request, loaded: LoadedScene) -> Pose:

@@ -72,11 +72,7 @@ def topic_name_from_frame_id(frame_id: str, limit: int = LONGEST_NAME) -> str:
     :param frame_id: any text.
     :param limit: the most characters that the name can have; at least ``SHORTEST_LIMIT``.
     :return: a legal relative topic name without hidden levels.
-    :raises ValueError: if the limit is too low.
     """
-    if limit < SHORTEST_LIMIT:
-        msg = f'the limit is {limit} characters, and at least {SHORTEST_LIMIT} are needed'
-        raise ValueError(msg)
     name = '/'.join(_level_from_text(level) for level in frame_id.split('/'))
     if len(name) <= limit and not _CUT.search(name):
         return name

@@ -11,7 +11,6 @@ from geometry_msgs.msg import Point
 from geometry_msgs.msg import Pose as PoseMessage
 from geometry_msgs.msg import Quaternion
 from geometry_msgs.msg import Vector3
-from rclpy.event_handler import QoSPublisherMatchedInfo
 from rclpy.node import Node
 from std_msgs.msg import ColorRGBA
 from std_msgs.msg import Header
@@ -43,15 +42,12 @@ class VisualPublisher:
         self._loaded, self._settings = loaded, settings
         self._is_up_to_date = False
         self._publisher = new_publisher(
-            node, Topic('~/visuals', MarkerArray), self._on_match)
+            node, Topic('~/visuals', MarkerArray), lambda _: self._publish_to_listeners())
 
     def replace(self, loaded: LoadedScene, settings: Settings) -> None:
         """Show another scene from now on."""
         self._loaded, self._settings = loaded, settings
         self._is_up_to_date = False
-        self._publish_to_listeners()
-
-    def _on_match(self, _event: QoSPublisherMatchedInfo) -> None:
         self._publish_to_listeners()
 
     def _publish_to_listeners(self) -> None:

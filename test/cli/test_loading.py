@@ -11,7 +11,8 @@ from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import add_frame_arguments
 from sdf_pose_bridge.cli.loading import load_file
 from sdf_pose_bridge.cli.loading import scene_of
-from sdf_pose_bridge.cli.loading import tf_tree_of
+from sdf_pose_bridge.cli.loading import tf_options_from_arguments
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 
 @pytest.fixture(name='options')
@@ -40,8 +41,8 @@ def test_problems_of_a_file_are_printed(options, capsys):
 def test_frames_are_those_of_the_chosen_kinds(options):
     chosen = options('--kinds', 'model,link', 'good.sdf')
     scene = scene_of('good.sdf', chosen)
-    kinds = {Kind(scene.kinds[element]) for element in tf_tree_of(scene, chosen).elements}
-    assert kinds == {Kind.MODEL, Kind.LINK}
+    tree = tf_tree_from_scene(scene, tf_options_from_arguments(chosen))
+    assert {Kind(scene.kinds[element]) for element in tree.elements} == {Kind.MODEL, Kind.LINK}
 
 
 def test_an_unknown_kind_names_those_that_exist(options, capsys):

@@ -16,7 +16,6 @@ from sdf_pose_bridge import load
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.parameters import settings_from_node
-from sdf_pose_bridge.ros.set_pose import fill_response
 from sdf_pose_bridge.ros.set_pose import set_pose
 from sdf_pose_bridge_interfaces.srv import SetPose
 
@@ -56,8 +55,7 @@ def make_ask(make_node, path):
 
 
 def test_the_answer_has_the_file_and_the_frames_that_move(ask, path):
-    response = SetPose.Response()
-    fill_response(response, ask('mark', (3.0, 0.0, 0.0)))
+    response = ask('mark', (3.0, 0.0, 0.0))
     assert (response.success, response.message) == (True, '')
     assert (response.file, response.line) == (str(path), 1)
     assert '+<sdf' in response.diff
