@@ -39,8 +39,8 @@ from launch_ros.parameter_descriptions import ParameterValue
 import yaml
 
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.ros.given_parameters import settings_from_values
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
-from sdf_pose_bridge.ros.parameters import settings_from_values
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.sdformat.include.uris import AddressError
 

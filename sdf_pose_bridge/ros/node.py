@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 import contextlib
+import math
 import time
 import traceback
 from typing import TYPE_CHECKING
@@ -28,6 +29,8 @@ from sdf_pose_bridge.ros.diagnostics import Diagnostics
 from sdf_pose_bridge.ros.diagnostics import PERIOD_S
 from sdf_pose_bridge.ros.file_watcher import FileWatcher
 from sdf_pose_bridge.ros.file_watcher import PollingThread
+from sdf_pose_bridge.ros.given_parameters import add_parameter_services
+from sdf_pose_bridge.ros.given_parameters import changed_settings
 from sdf_pose_bridge.ros.loaded_scene import files_behind_error
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.loaded_scene import LoadedScene
@@ -37,8 +40,6 @@ from sdf_pose_bridge.ros.log_lines import line_about_detached_models
 from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
-from sdf_pose_bridge.ros.parameter_service import add_parameter_services
-from sdf_pose_bridge.ros.parameters import changed_settings
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
@@ -77,7 +78,7 @@ class SdfPoseBridge:
         # A failure that was not reported yet, because the file may still be being written.
         self._pending_failure: list[str] = []
         # When to read the files again after a failure that may pass without a change of them.
-        self._retry_time: float | None = None
+        self._retry_time = math.inf
         self._diagnostics = Diagnostics(node)
         self._watcher = FileWatcher()
         # All callbacks that change what is published: one runs after the other.
@@ -160,7 +161,7 @@ class SdfPoseBridge:
     def _report_success(self) -> None:
         loaded = self._loaded
         self._failure = self._pending_failure = []
-        self._retry_time = None
+        self._retry_time = math.inf
         self._watcher.watch(loaded.files, loaded.read_since_ns)
         for line in lines_from_warnings(loaded.warnings):
             self._logger.warning(line)
@@ -178,7 +179,7 @@ class SdfPoseBridge:
         try:
             await self._show(await self._load(self._settings))
         except Exception as error:  # noqa: BLE001 - includes defects
-            self._retry_time = time.monotonic() + RETRY_PERIOD_S if may_pass(error) else None
+            self._retry_time = time.monotonic() + RETRY_PERIOD_S if may_pass(error) else math.inf
             self._watcher.watch_also(files_behind_error(error, self._settings))
             return self._lines_from_error(error)
         return []
@@ -235,8 +236,7 @@ class SdfPoseBridge:
             bool(self._pending_failure) or self._has_to_retry() or self._watcher.differs())
 
     def _has_to_retry(self) -> bool:
-        retry_time = self._retry_time
-        return retry_time is not None and time.monotonic() >= retry_time
+        return time.monotonic() >= self._retry_time
 
     async def _check_files(self) -> None:
         """

@@ -1,43 +1,32 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The parameters of the node; each one is declared once, as an attribute of :class:`Settings`."""
+"""
+The parameters of the node, and the values that they can have.
+
+Each parameter is declared once, as an attribute of :class:`Settings`. A function
+``<rule>_setting`` makes the setting of a value. If the value is not allowed, it raises ValueError
+with the words that follow "parameter <name>" in a sentence.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from collections.abc import Iterable
 from collections.abc import Mapping
 from collections.abc import Sequence
 from dataclasses import dataclass
 from dataclasses import field
+import enum
+from pathlib import Path
 from typing import Any
 from typing import Generic
 from typing import TypeVar
 
-from rcl_interfaces.msg import FloatingPointRange
-from rcl_interfaces.msg import ParameterDescriptor
-from rclpy.exceptions import InvalidParameterValueException
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from sdf_pose_bridge.names import hint_from_names
-from sdf_pose_bridge.ros.parameter_values import choice_setting
-from sdf_pose_bridge.ros.parameter_values import directories_setting
-from sdf_pose_bridge.ros.parameter_values import HIGHEST_RATE
-from sdf_pose_bridge.ros.parameter_values import hint_about_command_line
-from sdf_pose_bridge.ros.parameter_values import kinds_setting
-from sdf_pose_bridge.ros.parameter_values import LOWEST_RATE
-from sdf_pose_bridge.ros.parameter_values import parameter_with_type
-from sdf_pose_bridge.ros.parameter_values import path_setting
-from sdf_pose_bridge.ros.parameter_values import patterns_setting
-from sdf_pose_bridge.ros.parameter_values import prefix_setting
-from sdf_pose_bridge.ros.parameter_values import PUBLISHED_KINDS
-from sdf_pose_bridge.ros.parameter_values import rate_setting
-from sdf_pose_bridge.ros.parameter_values import root_frame_setting
-from sdf_pose_bridge.ros.parameter_values import separator_setting
-from sdf_pose_bridge.ros.parameter_values import TYPES
-from sdf_pose_bridge.ros.parameter_values import words_about_wrong_type
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.loading import MissingInclude
+from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.tree import AnchorModels
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
@@ -45,6 +34,32 @@ from sdf_pose_bridge.tf.tree import TfOptions
 
 Value = str | bool | float | list[str]
 Setting = TypeVar('Setting')
+Choice = TypeVar('Choice', bound=enum.Enum)
+
+TYPES = {
+    str: Parameter.Type.STRING, bool: Parameter.Type.BOOL, float: Parameter.Type.DOUBLE,
+    list: Parameter.Type.STRING_ARRAY}
+"""The types of parameters that are used, by the type of their values in Python."""
+
+PUBLISHED_KINDS = {
+    kind.label: kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD, Kind.ACTOR)}
+"""The kinds of element that can become frames, by their names."""
+
+LOWEST_RATE, HIGHEST_RATE = 0.001, 100.0
+"""The limits of ``publish_rate`` in Hz."""
+
+MOST_VALUES = 1000
+"""How many patterns or directories a parameter may have. Each pattern is compared with each frame,
+and each directory is looked into for each include."""
+
+MOST_CHARACTERS = 255
+"""How long a name or a pattern may be; a prefix is a part of every frame id."""
+
+MOST_CHARACTERS_OF_PATH = 4096
+"""How long a path may be, as in Linux."""
+
+MOST_CHARACTERS_OF_SEPARATOR = 8
+"""How long a separator may be, which stands many times in a frame id."""
 
 
 class SettingsError(ValueError):
@@ -91,6 +106,99 @@ class Declaration(Generic[Setting]):
     def __get__(self, settings: Settings, owner: type) -> Setting:
         setting: Setting = settings.values[self.name]
         return setting
+
+
+def root_frame_setting(value: str) -> str:
+    """Refuse what cannot be the frame id of the root."""
+    if not value:
+        raise _refusal(value, 'a frame id, which is not empty')
+    return prefix_setting(value)
+
+
+def prefix_setting(value: str) -> str:
+    """Refuse what frame ids cannot begin with."""
+    if value.startswith('/'):
+        raise _refusal(value, 'without a leading slash, which TF does not allow')
+    return _name_setting(value, MOST_CHARACTERS)
+
+
+def separator_setting(value: str) -> str:
+    """Refuse what cannot separate the parts of frame ids."""
+    if not value:
+        raise _refusal(value, 'at least one character, or names run together')
+    return _name_setting(value, MOST_CHARACTERS_OF_SEPARATOR)
+
+
+def rate_setting(value: float) -> float:
+    """Refuse rates that are too low, too high or not a number; 0.0 is for never."""
+    if value and not LOWEST_RATE <= value <= HIGHEST_RATE:
+        raise _refusal(value, f'0.0 for never, or from {LOWEST_RATE} to {HIGHEST_RATE}')
+    return value
+
+
+def choice_setting(choices: type[Choice]) -> Callable[[str], Choice]:
+    """Return a function that makes members of an enumeration."""
+    def convert(value: str) -> Choice:
+        known = [choice.value for choice in choices]
+        if value not in known:
+            raise _refusal(value, f'one of {", ".join(known)}')
+        return choices(value)
+    return convert
+
+
+def kinds_setting(values: Sequence[str]) -> frozenset[Kind]:
+    """Make kinds of element of their names."""
+    known = ', '.join(PUBLISHED_KINDS)
+    if not values:
+        raise _refusal([], f'at least one of {known}')
+    for value in values:
+        if value not in PUBLISHED_KINDS:
+            raise _refusal(value, f'made of {known}')
+    return frozenset(PUBLISHED_KINDS[value] for value in values)
+
+
+def patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
+    """Refuse too many patterns, and long ones."""
+    _check_count(values, 'patterns')
+    for value in values:
+        _check_length(value, MOST_CHARACTERS)
+    return tuple(values)
+
+
+def path_setting(value: str) -> str:
+    """Refuse what is too long for a path."""
+    _check_length(value, MOST_CHARACTERS_OF_PATH)
+    return value
+
+
+def directories_setting(values: Sequence[str]) -> tuple[Path, ...]:
+    """Make paths, without those that are empty; refuse too many, and long ones."""
+    _check_count(values, 'directories')
+    return tuple(Path(path_setting(value)).expanduser() for value in values if value)
+
+
+def _check_count(values: Sequence[str], what: str) -> None:
+    if len(values) > MOST_VALUES:
+        msg = f'has {len(values)} {what}; it must have at most {MOST_VALUES}'
+        raise ValueError(msg)
+
+
+def _check_length(value: str, most: int) -> None:
+    if len(value) > most:
+        msg = f'has a value of {len(value)} characters; it must have at most {most}'
+        raise ValueError(msg)
+
+
+def _name_setting(value: str, most: int) -> str:
+    _check_length(value, most)
+    if not value.isprintable():
+        raise _refusal(value, 'without control characters')
+    return value
+
+
+def _refusal(value: object, rule: str) -> ValueError:
+    shown = f'"{printable(shortened(value))}"' if isinstance(value, str) else value
+    return ValueError(f'is {shown}; it must be {rule}')
 
 
 class Settings:
@@ -263,128 +371,3 @@ class Settings:
 DECLARATIONS: dict[str, Declaration[Any]] = {
     name: each for name, each in vars(Settings).items() if isinstance(each, Declaration)}
 """All parameters by their names, in the order in which they are explained to people."""
-
-
-FREQUENCY = 'publish_frequency'
-"""The name of ``publish_rate`` in robot_state_publisher, which is understood at the start."""
-
-
-def settings_from_node(node: Node) -> Settings:
-    """
-    Declare all parameters on a node and convert their values.
-
-    :raises SettingsError: if a value has the wrong type or is not allowed.
-    """
-    values = {}
-    sentences = []
-    for name, declaration in DECLARATIONS.items():
-        try:
-            values[name] = declaration.convert(_declared_value(node, declaration))
-        except ValueError as error:
-            sentences.append(f'parameter {name} {error}')
-    return _checked_settings(values, sentences)
-
-
-def settings_from_values(values: Mapping[str, Any]) -> Settings:
-    """
-    Convert values of parameters without a node.
-
-    :param values: values by the names of parameters; the others have their defaults.
-    :raises SettingsError: if a value has the wrong type or is not allowed.
-    """
-    defaults = {name: each.convert(each.default) for name, each in DECLARATIONS.items()}
-    return changed_settings(
-        Settings(defaults), [Parameter(name, value=value) for name, value in values.items()])
-
-
-def changed_settings(settings: Settings, parameters: Iterable[Parameter]) -> Settings:
-    """
-    Convert new values of parameters.
-
-    :param parameters: the new values; parameters that are not declared here are ignored.
-    :raises SettingsError: if a value has the wrong type or is not allowed.
-    """
-    values = dict(settings.values)
-    sentences = []
-    for given in parameters:
-        if given.name in DECLARATIONS:
-            try:
-                values[given.name] = _converted(given, DECLARATIONS[given.name])
-            except ValueError as error:
-                sentences.append(f'parameter {given.name} {error}')
-    return _checked_settings(values, sentences)
-
-
-def warnings_about_unknown_parameters(node: Node) -> list[str]:
-    """Find parameters that were given when the node was started, but that it does not have."""
-    return [
-        f'parameter {name} is called publish_rate here; its value is taken for that'
-        if name == FREQUENCY else
-        f'there is no parameter "{name}", so it has no effect{hint_from_names(name, DECLARATIONS)}'
-        for name in _given_parameters(node)
-        if name not in DECLARATIONS and not node.has_parameter(name)]
-
-
-def _checked_settings(values: Mapping[str, Any], sentences: Sequence[str]) -> Settings:
-    sources = [values.get(name) for name in ('sdf_file', 'robot_description')]
-    if all(sources):
-        msg = ('parameters sdf_file and robot_description are both set; set one of them, and the '
-               'other one to an empty string')
-        sentences = [msg, *sentences]
-    elif sources == ['', '']:
-        msg = ('parameter sdf_file is not set; name the file to publish: --ros-args -p '
-               'sdf_file:=cell.sdf after "ros2 run ...", sdf_file:=cell.sdf after "ros2 launch '
-               '..."; or set robot_description to its text')
-        sentences = [msg, *sentences]
-    if sentences:
-        raise SettingsError(sentences)
-    return Settings(values)
-
-
-def _given_parameters(node: Node) -> Mapping[str, Parameter]:
-    """Return what was given when the node was started, by names."""
-    # rclpy shows this in no public way but to declare all of it, with any type and unexplained.
-    given: Mapping[str, Parameter] = node._parameter_overrides  # noqa: SLF001
-    return given
-
-
-def _declared_value(node: Node, declaration: Declaration[Any]) -> Any:
-    name, type_, value = declaration.name, declaration.type_, declaration.default
-    parameters = _given_parameters(node)
-    given = parameters.get(name) or (
-        parameters.get(FREQUENCY) if name == 'publish_rate' else None)
-    if given is not None and given.type_ is not Parameter.Type.NOT_SET:
-        given = parameter_with_type(given, type_)
-        if given.type_ is not type_:
-            msg = words_about_wrong_type(given, type_) + hint_about_command_line(given, type_)
-            raise ValueError(msg)
-        value = given.value
-    elif given is not None and type_ is Parameter.Type.STRING_ARRAY:
-        # rclpy reads an empty list on the command line as no value.
-        value = []
-    descriptor = ParameterDescriptor(
-        type=type_.value, description=declaration.description,
-        additional_constraints=declaration.constraint, read_only=declaration.is_read_only)
-    if declaration.maximum is not None:
-        descriptor.floating_point_range = [
-            FloatingPointRange(from_value=0.0, to_value=declaration.maximum)]
-    try:
-        # rclpy cannot tell the type of an empty list.
-        node.declare_parameter(
-            name, type_ if value == [] else value, descriptor, ignore_override=True)
-    except InvalidParameterValueException as error:
-        msg = f'must be {declaration.constraint}: {error}'
-        raise ValueError(msg) from None
-    if value == []:
-        node.set_parameters([Parameter(name, type_, value)])
-    return value
-
-
-def _converted(given: Parameter, declaration: Declaration[Any]) -> Any:
-    given = parameter_with_type(given, declaration.type_)
-    if given.type_ is Parameter.Type.NOT_SET:
-        msg = 'cannot be without a value'
-        raise ValueError(msg)
-    if given.type_ is not declaration.type_:
-        raise ValueError(words_about_wrong_type(given, declaration.type_))
-    return declaration.convert(given.value)

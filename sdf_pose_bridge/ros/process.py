@@ -30,13 +30,13 @@ from rclpy.task import Task
 from rclpy.utilities import remove_ros_args
 
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.ros.given_parameters import settings_from_node
+from sdf_pose_bridge.ros.given_parameters import warnings_about_unknown_parameters
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
 from sdf_pose_bridge.ros.middleware import use_profile
-from sdf_pose_bridge.ros.parameters import settings_from_node
 from sdf_pose_bridge.ros.parameters import SettingsError
-from sdf_pose_bridge.ros.parameters import warnings_about_unknown_parameters
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.sdformat.include.uris import AddressError

@@ -10,8 +10,8 @@ from diagnostic_msgs.msg import DiagnosticStatus
 
 from sdf_pose_bridge.ros.diagnostics import Diagnostics
 from sdf_pose_bridge.ros.diagnostics import status_from_scene
+from sdf_pose_bridge.ros.given_parameters import settings_from_node
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
-from sdf_pose_bridge.ros.parameters import settings_from_node
 
 LOADED_AT_NS = 1767323045_678900000
 GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'

@@ -14,11 +14,11 @@ from sdf_texts import model_file
 from sdf_texts import world_file
 
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.ros.given_parameters import changed_settings
+from sdf_pose_bridge.ros.given_parameters import settings_from_node
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.loaded_scene import scene_with_shapes
 from sdf_pose_bridge.ros.loaded_scene import unicode_text
-from sdf_pose_bridge.ros.parameters import changed_settings
-from sdf_pose_bridge.ros.parameters import settings_from_node
 
 GOOD = '<model name="m"><link name="l"><pose>1 0 0 0 0 0</pose></link><frame name="f"/></model>'
 BAD = GOOD.replace('<pose>', '<pose relative_to="x">')

@@ -8,9 +8,9 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from rclpy.executors import SingleThreadedExecutor
 
+from sdf_pose_bridge.ros.given_parameters import settings_from_node
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.node import SdfPoseBridge
-from sdf_pose_bridge.ros.parameters import settings_from_node
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 

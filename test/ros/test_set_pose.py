@@ -14,8 +14,8 @@ from sdf_texts import posed
 
 from sdf_pose_bridge import load
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.ros.given_parameters import settings_from_node
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
-from sdf_pose_bridge.ros.parameters import settings_from_node
 from sdf_pose_bridge.ros.set_pose import set_pose
 from sdf_pose_bridge_interfaces.srv import SetPose
 

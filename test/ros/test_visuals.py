@@ -18,8 +18,8 @@ from visualization_msgs.msg import Marker
 from visualization_msgs.msg import MarkerArray
 
 from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.ros.given_parameters import settings_from_values
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
-from sdf_pose_bridge.ros.parameters import settings_from_values
 from sdf_pose_bridge.ros.visuals import message_from_markers
 from sdf_pose_bridge.ros.visuals import VisualPublisher
 from sdf_pose_bridge.tf.visual_markers import Form

@@ -1,0 +1,288 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Take the values that parameters are given: when the node is started, and by its services."""
+
+from __future__ import annotations
+
+import array
+from collections.abc import Awaitable
+from collections.abc import Callable
+from collections.abc import Iterable
+from collections.abc import Mapping
+from collections.abc import Sequence
+from typing import Any
+
+from rcl_interfaces.msg import FloatingPointRange
+from rcl_interfaces.msg import Parameter as ParameterMessage
+from rcl_interfaces.msg import ParameterDescriptor
+from rcl_interfaces.msg import SetParametersResult
+from rcl_interfaces.srv import SetParameters
+from rcl_interfaces.srv import SetParametersAtomically
+from rclpy.callback_groups import CallbackGroup
+from rclpy.exceptions import InvalidParameterValueException
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.parameter_service import ParameterService
+from rclpy.qos import qos_profile_parameters
+
+from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.ros.parameters import Declaration
+from sdf_pose_bridge.ros.parameters import DECLARATIONS
+from sdf_pose_bridge.ros.parameters import MOST_VALUES
+from sdf_pose_bridge.ros.parameters import Settings
+from sdf_pose_bridge.ros.parameters import SettingsError
+
+FREQUENCY = 'publish_frequency'
+"""The name of ``publish_rate`` in robot_state_publisher, which is understood at the start."""
+
+_NAMES_OF_TYPES = {
+    Parameter.Type.STRING: 'a string', Parameter.Type.BOOL: 'true or false',
+    Parameter.Type.INTEGER: 'an integer', Parameter.Type.DOUBLE: 'a number',
+    Parameter.Type.STRING_ARRAY: 'a list of strings',
+    Parameter.Type.BOOL_ARRAY: 'a list of booleans',
+    Parameter.Type.INTEGER_ARRAY: 'a list of integers',
+    Parameter.Type.DOUBLE_ARRAY: 'a list of numbers', Parameter.Type.BYTE_ARRAY: 'a list of bytes',
+}
+
+
+def settings_from_node(node: Node) -> Settings:
+    """
+    Declare all parameters on a node and convert their values.
+
+    :raises SettingsError: if a value has the wrong type or is not allowed.
+    """
+    values = {}
+    sentences = []
+    for name, declaration in DECLARATIONS.items():
+        try:
+            values[name] = declaration.convert(_declared_value(node, declaration))
+        except ValueError as error:
+            sentences.append(f'parameter {name} {error}')
+    return _checked_settings(values, sentences)
+
+
+def settings_from_values(values: Mapping[str, Any]) -> Settings:
+    """
+    Convert values of parameters without a node.
+
+    :param values: values by the names of parameters; the others have their defaults.
+    :raises SettingsError: if a value has the wrong type or is not allowed.
+    """
+    defaults = {name: each.convert(each.default) for name, each in DECLARATIONS.items()}
+    return changed_settings(
+        Settings(defaults), [Parameter(name, value=value) for name, value in values.items()])
+
+
+def changed_settings(settings: Settings, parameters: Iterable[Parameter]) -> Settings:
+    """
+    Convert new values of parameters.
+
+    :param parameters: the new values; parameters that are not declared here are ignored.
+    :raises SettingsError: if a value has the wrong type or is not allowed.
+    """
+    values = dict(settings.values)
+    sentences = []
+    for given in parameters:
+        if given.name in DECLARATIONS:
+            try:
+                values[given.name] = _converted(given, DECLARATIONS[given.name])
+            except ValueError as error:
+                sentences.append(f'parameter {given.name} {error}')
+    return _checked_settings(values, sentences)
+
+
+def warnings_about_unknown_parameters(node: Node) -> list[str]:
+    """Find parameters that were given when the node was started, but that it does not have."""
+    return [
+        f'parameter {name} is called publish_rate here; its value is taken for that'
+        if name == FREQUENCY else
+        f'there is no parameter "{name}", so it has no effect{hint_from_names(name, DECLARATIONS)}'
+        for name in _given_parameters(node)
+        if name not in DECLARATIONS and not node.has_parameter(name)]
+
+
+def add_parameter_services(
+    node: Node, group: CallbackGroup,
+    set_parameters: Callable[[list[Parameter]], Awaitable[SetParametersResult]],
+) -> None:
+    """
+    Offer the parameter services of a node; a call that sets parameters sets all of them or none.
+
+    rclpy's own services set the parameters of a call one after the other, without waiting: the
+    file would be read for each of them, in states that nobody asked for, while no other callback
+    runs.
+
+    :param group: callback group of the services that set parameters.
+    :param set_parameters: sets declared parameters, and returns what the services answer.
+    """
+    async def result(messages: Sequence[ParameterMessage]) -> SetParametersResult:
+        try:
+            parameters = _parameters_from_messages(node, messages)
+        except (ValueError, TypeError) as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return await set_parameters(parameters)
+
+    async def answer(
+        request: SetParameters.Request, response: SetParameters.Response,
+    ) -> SetParameters.Response:
+        response.results = [await result(request.parameters)] * len(request.parameters)
+        return response
+
+    async def answer_atomically(
+        request: SetParametersAtomically.Request, response: SetParametersAtomically.Response,
+    ) -> SetParametersAtomically.Response:
+        response.result = await result(request.parameters)
+        return response
+
+    own = [
+        node.create_service(
+            service_type, f'~/{name}', callback, qos_profile=qos_profile_parameters,
+            callback_group=group)
+        for service_type, name, callback in (
+            (SetParameters, 'set_parameters', answer),
+            (SetParametersAtomically, 'set_parameters_atomically', answer_atomically))]
+    # It takes no callbacks for single services. While there are two of a kind, no call is lost.
+    ParameterService(node)
+    for service in list(node.services):
+        if service.srv_type in (SetParameters, SetParametersAtomically) and service not in own:
+            node.destroy_service(service)
+
+
+def _parameters_from_messages(
+    node: Node, messages: Sequence[ParameterMessage],
+) -> list[Parameter]:
+    """
+    Return the parameters that a call wants to set.
+
+    :return: the parameters, without read-only ones that keep their values, which "ros2 param load"
+        of a dump sets too.
+    :raises ValueError: if there is no such parameter, or no such type, or if there are too many.
+    """
+    if len(messages) > MOST_VALUES:
+        msg = f'a call can set at most {MOST_VALUES} parameters, and this one has {len(messages)}'
+        raise ValueError(msg)
+    parameters = []
+    for message in messages:
+        if not node.has_parameter(message.name):
+            msg = (f'there is no parameter "{printable(shortened(message.name))}"'
+                   f'{hint_from_names(message.name, DECLARATIONS)}')
+            raise ValueError(msg)
+        parameter = Parameter.from_parameter_msg(message)
+        if message.name in DECLARATIONS:
+            parameter = parameter_with_type(parameter, DECLARATIONS[message.name].type_)
+        if not (node.describe_parameter(message.name).read_only
+                and node.get_parameter(message.name).value == parameter.value):
+            parameters.append(parameter)
+    return parameters
+
+
+def _checked_settings(values: Mapping[str, Any], sentences: Sequence[str]) -> Settings:
+    sources = [values.get(name) for name in ('sdf_file', 'robot_description')]
+    if all(sources):
+        msg = ('parameters sdf_file and robot_description are both set; set one of them, and the '
+               'other one to an empty string')
+        sentences = [msg, *sentences]
+    elif sources == ['', '']:
+        msg = ('parameter sdf_file is not set; name the file to publish: --ros-args -p '
+               'sdf_file:=cell.sdf after "ros2 run ...", sdf_file:=cell.sdf after "ros2 launch '
+               '..."; or set robot_description to its text')
+        sentences = [msg, *sentences]
+    if sentences:
+        raise SettingsError(sentences)
+    return Settings(values)
+
+
+def _given_parameters(node: Node) -> Mapping[str, Parameter]:
+    """Return what was given when the node was started, by names."""
+    # rclpy shows this in no public way but to declare all of it, with any type and unexplained.
+    given: Mapping[str, Parameter] = node._parameter_overrides  # noqa: SLF001
+    return given
+
+
+def _declared_value(node: Node, declaration: Declaration[Any]) -> Any:
+    name, type_, value = declaration.name, declaration.type_, declaration.default
+    parameters = _given_parameters(node)
+    given = parameters.get(name) or (
+        parameters.get(FREQUENCY) if name == 'publish_rate' else None)
+    if given is not None and given.type_ is not Parameter.Type.NOT_SET:
+        given = parameter_with_type(given, type_)
+        if given.type_ is not type_:
+            msg = words_about_wrong_type(given, type_) + hint_about_command_line(given, type_)
+            raise ValueError(msg)
+        value = given.value
+    elif given is not None and type_ is Parameter.Type.STRING_ARRAY:
+        # rclpy reads an empty list on the command line as no value.
+        value = []
+    descriptor = ParameterDescriptor(
+        type=type_.value, description=declaration.description,
+        additional_constraints=declaration.constraint, read_only=declaration.is_read_only)
+    if declaration.maximum is not None:
+        descriptor.floating_point_range = [
+            FloatingPointRange(from_value=0.0, to_value=declaration.maximum)]
+    try:
+        # rclpy cannot tell the type of an empty list.
+        node.declare_parameter(
+            name, type_ if value == [] else value, descriptor, ignore_override=True)
+    except InvalidParameterValueException as error:
+        msg = f'must be {declaration.constraint}: {error}'
+        raise ValueError(msg) from None
+    if value == []:
+        node.set_parameters([Parameter(name, type_, value)])
+    return value
+
+
+def _converted(given: Parameter, declaration: Declaration[Any]) -> Any:
+    given = parameter_with_type(given, declaration.type_)
+    if given.type_ is Parameter.Type.NOT_SET:
+        msg = 'cannot be without a value'
+        raise ValueError(msg)
+    if given.type_ is not declaration.type_:
+        raise ValueError(words_about_wrong_type(given, declaration.type_))
+    return declaration.convert(given.value)
+
+
+# Types
+
+
+def parameter_with_type(given: Parameter, wanted: Parameter.Type) -> Parameter:
+    """
+    Give a value another type in which it has the same meaning.
+
+    :return: an integer as a number, or an empty list of any type as a list of strings, if that is
+        the wanted type; otherwise the value as it was given.
+    """
+    if wanted is Parameter.Type.DOUBLE and given.type_ is Parameter.Type.INTEGER:
+        return Parameter(given.name, wanted, float(given.value))
+    if (wanted is Parameter.Type.STRING_ARRAY and given.type_.name.endswith('ARRAY')
+            and not len(given.value)):
+        return Parameter(given.name, wanted, [])
+    return given
+
+
+def words_about_wrong_type(given: Parameter, wanted: Parameter.Type) -> str:
+    """
+    Explain that a value has the wrong type.
+
+    :return: the words that follow "parameter <name>" in a sentence.
+    """
+    return (f'is {_shown_value(given)}, which is {_NAMES_OF_TYPES[given.type_]}; it must be '
+            f'{_NAMES_OF_TYPES[wanted]}')
+
+
+def hint_about_command_line(given: Parameter, wanted: Parameter.Type) -> str:
+    """
+    Show how to write a value of the wrong type on the command line.
+
+    :return: the end of a sentence; empty if there is nothing to show.
+    """
+    if wanted is Parameter.Type.STRING:
+        return f', so quote it twice: -p "{given.name}:=\'{_shown_value(given)}\'"'
+    if given.type_ is Parameter.Type.STRING and wanted is Parameter.Type.STRING_ARRAY:
+        return f': -p "{given.name}:=[\'{given.value}\']"'
+    return ''
+
+
+def _shown_value(given: Parameter) -> object:
+    return list(given.value) if isinstance(given.value, array.array) else given.value
