@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from array import array
+from collections import defaultdict
 from collections.abc import Mapping
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -90,21 +91,21 @@ class Elements:
     poses: np.ndarray[Any, np.dtype[np.float64]]
     """Shape (n, 7): pose of each element in the frame that it is relative to, x y z in metres,
     unit quaternion x y z w; the identity for an element without ``<pose>``."""
-    relative_to: Mapping[int, str]
-    """The frames that poses are relative to, where they are given."""
-    models: Mapping[int, ModelDetails]
-    frames: Mapping[int, FrameDetails]
-    joints: Mapping[int, JointDetails]
-    sensors: Mapping[int, SensorDetails]
-    shapes: Mapping[int, Shape]
-    """The shapes of visuals and collisions; empty unless they were asked for."""
-    automatic_inertials: Mapping[int, tuple[CollisionMass, ...]]
-    """For each inertial that is computed: the masses of its link's collisions in their order."""
     paths: Sequence[str]
     """The files of the load."""
-    includes: Mapping[int, Place]
+    relative_to: Mapping[int, str] = field(default_factory=dict)
+    """The frames that poses are relative to, where they are given."""
+    models: Mapping[int, ModelDetails] = field(default_factory=dict)
+    frames: Mapping[int, FrameDetails] = field(default_factory=dict)
+    joints: Mapping[int, JointDetails] = field(default_factory=dict)
+    sensors: Mapping[int, SensorDetails] = field(default_factory=dict)
+    shapes: Mapping[int, Shape] = field(default_factory=dict)
+    """The shapes of visuals and collisions; empty unless they were asked for."""
+    automatic_inertials: Mapping[int, tuple[CollisionMass, ...]] = field(default_factory=dict)
+    """For each inertial that is computed: the masses of its link's collisions in their order."""
+    includes: Mapping[int, Place] = field(default_factory=dict)
     """For each element that an include is about: the place of the ``<include>``."""
-    missing_includes: Mapping[int, Mapping[str, str]]
+    missing_includes: Mapping[int, Mapping[str, str]] = field(default_factory=dict)
     """For each element with includes that were not found: names and URIs of what is missing. An
     empty name is that of a merge, which could have had elements of any name."""
     _known_paths: dict[int, str] = field(default_factory=dict, init=False, repr=False)
@@ -167,19 +168,13 @@ class ElementsBuilder:
         self.file_indices = array('i')
         self.lines = array('i')
         self.pose_lines = array('i')
-        self.relative_to: dict[int, str] = {}
-        self.models: dict[int, ModelDetails] = {}
-        self.frames: dict[int, FrameDetails] = {}
-        self.joints: dict[int, JointDetails] = {}
-        self.sensors: dict[int, SensorDetails] = {}
-        self.shapes: dict[int, Shape] = {}
-        self.automatic_inertials: dict[int, tuple[CollisionMass, ...]] = {}
-        self.includes: dict[int, Place] = {}
-        self.missing_includes: dict[int, dict[str, str]] = {}
+        self.details: defaultdict[str, dict[int, Any]] = defaultdict(dict)
+        """What only some elements have, by the fields of :class:`Elements`."""
         self._scopes = array('i')
         self._paths = paths
-        self._texts: dict[PoseFormat, list[str]] = {}
-        self._indices: dict[PoseFormat, array[int]] = {}
+        self._poses: defaultdict[PoseFormat, tuple[array[int], list[str]]] = defaultdict(
+            lambda: (array('i'), []))
+        """Indices and texts of the poses in each format."""
 
     def add(
         self, kind: Kind, name: str, parent: int, scope: int, file_index: int, line: int,
@@ -207,10 +202,9 @@ class ElementsBuilder:
         :param pose_format: how it is to be read.
         """
         self.pose_lines[index] = line
-        if pose_format not in self._texts:
-            self._texts[pose_format], self._indices[pose_format] = [], array('i')
-        self._texts[pose_format].append(text)
-        self._indices[pose_format].append(index)
+        indices, texts = self._poses[pose_format]
+        indices.append(index)
+        texts.append(text)
 
     def elements(self, problems: Problems) -> Elements:
         """
@@ -220,27 +214,19 @@ class ElementsBuilder:
             that may mean another pose.
         :return: the table.
         """
-        poses = np.tile(Pose(), (len(self.names), 1))
-        failures = []
-        doubts = []
-        for pose_format, texts in self._texts.items():
-            indices = self._indices[pose_format]
-            result = poses_from_texts(texts, pose_format)
-            poses[indices] = result.poses
-            failures += [(indices[row], reason) for row, reason in result.failures]
-            doubts += [(indices[row], reason) for row, reason in result.doubts]
         table = Elements(
             kinds=np.array(self.kinds, dtype=np.uint8), names=self.names,
             parents=_indices(self.parents), scopes=_indices(self._scopes),
             file_indices=_indices(self.file_indices), lines=_indices(self.lines),
-            pose_lines=_indices(self.pose_lines), poses=poses, relative_to=self.relative_to,
-            models=self.models, frames=self.frames, joints=self.joints, sensors=self.sensors,
-            shapes=self.shapes, automatic_inertials=self.automatic_inertials, paths=self._paths,
-            includes=self.includes, missing_includes=self.missing_includes)
-        for index, reason in failures:
-            problems.error(ElementInvalidError(reason, table.place_of_pose(index)))
-        for index, reason in doubts:
-            problems.warning(reason, table.place_of_pose(index))
+            pose_lines=_indices(self.pose_lines), poses=np.tile(Pose(), (len(self.names), 1)),
+            paths=self._paths, **self.details)
+        for pose_format, (indices, texts) in self._poses.items():
+            result = poses_from_texts(texts, pose_format)
+            table.poses[indices] = result.poses
+            for row, reason in result.failures:
+                problems.error(ElementInvalidError(reason, table.place_of_pose(indices[row])))
+            for row, reason in result.doubts:
+                problems.warning(reason, table.place_of_pose(indices[row]))
         return table
 
 

@@ -63,6 +63,9 @@ class PoseFormat(NamedTuple):
         return 'x y z qx qy qz qw' if self.is_quaternion else 'x y z roll pitch yaw'
 
 
+_PLAIN_FORMAT = PoseFormat()
+
+
 class PoseTextError(ValueError):
     """The text is not a pose; the message has the value and the rule."""
 
@@ -74,6 +77,8 @@ def pose_format_of(xml: XmlElement) -> PoseFormat:
     :return: the format.
     :raises PoseTextError: if ``rotation_format`` and ``degrees`` do not say it.
     """
+    if not xml.keys():
+        return _PLAIN_FORMAT
     rotation_format = attribute_of(xml, 'rotation_format')
     pose_format = PoseFormat(
         rotation_format == 'quat_xyzw', boolean_from_text(xml.get('degrees', '')) is True)

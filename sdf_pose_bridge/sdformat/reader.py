@@ -50,8 +50,6 @@ from sdf_pose_bridge.sdformat.values import choice_fault
 from sdf_pose_bridge.sdformat.values import frame_of_attribute
 from sdf_pose_bridge.sdformat.values import is_of_type
 from sdf_pose_bridge.sdformat.values import judged_value
-from sdf_pose_bridge.sdformat.values import Judgment
-from sdf_pose_bridge.sdformat.values import RIGHT
 from sdf_pose_bridge.sdformat.versions import allows_scoped_names
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
@@ -81,8 +79,6 @@ _CHECKS_OF_UNREAD = {
     'joint_state': partial(check_children_of_joint, tags=('angle',))}
 """The same for elements in what libsdformat does not read, such as a state."""
 
-_DEFAULT_FORMAT = PoseFormat()
-
 
 def elements_from_tree(
     root: XmlElement, sources: Sources, *, may_hold_scoped_names: bool,
@@ -108,15 +104,14 @@ def elements_from_tree(
 
 def check_element(xml: XmlElement, definition: Definition, sources: Sources) -> None:
     """Check the attributes and values of an element that is no part of the tree."""
-    _Reader(sources).check(xml, definition)
+    _Reader(sources).read(xml, definition)
 
 
 def _check_scoped_names(root: XmlElement, sources: Sources) -> None:
     """Report names with ``::`` in files that must not have them, or are included by such files."""
     xmls: list[XmlElement] = root.xpath('//*[contains(@name, "::")]')
     for xml in xmls:
-        depth = sum(1 for _ in xml.iterancestors())
-        sources.usage.add('work', depth, partial(sources.place, xml))
+        sources.count_work(sum(1 for _ in xml.iterancestors()), xml)
         if is_foreign(xml) or all(allows_scoped_names(sources.versions[path])
                for path in sources.enclosing_paths_of_name(xml)):
             continue
@@ -133,56 +128,39 @@ class _Reader:
         self._names = SiblingNames(self._builder, sources)
         self._undefined = UndefinedReporter(sources)
         self._file_indices = sources.file_indices
-        builder = self._builder
-        self._readers_of_details: dict[
-            Kind, tuple[dict[int, Any], Callable[[XmlElement], Any]]] = {
-            Kind.MODEL: (builder.models, _model_details),
-            Kind.FRAME: (builder.frames, _frame_details),
-            Kind.JOINT: (builder.joints, partial(
-                joint_details_from_element, sources=sources)),
-            Kind.SENSOR: (builder.sensors, _sensor_details),
-            Kind.INERTIAL: (builder.automatic_inertials, partial(
-                collision_masses, sources=sources)),
+        self._readers_of_details: dict[Kind, tuple[str, Callable[[XmlElement], Any]]] = {
+            Kind.MODEL: ('models', _model_details),
+            Kind.FRAME: ('frames', _frame_details),
+            Kind.JOINT: ('joints', partial(joint_details_from_element, sources=sources)),
+            Kind.SENSOR: ('sensors', _sensor_details),
+            Kind.INERTIAL: ('automatic_inertials', partial(collision_masses, sources=sources)),
         }
-        """What only some kinds have: where it is kept, and what reads it; None for nothing."""
+        """What only some kinds have: the field of the elements, and what reads it or None."""
         if shapes:
             for kind in (Kind.VISUAL, Kind.COLLISION):
-                self._readers_of_details[kind] = (builder.shapes, shape_of)
-
-    def check(self, xml: XmlElement, definition: Definition) -> None:
-        self._check_attributes(xml, definition)
-        if definition.is_pose:
-            self._check_pose(xml)
-        elif definition.value_type is not None:
-            self._report_judgment(xml, judged_value(text_of(xml), definition))
-        else:
-            self._read(xml, definition, NO_ELEMENT, NO_ELEMENT, '', 1)
+                self._readers_of_details[kind] = ('shapes', shape_of)
 
     def elements(self, root: XmlElement) -> Elements:
-        self._read_file(root)
-        return self._builder.elements(self._sources.problems)
-
-    def _read_file(self, root: XmlElement) -> None:
         """Read worlds, and the one model, light or actor that may stand beside them."""
-        definitions = definition_of('sdf', has_frames=True).children
+        definition = definition_of('sdf', has_frames=True)
         path = self._sources.path(root)
         first = ''
         for child in root:
-            definition = definitions.get(child.tag)
-            if definition is None:
-                self._undefined.report_element(child, definition_of('sdf'))
-                continue
-            self._check_attributes(child, definition)
-            if definition.kind is Kind.WORLD:
-                self._read(child, definition, NO_ELEMENT, NO_ELEMENT, path, 1)
+            child_definition = definition.children.get(child.tag)
+            if child_definition is None:
+                self._undefined.report_element(child, definition)
+            elif child_definition.kind is Kind.WORLD:
+                self.read(child, child_definition, path=path)
             elif first:
+                self._check_attributes(child, child_definition)
                 self._report_second_top(child, first)
             else:
                 first = described(child)
                 index = self._builder.add(
                     Kind.ROOT, ROOT_FRAME, NO_ELEMENT, NO_ELEMENT, self._file_indices[path],
                     self._sources.line(child))
-                self._read(child, definition, index, index, path, 1)
+                self.read(child, child_definition, index, index, path)
+        return self._builder.elements(self._sources.problems)
 
     def _report_second_top(self, xml: XmlElement, first: str) -> None:
         if described(xml) == first:
@@ -196,94 +174,75 @@ class _Reader:
     # The walk. ``parent`` is the index of the parent element, if that has a frame, ``scope`` that
     # of the model, world or root whose names references use, and ``path`` the file around.
 
-    def _read(
-        self, xml: XmlElement, definition: Definition, parent: int, scope: int, path: str,
-        depth: int,
+    def read(
+        self, xml: XmlElement, definition: Definition, parent: int = NO_ELEMENT,
+        scope: int = NO_ELEMENT, path: str = '', depth: int = 1,
     ) -> None:
-        """Read an element that holds others."""
-        if definition.kind is not None:
-            self._read_frame(xml, definition, definition.kind, parent, scope, path, depth)
+        """Read an element, with all that it holds."""
+        if definition.has_required_attributes or xml.keys():
+            self._check_attributes(xml, definition)
+        if definition.is_pose:
+            self._read_pose(xml, definition, parent)
+        elif definition.value_type is not None:
+            fault, doubt = judged_value(text_of(xml), definition)
+            if fault:
+                self._sources.error(ElementInvalidError, xml, fault)
+            elif doubt:
+                self._sources.warning(xml, doubt)
         elif definition.identifier == 'include':
             if parent != NO_ELEMENT:
-                self._builder.missing_includes.setdefault(parent, {})[
+                self._builder.details['missing_includes'].setdefault(parent, {})[
                     xml.get(MISSING_NAME, '')] = xml.get(MISSING_URI, '')
         else:
-            checks = _CHECKS if definition.has_frames else _CHECKS_OF_UNREAD
-            check = checks.get(definition.identifier)
-            if check is not None:
-                check(xml, self._sources)
-            self._read_children(xml, definition, NO_ELEMENT, scope, path, depth)
+            if definition.kind is not None:
+                definition, parent, scope, path = self._added(
+                    xml, definition, definition.kind, parent, scope, path)
+            else:
+                parent = NO_ELEMENT
+                checks = _CHECKS if definition.has_frames else _CHECKS_OF_UNREAD
+                if definition.identifier in checks:
+                    checks[definition.identifier](xml, self._sources)
+            if depth > self._deepest:
+                self._sources.usage.check('depth', depth, self._sources.place(xml))
+            definitions = definition.children
+            for child in xml:
+                child_definition = definitions.get(child.tag)
+                if child_definition is None:
+                    self._undefined.report_element(child, definition)
+                    continue
+                self.read(child, child_definition, parent, scope, path, depth + 1)
+                if child_definition.value_type is not None and len(child):
+                    for grandchild in child:
+                        self._undefined.report_element(grandchild, child_definition)
 
-    def _read_frame(
+    def _added(
         self, xml: XmlElement, definition: Definition, kind: Kind, parent: int, scope: int,
-        parent_path: str, depth: int,
-    ) -> None:
-        """Add an element to the table, with all that it holds."""
+        path: str,
+    ) -> tuple[Definition, int, int, str]:
+        """Add an element to the table; return by what to read its children."""
         has_name = 'name' in definition.attributes
-        name = self._names.add(kind, xml, parent, parent_path) if has_name else kind.label
+        name = self._names.add(kind, xml, parent, path) if has_name else kind.label
         if name is None:
-            without_frames = definition_of(kind.label)
-            self._read_children(xml, without_frames, NO_ELEMENT, scope, parent_path, depth)
-            return
-        path = self._sources.path_at(xml, parent_path)
+            return definition_of(kind.label), NO_ELEMENT, scope, path
+        origin = self._sources.origin(xml)
+        path = path if origin.file is None else origin.file
         index = self._builder.add(
             kind, name, parent, scope,
-            self._file_indices[self._sources.path_of_pose(xml, path)], self._sources.line(xml))
-        include = self._sources.include_of(xml)
-        if include is not None:
-            self._builder.includes[index] = include
-        if definition.is_scope:
-            scope = index
+            self._file_indices[path if origin.pose is None else origin.pose.file],
+            self._sources.line(xml))
+        if origin.include is not None:
+            self._builder.details['includes'][index] = origin.include
         if kind in self._readers_of_details:
-            details, details_from_element = self._readers_of_details[kind]
-            read = details_from_element(xml)
-            if read is not None:
-                details[index] = read
-        self._read_children(xml, definition, index, scope, path, depth)
-
-    def _read_children(
-        self, xml: XmlElement, definition: Definition, parent: int, scope: int, path: str,
-        depth: int,
-    ) -> None:
-        if depth > self._deepest:
-            self._sources.usage.check('depth', depth, self._sources.place(xml))
-        definitions = definition.children
-        for child in xml:
-            child_definition = definitions.get(child.tag)
-            if child_definition is None:
-                self._undefined.report_element(child, definition)
-                continue
-            if child_definition.has_required_attributes or child.keys():
-                self._check_attributes(child, child_definition)
-            if child_definition.kind is not None:
-                self._read_frame(
-                    child, child_definition, child_definition.kind, parent, scope, path, depth + 1)
-            elif child_definition.value_type is None:
-                self._read(child, child_definition, parent, scope, path, depth + 1)
-            elif child_definition.is_pose:
-                if parent == NO_ELEMENT:
-                    self._check_pose(child, is_required=child_definition.is_required)
-                elif self._builder.pose_lines[parent]:
-                    self._check_pose(child)
-                    msg = 'a second <pose> is ignored; the first one counts'
-                    self._sources.warning(child, msg)
-                else:
-                    self._read_pose(child, child_definition, parent)
-            elif child_definition.is_required or not child_definition.is_text:
-                judgment = judged_value(text_of(child), child_definition)
-                if judgment is not RIGHT:
-                    self._report_judgment(child, judgment)
-            if len(child) and child_definition.value_type is not None:
-                for grandchild in child:
-                    self._undefined.report_element(grandchild, child_definition)
+            field, details_from_element = self._readers_of_details[kind]
+            details = details_from_element(xml)
+            if details is not None:
+                self._builder.details[field][index] = details
+        return definition, index, index if definition.is_scope else scope, path
 
     # Attributes and poses
 
     def _check_attributes(self, xml: XmlElement, definition: Definition) -> None:
-        names = xml.keys()
-        for name in names:
-            if name not in definition.attributes:
-                self._undefined.report_attribute(xml, name, definition)
+        self._undefined.report_attributes(xml, definition)
         for name, attribute in definition.checked_attributes:
             value = xml.get(name)
             if value is None:
@@ -304,56 +263,44 @@ class _Reader:
                     msg = f'{name}="{value.strip(WHITE_SPACE)}" of <{written_tag(xml)}> {fault}'
                     self._sources.error(error, xml, msg)
 
-    def _report_judgment(self, xml: XmlElement, judgment: Judgment) -> None:
-        if judgment.fault:
-            self._sources.error(ElementInvalidError, xml, judgment.fault)
-        elif judgment.doubt:
-            self._sources.warning(xml, judgment.doubt)
-
-    def _read_pose(self, xml: XmlElement, definition: Definition, index: int) -> None:
-        pose_format: PoseFormat | None = _DEFAULT_FORMAT
-        if xml.keys():
-            self._read_relative_to(xml, definition, index)
-            pose_format = self._pose_format(xml)
-        text = '' if pose_format is None else text_of(xml)
-        self._builder.set_pose(
-            index, text, pose_format or _DEFAULT_FORMAT, self._sources.line(xml))
-
-    def _pose_format(self, xml: XmlElement) -> PoseFormat | None:
-        """Read the attributes about the format of a pose; report them if they are not valid."""
+    def _read_pose(self, xml: XmlElement, definition: Definition, parent: int) -> None:
+        """Keep the pose of an element, or check another pose."""
+        is_first = parent != NO_ELEMENT and not self._builder.pose_lines[parent]
+        if is_first and xml.keys():
+            self._read_relative_to(xml, definition, parent)
         try:
-            return pose_format_of(xml)
+            text, pose_format = text_of(xml), pose_format_of(xml)
         except PoseTextError as error:
             self._sources.error(ElementInvalidError, xml, str(error))
-        return None
+            text, pose_format = '', PoseFormat()
+        if is_first:
+            self._builder.set_pose(parent, text, pose_format, self._sources.line(xml))
+            return
+        if definition.is_required and not text_of(xml):
+            msg = f'<{written_tag(xml)}> is empty; it must have a value'
+            self._sources.error(ElementInvalidError, xml, msg)
+        try:
+            pose_numbers_from_text(text, pose_format)
+        except PoseTextError as error:
+            self._sources.error(ElementInvalidError, xml, str(error))
+        if parent != NO_ELEMENT:
+            self._sources.warning(xml, 'a second <pose> is ignored; the first one counts')
 
     def _read_relative_to(self, xml: XmlElement, definition: Definition, index: int) -> None:
         builder = self._builder
-        kind = Kind(builder.kinds[index])
         relative_to = frame_of_attribute(xml, 'relative_to')
         if not relative_to or 'relative_to' not in definition.attributes:
             return
         reason = ''
-        if kind is Kind.ACTOR:
+        if builder.kinds[index] == Kind.ACTOR:
             reason = 'an actor is placed in the world'
-        elif kind is Kind.LIGHT and builder.kinds[builder.parents[index]] == Kind.ROOT:
+        elif (builder.kinds[index] == Kind.LIGHT
+                and builder.kinds[builder.parents[index]] == Kind.ROOT):
             reason = 'a light at the top of a file is placed in the implicit root'
         if reason:
             self._sources.warning(xml, f'relative_to="{relative_to}" is ignored; {reason}')
         else:
-            builder.relative_to[index] = relative_to
-
-    def _check_pose(self, xml: XmlElement, *, is_required: bool = False) -> None:
-        """Check a pose that is not that of a frame."""
-        pose_format = self._pose_format(xml)
-        if is_required and not text_of(xml):
-            msg = f'<{written_tag(xml)}> is empty; it must have a value'
-            self._sources.error(ElementInvalidError, xml, msg)
-        try:
-            pose_numbers_from_text(
-                '' if pose_format is None else text_of(xml), pose_format or _DEFAULT_FORMAT)
-        except PoseTextError as error:
-            self._sources.error(ElementInvalidError, xml, str(error))
+            builder.details['relative_to'][index] = relative_to
 
 
 # What only some kinds of elements have

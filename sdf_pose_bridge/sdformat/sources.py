@@ -16,6 +16,7 @@ from collections.abc import Mapping
 import contextlib
 import copy
 from itertools import islice
+from typing import Any
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import Place
@@ -33,22 +34,27 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 _MOST_PLACES_REMEMBERED = 1000
 
 
-class _Origin(NamedTuple):
-    """Where an element was written, as far as that does not follow from its tree."""
+class Origin(NamedTuple):
+    """
+    Where an element was written, as far as that does not follow from its tree.
+
+    An included element stands where its pose is written. What it holds does not, and its version
+    is that of its own file.
+    """
 
     file: str | None = None
     """Its file; None for that of its parent."""
     line: int = 0
     """Its line; 0 for the line that it was parsed in."""
     include: Place | None = None
-    """The include that it came from."""
+    """The include that it came from; None for an element in the included one."""
     is_named_by_include: bool = False
     """Whether its name is written in the file that includes it."""
     pose: Place | None = None
     """Where it is placed, if not in its own file."""
 
 
-_PARSED = _Origin()
+_PARSED = Origin()
 """The origin of an element that was parsed with the tree in which it is."""
 
 
@@ -80,7 +86,7 @@ class Sources:
         """The place of the include that first led to each included file, by its path."""
         self.problems = Problems(self.paths, self.includes)
         """What is wrong with these files."""
-        self._origins: dict[XmlElement, _Origin] = {}
+        self._origins: dict[XmlElement, Origin] = {}
         self._parsed_lines: dict[XmlElement, int] = {}
         self._composed_trees: set[XmlElement] = set()
         self._places: dict[XmlElement, Place] = {}
@@ -98,11 +104,15 @@ class Sources:
 
     def error_in_name(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
         """Add an error about the name of an element, which an include may have given to it."""
-        self.problems.error(error_class(message, self._origin(xml).include or self.place(xml)))
+        self.problems.error(error_class(message, self.origin(xml).include or self.place(xml)))
 
     def warning(self, xml: XmlElement, message: str, code: str = 'WARNING') -> None:
         """Add a warning about an element to the problems."""
         self.problems.warning(message, self.place(xml), code)
+
+    def count_work(self, steps: int, xml: XmlElement) -> None:
+        """Count work that an element makes, against the limits."""
+        self.usage.add('work', steps, lambda: self.place(xml))
 
     def add_path(self, path: str) -> None:
         """Add a file, unless it is known already."""
@@ -139,46 +149,15 @@ class Sources:
 
         :param line: its line; None for the line that it has.
         """
-        origin = self._origin(xml)
-        self._origins[xml] = origin._replace(file=path, line=origin.line if line is None else line)
+        self.set_origin(xml, file=path, line=self.origin(xml).line if line is None else line)
 
-    def set_include(self, xml: XmlElement, include: Place) -> None:
-        """Set which include an element came from."""
-        self._origins[xml] = self._origin(xml)._replace(include=include)
+    def set_origin(self, xml: XmlElement, **changes: Any) -> None:
+        """Set fields of the origin of an element."""
+        self._origins[xml] = self.origin(xml)._replace(**changes)
 
-    def include_of(self, xml: XmlElement) -> Place | None:
-        """
-        Return the include that an element came from.
-
-        :param xml: the included element itself, not one in it.
-        :return: the place of the ``<include>``; None for other elements.
-        """
-        origin = self._origins.get(xml)
-        return None if origin is None else origin.include
-
-    def set_named_by_include(self, xml: XmlElement) -> None:
-        """Set that the name of an included element is written in the file that includes it."""
-        self._origins[xml] = self._origin(xml)._replace(is_named_by_include=True)
-
-    def set_placed_by_include(self, xml: XmlElement, include: XmlElement) -> None:
-        """
-        Set that the pose of an included element is written in the include.
-
-        :param xml: the included element. It stands where its pose is written; what it holds does
-            not, and its version is that of its own file.
-        """
-        place = Place(self.path(include), self.line(include))
-        self._origins[xml] = self._origin(xml)._replace(pose=place)
-
-    def path_at(self, xml: XmlElement, default: str) -> str:
-        """
-        Return the file of an element whose parent's file is known.
-
-        :param default: the file of its parent.
-        :return: its file.
-        """
-        origin = self._origins.get(xml)
-        return default if origin is None or origin.file is None else origin.file
+    def origin(self, xml: XmlElement) -> Origin:
+        """Return where an element was written, as far as that does not follow from its tree."""
+        return self._origins.get(xml, _PARSED)
 
     def path(self, xml: XmlElement) -> str:
         """
@@ -194,7 +173,7 @@ class Sources:
 
         :return: the path of its file, of the file that includes that one, and so on.
         """
-        files = (self._origin(each).file for each in with_ancestors(xml))
+        files = (self.origin(each).file for each in with_ancestors(xml))
         return (file for file in files if file is not None)
 
     def enclosing_paths_of_name(self, xml: XmlElement) -> Iterator[str]:
@@ -204,17 +183,7 @@ class Sources:
         :return: as of :meth:`enclosing_paths`, from the file in which the name is written.
         """
         return islice(
-            self.enclosing_paths(xml), int(self._origin(xml).is_named_by_include), None)
-
-    def path_of_pose(self, xml: XmlElement, default: str) -> str:
-        """
-        Return the file in which an element is placed.
-
-        :param default: its own file.
-        :return: the file of its pose.
-        """
-        origin = self._origins.get(xml)
-        return default if origin is None or origin.pose is None else origin.pose.file
+            self.enclosing_paths(xml), int(self.origin(xml).is_named_by_include), None)
 
     def line(self, xml: XmlElement) -> int:
         """
@@ -222,26 +191,25 @@ class Sources:
 
         :return: the line of the beginning of its start tag, from 1; 0 if it is not known.
         """
-        origin = self._origins.get(xml)
-        if origin is not None and origin.pose is not None:
+        origin = self._origins.get(xml, _PARSED)
+        if origin.pose is not None:
             return origin.pose.line
-        if origin is not None and origin.line:
-            return origin.line
-        return self._parsed_lines.get(xml) or xml.sourceline or 0
+        return origin.line or self._parsed_lines.get(xml) or xml.sourceline or 0
 
-    def place(self, xml: XmlElement, part: str = '') -> Place:
+    def place(self, xml: XmlElement) -> Place:
         """
         Return where an element was written.
 
-        :param part: path of a missing element in it; empty for the element itself.
         :return: its file, its line and its path in the tree.
         :raises LimitError: if very many places are asked for, each for an error or a warning.
         """
         parent = xml.getparent()
         outer = Place('') if parent is None else self._place_in_tree(parent)
-        path = f'{outer.element}/{described(xml)}'
-        file = self.path_of_pose(xml, self.path_at(xml, outer.file))
-        place = Place(file, self.line(xml), f'{path}/{part}' if part else path)
+        origin = self.origin(xml)
+        file = outer.file if origin.file is None else origin.file
+        place = Place(
+            file if origin.pose is None else origin.pose.file, self.line(xml),
+            f'{outer.element}/{described(xml)}')
         self.usage.add('work', STEPS_OF_PLACE, place)
         return place
 
@@ -264,7 +232,7 @@ class Sources:
                 outer = self._places[element]
                 file, path = file or outer.file, outer.element
                 break
-            file = file or self.path_at(element, '')
+            file = file or self.origin(element).file or ''
             steps.append(described(element))
         place = Place(file, element='/'.join([path, *reversed(steps)]))
         self.usage.add('work', len(steps), place._replace(line=self.line(xml)))
@@ -289,6 +257,3 @@ class Sources:
                     self._parsed_lines[new] = self._parsed_lines[old]
         self.set_source(result, self.path(xml))
         return result
-
-    def _origin(self, xml: XmlElement) -> _Origin:
-        return self._origins.get(xml, _PARSED)

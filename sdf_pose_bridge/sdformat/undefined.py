@@ -44,10 +44,7 @@ class UndefinedReporter:
 
     def report_content(self, xml: XmlElement, definition: Definition) -> None:
         """Warn of the attributes and child elements of an element that are not defined."""
-        names = xml.keys()
-        for name in names:
-            if name not in definition.attributes:
-                self.report_attribute(xml, name, definition)
+        self.report_attributes(xml, definition)
         for child in xml:
             if child.tag not in definition.children:
                 self.report_element(child, definition)
@@ -76,15 +73,15 @@ class UndefinedReporter:
             hint = self._did_you_mean(tag, parent.identifier, map(str, parent.children), '<{}>')
         self._warn(xml, f'<{tag}> in <{written_tag(parent_xml)}>', hint)
 
-    def report_attribute(self, xml: XmlElement, name: str, definition: Definition) -> None:
-        """
-        Warn of an attribute.
+    def report_attributes(self, xml: XmlElement, definition: Definition) -> None:
+        """Warn of the attributes of an element that are not defined."""
+        names = xml.keys()
+        for name in names:
+            # lxml writes the namespace of a prefix in braces.
+            if not (name in definition.attributes or ':' in name or '{' in name):
+                self._report_attribute(xml, name, definition)
 
-        :param name: name of an attribute that its definition does not know.
-        """
-        # lxml writes the namespace of a prefix in braces.
-        if ':' in name or '{' in name:
-            return
+    def _report_attribute(self, xml: XmlElement, name: str, definition: Definition) -> None:
         if self._is_only_counted():
             return
         hint = _ATTRIBUTE_HINTS.get((definition.identifier, name), '')

@@ -158,7 +158,7 @@ class IncludeExpansion:
             self._steps_of_copies[chosen] = _steps_of_copy(chosen)
         self._count(self._steps_of_copies[chosen], include)
         top = self._sources.copy_of(chosen)
-        self._sources.set_include(top, place)
+        self._sources.set_origin(top, include=place)
         self._override(include, top)
         params = params_of(include)
         if params is not None:
@@ -283,7 +283,7 @@ class IncludeExpansion:
         name = self._override_value(include, 'name')
         if name:
             top.set('name', name)
-            self._sources.set_named_by_include(top)
+            self._sources.set_origin(top, is_named_by_include=True)
         self._check_static(include, top)
         if top.tag == 'model':
             self._override_element(include, top, 'static')
@@ -291,7 +291,8 @@ class IncludeExpansion:
             if placement:
                 top.set('placement_frame', placement)
         if self._override_element(include, top, 'pose'):
-            self._sources.set_placed_by_include(top, include)
+            sources = self._sources
+            sources.set_origin(top, pose=Place(sources.path(include), sources.line(include)))
 
     def _check_static(self, include: XmlElement, top: XmlElement) -> None:
         static = first_child(include, 'static')

@@ -91,9 +91,9 @@ def _proxy_frame(
     proxy.append(proxy_pose)
     place = sources.place(model)
     sources.set_source(proxy, place.file, place.line)
-    sources.set_include(proxy, sources.place(include))
-    if first_child(include, 'name') is not None:
-        sources.set_named_by_include(proxy)
+    sources.set_origin(
+        proxy, include=sources.place(include),
+        is_named_by_include=first_child(include, 'name') is not None)
     return proxy
 
 
