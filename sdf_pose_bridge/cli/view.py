@@ -12,7 +12,6 @@ import os
 from pathlib import Path
 import signal
 import sys
-import time
 from typing import Any
 
 from sdf_pose_bridge.cli.loading import add_file_arguments
@@ -32,7 +31,7 @@ from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 
 _FORMATS = ('.html', '.png')
 _PORT = 8080
-_PERIOD_S = 0.1
+_PERIOD_S = 0.05
 _ROOM = 'sdf_pose_bridge.cli.viewer'
 _NEEDS_VISER = "this needs viser, trimesh and pycollada: pip install 'sdf_pose_bridge[view]'"
 
@@ -124,7 +123,7 @@ def _follow(page: Any, files: tuple[str, ...], options: argparse.Namespace) -> N
     """Show the file again whenever it, or a file that it includes, changes; never returns."""
     known = _signatures(files)
     while True:
-        time.sleep(_PERIOD_S)
+        page.act(_PERIOD_S)
         now = _signatures(files)
         if now == known:
             continue
@@ -132,8 +131,9 @@ def _follow(page: Any, files: tuple[str, ...], options: argparse.Namespace) -> N
         loaded = load_file(options.files[0], options, shapes=True)
         errors = loaded.errors
         if loaded.scene is not None:
-            files = loaded.scene.files
-            known = _signatures(files)
+            if loaded.scene.files != files:
+                files = loaded.scene.files
+                known = _signatures(files)
             try:
                 page.show(loaded.scene)
             except SdfError as error:

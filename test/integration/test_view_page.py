@@ -93,7 +93,7 @@ def test_slider_moves_frames_and_those_that_mimic(page):
     select(page, 'slide')
     assert page.run("document.body.innerText.includes('arm/second')") is False
     enter(page, "[...document.querySelectorAll('input')].filter("
-                "input => ['decimal', 'numeric'].includes(input.inputMode))[1]", '0.5')
+                "input => ['decimal', 'numeric'].includes(input.inputMode))[0]", '0.5')
     page.wait_for("document.body.innerText.includes('xyz 0.0000 0.0000 0.5000 m')")
     select(page, 'follower')
     page.wait_for("document.body.innerText.includes('xyz 0.0000 0.0000 1.0000 m')")

@@ -41,7 +41,7 @@ MOST_TRIANGLES = 3_000_000
 MOST_NAMES = 500
 """How many names are shown at once."""
 
-NAMES, LINES, GIZMO, _SELECTED = '/names', '/lines to parents', '/gizmo', '/selected'
+NAMES, LINES = '/names', '/lines to parents'
 GROUPS = (NAMES, LINES, '/visuals', '/collisions')
 """The nodes that can be hidden, besides one for each kind of frame."""
 
@@ -51,6 +51,8 @@ _FIELD_OF_VIEW_RAD = 0.8
 _GRAY = (0.7, 0.7, 0.7, 1.0)
 _LINE_COLOR = (134, 142, 150)
 _LIGHT_FROM_BELOW = (160, 160, 160)
+_OPACITY = 0.6
+"""That of surfaces, so that the frames in them are seen."""
 
 _SCALE_OF_NAMES = 0.8
 _LINE_HEIGHT, _CHARACTER_WIDTH = 0.018, 0.0062
@@ -89,14 +91,15 @@ class Drawing:
         self, server: viser.ViserServer, meshes: MeshReader, select: Callable[[int], None],
     ) -> None:
         self._server, self._meshes, self._select = server, meshes, select
-        self._nodes: dict[str, Any] = {}
-        self._labels: list[viser.LabelHandle] = []
-        self.opacity = 0.6
-        """That of surfaces, so that the frames in them are seen."""
         self.hidden = {'/collisions'}
-        """The names of nodes and of models that are hidden."""
-        self.camera: Any = None
-        """The camera for which names are placed."""
+        """The names of the nodes that are hidden from the next :meth:`place` on."""
+        self.gizmo: Any = None
+        """The gizmo, which is not visible at first."""
+        self._camera: Any = None
+
+    def look_from(self, camera: viser.CameraHandle) -> None:
+        """Place names for this camera from the next :meth:`place` on."""
+        self._camera = camera
 
     def draw(self, scene: Scene, tree: TfTree, is_shown: NDArray[np.bool_]) -> list[str]:
         """
@@ -110,129 +113,99 @@ class Drawing:
         nodes.add_light_hemisphere('/light', ground_color=_LIGHT_FROM_BELOW, intensity=1.5)
         origins = tree.poses[:, :3]
         extent_m = float(np.ptp(origins, axis=0).max()) if len(origins) else 0.0
-        self._surfaces, reasons = surfaces_from_scene(
+        surfaces, reasons = surfaces_from_scene(
             scene, [element for element in scene.shapes if is_shown[element]], extent_m or 1.0,
             self._meshes)
-        bounds = bounds_of_scene(scene, origins, self._surfaces)
-        self._size_m = float(np.ptp(bounds, axis=0).max()) or 1.0
-        # A floor is often much larger than what stands on it.
-        is_floor = 0.0 < extent_m < 0.55 * self._size_m
-        self._view_m = max(extent_m, 0.3 * self._size_m) if is_floor else self._size_m
-        self._middle = 0.5 * np.sum(
-            (origins.min(axis=0), origins.max(axis=0)) if is_floor else bounds, axis=0)
-        if self.camera is None:
-            self._look_at_everything()
-        self._length_m = length_m = self._length_of_axes(tree)
+        bounds = bounds_of_scene(scene, origins, surfaces)
+        size_m = float(np.ptp(bounds, axis=0).max()) or 1.0
+        view_m = size_m
+        if 0.0 < extent_m < 0.55 * size_m:
+            # A floor is often much larger than what stands on it.
+            bounds, view_m = bounds_of_scene(scene, origins, []), max(extent_m, 0.3 * size_m)
+        if self._camera is None:
+            self._look_at(0.5 * bounds.sum(axis=0), view_m, size_m)
+        length_m = _length_of_axes(tree, size_m)
+        self._marker = nodes.add_frame(
+            '/selected', axes_length=2.0 * length_m, axes_radius=0.08 * length_m, visible=False)
+        self.gizmo = nodes.add_transform_controls(
+            '/gizmo', 4.0 * length_m, depth_test=False, visible=False)
         # An optical frame is shown with its parent.
         elements = np.where(
             tree.elements < 0, tree.elements[np.maximum(tree.parents, 0)], tree.elements)
         self._frames = {
-            label: np.flatnonzero(is_shown[elements] & (np.array(labels) == label))
+            node_of_kind(label): np.flatnonzero(is_shown[elements] & (np.array(labels) == label))
             for label in dict.fromkeys(labels)}
-        self._nodes = {
-            name: nodes.add_frame(name, show_axes=False) for name in ('/frames', *GROUPS)}
-        self._nodes[LINES] = nodes.add_line_segments(
-            LINES, self._lines(tree), _LINE_COLOR, thickness=0.002 * self._view_m)
-        for label, frames in self._frames.items():
-            poses = tree.poses[frames]
-            axes = self._nodes[node_of_kind(label)] = nodes.add_batched_axes(
-                node_of_kind(label), poses[:, _WXYZ], poses[:, :3], axes_length=length_m,
+        self._groups = {name: nodes.add_frame(name, show_axes=False) for name in GROUPS}
+        self._groups[LINES] = nodes.add_line_segments(
+            LINES, self._lines(tree), _LINE_COLOR, thickness=0.002 * view_m)
+        for name, frames in self._frames.items():
+            axes = self._groups[name] = nodes.add_batched_axes(
+                name, tree.poses[frames][:, _WXYZ], tree.poses[frames, :3], axes_length=length_m,
                 axes_radius=0.05 * length_m)
-            axes.on_click(
-                lambda event, frames=frames: self._select(int(frames[event.instance_index])))
-        for name in self.hidden & self._nodes.keys():
-            self._nodes[name].visible = False
+            self._select_by_click(axes, frames)
         self._copies = [
-            self._add_surface(number, surface, scene, tree)
-            for number, surface in enumerate(self._surfaces)]
-        self._labels.clear()
-        self.place_names(tree)
+            (self._add_surface(number, surface, scene, tree), surface.elements)
+            for number, surface in enumerate(surfaces)]
+        self._labels: list[viser.LabelHandle] = []
+        self.place(scene, tree)
         return reasons
 
     def place(self, scene: Scene, tree: TfTree) -> None:
         """Move what is drawn to the poses of a scene that differs in nothing else."""
-        for label, frames in self._frames.items():
-            _set_poses(self._nodes[node_of_kind(label)], tree.poses[frames])
-        for copies, surface in zip(self._copies, self._surfaces, strict=True):
-            _set_poses(copies, scene.poses[surface.elements])
-        self._nodes[LINES].points = self._lines(tree)
-        self.place_names(tree)
-
-    def set_visible(self, name: str, tree: TfTree, *, visible: bool) -> None:
-        """Show or hide a node."""
-        self._nodes[name].visible = visible
-        self.place_names(tree)
-
-    def set_opacity(self, opacity: float) -> None:
-        """Make surfaces more or less transparent."""
-        self.opacity = opacity
-        for copies in self._copies:
-            copies.opacity = opacity if opacity < 1.0 else None
+        for name, group in self._groups.items():
+            group.visible = name not in self.hidden
+        for name, frames in self._frames.items():
+            _set_poses(self._groups[name], tree.poses[frames])
+        for copies, elements in self._copies:
+            _set_poses(copies, scene.poses[elements])
+        self._groups[LINES].points = self._lines(tree)
+        self._place_names(tree)
 
     def mark(self, pose: Pose | None) -> None:
         """Show larger axes at a pose in the root frame; none for None."""
-        self.remove(_SELECTED)
+        self._marker.visible = pose is not None
         if pose is not None:
-            self._nodes[_SELECTED] = self._server.scene.add_frame(
-                _SELECTED, axes_length=2.0 * self._length_m, axes_radius=0.08 * self._length_m,
-                position=pose[:3], wxyz=(pose.qw, *pose[3:6]))
+            self._marker.position, self._marker.wxyz = pose[:3], (pose.qw, *pose[3:6])
 
-    def add_gizmo(self, pose: Pose) -> Any:
-        """Return a gizmo at a pose in the root frame."""
-        self._nodes[GIZMO] = self._server.scene.add_transform_controls(
-            GIZMO, 4.0 * self._length_m, position=pose[:3], wxyz=(pose.qw, *pose[3:6]),
-            depth_test=False)
-        return self._nodes[GIZMO]
-
-    def remove(self, name: str) -> None:
-        """Remove a node, if there is one of this name."""
-        if name in self._nodes:
-            self._nodes.pop(name).remove()
-
-    def place_names(self, tree: TfTree) -> None:
+    def _place_names(self, tree: TfTree) -> None:
         """Show the names of frames, where the camera sees them."""
-        if NAMES in self.hidden:
-            return
         frames = [
-            frame for label, each in self._frames.items()
-            if node_of_kind(label) not in self.hidden for frame in each.tolist()][:MOST_NAMES]
+            frame for name, each in self._frames.items() if name not in self.hidden
+            for frame in each.tolist()][:MOST_NAMES]
         names = [
             printable(shortened(tree.frame_ids[frame].rpartition('/')[2])) for frame in frames]
         labels = list(labels_from_names(
-            names, tree.poses[frames, :3], self.camera.position, self.camera.look_at))
+            names, tree.poses[frames, :3], self._camera.position, self._camera.look_at))
         while len(self._labels) > len(labels):
             self._labels.pop().remove()
         for number, (text, point) in enumerate(labels):
             if number == len(self._labels):
                 self._labels.append(self._server.scene.add_label(
-                    f'{NAMES}/{number}', text, position=point, font_screen_scale=_SCALE_OF_NAMES))
-                continue
-            if not np.array_equal(self._labels[number].position, point):
-                self._labels[number].position = point
-            if self._labels[number].text != text:
-                self._labels[number].text = text
+                    f'{NAMES}/{number}', text, font_screen_scale=_SCALE_OF_NAMES))
+            self._labels[number].text, self._labels[number].position = text, point
 
-    def _look_at_everything(self) -> None:
+    def _look_at(self, middle: Points, view_m: float, size_m: float) -> None:
         """Choose what a browser sees at first."""
-        camera = self._server.initial_camera
-        camera.look_at = self._middle
-        camera.position = self._middle + 1.6 * self._view_m * _DIRECTION_TO_EYE
-        camera.near, camera.far = 0.001 * self._size_m, 100.0 * self._size_m
-        camera.fov = _FIELD_OF_VIEW_RAD
-        self.camera = camera
+        self._camera = camera = self._server.initial_camera
+        camera.look_at, camera.fov = middle, _FIELD_OF_VIEW_RAD
+        camera.position = middle + 1.6 * view_m * _DIRECTION_TO_EYE
+        camera.near, camera.far = 0.001 * size_m, 100.0 * size_m
 
     def _add_surface(self, number: int, surface: Surface, scene: Scene, tree: TfTree) -> Any:
         poses, rgba = scene.poses[surface.elements], np.clip(surface.rgba, 0.0, 1.0)
-        frames = tree.nearest_frames[surface.elements]
         copies = self._server.scene.add_batched_meshes_simple(
             f'/{surface.kind.label}s/{number}', surface.part.points, surface.part.faces,
             poses[:, _WXYZ], poses[:, :3], batched_scales=surface.scales,
             batched_colors=np.round(255.0 * rgba[:, :3]).astype(np.uint8),
             batched_opacities=rgba[:, 3] if (rgba[:, 3] < 1.0).any() else None,
-            opacity=self.opacity if self.opacity < 1.0 else None, lod='off', flat_shading=True,
-            side='double')
-        copies.on_click(lambda event: self._select(int(frames[event.instance_index or 0])))
+            opacity=_OPACITY, lod='off', flat_shading=True, side='double')
+        self._select_by_click(copies, tree.nearest_frames[surface.elements])
         return copies
+
+    def _select_by_click(
+        self, copies: Any, frames: NDArray[np.signedinteger[Any]],
+    ) -> None:
+        copies.on_click(lambda event: self._select(int(frames[event.instance_index or 0])))
 
     def _lines(self, tree: TfTree) -> Points:
         """Return lines from the parents of frames to the frames, shape (n, 2, 3)."""
@@ -243,12 +216,13 @@ class Drawing:
         assert ROOT_IS_PARENT == -1
         return np.stack([origins[tree.parents[frames]], origins[frames]], axis=1)
 
-    def _length_of_axes(self, tree: TfTree) -> float:
-        """Return the length of axes, in metres: short where frames are near to one another."""
-        distances_m = np.linalg.norm(tree.transforms[:, :3], axis=1)
-        distances_m = distances_m[distances_m > 1e-6 * self._size_m]
-        typical_m = np.median(distances_m) if len(distances_m) else self._size_m
-        return float(np.clip(0.4 * typical_m, 0.01 * self._size_m, 0.1 * self._size_m))
+
+def _length_of_axes(tree: TfTree, size_m: float) -> float:
+    """Return the length of axes, in metres: short where frames are near to one another."""
+    distances_m = np.linalg.norm(tree.transforms[:, :3], axis=1)
+    distances_m = distances_m[distances_m > 1e-6 * size_m]
+    typical_m = np.median(distances_m) if len(distances_m) else size_m
+    return float(np.clip(0.4 * typical_m, 0.01 * size_m, 0.1 * size_m))
 
 
 def surfaces_from_scene(

@@ -52,4 +52,4 @@ def test_gizmo_is_there_for_frames_that_can_be_placed_only(page, server, tmp_pat
     frames = page._tree.frame_ids
     for name, has_gizmo in (('free', True), ('fixed', False), ('free', True)):
         page._select(frames.index(name))
-        assert (server.scene.get_handle_by_name('/gizmo') is not None) is has_gizmo
+        assert server.scene.get_handle_by_name('/gizmo').visible is has_gizmo
