@@ -93,7 +93,7 @@ def run(options: argparse.Namespace) -> int:
             _open(f'http://{servers.ADDRESS}:{server.get_port()}')
             _follow(page, scene.files, options)
         elif options.output.suffix.lower() == '.png':
-            servers.write_picture(server, options.output)
+            servers.write_picture(servers.page_from_server(server, path), options.output)
         else:
             options.output.write_text(
                 servers.page_from_server(server, path), encoding='utf-8')
