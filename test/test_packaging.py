@@ -57,7 +57,7 @@ def installed_files():
         for target, sources in json.loads(result.stdout) for source in sources}
 
 
-OF_THE_VIEWER = {'imageio', 'rich', 'trimesh', 'viser'}
+OF_THE_VIEWER = {'rich', 'trimesh', 'viser'}
 """What only ``sdf_pose view`` imports: viser, what comes with it, and trimesh."""
 
 

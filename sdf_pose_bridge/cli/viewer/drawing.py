@@ -260,7 +260,7 @@ def surfaces_from_scene(
         shapes = [scene.shapes[element] for element in same]
         scales = np.array([
             shape.sizes_m if shape.type == 'box' else shape.mesh_scale for shape in shapes])
-        if mesh.reason and mesh.bounds is None:
+        if mesh.reason:
             scales[:] = 1.0
         surfaces += [
             Surface(kind, part, same, scales, np.array([

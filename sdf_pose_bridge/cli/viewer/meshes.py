@@ -9,22 +9,19 @@ Readers of mesh formats trust their files.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures import TimeoutError as ExecutorTimeoutError
-from concurrent.futures.process import BrokenProcessPool
 import io
 import multiprocessing
+from multiprocessing.pool import Pool
 import os
 from pathlib import Path
 import resource
 import signal
-import threading
 from typing import Any
 from typing import NamedTuple
 
 import numpy as np
 import trimesh
-from trimesh.resolvers import Resolver
+from trimesh.resolvers import FilePathResolver
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import printable
@@ -41,9 +38,8 @@ MOST_BYTES = 100_000_000
 """Size of a mesh with the files that it names."""
 MOST_TRIANGLES = 500_000
 """How many triangles a mesh may have."""
-MOST_CPU_SECONDS = 10.0
-MOST_SECONDS = 60.0
-"""How long it may take to read a mesh, on a machine that is busy."""
+MOST_SECONDS = 20.0
+"""How long it may take to read a mesh."""
 MOST_MEMORY_BYTES = 2_000_000_000
 """Address space of the process."""
 FORMATS = ('.dae', '.glb', '.gltf', '.obj', '.stl')
@@ -71,8 +67,6 @@ class Mesh(NamedTuple):
     parts: tuple[MeshPart, ...] = ()
     reason: str = ''
     """Why these are not its surfaces; empty if they are."""
-    bounds: Any = None
-    """Shape (2, 3): its lowest and its highest corner, if nothing else of it is known."""
 
 
 class MeshReader:
@@ -84,7 +78,7 @@ class MeshReader:
 
     def __init__(self, finder: ResourceFinder) -> None:
         self._finder = finder
-        self._executor: ProcessPoolExecutor | None = None
+        self._pool: Pool | None = None
         self._meshes: dict[object, Mesh] = {}
 
     def mesh(self, shape: Shape, file: str, size_m: float) -> Mesh:
@@ -93,25 +87,22 @@ class MeshReader:
 
         :param file: path of the file that names it.
         :param size_m: extent of the scene; no side of a plane is much longer.
-        :return: its surfaces, or a box where these are not known.
+        :return: its surfaces, or a small box where these are not known.
         """
         if shape.type != 'mesh':
             return _mesh_of_shape(shape, 2.0 * size_m)
         mesh = self._mesh_of_file(shape, file)
-        if mesh.parts:
+        if not mesh.reason:
             return mesh
-        unknown = np.array([[-1.0], [1.0]]) * np.full(3, 0.015 * size_m)
-        box = trimesh.creation.box(bounds=unknown if mesh.bounds is None else mesh.bounds)
-        return mesh._replace(parts=(MeshPart(box.vertices, box.faces, _MISSING),),
-                             reason=f'the mesh "{shape.mesh_uri}": {mesh.reason}')
+        box = trimesh.creation.box(np.full(3, 0.03 * size_m))
+        return Mesh((MeshPart(box.vertices, box.faces, _MISSING),),
+                    f'the mesh "{shape.mesh_uri}": {mesh.reason}')
 
     def close(self) -> None:
         """End the process."""
-        if self._executor is not None:
-            for process in multiprocessing.active_children():
-                process.kill()
-            self._executor.shutdown()
-            self._executor = None
+        if self._pool is not None:
+            self._pool.terminate()
+            self._pool = None
 
     def _mesh_of_file(self, shape: Shape, file: str) -> Mesh:
         path = self._finder.file_from_uri(shape.mesh_uri, file)
@@ -124,17 +115,16 @@ class MeshReader:
         return self._meshes[key]
 
     def _read(self, path: str, submesh: str) -> Mesh:
-        if self._executor is None:
+        if self._pool is None:
             # Each thread of this library would take its share of the memory.
             os.environ['OPENBLAS_NUM_THREADS'] = '1'
-            self._executor = ProcessPoolExecutor(
-                1, multiprocessing.get_context('spawn'), _limit_this_process)
+            self._pool = multiprocessing.get_context('spawn').Pool(1, _limit_this_process)
         try:
-            return self._executor.submit(mesh_from_file, path, submesh).result(MOST_SECONDS)
-        except (BrokenProcessPool, ExecutorTimeoutError):
+            return self._pool.apply_async(mesh_from_file, (path, submesh)).get(MOST_SECONDS)
+        except multiprocessing.TimeoutError:
             self.close()
-            return Mesh(reason=f'to read it takes more than {MOST_CPU_SECONDS:g} s of processor '
-                               'time, or ends the process that does so')
+            return Mesh(reason=f'to read it takes more than {MOST_SECONDS:g} s, or ends the '
+                               'process that does so')
 
 
 def _mesh_of_shape(shape: Shape, largest_m: float) -> Mesh:
@@ -162,19 +152,11 @@ def _limit_this_process() -> None:
     # Ctrl-C is for the process that started this one, and what libraries print for nobody.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _end_with_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)
 
 
 def mesh_from_file(path: str, submesh: str) -> Mesh:
     """
-    Read a mesh; the process ends if it takes too long.
+    Read a mesh.
 
     As in Gazebo the unit of a DAE file counts, and the up axes of DAE and glTF files do not.
 
@@ -182,41 +164,28 @@ def mesh_from_file(path: str, submesh: str) -> Mesh:
     :param submesh: the name of the part that is meant; empty for all of it.
     :return: its surfaces, or why there are none.
     """
-    signal.setitimer(signal.ITIMER_PROF, MOST_CPU_SECONDS)
     try:
-        return _mesh_from_scene(_scene_from_file(path, submesh), submesh)
+        return Mesh(_checked(list(_parts(_scene_from_file(path, submesh), submesh))))
     except SdfError as error:
         return Mesh(reason=error.message)
     except MemoryError:
         return Mesh(reason=f'it needs more than {MOST_MEMORY_BYTES} bytes to be read')
     except Exception as error:  # noqa: BLE001  # its readers raise errors of all classes
-        return Mesh(reason=f'it cannot be read: {printable(shortened(str(error)))}')
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        return Mesh(reason=f'it cannot be shown: {printable(shortened(str(error)))}')
 
 
-class _NamedFiles(Resolver):
+class _NamedFiles(FilePathResolver):
     """Reads the buffers and materials that a mesh names, with the checks of other files."""
 
-    def __init__(self, folder: Path, usage: Usage) -> None:
-        self._folder, self._usage = folder, usage
+    def __init__(self, path: str, usage: Usage) -> None:
+        super().__init__(path, allow_anywhere=True)
+        self._usage = usage
 
-    def get(self, key: str) -> bytes:
+    def get(self, name: str) -> bytes:
         """Return the content of a file; textures are not read."""
-        if not key.lower().endswith(_NAMED_FORMATS):
-            raise FileNotFoundError(key)
-        return bytes_from_file(str(self._folder / key), self._usage)
-
-    def namespaced(self, namespace: str) -> _NamedFiles:
-        """Return the same for a folder below this one."""
-        return _NamedFiles(self._folder / namespace, self._usage)
-
-    def keys(self) -> list[str]:
-        """Return nothing: no folder is listed."""
-        return []
-
-    def write(self, name: str, data: Any) -> None:
-        """Write nothing."""
+        if not name.lower().endswith(_NAMED_FORMATS):
+            raise FileNotFoundError(name)
+        return bytes_from_file(str(self.absolute(name)), self._usage)
 
 
 def _scene_from_file(path: str, submesh: str) -> trimesh.Scene:
@@ -230,30 +199,12 @@ def _scene_from_file(path: str, submesh: str) -> trimesh.Scene:
         xml_from_bytes(text, path)
     options = {'split_objects': True} if suffix == '.obj' and submesh else {}
     return trimesh.load_scene(
-        io.BytesIO(text), file_type=suffix[1:],
-        resolver=_NamedFiles(Path(path).parent, usage), **options)
-
-
-def _mesh_from_scene(scene: trimesh.Scene, submesh: str) -> Mesh:
-    parts = list(_parts(scene, submesh))
-    if not parts:
-        names = ', '.join(map(printable, sorted(scene.geometry))) or 'no surface'
-        return Mesh(reason=f'it has no part "{printable(shortened(submesh))}", but '
-                           f'{shortened(names)}' if submesh else 'it has no surface')
-    bounds = np.array([
-        np.min([part.points.min(axis=0) for part in parts], axis=0),
-        np.max([part.points.max(axis=0) for part in parts], axis=0)])
-    if not np.abs(bounds).max() <= _LARGEST_M:  # nor a number
-        return Mesh(reason=f'a coordinate is larger than {_LARGEST_M:g} m')
-    triangle_count = sum(len(part.faces) for part in parts)
-    if triangle_count > MOST_TRIANGLES:
-        reason = f'it has {triangle_count} triangles, more than {MOST_TRIANGLES}'
-        return Mesh(reason=reason, bounds=bounds)
-    return Mesh(tuple(parts))
+        io.BytesIO(text), file_type=suffix[1:], resolver=_NamedFiles(path, usage), **options)
 
 
 def _parts(scene: trimesh.Scene, submesh: str) -> Iterator[MeshPart]:
     """Find the surfaces of a mesh."""
+    is_found = False
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]
         mesh = scene.geometry[name]
@@ -261,10 +212,28 @@ def _parts(scene: trimesh.Scene, submesh: str) -> Iterator[MeshPart]:
         names = (node, name, node.partition('-mesh')[0], name.partition('-mesh')[0])
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces) and (
                 not submesh or submesh in names):
+            is_found = True
             unit_m = trimesh.units.unit_conversion(mesh.units or 'meters', 'meters')
             points = unit_m * trimesh.transform_points(mesh.vertices, matrix)
             yield MeshPart(
                 np.asarray(points, np.float32), np.asarray(mesh.faces, np.uint32), _rgba(mesh))
+    if not is_found:
+        names_of_parts = ', '.join(map(printable, sorted(scene.geometry))) or 'no surface'
+        msg = (f'it has no part "{submesh}", but {names_of_parts}' if submesh
+               else 'it has no surface')
+        raise ValueError(msg)
+
+
+def _checked(parts: list[MeshPart]) -> tuple[MeshPart, ...]:
+    # A coordinate that is not a number is too large, too.
+    if not all(np.abs(part.points).max() <= _LARGEST_M for part in parts):
+        msg = f'a coordinate is larger than {_LARGEST_M:g} m'
+        raise ValueError(msg)
+    triangle_count = sum(len(part.faces) for part in parts)
+    if triangle_count > MOST_TRIANGLES:
+        msg = f'it has {triangle_count} triangles, more than {MOST_TRIANGLES}'
+        raise ValueError(msg)
+    return tuple(parts)
 
 
 def _rgba(mesh: trimesh.Trimesh) -> tuple[float, ...]:
