@@ -5,10 +5,9 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
-from collections.abc import Mapping
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
+import math
 import sys
 from typing import NamedTuple
 
@@ -80,7 +79,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_frame_arguments(parser, DEFAULT_KINDS)
     add_unit_arguments(parser)
     parser.add_argument(
-        '--depth', metavar='N', type=_depth_from_text,
+        '--depth', metavar='N', type=_depth_from_text, default=math.inf,
         help='print N levels below the root, and how many frames are below them')
     parser.add_argument(
         '--match', metavar='GLOB', default='',
@@ -104,7 +103,7 @@ def run(options: argparse.Namespace) -> int:
             continue
         if len(options.files) > 1:
             print(printable(path))
-        _print_lines(list(_lines(rows, options)), units_from_arguments(options))
+        _print_lines(_lines(rows, options), units_from_arguments(options))
     return exit_code
 
 
@@ -179,7 +178,7 @@ def _notes(scene: Scene) -> list[str]:
     return notes
 
 
-def _lines(rows: Sequence[_Row], options: argparse.Namespace) -> Iterator[_Line]:
+def _lines(rows: Sequence[_Row], options: argparse.Namespace) -> list[_Line]:
     """Walk the rows from parents to children, in the order of the file, without recursion."""
     is_match = [
         bool(options.match) and fnmatchcase(row.full_name, options.match) for row in rows]
@@ -193,30 +192,22 @@ def _lines(rows: Sequence[_Row], options: argparse.Namespace) -> Iterator[_Line]
         if is_shown[index]:
             children.setdefault(row.parent, []).append(index)
     tee, corner, bar, blank = _branches()
+    lines: list[_Line] = []
     waiting = [(index, 0, '', '') for index in reversed(children.get(-1, ()))]
     while waiting:
         index, depth, indent, branch = waiting.pop()
         below = children.get(index, [])
-        is_deepest = depth == options.depth
-        hidden = _count_below(index, children) if is_deepest else 0
-        yield _Line(indent + branch, rows[index], hidden, is_match[index])
-        if is_deepest:
-            continue
+        if depth > options.depth:
+            lines[-1] = lines[-1]._replace(hidden=lines[-1].hidden + 1)
+        else:
+            lines.append(_Line(indent + branch, rows[index], 0, is_match[index]))
         if branch:
             # A chain of thousands of links would be indented by thousands of characters.
             indent = (indent + (blank if branch == corner else bar))[-_WIDEST_INDENT:]
         waiting += [
             (child, depth + 1, indent, corner if child == below[-1] else tee)
             for child in reversed(below)]
-
-
-def _count_below(index: int, children: Mapping[int, Sequence[int]]) -> int:
-    count = 0
-    waiting = list(children.get(index, ()))
-    while waiting:
-        count += 1
-        waiting += children.get(waiting.pop(), ())
-    return count
+    return lines
 
 
 def _branches() -> Sequence[str]:

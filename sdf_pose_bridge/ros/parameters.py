@@ -136,16 +136,6 @@ def rate_setting(value: float) -> float:
     return value
 
 
-def choice_setting(choices: type[Choice]) -> Callable[[str], Choice]:
-    """Return a function that makes members of an enumeration."""
-    def convert(value: str) -> Choice:
-        known = [choice.value for choice in choices]
-        if value not in known:
-            raise _refusal(value, f'one of {", ".join(known)}')
-        return choices(value)
-    return convert
-
-
 def kinds_setting(values: Sequence[str]) -> frozenset[Kind]:
     """Make kinds of element of their names."""
     known = ', '.join(PUBLISHED_KINDS)
@@ -201,6 +191,25 @@ def _refusal(value: object, rule: str) -> ValueError:
     return ValueError(f'is {shown}; it must be {rule}')
 
 
+def _switch(
+    default: bool, description: str, *, needs_load: bool = True,  # noqa: FBT001
+) -> Declaration[bool]:
+    return Declaration(default, description, 'true or false', bool, needs_load)
+
+
+def _choice(default: Choice, description: str) -> Declaration[Choice]:
+    """Declare a parameter whose values are those of an enumeration."""
+    known = [choice.value for choice in type(default)]
+    rule = f'one of {", ".join(known)}'
+
+    def setting(value: str) -> Choice:
+        if value not in known:
+            raise _refusal(value, rule)
+        return type(default)(value)
+
+    return Declaration(default.value, description, rule, setting)
+
+
 class Settings:
     """The settings of the node."""
 
@@ -221,12 +230,10 @@ class Settings:
         'the text of a file; either this or sdf_file is required',
         str,
     )
-    publish_robot_description = Declaration(
+    publish_robot_description = _switch(
         True,
         'Publishes the text of sdf_file, or that of robot_description, on the topic '
         'robot_description, unless it is a world.',
-        'true or false',
-        bool,
         needs_load=False,
     )
     root_frame = Declaration(
@@ -235,13 +242,11 @@ class Settings:
         'not empty, no leading slash, at most 255 characters',
         root_frame_setting,
     )
-    anchor_models = Declaration(
-        'auto',
+    anchor_models = _choice(
+        AnchorModels.AUTO,
         'Which top-level models get a transform from root_frame; odometry or localization can '
         'publish that of the others. "auto" is "static" for a model file or URDF, and "all" for a '
         'world.',
-        'one of auto, all, static, none',
-        choice_setting(AnchorModels),
     )
     model = Declaration(
         '',
@@ -249,13 +254,11 @@ class Settings:
         'the name of a model as in SDF: robot, or robot::arm for a nested one',
         str,
     )
-    frame_names = Declaration(
-        'auto',
+    frame_names = _choice(
+        FrameNames.AUTO,
         'How frame ids are made: "scoped" keeps the names of all models (robot/arm/tool), '
         '"relative" leaves out that of the top-level model (arm/tool), "auto" is relative for a '
         'model file and scoped for a world.',
-        'one of auto, scoped, relative',
-        choice_setting(FrameNames),
     )
     frame_separator = Declaration(
         '/',
@@ -291,19 +294,15 @@ class Settings:
         patterns_setting,
         needs_load=False,
     )
-    optical_frames = Declaration(
+    optical_frames = _switch(
         True,
         'Adds an optical frame (REP 103: z forward, x right, y down) for each camera, named by '
         'its <optical_frame_id>, or like the camera with _optical appended.',
-        'true or false',
-        bool,
     )
-    use_joint_states = Declaration(
+    use_joint_states = _switch(
         False,
         'Makes moving joints follow the topic joint_states: their transforms are on /tf instead '
         'of /tf_static.',
-        'true or false',
-        bool,
     )
     resource_paths = Declaration(
         [],
@@ -321,19 +320,15 @@ class Settings:
         needs_load=False,
         maximum=HIGHEST_RATE,
     )
-    watch = Declaration(
+    watch = _switch(
         True,
         'Reads the file again when it, or a file that it includes, has changed.',
-        'true or false',
-        bool,
         needs_load=False,
     )
-    on_missing_include = Declaration(
-        'error',
+    on_missing_include = _choice(
+        MissingInclude.ERROR,
         'What to do about an include that cannot be found: "error" refuses the file, "skip" '
         'leaves the include out with a warning.',
-        'one of error, skip',
-        choice_setting(MissingInclude),
     )
 
     allow_set_pose = Declaration(
