@@ -6,12 +6,14 @@ from __future__ import annotations
 
 import argparse
 import math
+import sys
 
 from sdf_pose_bridge.cli.loading import add_kinds_argument
 from sdf_pose_bridge.cli.loading import add_loading_arguments
-from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.loading import load_file
 from sdf_pose_bridge.cli.loading import SHOWN_KINDS
-from sdf_pose_bridge.cli.printing import printed_errors
+from sdf_pose_bridge.cli.printing import print_problems
+from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.comparison import Change
 from sdf_pose_bridge.scene.comparison import Difference
@@ -46,18 +48,23 @@ def run(options: argparse.Namespace) -> int:
 
     :return: exit code: 0 if there is no difference, 1 if there is one, 2 if a file has an error.
     """
-    old, new = scene_of(options.old, options), scene_of(options.new, options)
+    files = [load_file(path, options) for path in (options.old, options.new)]
+    for file in files:
+        print_problems(file.errors, file.warnings, sys.stderr)
+    old, new = (file.scene for file in files)
     if old is None or new is None:
         return 2
-    with printed_errors():
+    try:
         differences = [
             difference for difference in differences_of_scenes(
                 old, new, relative_to=options.relative_to, tolerance=options.tolerance)
             if difference.kind in options.kinds]
-        for difference in differences:
-            print(_line(difference))
-        return 1 if differences else 0
-    return 2
+    except SdfError as error:
+        print_problems(error.errors, error.warnings, sys.stderr)
+        return 2
+    for difference in differences:
+        print(_line(difference))
+    return 1 if differences else 0
 
 
 def _tolerance_from_text(text: str) -> float:

@@ -25,7 +25,6 @@ from sdf_pose_bridge.cli.loading import add_kinds_argument
 from sdf_pose_bridge.cli.loading import add_model_argument
 from sdf_pose_bridge.cli.loading import scene_of
 from sdf_pose_bridge.cli.printing import add_output_argument
-from sdf_pose_bridge.cli.printing import printed_errors
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.scene import Scene
@@ -79,12 +78,7 @@ def run(options: argparse.Namespace) -> int:
     :return: exit code: 0 if it is drawn, else 1.
     """
     scene = scene_of(options.files[0], options)
-    text = ''
-    if scene is not None:
-        with printed_errors():
-            text = dot_from_scene(scene, options.kinds, options.model)
-    if not text:
-        return 1
+    text = dot_from_scene(scene, options.kinds, options.model)
     if options.output is None:
         print(text, end='')
         return 0

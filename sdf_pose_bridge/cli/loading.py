@@ -89,16 +89,15 @@ def load_file(path: str, options: argparse.Namespace, *, shapes: bool = False) -
     return LoadedFile(scene, (), scene.warnings)
 
 
-def scene_of(path: str, options: argparse.Namespace, *, shapes: bool = False) -> Scene | None:
+def scene_of(path: str, options: argparse.Namespace, *, shapes: bool = False) -> Scene:
     """
-    Load a file and print its errors and warnings to standard error.
+    Load a file as :func:`scene_from_file` does, and print its warnings to standard error.
 
-    :return: the scene; None if the file is not valid.
+    :raises SdfError: if the file is not valid.
     """
-    loaded = load_file(path, options, shapes=shapes)
-    sys.stdout.flush()
-    print_problems(loaded.errors, loaded.warnings, sys.stderr)
-    return loaded.scene
+    scene = scene_from_file(path, options, shapes=shapes)
+    print_problems((), scene.warnings, sys.stderr)
+    return scene
 
 
 def add_kinds_argument(

@@ -133,7 +133,6 @@ def _problem(problem: SdfError | SdfWarning) -> dict[str, Any]:
 def _print_table(
     path: str, loaded: LoadedFile, elements: Sequence[Mapping[str, Any]], file_count: int,
 ) -> None:
-    sys.stdout.flush()
     print_problems(loaded.errors, loaded.warnings, sys.stderr)
     if loaded.errors:
         return

@@ -5,9 +5,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
 from collections.abc import Sequence
-import contextlib
 import os
 from pathlib import Path
 import sys
@@ -41,6 +39,8 @@ def print_problems(
     errors: tuple[SdfError, ...], warnings: tuple[SdfWarning, ...], stream: TextIO,
 ) -> None:
     """Print errors and warnings, one per line; in color on a terminal."""
+    # What was printed before comes first, also where both streams go to one place.
+    sys.stdout.flush()
     has_colors = is_colored(stream)
     bold, plain = (_BOLD, _PLAIN) if has_colors else ('', '')
     problems: list[SdfError | SdfWarning] = [*errors, *warnings]
@@ -50,15 +50,6 @@ def print_problems(
         kind = '' if is_error or problem.code == 'WARNING' else 'WARNING: '
         place, message = printable(str(problem.place)), printable(problem.message)
         print(f'{bold}{place}:{plain} {color}{kind}{problem.code}:{plain} {message}', file=stream)
-
-
-@contextlib.contextmanager
-def printed_errors() -> Iterator[None]:
-    """Print errors that are raised to standard error."""
-    try:
-        yield
-    except SdfError as error:
-        print_problems(error.errors, error.warnings, sys.stderr)
 
 
 class Units(NamedTuple):
@@ -85,14 +76,13 @@ class Units(NamedTuple):
 
         :return: x, y, z, roll, pitch and yaw, rounded.
         """
-        length, length_digits = (1000.0, 1) if self.is_mm else (1.0, 4)
-        angle, angle_digits = (_DEGREES_PER_RADIAN, 2) if self.is_degrees else (1.0, 4)
+        length = (1000.0, 1) if self.is_mm else (1.0, 4)
+        angle = (_DEGREES_PER_RADIAN, 2) if self.is_degrees else (1.0, 4)
+        values = (*pose[:3], *rpy_from_quaternion(pose[3:]))
         # To add zero leaves no negative zeros.
         return [
-            *(f'{round(value * length, length_digits) + 0.0:.{length_digits}f}'
-              for value in pose[:3]),
-            *(f'{round(value * angle, angle_digits) + 0.0:.{angle_digits}f}'
-              for value in rpy_from_quaternion(pose[3:]))]
+            f'{round(value * factor, digits) + 0.0:.{digits}f}'
+            for value, (factor, digits) in zip(values, 3 * [length] + 3 * [angle], strict=True)]
 
 
 def add_unit_arguments(parser: argparse.ArgumentParser) -> None:

@@ -13,7 +13,6 @@ from sdf_pose_bridge.cli.convert import NEGATIVE_NUMBER
 from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import scene_from_file
 from sdf_pose_bridge.cli.loading import scene_of
-from sdf_pose_bridge.cli.printing import printed_errors
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.formats import converted_rotations
@@ -76,15 +75,10 @@ def run(options: argparse.Namespace) -> int:
     line = line_from_text(0, ' '.join(options.numbers), source)
     if line.error:
         return _fail(line.error)
-    scene = scene_of(options.files[0], options)
-    if scene is None:
-        return 1
-    with printed_errors():
-        try:
-            return _set(scene, line.values, options)
-        except PoseFormatError as error:
-            return _fail(str(error))
-    return 1
+    try:
+        return _set(scene_of(options.files[0], options), line.values, options)
+    except PoseFormatError as error:
+        return _fail(str(error))
 
 
 def set_pose(

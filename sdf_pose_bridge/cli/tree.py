@@ -20,9 +20,9 @@ from sdf_pose_bridge.cli.printing import add_unit_arguments
 from sdf_pose_bridge.cli.printing import is_colored
 from sdf_pose_bridge.cli.printing import kind_labels_of
 from sdf_pose_bridge.cli.printing import print_problems
-from sdf_pose_bridge.cli.printing import printed_errors
 from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.printing import units_from_arguments
+from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.scene import Scene
@@ -96,9 +96,10 @@ def run(options: argparse.Namespace) -> int:
     exit_code = 0
     options.kinds = options.kinds or (SHOWN_KINDS if options.scope else DEFAULT_KINDS)
     for path in options.files:
-        scene = scene_of(path, options)
-        rows = None if scene is None else _rows(scene, options)
-        if rows is None:
+        try:
+            rows = _rows(scene_of(path, options), options)
+        except SdfError as error:
+            print_problems(error.errors, error.warnings, sys.stderr)
             exit_code = 1
             continue
         if len(options.files) > 1:
@@ -114,14 +115,12 @@ def _depth_from_text(text: str) -> int:
     return int(text)
 
 
-def _rows(scene: Scene, options: argparse.Namespace) -> list[_Row] | None:
-    with printed_errors():
-        if options.scope:
-            return _rows_by_scope(scene, options)
-        tree = tf_tree_from_scene(scene, tf_options_from_arguments(options))
-        print_problems((), tree.warnings, sys.stderr)
-        return _rows_of_frames(scene, tree)
-    return None
+def _rows(scene: Scene, options: argparse.Namespace) -> list[_Row]:
+    if options.scope:
+        return _rows_by_scope(scene, options)
+    tree = tf_tree_from_scene(scene, tf_options_from_arguments(options))
+    print_problems((), tree.warnings, sys.stderr)
+    return _rows_of_frames(scene, tree)
 
 
 def _rows_of_frames(scene: Scene, tree: TfTree) -> list[_Row]:

@@ -21,7 +21,6 @@ from sdf_pose_bridge.cli.loading import scene_of
 from sdf_pose_bridge.cli.loading import tf_options_from_arguments
 from sdf_pose_bridge.cli.printing import add_output_argument
 from sdf_pose_bridge.cli.printing import add_unit_arguments
-from sdf_pose_bridge.cli.printing import printed_errors
 from sdf_pose_bridge.cli.printing import units_from_arguments
 from sdf_pose_bridge.cli.set import set_pose
 from sdf_pose_bridge.errors import SdfError
@@ -74,20 +73,13 @@ def run(options: argparse.Namespace) -> int:
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     path = options.files[0]
     scene = scene_of(path, options, shapes=True)
-    if scene is None:
-        return 1
     reader = meshes.MeshReader(resource_finder(options.resource_paths, os.environ))
     server = servers.server_for_this_machine(0 if options.output else options.port)
     page = pages.Page(
         server, tf_options_from_arguments(options), units_from_arguments(options), reader,
         partial(set_pose, options=options) if options.edit else None)
-    lines = None
     try:
-        with printed_errors():
-            lines = page.show(scene)
-        if lines is None:
-            return 1
-        for line in lines:
+        for line in page.show(scene):
             print(f'sdf_pose view: {line}', file=sys.stderr)
         if options.output is None:
             _open(f'http://{servers.ADDRESS}:{server.get_port()}')

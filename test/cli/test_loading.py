@@ -7,6 +7,7 @@ import argparse
 import pytest
 
 from sdf_pose_bridge import Kind
+from sdf_pose_bridge import SdfError
 from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import add_frame_arguments
 from sdf_pose_bridge.cli.loading import load_file
@@ -33,9 +34,10 @@ def test_an_invalid_file_has_errors_and_no_scene(options):
     assert [error.line for error in loaded.errors] == [3, 4]
 
 
-def test_problems_of_a_file_are_printed(options, capsys):
-    assert scene_of('bad.sdf', options('bad.sdf')) is None
-    assert capsys.readouterr().err.startswith('bad.sdf:3: ELEMENT_INVALID: ')
+def test_a_command_that_needs_a_scene_ends_with_the_errors_of_its_file(options):
+    with pytest.raises(SdfError) as error:
+        scene_of('bad.sdf', options('bad.sdf'))
+    assert [each.line for each in error.value.errors] == [3, 4]
 
 
 def test_frames_are_those_of_the_chosen_kinds(options):
