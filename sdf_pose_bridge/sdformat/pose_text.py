@@ -34,11 +34,9 @@ from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 
 _FIRST_WITH_POSE = Version(1, 4)
-_COMMENTS = re.compile(rb'(?:\s*<!--.*?-->)*', re.DOTALL)
-_RUN = re.compile(rb'[^<]*')
+_TEXT_AFTER_COMMENTS = re.compile(rb'(?:\s*<!--.*?-->)*([^<]*)', re.DOTALL)
 _WORD = re.compile(rb'[^ \t\n\r]+')
 _INDENTATION = re.compile(rb'\s*?(\r?\n[ \t]*)?(?=<)')
-_TAG_NAME = re.compile(rb'[^\s/>]+')
 _SAME_ROTATION = 1e-12
 
 
@@ -167,13 +165,11 @@ class PoseText:
 
     def _with_content(self, element: int, content: bytes) -> bytes:
         """Return the text of the file with content behind the start tag of an element."""
-        start, end = self._tags[element]
-        text = self._text
+        end, text = self._tags[element][1], self._text
         if self._is_closed(end):
-            name = _TAG_NAME.match(text, start + 1)
-            assert name is not None
+            tag = written_tag(self._elements[element]).encode()
             return self._encoded(
-                text[:end - 1] + b'>' + content + b'</%s>' % name[0] + text[end + 1:])
+                text[:end - 1] + b'>' + content + b'</%s>' % tag + text[end + 1:])
         return self._encoded(text[:end + 1] + content + text[end + 1:])
 
     def _format(self, element: int) -> PoseFormat:
@@ -191,11 +187,9 @@ class PoseText:
         end = self._tags[element][1]
         words: list[re.Match[bytes]] = []
         if not self._is_closed(end):
-            comments = _COMMENTS.match(self._text, end + 1)
-            assert comments is not None
-            run = _RUN.match(self._text, comments.end())
-            assert run is not None
-            words = list(_WORD.finditer(self._text, *run.span()))
+            text = _TEXT_AFTER_COMMENTS.match(self._text, end + 1)
+            assert text is not None
+            words = list(_WORD.finditer(self._text, *text.span(1)))
         if [word[0].decode() for word in words] != text_of(self._elements[element]).split():
             msg = 'the numbers of the pose are not written as plain text'
             raise PoseNotSetError(msg, self._place(element))

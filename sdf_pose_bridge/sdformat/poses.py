@@ -176,8 +176,7 @@ def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> list[float]:
 
 
 def _words(text: str) -> list[str]:
-    stripped = text.strip(WHITE_SPACE)
-    return re.split(f'[{WHITE_SPACE}]+', stripped) if stripped else []
+    return re.findall(f'[^{WHITE_SPACE}]+', text)
 
 
 def _shown(text: str) -> str:

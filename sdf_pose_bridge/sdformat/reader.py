@@ -53,6 +53,7 @@ from sdf_pose_bridge.sdformat.values import judged_value
 from sdf_pose_bridge.sdformat.versions import allows_scoped_names
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
+from sdf_pose_bridge.sdformat.xml_tree import child_value
 from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import is_foreign
@@ -306,9 +307,8 @@ class _Reader:
 # What only some kinds of elements have
 
 def _model_details(xml: XmlElement) -> ModelDetails:
-    static = first_child(xml, 'static')
     return ModelDetails(
-        static is not None and bool(boolean_from_text(value_of(static))),
+        boolean_from_text(child_value(xml, 'static')) is True,
         frame_of_attribute(xml, 'canonical_link'), frame_of_attribute(xml, 'placement_frame'))
 
 
@@ -321,9 +321,8 @@ def _sensor_details(xml: XmlElement) -> SensorDetails:
     frame_ids = chain(
         child_elements(xml, 'gz_frame_id'), child_elements(xml, 'ignition_frame_id'))
     camera = first_child(xml, 'camera')
-    optical = None if camera is None else first_child(camera, 'optical_frame_id')
     sensor_type = attribute_of(xml, 'type')
     return SensorDetails(
         sensor_type, next(filter(None, map(value_of, frame_ids)), ''),
         camera is not None or sensor_type in CAMERA_TYPES,
-        '' if optical is None else value_of(optical))
+        '' if camera is None else child_value(camera, 'optical_frame_id'))

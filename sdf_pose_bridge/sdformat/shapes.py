@@ -19,9 +19,9 @@ from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import numbers_from_text
 from sdf_pose_bridge.sdformat.values import numbers_of_child
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
+from sdf_pose_bridge.sdformat.xml_tree import child_elements
+from sdf_pose_bridge.sdformat.xml_tree import child_value
 from sdf_pose_bridge.sdformat.xml_tree import first_child
-from sdf_pose_bridge.sdformat.xml_tree import text_of
-from sdf_pose_bridge.sdformat.xml_tree import value_of
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _DEFAULT_SIZES: Mapping[str, Mapping[str, tuple[float, ...]]] = {
@@ -102,12 +102,11 @@ def shape_of(xml: XmlElement) -> Shape | None:
     :return: its shape; None without one.
     """
     geometry = first_child(xml, 'geometry')
-    if geometry is None:
+    shapes = [] if geometry is None else [
+        shape for tag in _DEFAULT_SIZES for shape in child_elements(geometry, tag)]
+    if not shapes:
         return None
-    shapes = (first_child(geometry, tag) for tag in _DEFAULT_SIZES)
-    shape = next((shape for shape in shapes if shape is not None), None)
-    if shape is None:
-        return None
+    shape = shapes[0]
     tag = str(shape.tag)
     sizes_m = (numbers_of_child(shape, name, size) for name, size in _DEFAULT_SIZES[tag].items())
     submesh = first_child(shape, 'submesh')
@@ -116,16 +115,11 @@ def shape_of(xml: XmlElement) -> Shape | None:
         type=tag,
         sizes_m=tuple(size_m for each in sizes_m for size_m in each),
         normal=numbers_of_child(shape, 'normal', (0.0, 0.0, 1.0)),
-        mesh_uri=_text(shape, 'uri') if tag == 'mesh' else '',
-        submesh='' if submesh is None else _text(submesh, 'name'),
+        mesh_uri=child_value(shape, 'uri') if tag == 'mesh' else '',
+        submesh='' if submesh is None else child_value(submesh, 'name'),
         mesh_scale=numbers_of_child(shape, 'scale', (1.0, 1.0, 1.0)),
         rgba=_color(xml),
         opacity=1.0 - transparency if 0.0 < transparency <= 1.0 else 1.0)
-
-
-def _text(parent: XmlElement, tag: str) -> str:
-    child = first_child(parent, tag)
-    return '' if child is None else value_of(child)
 
 
 def _color(xml: XmlElement) -> tuple[float, float, float, float] | None:
@@ -133,9 +127,7 @@ def _color(xml: XmlElement) -> tuple[float, float, float, float] | None:
     if material is None:
         return None
     for tag in ('diffuse', 'ambient'):
-        element = first_child(material, tag)
-        numbers = () if element is None else numbers_from_text(
-            text_of(element), ValueType.COLOR)
+        numbers = numbers_from_text(child_value(material, tag), ValueType.COLOR)
         if len(numbers) >= 3 and all(map(math.isfinite, numbers)):
             red, green, blue, alpha = (*numbers, 1.0)[:4]
             return red, green, blue, alpha
@@ -144,8 +136,7 @@ def _color(xml: XmlElement) -> tuple[float, float, float, float] | None:
 
 def check_submesh(xml: XmlElement, sources: Sources) -> None:
     """Check that a part of a mesh has a name."""
-    name = first_child(xml, 'name')
-    if name is None or value_of(name) == '__default__':
+    if child_value(xml, 'name', '__default__') == '__default__':
         sources.error(ElementMissingError, xml, 'the <submesh> has no <name>')
 
 
@@ -154,8 +145,7 @@ def check_material(xml: XmlElement, sources: Sources) -> None:
     script, shader = first_child(xml, 'script'), first_child(xml, 'shader')
     if script is not None:
         for tag, error in (('uri', ElementInvalidError), ('name', ElementMissingError)):
-            element = first_child(script, tag)
-            value = '__default__' if element is None else value_of(element)
+            value = child_value(script, tag, '__default__')
             if value == '__default__' or (tag == 'uri' and not value):
                 msg = f'the <script> of a material has no <{tag}>, or an empty one'
                 sources.error(error, script, msg)

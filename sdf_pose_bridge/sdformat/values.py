@@ -20,8 +20,7 @@ from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.specification import Choice
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
-from sdf_pose_bridge.sdformat.xml_tree import first_child
-from sdf_pose_bridge.sdformat.xml_tree import text_of
+from sdf_pose_bridge.sdformat.xml_tree import child_value
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
@@ -296,7 +295,5 @@ def numbers_of_child(
     :param default: the numbers if there is no child, or if it has fewer numbers than these.
     :return: as many numbers as there are in the default.
     """
-    child = first_child(parent, tag)
-    numbers = () if child is None else tuple(
-        numbers_from_text(text_of(child), _TYPES_BY_COUNT[len(default)]))
+    numbers = tuple(numbers_from_text(child_value(parent, tag), _TYPES_BY_COUNT[len(default)]))
     return numbers if len(numbers) == len(default) else default

@@ -179,11 +179,10 @@ def _parsed(text: bytes, path: str) -> tuple[XmlElement | None, FileReadError | 
         root = etree.fromstring(text, parser)
     except etree.XMLSyntaxError as failure:
         error = FileReadError(f'this is not XML: {failure.msg}', Place(path, failure.lineno or 0))
-    for entry in parser.error_log:
-        if entry.type_name not in _IGNORED_ERRORS:
-            msg = f'this is not well-formed XML: {entry.message.strip()}'
-            error = FileReadError(msg, Place(path, entry.line))
-            break
+    errors = [entry for entry in parser.error_log if entry.type_name not in _IGNORED_ERRORS]
+    if errors:
+        msg = f'this is not well-formed XML: {errors[0].message.strip()}'
+        error = FileReadError(msg, Place(path, errors[0].line))
     return root, error, len(parser.error_log) < _MOST_ERRORS
 
 

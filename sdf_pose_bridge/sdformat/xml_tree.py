@@ -115,6 +115,17 @@ def value_of(xml: XmlElement) -> str:
     return text if text.isidentifier() else _WHITE_SPACE_RUN.sub(' ', text).strip(' ')
 
 
+def child_value(xml: XmlElement, tag: str, default: str = '') -> str:
+    """
+    Return the value of the first child element with a tag.
+
+    :param default: the value if there is no such child.
+    :return: as of :func:`value_of`.
+    """
+    child = first_child(xml, tag)
+    return default if child is None else value_of(child)
+
+
 def attribute_of(xml: XmlElement, name: str) -> str:
     """
     Return the value of an attribute.

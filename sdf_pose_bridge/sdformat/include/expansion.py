@@ -55,6 +55,7 @@ from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
+from sdf_pose_bridge.sdformat.xml_tree import child_value
 from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import value_of
@@ -122,9 +123,7 @@ class IncludeExpansion:
 
     def _mark_missing(self, include: XmlElement) -> None:
         """Write into an include that stays which name and which URI are missing without it."""
-        uri_element, name_element = first_child(include, 'uri'), first_child(include, 'name')
-        uri = ('' if uri_element is None else value_of(uri_element)) or 'no URI'
-        name = '' if name_element is None else value_of(name_element)
+        uri, name = child_value(include, 'uri') or 'no URI', child_value(include, 'name')
         if boolean_from_text(include.get('merge', 'false')) is not False:
             # What is merged has names of its own.
             name = ''
@@ -135,13 +134,13 @@ class IncludeExpansion:
         include.set(MISSING_URI, uri)
 
     def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
-        self._count(STEPS_OF_INCLUDE + self._steps_of_directories, include)
+        self._sources.count_work(STEPS_OF_INCLUDE + self._steps_of_directories, include)
         is_merge = self._is_merge(include)
         self._undefined.report_content(include, definition_of('include'))
         for plugin in child_elements(include, 'plugin'):
             check_element(plugin, definition_of('plugin'), self._sources)
         uri = self._uri(include)
-        if uri is None:
+        if not uri:
             return
         place = self._sources.place(include)
         found = self._included_file(place, uri, files)
@@ -156,7 +155,7 @@ class IncludeExpansion:
         self.may_hold_scoped_names |= found.may_hold_scoped_names
         if chosen not in self._steps_of_copies:
             self._steps_of_copies[chosen] = _steps_of_copy(chosen)
-        self._count(self._steps_of_copies[chosen], include)
+        self._sources.count_work(self._steps_of_copies[chosen], include)
         top = self._sources.copy_of(chosen)
         self._sources.set_origin(top, include=place)
         self._override(include, top)
@@ -164,7 +163,7 @@ class IncludeExpansion:
         if params is not None:
             looks = int(params.xpath('count(.//*)'))
             characters = len(etree.tostring(top, with_tail=False))
-            self._count(looks * characters // CHARACTERS_OF_LOOK, include)
+            self._sources.count_work(looks * characters // CHARACTERS_OF_LOOK, include)
             for added in apply_params(params, top, self._sources):
                 self.may_hold_scoped_names = True
                 self._expand_in(added, files)
@@ -173,21 +172,16 @@ class IncludeExpansion:
         else:
             self._insert(include, top)
 
-    def _count(self, steps: int, include: XmlElement) -> None:
-        self._sources.usage.add('work', steps, lambda: self._sources.place(include))
-
     # What an include names
 
-    def _uri(self, include: XmlElement) -> str | None:
+    def _uri(self, include: XmlElement) -> str:
         element = first_child(include, 'uri')
+        uri = '' if element is None else value_of(element)
         if element is None:
             msg = 'the include has no <uri>, so it includes nothing'
             self._sources.error(AttributeMissingError, include, msg)
-            return None
-        uri = value_of(element)
-        if not uri:
+        elif not uri:
             self._sources.error(ElementInvalidError, element, 'the <uri> of the include is empty')
-            return None
         return uri
 
     def _included_file(
@@ -230,8 +224,7 @@ class IncludeExpansion:
 
     def _read(self, path: str, files: tuple[str, ...]) -> Document | None:
         try:
-            document = document_from_file(
-                path, self._sources, is_included=True)
+            document = document_from_file(path, self._sources, is_included=True)
         except LimitError:
             raise
         except SdfError as error:
@@ -260,7 +253,7 @@ class IncludeExpansion:
 
     def _top(self, include: XmlElement, document: Document) -> XmlElement | None:
         """Return the model, actor or light that a file is included for."""
-        self._count(len(document.root), include)
+        self._sources.count_work(len(document.root), include)
         tops = [xml for xml in child_elements(document.root) if xml.tag in _TOP_TAGS]
         if len(tops) > 1:
             names = ', '.join(map(described, tops[:_MOST_TOPS_SHOWN]))
@@ -330,12 +323,12 @@ class IncludeExpansion:
             msg = (f'<placement_frame> "{placement}" needs a <pose> in the same include, which '
                    'says where that frame is')
             self._sources.error(PlacementFrameError, include, msg)
-            return ''
-        if placement == ROOT_FRAME:
+        elif placement == ROOT_FRAME:
             msg = f'"{placement}" is reserved; it cannot be a placement frame'
             self._sources.error(ReservedNameError, include, msg)
-            return ''
-        return placement
+        else:
+            return placement
+        return ''
 
     # Where it goes
 
@@ -351,11 +344,11 @@ class IncludeExpansion:
         """Merge a copy of a model; includes with the same text have the same canonical link."""
         text = etree.tostring(include, with_tail=False)
         key = chosen, self._sources.path(include), text
-        self._count(STEPS_OF_INCLUDE + STEPS_OF_MOVED_CHILD * len(top), include)
+        self._sources.count_work(STEPS_OF_INCLUDE + STEPS_OF_MOVED_CHILD * len(top), include)
 
         def canonical_link_of(root: XmlElement) -> str | None:
             if key not in self._canonical_links:
-                self._count(STEPS_OF_MERGE + _steps_of_copy(root), include)
+                self._sources.count_work(STEPS_OF_MERGE + _steps_of_copy(root), include)
                 self._canonical_links[key] = self._canonical_link_of(root)
             return self._canonical_links[key]
 
@@ -363,8 +356,7 @@ class IncludeExpansion:
 
     def _insert(self, include: XmlElement, top: XmlElement) -> None:
         parent = include.getparent()
-        if parent is None:
-            return
+        assert parent is not None
         if parent.tag == 'model' and top.tag != 'model':
             msg = f'the included {written_tag(top)} is left out; a model can include only models'
             self._sources.warning(include, msg)

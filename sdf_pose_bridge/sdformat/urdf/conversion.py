@@ -180,9 +180,7 @@ class _Conversion:
 
     def _counted(self, name: str, xml: XmlElement) -> str:
         """Count a name that may be longer than all that is written where it goes."""
-        self._sources.usage.add(
-            'work', STEPS_OF_ELEMENT + len(name) // CHARACTERS_OF_STEP,
-            lambda: self._sources.place(xml))
+        self._sources.count_work(STEPS_OF_ELEMENT + len(name) // CHARACTERS_OF_STEP, xml)
         return name
 
     def _add_links(self) -> None:
@@ -361,8 +359,7 @@ class _Conversion:
         while self._bases[name].link.name != name:
             if len(numbers) != 6 or not all(map(math.isfinite, numbers)):
                 return
-            self._sources.usage.add(
-                'work', _STEPS_OF_MOVE, lambda: self._sources.place(xml))
+            self._sources.count_work(_STEPS_OF_MOVE, xml)
             joint = self._robot.parent_joints[name]
             moved = pose_product(joint.origin, pose_from_numbers(numbers))
             # libsdformat writes six digits at each step.

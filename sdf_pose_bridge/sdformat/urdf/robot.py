@@ -217,12 +217,7 @@ class _RobotReader:
         return pose_from_numbers([*numbers['xyz'], *numbers['rpy']])
 
     def _warn_of_cycles(self, robot: Robot) -> None:
-        reached = {robot.root.name}
-        names = [robot.root.name]
-        while names:
-            children = [joint.child for joint in robot.child_joints.get(names.pop(), ())]
-            names += children
-            reached.update(children)
+        reached = {link.name for link in robot.links_in_order()}
         for name, link in robot.links.items():
             if name not in reached:
                 self._sources.warning(
