@@ -88,57 +88,48 @@ class _Changer:
     # One parameter
 
     def apply(self, xml: XmlElement) -> None:
-        tag = written_tag(xml)
-        element_id = xml.get('element_id')
+        tag, element_id, action = written_tag(xml), xml.get('element_id'), xml.get('action')
         if element_id is None:
             self._error(AttributeMissingError, xml, f'<{tag}> has no element_id')
-            return
-        if element_id.endswith(SEPARATOR):
+        elif element_id.endswith(SEPARATOR):
             msg = f'element_id="{element_id}" ends with "{SEPARATOR}"; a name has to follow'
             self._error(AttributeInvalidError, xml, msg)
-            return
-        action = xml.get('action')
-        if action is not None and not self._is_action(xml, action):
-            return
-        if action == 'add':
+        elif action not in (None, *_ACTIONS):
+            self._report_action(xml)
+        elif action == 'add':
             self._add(xml, tag, element_id)
-            return
-        target = self._element(xml, element_id, tag)
-        if target is None:
+        elif (target := self._element(xml, element_id, tag)) is None:
             msg = (f'the included model has no <{tag}> "{element_id}"'
                    f'{self._hint(element_id, tag)}')
             self._error(ElementMissingError, xml, msg)
         elif action is not None:
-            self._act(action, xml, tag, target)
-        elif self._is_defined(xml, tag):
+            self._act(action, xml, target)
+        elif self._is_defined(xml):
             for child in child_elements(xml):
                 self._change_child(child, tag, target)
 
-    def _act(self, action: str, xml: XmlElement, tag: str, target: XmlElement) -> None:
+    def _act(self, action: str, xml: XmlElement, target: XmlElement) -> None:
         if action == 'modify':
             self._modify(xml, target)
         elif action == 'remove':
             self._remove(xml, target)
-        elif self._is_defined(xml, tag):
-            self._replace(xml, tag, target)
+        elif self._is_defined(xml):
+            self._replace(xml, target)
 
     def _add(self, xml: XmlElement, tag: str, element_id: str) -> None:
         name = xml.get('name')
+        scoped = f'{element_id}{SEPARATOR}{name}'
         if not name:
             missing = AttributeMissingError if name is None else AttributeInvalidError
             self._error(missing, xml, f'<{tag}> is to be added, so it needs a name')
-            return
-        scoped = f'{element_id}{SEPARATOR}{name}'
-        if tag != 'plugin' and self._element(xml, scoped, tag) is not None:
+        elif tag != 'plugin' and self._element(xml, scoped, tag) is not None:
             msg = f'<{tag}> cannot be added: the included model has a <{tag}> "{scoped}" already'
             self._error(DuplicateNameError, xml, msg)
-            return
-        parent = self._element(xml, element_id) if element_id else self._top
-        if parent is None:
+        elif (parent := self._element(xml, element_id) if element_id else self._top) is None:
             msg = (f'<{tag}> cannot be added to element_id="{element_id}": the included model has '
                    f'no such element{self._hint(element_id)}')
             self._error(ElementMissingError, xml, msg)
-        elif self._is_defined(xml, tag):
+        elif self._is_defined(xml):
             parent.append(self._new_element(xml))
 
     def _change_child(self, xml: XmlElement, parent_tag: str, target: XmlElement) -> None:
@@ -146,24 +137,20 @@ class _Changer:
         if action is None:
             msg = f'<{tag}> has no action; it must have one, as <{parent_tag}> has none'
             self._error(AttributeMissingError, xml, msg)
-            return
-        if not self._is_action(xml, action):
-            return
-        if action in ('add', 'replace') and tag not in _definition_alone(parent_tag).children:
+        elif action not in _ACTIONS:
+            self._report_action(xml)
+        elif action in ('add', 'replace') and tag not in _definition_alone(parent_tag).children:
             msg = f'SDFormat defines no <{tag}> in a <{parent_tag}>'
             self._error(ElementInvalidError, xml, msg)
-            return
-        if action == 'add' and tag == 'include':
+        elif action == 'add' and tag == 'include':
             self._warning(xml, 'an <include> that is added by itself includes nothing')
-            return
-        if action == 'add':
+        elif action == 'add':
             target.append(self._new_element(xml))
-            return
-        found = self._child(target, xml, takes_first=action == 'modify')
-        if found is not None and action == 'replace':
-            self._replace(xml, tag, found)
-        elif found is not None:
-            self._act(action, xml, tag, found)
+        elif (found := self._child(target, xml, takes_first=action == 'modify')) is not None:
+            if action == 'replace':
+                self._replace(xml, found)
+            else:
+                self._act(action, xml, found)
 
     # Actions
 
@@ -181,10 +168,10 @@ class _Changer:
         self.added.append(element)
         return element
 
-    def _replace(self, xml: XmlElement, tag: str, target: XmlElement) -> None:
+    def _replace(self, xml: XmlElement, target: XmlElement) -> None:
         parent = target.getparent()
         if target.get('name') is not None and xml.get('name') is None:
-            msg = f'<{tag}> is to replace <{tag} name="{target.get("name")}">, so it needs a name'
+            msg = f'<{written_tag(xml)}> is to replace {_start_tag(target)}, so it needs a name'
             self._error(AttributeMissingError, xml, msg)
         elif parent is not None:
             self._check_before_change(target)
@@ -311,18 +298,13 @@ class _Changer:
             self._sources.set_source(
                 children[0], self._sources.path(xml), self._sources.line(xml))
         if name is None and children and children[0].get('name') is not None:
-            msg = f'<{tag}> has no name; <{tag} name="{children[0].get("name")}"> is taken'
-            self._warning(xml, msg)
+            self._warning(xml, f'<{tag}> has no name; {_start_tag(children[0])} is taken')
         same = [child for child in children if name is None or child.get('name') == name]
         found = same[:1] or (children[:1] if takes_first else [])
         if found:
             return found[0]
-        wanted = f'<{tag}>' if name is None else f'<{tag} name="{name}">'
-        parent_name = parent.get('name')
-        label = written_tag(parent) if parent_name is None else (
-            f'{written_tag(parent)} name="{parent_name}"')
-        self._error(
-            ElementMissingError, xml, f'<{label}> of the included model has no {wanted}')
+        msg = f'{_start_tag(parent)} of the included model has no {_start_tag(xml)}'
+        self._error(ElementMissingError, xml, msg)
         return None
 
     def _count(self, children: int, xml: XmlElement) -> None:
@@ -347,19 +329,16 @@ class _Changer:
         allowed = self._sources.problems.allows_hint()
         return hint_for_id(self._top, element_id, tag) if allowed else ''
 
-    def _is_action(self, xml: XmlElement, action: str) -> bool:
-        if action in _ACTIONS:
-            return True
-        msg = f'action="{action}" must be one of {", ".join(_ACTIONS)}'
+    def _report_action(self, xml: XmlElement) -> None:
+        msg = f'action="{xml.get("action")}" must be one of {", ".join(_ACTIONS)}'
         self._error(AttributeInvalidError, xml, msg)
-        return False
 
-    def _is_defined(self, xml: XmlElement, tag: str) -> bool:
-        if tag in _DEFINED_ALONE:
-            return True
-        msg = f'<{tag}> is not an element that SDFormat defines by itself'
-        self._error(ElementInvalidError, xml, msg)
-        return False
+    def _is_defined(self, xml: XmlElement) -> bool:
+        tag = written_tag(xml)
+        if tag not in _DEFINED_ALONE:
+            msg = f'<{tag}> is not an element that SDFormat defines by itself'
+            self._error(ElementInvalidError, xml, msg)
+        return tag in _DEFINED_ALONE
 
     def _error(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
         self._sources.problems.error(error_class(message, self._place(xml)))
@@ -390,6 +369,11 @@ def _step(xml: XmlElement) -> str:
     element_id = xml.get('element_id')
     return described(xml) if element_id is None else (
         f'{written_tag(xml)}[@element_id="{element_id}"]')
+
+
+def _start_tag(xml: XmlElement) -> str:
+    tag, name = written_tag(xml), xml.get('name')
+    return f'<{tag}>' if name is None else f'<{tag} name="{name}">'
 
 
 def _is_empty(xml: XmlElement) -> bool:
