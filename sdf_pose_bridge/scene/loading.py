@@ -170,7 +170,6 @@ def _scene(
     document: Document, sources: Sources, resource_paths: Iterable[str | os.PathLike[str]],
     on_missing_include: MissingInclude, *, shapes: bool,
 ) -> Scene:
-    may_hold_scoped_names = document.may_hold_scoped_names
     if next(document.root.iter('include'), None) is not None:
         # Many files have no includes and need not wait for this import.
         from sdf_pose_bridge.sdformat.include.expansion import IncludeExpansion
@@ -179,9 +178,7 @@ def _scene(
             skips_missing=on_missing_include is MissingInclude.SKIP,
             canonical_link_of=lambda root: _canonical_link(root, sources))
         expansion.expand(document)
-        may_hold_scoped_names |= expansion.may_hold_scoped_names
-    elements = elements_from_tree(
-        document.root, sources, may_hold_scoped_names=may_hold_scoped_names, shapes=shapes)
+    elements = elements_from_tree(document.root, sources, shapes=shapes)
     graph = frame_graph_from_elements(elements, sources.usage, sources.problems)
     sources.problems.raise_errors()
     return _scene_from_graph(document.path, elements, graph, sources.problems)
@@ -196,7 +193,7 @@ def _canonical_link(root: XmlElement, sources: Sources) -> str | None:
         errors.
     """
     part = sources.with_own_problems()
-    elements = elements_from_tree(root, part, may_hold_scoped_names=True)
+    elements = elements_from_tree(root, part)
     graph = frame_graph_from_elements(elements, part.usage, part.problems)
     if part.problems.errors:
         part.problems.extend_parent()

@@ -40,8 +40,6 @@ class Document(NamedTuple):
     """The path that it was opened by."""
     root: XmlElement
     """The ``sdf`` element."""
-    may_hold_scoped_names: bool
-    """False if no name in the file can hold ``::``."""
     has_gazebo_elements: bool = False
     """Whether it is URDF with ``<gazebo>`` elements."""
 
@@ -91,11 +89,13 @@ def document_from_file(
         root, lines = sdf_from_urdf(root, lines, sources, is_included=is_included)
     line = lines.get(root) or root.sourceline or 0
     version = version_from_text(_declared_version(root, path, line), Place(path, line))
-    document = Document(path, root, _may_hold_scoped_names(file.text), has_gazebo_elements)
     sources.add_tree(path, root, version, lines)
-    convert(root, version, sources, may_hold_scoped_names=document.may_hold_scoped_names)
+    # A colon may be written as a character reference. Python finds one byte much faster than two.
+    sources.may_hold_scoped_names |= b'&' in file.text or (
+        b':' in file.text and SEPARATOR.encode() in file.text)
+    convert(root, version, sources)
     _check_top_model(root, sources)
-    return document
+    return Document(path, root, has_gazebo_elements)
 
 
 def _declared_version(root: XmlElement, path: str, line: int) -> str:
@@ -108,11 +108,6 @@ def _declared_version(root: XmlElement, path: str, line: int) -> str:
         msg = '<sdf> declares no version, such as version="1.10"'
         raise FileReadError(msg, place)
     return version
-
-
-def _may_hold_scoped_names(text: bytes) -> bool:
-    # A colon may be written as a character reference. Python finds one byte much faster than two.
-    return b'&' in text or (b':' in text and SEPARATOR.encode() in text)
 
 
 def _check_top_model(root: XmlElement, sources: Sources) -> None:

@@ -55,16 +55,10 @@ class ValueType(enum.Enum):
     """The name of a frame; any but that of the implicit root."""
     CHOICE = 'choice', 'one of a few texts', 0
 
-    description: str
-    count: int
-
-    def __new__(cls, value: str, description: str = '', count: int = 0) -> ValueType:
-        """Make a member. The defaults are for calls that find a member by its value."""
-        member = object.__new__(cls)
-        member._value_ = value
-        member.description = description
-        member.count = count
-        return member
+    def __init__(self, label: str, description: str, count: int) -> None:
+        self.label = label
+        self.description = description
+        self.count = count
 
 
 class Kind(enum.IntEnum):
@@ -147,6 +141,9 @@ _UNREAD = frozenset({'population', 'road', 'state', *_KINDS})
 such as the links of an actor."""
 
 
+_VALUE_TYPES = {each.label: each for each in ValueType} | dict.fromkeys(CHOICES, ValueType.CHOICE)
+
+
 class Attribute(NamedTuple):
     """Definition of an attribute."""
 
@@ -183,7 +180,7 @@ class Definition:
         self._items = [item for item in map(_ITEM.fullmatch, content.split()) if item]
         own_types = [item['type'] for item in self._items if not item['name']]
         type_name = own_types[0] if own_types else value_type
-        self.value_type = _value_type(type_name) if type_name else None
+        self.value_type = _VALUE_TYPES[type_name] if type_name else None
         """Type of the value; None for an element that holds others."""
         self.choice = CHOICES.get(type_name)
         """What the value can be, of a choice."""
@@ -203,7 +200,7 @@ class Definition:
         """The attributes by name."""
         return {
             item['name']: Attribute(
-                _value_type(item['type'] or 'string'), bool(item['required']),
+                _VALUE_TYPES[item['type'] or 'string'], bool(item['required']),
                 CHOICES.get(item['type']) if self.has_frames else None)
             for item in self._items if item['attribute']}
 
@@ -252,10 +249,6 @@ class Definition:
             tag, '', value_type=item['type'] or 'string',
             minimum=float(item['minimum'] or -math.inf),
             maximum=float(item['maximum'] or math.inf), is_required=item['required'] == '!')
-
-
-def _value_type(name: str) -> ValueType:
-    return ValueType.CHOICE if name in CHOICES else ValueType(name)
 
 
 @cache

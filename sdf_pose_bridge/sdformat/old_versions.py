@@ -41,14 +41,11 @@ _SCOPED_TAGS = frozenset({'link', 'joint', 'frame', 'model', 'gripper'})
 _REFERENCE_ATTRIBUTES = ('relative_to', 'attached_to', 'expressed_in')
 
 
-def convert(
-    root: XmlElement, version: Version, sources: Sources, *, may_hold_scoped_names: bool,
-) -> None:
+def convert(root: XmlElement, version: Version, sources: Sources) -> None:
     """
     Convert a file to the newest version, in place.
 
     :param root: the ``sdf`` element.
-    :param may_hold_scoped_names: False if no name in the file can hold ``::``.
     :raises ConversionError: if names in it cannot be converted.
     """
     _move_elements(root, version)
@@ -59,7 +56,7 @@ def convert(
         _convert_use_parent_model_frame(root)
     if version < Version(1, 8):
         _remove_empty_relative_to(root)
-    if allows_scoped_names(version) and may_hold_scoped_names:
+    if allows_scoped_names(version) and sources.may_hold_scoped_names:
         for model in root.iterfind('world/model'):
             _nest_scoped_elements(model, sources)
 

@@ -82,8 +82,7 @@ _CHECKS_OF_UNREAD = {
 
 
 def elements_from_tree(
-    root: XmlElement, sources: Sources, *, may_hold_scoped_names: bool,
-    shapes: bool = False,
+    root: XmlElement, sources: Sources, *, shapes: bool = False,
 ) -> Elements:
     """
     Read all elements with a pose.
@@ -92,13 +91,12 @@ def elements_from_tree(
         one that was not found.
     :param sources: takes what is wrong with structure, names, attributes and values; references
         are not looked up here.
-    :param may_hold_scoped_names: False if no name in the tree can hold ``::``.
     :param shapes: whether to read the shapes of visuals and collisions.
     :return: the elements. One with an error is kept if that is possible, so that other errors are
         found and none follows from the first.
     """
     with sources.unchanged_trees():
-        if may_hold_scoped_names:
+        if sources.may_hold_scoped_names:
             _check_scoped_names(root, sources)
         return _Reader(sources, shapes=shapes).elements(root)
 

@@ -84,6 +84,8 @@ class Sources:
         """The version of each SDFormat file by its path."""
         self.includes: dict[str, Place] = {}
         """The place of the include that first led to each included file, by its path."""
+        self.may_hold_scoped_names = False
+        """False if no name in these files can hold ``::``."""
         self.problems = Problems(self.paths, self.includes)
         """What is wrong with these files."""
         self._origins: dict[XmlElement, Origin] = {}

@@ -60,7 +60,7 @@ def test_every_item_of_a_definition_is_read(identifier):
 
 def test_every_type_exists():
     types = re.findall(r':(\w+)', ' '.join(CONTENTS.values()))
-    plain = {each.value for each in ValueType} - {ValueType.CHOICE.value}
+    plain = {each.label for each in ValueType} - {ValueType.CHOICE.label}
     assert set(types) <= plain | set(CHOICES)
 
 

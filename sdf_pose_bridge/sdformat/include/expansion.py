@@ -90,8 +90,6 @@ class IncludeExpansion:
         self, finder: ResourceFinder, sources: Sources, *,
         skips_missing: bool, canonical_link_of: Callable[[XmlElement], str | None],
     ) -> None:
-        self.may_hold_scoped_names = False
-        """Whether a name in what was included may hold ``::``."""
         self._finder = finder
         self._steps_of_directories = STEPS_OF_DIRECTORY * (
             len(finder.search_paths) + len(finder.environment_paths))
@@ -152,7 +150,6 @@ class IncludeExpansion:
         chosen = self._top(include, found)
         if chosen is None or is_merge is None:
             return
-        self.may_hold_scoped_names |= found.may_hold_scoped_names
         if chosen not in self._steps_of_copies:
             self._steps_of_copies[chosen] = _steps_of_copy(chosen)
         self._sources.count_work(self._steps_of_copies[chosen], include)
@@ -165,7 +162,6 @@ class IncludeExpansion:
             characters = len(etree.tostring(top, with_tail=False))
             self._sources.count_work(looks * characters // CHARACTERS_OF_LOOK, include)
             for added in apply_params(params, top, self._sources):
-                self.may_hold_scoped_names = True
                 self._expand_in(added, files)
         if is_merge:
             self._merge(include, top, chosen)
