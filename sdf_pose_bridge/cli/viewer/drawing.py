@@ -10,9 +10,9 @@ from collections.abc import Sequence
 import math
 from typing import Any
 from typing import NamedTuple
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 import viser
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
@@ -31,9 +31,6 @@ from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
 MOST_SURFACES = 5_000
 """How many surfaces that differ are drawn."""
 MOST_TRIANGLES = 3_000_000
@@ -41,9 +38,8 @@ MOST_TRIANGLES = 3_000_000
 MOST_NAMES = 500
 """How many names are shown at once."""
 
-NAMES, LINES = '/names', '/lines to parents'
-GROUPS = (NAMES, LINES, '/visuals', '/collisions')
-"""The nodes that can be hidden, besides one for each kind of frame."""
+GROUPS = ('visuals', 'collisions', 'names', 'lines to parents')
+"""What can be hidden, besides the kinds of frames by their labels."""
 
 _WXYZ = [6, 3, 4, 5]
 _DIRECTION_TO_EYE = np.array([0.75, -0.5, 0.45])
@@ -73,11 +69,6 @@ class Surface(NamedTuple):
     """Shape (n, 4): the color of each copy, components from 0 to 1."""
 
 
-def node_of_kind(label: str) -> str:
-    """Return the node of all frames of a kind."""
-    return f'/frames/{label}'
-
-
 class Drawing:
     """
     The nodes that show a scene.
@@ -91,8 +82,6 @@ class Drawing:
         self, server: viser.ViserServer, meshes: MeshReader, select: Callable[[int], None],
     ) -> None:
         self._server, self._meshes, self._select = server, meshes, select
-        self.hidden = {'/collisions'}
-        """The names of the nodes that are hidden from the next :meth:`place` on."""
         self.gizmo: Any = None
         """The gizmo, which is not visible at first."""
         self._camera: Any = None
@@ -101,21 +90,31 @@ class Drawing:
         """Place names for this camera from the next :meth:`place` on."""
         self._camera = camera
 
-    def draw(self, scene: Scene, tree: TfTree, is_shown: NDArray[np.bool_]) -> list[str]:
+    def draw(
+        self, scene: Scene, tree: TfTree, is_shown: NDArray[np.bool_], hidden: set[str],
+    ) -> list[str]:
         """
         Draw a scene instead of the one before.
 
         :param is_shown: whether to draw each element of the scene.
+        :param hidden: the groups and kinds of frames that are not drawn.
         :return: why visuals and collisions are not drawn as the file means them, for each of them.
         """
-        nodes, labels = self._server.scene, kind_labels_of(scene, tree)
+        nodes, self._hidden = self._server.scene, hidden
         nodes.reset()
         nodes.add_light_hemisphere('/light', ground_color=_LIGHT_FROM_BELOW, intensity=1.5)
+        # An optical frame is shown with its parent.
+        elements = np.where(
+            tree.elements < 0, tree.elements[np.maximum(tree.parents, 0)], tree.elements)
+        self._frames = np.array([
+            frame for frame, label in enumerate(kind_labels_of(scene, tree))
+            if label not in hidden and is_shown[elements[frame]]], int)
         origins = tree.poses[:, :3]
         extent_m = float(np.ptp(origins, axis=0).max()) if len(origins) else 0.0
         surfaces, reasons = surfaces_from_scene(
-            scene, [element for element in scene.shapes if is_shown[element]], extent_m or 1.0,
-            self._meshes)
+            scene, [element for element in scene.shapes if is_shown[element]
+                    and f'{Kind(scene.kinds[element]).label}s' not in hidden],
+            extent_m or 1.0, self._meshes)
         bounds = bounds_of_scene(scene, origins, surfaces)
         size_m = float(np.ptp(bounds, axis=0).max()) or 1.0
         view_m = size_m
@@ -129,20 +128,13 @@ class Drawing:
             '/selected', axes_length=2.0 * length_m, axes_radius=0.08 * length_m, visible=False)
         self.gizmo = nodes.add_transform_controls(
             '/gizmo', 4.0 * length_m, depth_test=False, visible=False)
-        # An optical frame is shown with its parent.
-        elements = np.where(
-            tree.elements < 0, tree.elements[np.maximum(tree.parents, 0)], tree.elements)
-        self._frames = {
-            node_of_kind(label): np.flatnonzero(is_shown[elements] & (np.array(labels) == label))
-            for label in dict.fromkeys(labels)}
-        self._groups = {name: nodes.add_frame(name, show_axes=False) for name in GROUPS}
-        self._groups[LINES] = nodes.add_line_segments(
-            LINES, self._lines(tree), _LINE_COLOR, thickness=0.002 * view_m)
-        for name, frames in self._frames.items():
-            axes = self._groups[name] = nodes.add_batched_axes(
-                name, tree.poses[frames][:, _WXYZ], tree.poses[frames, :3], axes_length=length_m,
-                axes_radius=0.05 * length_m)
-            self._select_by_click(axes, frames)
+        self._lines = nodes.add_line_segments(
+            '/lines to parents', _lines(tree, self._frames), _LINE_COLOR,
+            thickness=0.002 * view_m, visible='lines to parents' not in hidden)
+        self._axes = nodes.add_batched_axes(
+            '/frames', *_places(tree.poses[self._frames]), axes_length=length_m,
+            axes_radius=0.05 * length_m)
+        self._select_by_click(self._axes, self._frames)
         self._copies = [
             (self._add_surface(number, surface, scene, tree), surface.elements)
             for number, surface in enumerate(surfaces)]
@@ -152,14 +144,12 @@ class Drawing:
 
     def place(self, scene: Scene, tree: TfTree) -> None:
         """Move what is drawn to the poses of a scene that differs in nothing else."""
-        for name, group in self._groups.items():
-            group.visible = name not in self.hidden
-        for name, frames in self._frames.items():
-            _set_poses(self._groups[name], tree.poses[frames])
+        self._axes.batched_wxyzs, self._axes.batched_positions = _places(tree.poses[self._frames])
         for copies, elements in self._copies:
-            _set_poses(copies, scene.poses[elements])
-        self._groups[LINES].points = self._lines(tree)
-        self._place_names(tree)
+            copies.batched_wxyzs, copies.batched_positions = _places(scene.poses[elements])
+        self._lines.points = _lines(tree, self._frames)
+        if 'names' not in self._hidden:
+            self._place_names(tree)
 
     def mark(self, pose: Pose | None) -> None:
         """Show larger axes at a pose in the root frame; none for None."""
@@ -168,10 +158,7 @@ class Drawing:
             self._marker.position, self._marker.wxyz = pose[:3], (pose.qw, *pose[3:6])
 
     def _place_names(self, tree: TfTree) -> None:
-        """Show the names of frames, where the camera sees them."""
-        frames = [
-            frame for name, each in self._frames.items() if name not in self.hidden
-            for frame in each.tolist()][:MOST_NAMES]
+        frames = self._frames[:MOST_NAMES].tolist()
         names = [
             printable(shortened(tree.frame_ids[frame].rpartition('/')[2])) for frame in frames]
         labels = list(labels_from_names(
@@ -181,7 +168,7 @@ class Drawing:
         for number, (text, point) in enumerate(labels):
             if number == len(self._labels):
                 self._labels.append(self._server.scene.add_label(
-                    f'{NAMES}/{number}', text, font_screen_scale=_SCALE_OF_NAMES))
+                    f'/names/{number}', text, font_screen_scale=_SCALE_OF_NAMES))
             self._labels[number].text, self._labels[number].position = text, point
 
     def _look_at(self, middle: Points, view_m: float, size_m: float) -> None:
@@ -192,29 +179,32 @@ class Drawing:
         camera.near, camera.far = 0.001 * size_m, 100.0 * size_m
 
     def _add_surface(self, number: int, surface: Surface, scene: Scene, tree: TfTree) -> Any:
-        poses, rgba = scene.poses[surface.elements], np.clip(surface.rgba, 0.0, 1.0)
+        rgba = np.clip(surface.rgba, 0.0, 1.0)
         copies = self._server.scene.add_batched_meshes_simple(
             f'/{surface.kind.label}s/{number}', surface.part.points, surface.part.faces,
-            poses[:, _WXYZ], poses[:, :3], batched_scales=surface.scales,
+            *_places(scene.poses[surface.elements]), batched_scales=surface.scales,
             batched_colors=np.round(255.0 * rgba[:, :3]).astype(np.uint8),
             batched_opacities=rgba[:, 3] if (rgba[:, 3] < 1.0).any() else None,
             opacity=_OPACITY, lod='off', flat_shading=True, side='double')
         self._select_by_click(copies, tree.nearest_frames[surface.elements])
         return copies
 
-    def _select_by_click(
-        self, copies: Any, frames: NDArray[np.signedinteger[Any]],
-    ) -> None:
+    def _select_by_click(self, copies: Any, frames: NDArray[Any]) -> None:
         copies.on_click(lambda event: self._select(int(frames[event.instance_index or 0])))
 
-    def _lines(self, tree: TfTree) -> Points:
-        """Return lines from the parents of frames to the frames, shape (n, 2, 3)."""
-        shown = np.concatenate([np.zeros(0, int), *self._frames.values()])
-        frames = shown[tree.parents[shown] != NO_PARENT]
-        # The last entry is the root frame, which the index of the root as a parent means.
-        origins = np.concatenate([tree.poses[:, :3], np.zeros((1, 3))])
-        assert ROOT_IS_PARENT == -1
-        return np.stack([origins[tree.parents[frames]], origins[frames]], axis=1)
+
+def _places(poses: PoseArray) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Return quaternions w x y z and positions, as viser takes them."""
+    return poses[:, _WXYZ].astype(np.float32), poses[:, :3].astype(np.float32)
+
+
+def _lines(tree: TfTree, shown: NDArray[np.intp]) -> Points:
+    """Return lines from the parents of frames to the frames, shape (n, 2, 3)."""
+    frames = shown[tree.parents[shown] != NO_PARENT]
+    # The last entry is the root frame, which the index of the root as a parent means.
+    origins = np.concatenate([tree.poses[:, :3], np.zeros((1, 3))])
+    assert ROOT_IS_PARENT == -1
+    return np.stack([origins[tree.parents[frames]], origins[frames]], axis=1)
 
 
 def _length_of_axes(tree: TfTree, size_m: float) -> float:
@@ -287,11 +277,6 @@ def bounds_of_scene(scene: Scene, origins: Points, surfaces: Sequence[Surface]) 
     return np.array([together.min(axis=0), together.max(axis=0)])
 
 
-def _set_poses(node: Any, poses: PoseArray) -> None:
-    node.batched_positions = poses[:, :3].astype(np.float32)
-    node.batched_wxyzs = poses[:, _WXYZ].astype(np.float32)
-
-
 class _Label(NamedTuple):
     """Names in a rectangle of the picture, in parts of its height."""
 
@@ -306,16 +291,12 @@ class _Label(NamedTuple):
         more = len(self.names) - _MOST_IN_A_LABEL
         return self.names[:_MOST_IN_A_LABEL] + ([f'and {more} more'] if more > 0 else [])
 
-    @property
-    def size(self) -> tuple[float, float]:
-        """Return the height and the width."""
-        return _LINE_HEIGHT * len(self.lines), _CHARACTER_WIDTH * max(map(len, self.lines))
-
     def is_on(self, other: _Label) -> bool:
         """Return whether a part of one would lie on the other."""
-        (height, width), (other_height, other_width) = self.size, other.size
-        return (self.top < other.top + other_height and other.top < self.top + height
-                and self.left < other.left + other_width and other.left < self.left + width)
+        higher, lower = sorted((self, other), key=lambda each: each.top)
+        first, second = sorted((self, other), key=lambda each: each.left)
+        return (lower.top < higher.top + _LINE_HEIGHT * len(higher.lines)
+                and second.left < first.left + _CHARACTER_WIDTH * max(map(len, first.lines)))
 
 
 def labels_from_names(

@@ -23,7 +23,6 @@ from sdf_pose_bridge.cli.printing import kind_labels_of
 from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.viewer.drawing import Drawing
 from sdf_pose_bridge.cli.viewer.drawing import GROUPS
-from sdf_pose_bridge.cli.viewer.drawing import node_of_kind
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_frame
 from sdf_pose_bridge.cli.viewer.frame_texts import pose_of_frame
@@ -94,7 +93,7 @@ class Page:
         self._positions: dict[str, float] = {}
         self._selected = self._reference = ''
         self._dragged: Pose | None = None
-        self._hidden_models: set[str] = set()
+        self._hidden = {'collisions'}
         self._listed: object = None
         server.on_client_connect(
             lambda client: self._when(client.camera.on_update, self._drawing.look_from))
@@ -124,11 +123,11 @@ class Page:
             models = [
                 scene.names[element] for element in np.unique(self._tops).tolist()
                 if scene.kinds[element] == Kind.MODEL and self._is_in_model[element]]
-            labels = kind_labels_of(scene, tree)
-            listed = scene.path, tree.frame_ids, labels, models, ranges
+            kinds = list(dict.fromkeys(kind_labels_of(scene, tree)))
+            listed = scene.path, tree.frame_ids, kinds, models, ranges
             if self._listed != listed:
                 self._listed = listed
-                self._add_controls(Counter(labels), models, ranges)
+                self._add_controls(kinds, models, ranges)
             self._show_rows()
             lines = [
                 f'{"1 shape is" if count == 1 else f"{count} shapes are"} not drawn as the file '
@@ -167,10 +166,11 @@ class Page:
         self._lines.content = text and f'<pre class="{name}" style="{_ERROR_STYLE}">{text}</pre>'
 
     def _draw(self) -> list[str]:
-        hidden = [
-            self._loaded.index(name) for name in self._hidden_models if self._loaded.has(name)]
-        is_shown = self._is_in_model & ~np.isin(self._tops, hidden)
-        reasons = self._drawing.draw(self._scene, self._tree, is_shown)
+        hidden_models = [
+            element for element in np.unique(self._tops).tolist()
+            if _switch_of_model(self._scene.names[element]) in self._hidden]
+        is_shown = self._is_in_model & ~np.isin(self._tops, hidden_models)
+        reasons = self._drawing.draw(self._scene, self._tree, is_shown, self._hidden)
         self._when(self._drawing.gizmo.on_update, lambda _: self._drag())
         self._show_frame()
         return reasons
@@ -217,7 +217,7 @@ class Page:
     # Controls
 
     def _add_controls(
-        self, kinds: Counter[str], models: list[str], ranges: dict[str, _Range],
+        self, kinds: list[str], models: list[str], ranges: dict[str, _Range],
     ) -> None:
         gui = self._server.gui
         gui.reset()
@@ -226,14 +226,12 @@ class Page:
         gui.set_panel_label(printable(self._loaded.path))
         self._lines = gui.add_html('')
         with gui.add_folder('Show'):
-            for label, count in kinds.items():
-                self._add_switch(f'{label} ({count})', self._drawing.hidden, node_of_kind(label))
-            for name in GROUPS:
-                self._add_switch(name[1:], self._drawing.hidden, name)
+            for name in (*kinds, *GROUPS):
+                self._add_switch(name, name)
         if 1 < len(models) <= _MOST_SWITCHES:
             with gui.add_folder('Models', expand_by_default=False):
                 for name in models:
-                    self._add_switch(printable(name), self._hidden_models, name)
+                    self._add_switch(printable(name), _switch_of_model(name))
         if ranges:
             with gui.add_folder('Joints'):
                 sliders = [self._add_slider(*each) for each in ranges.items()]
@@ -259,13 +257,12 @@ class Page:
         self._when(self._choice.on_update, lambda _: self._choose(self._choice.value))
         self._when(self._write.on_click, lambda _: self._write_pose())
 
-    def _add_switch(self, label: str, hidden: set[str], name: str) -> None:
-        switch = self._server.gui.add_checkbox(label, name not in hidden)
+    def _add_switch(self, label: str, name: str) -> None:
+        switch = self._server.gui.add_checkbox(label, name not in self._hidden)
 
         def change(_: object) -> None:
-            (hidden.discard if switch.value else hidden.add)(name)
-            if hidden is self._hidden_models:
-                self._draw()
+            (self._hidden.discard if switch.value else self._hidden.add)(name)
+            self._draw()
         self._when(switch.on_update, change)
 
     # Frames
@@ -350,6 +347,11 @@ class Page:
 
         if self._set_pose is not None:
             self._set_pose(self._loaded, element, pose, measured, dry_run=dry_run)
+
+
+def _switch_of_model(name: str) -> str:
+    # No kind and no group is called so.
+    return f'model {name}'
 
 
 def _set_to_zero(sliders: list[Any]) -> None:
