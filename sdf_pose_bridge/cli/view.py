@@ -84,12 +84,9 @@ def run(options: argparse.Namespace) -> int:
         if options.output is None:
             _open(f'http://{servers.ADDRESS}:{server.get_port()}')
             _follow(page, scene.files, options)
-        elif options.output.suffix.lower() == '.png':
-            servers.write_picture(servers.page_from_server(server, path), options.output)
         else:
-            options.output.write_text(
-                servers.page_from_server(server, path), encoding='utf-8')
-    except (OSError, servers.PictureError) as error:
+            servers.write_page(server, path, options.output)
+    except OSError as error:
         return _fail(f'cannot write {options.output}: {error}')
     finally:
         reader.close()

@@ -34,16 +34,6 @@ def escaped(text: str) -> str:
     return html.escape(printable(text))
 
 
-def pose_of_frame(tree: TfTree, frame: int) -> Pose:
-    """
-    Return the pose of a frame in the root frame.
-
-    :param frame: index of the frame, or ``ROOT_IS_PARENT`` for the root frame.
-    :return: its pose.
-    """
-    return Pose() if frame == ROOT_IS_PARENT else Pose(*tree.poses[frame].tolist())
-
-
 def html_of_frame(scene: Scene, tree: TfTree, frame: int, reference: int, units: Units) -> str:
     """
     Describe a frame.
@@ -58,42 +48,36 @@ def html_of_frame(scene: Scene, tree: TfTree, frame: int, reference: int, units:
     lines = [f'<b>{escaped(tree.frame_ids[frame])}</b> {kind_labels_of(scene, tree)[frame]}']
     if element >= 0:
         lines += [escaped(scene.names[element]), escaped(str(scene.place(element)))]
-    references = dict.fromkeys((reference, ROOT_IS_PARENT, parent))
-    for other in references:
+    # The last entries are the root frame, which the index of the root as a parent means.
+    assert ROOT_IS_PARENT == -1
+    ids = (*tree.frame_ids, tree.root_frame)
+    poses = [*(Pose(*pose) for pose in tree.poses.tolist()), Pose()]
+    for other in dict.fromkeys((reference, ROOT_IS_PARENT, parent)):
         if other not in (NO_PARENT, frame):
-            texts = units.texts(relative_pose(
-                pose_of_frame(tree, other), pose_of_frame(tree, frame)))
+            texts = units.texts(relative_pose(poses[other], poses[frame]))
             lines.append(
-                f'in <b>{escaped(_frame_id(tree, other))}</b>'
-                f'<br>xyz {" ".join(texts[:3])} {units.length}'
+                f'in <b>{escaped(ids[other])}</b><br>xyz {" ".join(texts[:3])} {units.length}'
                 f'<br>rpy {" ".join(texts[3:])} {units.angle}')
-    copied = ''.join(
-        f'<div>{label}<code style="{_COPIED}">{html.escape(text)}</code></div>'
-        for label, text in _texts_to_copy(scene, tree, frame, reference))
-    return (f'<div style="font-size:0.8em;margin:0 1em;overflow-wrap:anywhere">'
-            f'{"<br>".join(lines)}{copied}</div>')
-
-
-def _frame_id(tree: TfTree, frame: int) -> str:
-    return tree.root_frame if frame == ROOT_IS_PARENT else tree.frame_ids[frame]
-
-
-def _texts_to_copy(
-    scene: Scene, tree: TfTree, frame: int, reference: int,
-) -> Iterator[tuple[str, str]]:
-    pose = relative_pose(pose_of_frame(tree, reference), pose_of_frame(tree, frame))
+    pose = relative_pose(poses[reference], poses[frame])
     # What differs less than this comes from the computation. To add zero leaves no negative zeros.
     rpy, quat, franka = (
         (converted_poses([pose], 'sdf_quat_xyzw', name)[0].round(12) + 0.0).tolist()
         for name in ('sdf_rpy', 'sdf_quat_xyzw', 'franka_matrix'))
-    yield 'SDF', f'<pose{_relative_to(scene, tree, frame, reference)}>{_text(rpy)}</pose>'
     arguments = zip(('x', 'y', 'z', 'qx', 'qy', 'qz', 'qw'), quat, strict=True)
-    yield 'static_transform_publisher', ' '.join([
-        *(f'--{name} {value!r}' for name, value in arguments),
-        '--frame-id', shlex.quote(_frame_id(tree, reference)),
-        '--child-frame-id', shlex.quote(tree.frame_ids[frame])])
-    yield 'x y z, quaternion x y z w', _text(quat)
-    yield 'Franka matrix', str(franka)
+    copied = {
+        'SDF': f'<pose{_relative_to(scene, tree, frame, reference)}>{_text(rpy)}</pose>',
+        'static_transform_publisher': ' '.join([
+            *(f'--{name} {value!r}' for name, value in arguments),
+            '--frame-id', shlex.quote(ids[reference]),
+            '--child-frame-id', shlex.quote(ids[frame])]),
+        'x y z, quaternion x y z w': _text(quat),
+        'Franka matrix': str(franka),
+    }
+    forms = ''.join(
+        f'<div>{label}<code style="{_COPIED}">{html.escape(text)}</code></div>'
+        for label, text in copied.items())
+    return (f'<div style="font-size:0.8em;margin:0 1em;overflow-wrap:anywhere">'
+            f'{"<br>".join(lines)}{forms}</div>')
 
 
 def _text(values: Sequence[float]) -> str:
@@ -118,11 +102,6 @@ def rows_of_tree(tree: TfTree, search: str) -> Iterator[tuple[int, int, str]]:
     :param search: a part of the ids of the frames to list; empty for all of them.
     :return: the index, the depth in the tree and the text of each.
     """
-    if search:
-        for index, frame_id in enumerate(tree.frame_ids):
-            if search.lower() in frame_id.lower():
-                yield index, 0, frame_id
-        return
     children: dict[int, list[int]] = {}
     for index, parent in enumerate(tree.parents.tolist()):
         children.setdefault(parent, []).append(index)
@@ -130,5 +109,9 @@ def rows_of_tree(tree: TfTree, search: str) -> Iterator[tuple[int, int, str]]:
                for index in reversed(children.get(other, ()))]
     while waiting:
         index, depth = waiting.pop()
-        yield index, min(depth, 20), tree.frame_ids[index].rpartition('/')[2]
+        frame_id = tree.frame_ids[index]
+        if not search:
+            yield index, min(depth, 20), frame_id.rpartition('/')[2]
+        elif search.lower() in frame_id.lower():
+            yield index, 0, frame_id
         waiting += [(child, depth + 1) for child in reversed(children.get(index, ()))]

@@ -14,7 +14,6 @@ import math
 from queue import Empty
 from queue import SimpleQueue
 from typing import Any
-from typing import NamedTuple
 
 import numpy as np
 import viser
@@ -25,7 +24,6 @@ from sdf_pose_bridge.cli.viewer.drawing import Drawing
 from sdf_pose_bridge.cli.viewer.drawing import GROUPS
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_frame
-from sdf_pose_bridge.cli.viewer.frame_texts import pose_of_frame
 from sdf_pose_bridge.cli.viewer.frame_texts import rows_of_tree
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.errors import SdfError
@@ -57,16 +55,6 @@ _ROWS_STYLE = ('<style>.rows{max-height:40vh;overflow:auto;margin:0 1em;font-siz
                '.rows .selected{font-weight:bold}div:has(>.rows)~*{display:none}</style>')
 _HOW_TO_SELECT = '<div style="margin:0 1em;font-size:0.8em">Click one above or in the scene.</div>'
 _ERROR_STYLE = 'color:#c92a2a;white-space:pre-wrap;overflow-wrap:anywhere;margin:0 1em;'
-
-
-class _Range(NamedTuple):
-    """Where a slider moves a joint, in the unit that it shows."""
-
-    lower: float
-    upper: float
-    per_unit: float
-    """How many radians or metres one of its units is."""
-    unit: str
 
 
 class Page:
@@ -120,25 +108,26 @@ class Page:
             self._positions = {
                 name: value for name, value in self._positions.items() if name in ranges}
             self._move()
-            models = [
-                scene.names[element] for element in np.unique(self._tops).tolist()
-                if scene.kinds[element] == Kind.MODEL and self._is_in_model[element]]
-            kinds = list(dict.fromkeys(kind_labels_of(scene, tree)))
-            listed = scene.path, tree.frame_ids, kinds, models, ranges
+            self._models = {
+                f'model {scene.names[element]}': element
+                for element in np.unique(self._tops).tolist()
+                if scene.kinds[element] == Kind.MODEL and self._is_in_model[element]}
+            switches = *dict.fromkeys(kind_labels_of(scene, tree)), *GROUPS
+            listed = scene.path, tree.frame_ids, switches, list(self._models), ranges
             if self._listed != listed:
                 self._listed = listed
-                self._add_controls(kinds, models, ranges)
+                self._add_controls(switches, ranges)
             self._show_rows()
             lines = [
                 f'{"1 shape is" if count == 1 else f"{count} shapes are"} not drawn as the file '
                 f'means it: {printable(reason)}'
                 for reason, count in Counter(self._draw()).items()]
-            self._show_lines('reasons', lines)
+            self._lines.content = _html_of_lines('reasons', lines)
         return lines
 
     def show_errors(self, lines: Iterable[str]) -> None:
         """Show the errors of a file, a line for each, above its last scene."""
-        self._show_lines('errors', lines)
+        self._lines.content = _html_of_lines('errors', lines)
 
     def act(self, seconds: float) -> None:
         """Do what browsers ask for; wait for it, but no longer than this."""
@@ -161,15 +150,9 @@ class Page:
             self._actions.put(partial(action, event))
         happens(put)
 
-    def _show_lines(self, name: str, lines: Iterable[str]) -> None:
-        text = '\n'.join(map(escaped, lines))
-        self._lines.content = text and f'<pre class="{name}" style="{_ERROR_STYLE}">{text}</pre>'
-
     def _draw(self) -> list[str]:
-        hidden_models = [
-            element for element in np.unique(self._tops).tolist()
-            if _switch_of_model(self._scene.names[element]) in self._hidden]
-        is_shown = self._is_in_model & ~np.isin(self._tops, hidden_models)
+        hidden = [element for name, element in self._models.items() if name in self._hidden]
+        is_shown = self._is_in_model & ~np.isin(self._tops, hidden)
         reasons = self._drawing.draw(self._scene, self._tree, is_shown, self._hidden)
         self._when(self._drawing.gizmo.on_update, lambda _: self._drag())
         self._show_frame()
@@ -177,47 +160,39 @@ class Page:
 
     # Joints
 
-    def _ranges_of_joints(self) -> dict[str, _Range]:
-        """Return the ranges of degrees of freedom that do not follow another, by their names."""
+    def _ranges_of_joints(self) -> dict[str, tuple[bool, float, float]]:
+        """
+        Find the degrees of freedom that do not follow another.
+
+        :return: by their names whether they turn, and their lowest and highest position.
+        """
         dofs = JointMotion(self._loaded, tf_parents_from_scene(self._loaded)).dofs
         names = JointPositions(self._loaded, dofs).names
         return {
-            name: self._range(dof) for name, dof in zip(names, dofs, strict=True)
+            name: _range_of_dof(dof) for name, dof in zip(names, dofs, strict=True)
             if self._is_in_model[dof.joint.element]
             and (dof.axis is None or dof.joint.axes[dof.axis].mimic is None)}
-
-    def _range(self, dof: DegreeOfFreedom) -> _Range:
-        if dof.rad_per_unit:
-            lower, upper, unit = -math.pi, math.pi, self._units.angle
-            per_unit = math.radians(1.0) if self._units.is_degrees else 1.0
-        else:
-            lower, upper, unit = -0.5, 0.5, self._units.length
-            per_unit = 0.001 if self._units.is_mm else 1.0
-        axis = None if dof.axis is None else dof.joint.axes[dof.axis]
-        if axis is not None and axis.upper - axis.lower < _LARGEST_RANGE:
-            # Where the file puts the joint need not be within its limits.
-            lower, upper = min(axis.lower, 0.0), max(axis.upper, 0.0)
-        return _Range(lower / per_unit, upper / per_unit, per_unit, unit)
 
     def _move(self) -> None:
         self._drawn_positions = dict(self._positions)
         self._scene = scene_at_positions(self._loaded, self._drawn_positions)
         self._tree = tf_tree_from_scene(self._scene, self._options)
 
-    def _add_slider(self, name: str, limits: _Range) -> Any:
-        lower, upper, per_unit, unit = limits
-        value = self._positions.get(name, 0.0) / per_unit
+    def _add_slider(self, name: str, *, turns: bool, lower: float, upper: float) -> Any:
+        units = self._units
+        factor = (math.degrees(units.is_degrees) if turns else 1000.0 * units.is_mm) or 1.0
+        value = min(max(self._positions.get(name, 0.0), lower), upper)
         slider = self._server.gui.add_slider(
-            f'{printable(name)} [{unit}]', lower, upper, max((upper - lower) / 1000.0, 1e-9),
-            min(max(value, lower), upper))
+            f'{printable(name)} [{units.angle if turns else units.length}]', lower * factor,
+            upper * factor, max((upper - lower) * factor / 1000.0, 1e-9), value * factor)
         self._when(slider.on_update, lambda _: self._positions.update(
-            {name: slider.value * per_unit}))
+            {name: slider.value / factor}))
         return slider
 
     # Controls
 
     def _add_controls(
-        self, kinds: list[str], models: list[str], ranges: dict[str, _Range],
+        self, switches: tuple[str, ...], ranges: dict[str, tuple[bool, float, float]],
     ) -> None:
         gui = self._server.gui
         gui.reset()
@@ -226,15 +201,17 @@ class Page:
         gui.set_panel_label(printable(self._loaded.path))
         self._lines = gui.add_html('')
         with gui.add_folder('Show'):
-            for name in (*kinds, *GROUPS):
-                self._add_switch(name, name)
-        if 1 < len(models) <= _MOST_SWITCHES:
+            for name in switches:
+                self._add_switch(name)
+        if 1 < len(self._models) <= _MOST_SWITCHES:
             with gui.add_folder('Models', expand_by_default=False):
-                for name in models:
-                    self._add_switch(printable(name), _switch_of_model(name))
+                for name in self._models:
+                    self._add_switch(name)
         if ranges:
             with gui.add_folder('Joints'):
-                sliders = [self._add_slider(*each) for each in ranges.items()]
+                sliders = [
+                    self._add_slider(name, turns=turns, lower=lower, upper=upper)
+                    for name, (turns, lower, upper) in ranges.items()]
                 zero = gui.add_button('all at zero')
             self._when(zero.on_click, lambda _: _set_to_zero(sliders))
         with gui.add_folder('Frames'):
@@ -254,11 +231,11 @@ class Page:
                 initial_value=self._reference if self._reference in ids else ids[0])
             self._description = gui.add_html('')
             self._write = gui.add_button('write to file', visible=False)
-        self._when(self._choice.on_update, lambda _: self._choose(self._choice.value))
+        self._when(self._choice.on_update, lambda _: self._show_frame())
         self._when(self._write.on_click, lambda _: self._write_pose())
 
-    def _add_switch(self, label: str, name: str) -> None:
-        switch = self._server.gui.add_checkbox(label, name not in self._hidden)
+    def _add_switch(self, name: str) -> None:
+        switch = self._server.gui.add_checkbox(printable(name), name not in self._hidden)
 
         def change(_: object) -> None:
             (self._hidden.discard if switch.value else self._hidden.add)(name)
@@ -291,10 +268,6 @@ class Page:
             self._show_rows()
             self._show_frame()
 
-    def _choose(self, reference: str) -> None:
-        self._reference = reference
-        self._show_frame()
-
     def _show_frame(self) -> None:
         """Describe the selected frame, and mark it in the scene."""
         gizmo, ids, self._dragged = self._drawing.gizmo, self._tree.frame_ids, None
@@ -304,16 +277,13 @@ class Page:
             self._description.content = _HOW_TO_SELECT
             return
         frame = ids.index(self._selected)
-        pose, element = pose_of_frame(self._tree, frame), int(self._tree.elements[frame])
+        pose = Pose(*self._tree.poses[frame].tolist())
         self._describe(frame, pose)
-        if self._set_pose is None or element < 0:
-            return
-        try:
-            self._put(element, pose, dry_run=True)
-        except SdfError as error:
-            self._description.content += f'<pre style="{_ERROR_STYLE}">{escaped(str(error))}</pre>'
-            return
-        gizmo.position, gizmo.wxyz, gizmo.visible = pose[:3], (pose.qw, *pose[3:6]), True
+        if self._set_pose is not None and self._tree.elements[frame] >= 0:
+            errors = self._errors_of_setting(pose, dry_run=True)
+            self._description.content += _html_of_lines('errors_of_setting', errors)
+            gizmo.position, gizmo.wxyz = pose[:3], (pose.qw, *pose[3:6])
+            gizmo.visible = not errors
 
     def _drag(self) -> None:
         gizmo = self._drawing.gizmo
@@ -327,31 +297,41 @@ class Page:
         self._drawing.mark(pose)
         poses = self._tree.poses.copy()
         poses[frame] = pose
-        ids = self._tree.frame_ids
+        self._reference, ids = self._choice.value, self._tree.frame_ids
         reference = ids.index(self._reference) if self._reference in ids else ROOT_IS_PARENT
         self._description.content = html_of_frame(
             self._scene, replace(self._tree, poses=poses), frame, reference, self._units)
 
     def _write_pose(self) -> None:
-        if self._dragged is None:
-            return
-        frame = self._tree.frame_ids.index(self._selected)
-        try:
-            self._put(int(self._tree.elements[frame]), self._dragged)
-        except SdfError as error:
-            self.show_errors(map(str, error.errors))
+        if self._dragged is not None:
+            self.show_errors(self._errors_of_setting(self._dragged, dry_run=False))
 
-    def _put(self, element: int, pose: Pose, *, dry_run: bool = False) -> None:
+    def _errors_of_setting(self, pose: Pose, *, dry_run: bool) -> list[str]:
+        """Put the selected frame there, in the file; return why this is not possible."""
         def measured(scene: Scene, element: int) -> Pose:
             return scene_at_positions(scene, self._positions).pose_of(element)
 
-        if self._set_pose is not None:
+        assert self._set_pose is not None
+        element = int(self._tree.elements[self._tree.frame_ids.index(self._selected)])
+        try:
             self._set_pose(self._loaded, element, pose, measured, dry_run=dry_run)
+        except SdfError as error:
+            return list(map(str, error.errors))
+        return []
 
 
-def _switch_of_model(name: str) -> str:
-    # No kind and no group is called so.
-    return f'model {name}'
+def _html_of_lines(name: str, lines: Iterable[str]) -> str:
+    text = '\n'.join(map(escaped, lines))
+    return text and f'<pre class="{name}" style="{_ERROR_STYLE}">{text}</pre>'
+
+
+def _range_of_dof(dof: DegreeOfFreedom) -> tuple[bool, float, float]:
+    turns = dof.rad_per_unit != 0.0
+    axis = None if dof.axis is None else dof.joint.axes[dof.axis]
+    if axis is None or axis.upper - axis.lower >= _LARGEST_RANGE:
+        return (True, -math.pi, math.pi) if turns else (False, -0.5, 0.5)
+    # Where the file puts the joint need not be within its limits.
+    return turns, min(axis.lower, 0.0), max(axis.upper, 0.0)
 
 
 def _set_to_zero(sliders: list[Any]) -> None:

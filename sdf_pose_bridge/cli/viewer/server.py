@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import html
 import logging
 from pathlib import Path
@@ -30,10 +31,6 @@ _BROWSER_OPTIONS = (
     '--window-size=1600,1000', '--hide-scrollbars', '--virtual-time-budget=10000')
 _ONLY_THE_SCENE = '<style>body :not(canvas, :has(canvas)) {visibility: hidden}</style>'
 _MOST_SECONDS = 300.0
-
-
-class PictureError(RuntimeError):
-    """A picture cannot be made; the message says why."""
 
 
 def server_for_this_machine(port: int) -> viser.ViserServer:
@@ -64,30 +61,24 @@ def server_for_this_machine(port: int) -> viser.ViserServer:
     return server
 
 
-def page_from_server(server: viser.ViserServer, title: str) -> str:
+def write_page(server: viser.ViserServer, title: str, path: Path) -> None:
     """
-    Return what a server shows as one page that needs no network.
+    Write what a server shows as one page that needs no network, or as a picture.
 
     :param title: the title of the page.
-    :return: its HTML.
+    :param path: where to write it; a picture if it ends with ``.png``.
+    :raises OSError: if it cannot be written, or no browser draws the picture.
     """
     page: str = server.get_scene_serializer().as_html()
-    return page.replace('<title>Viser</title>', f'<title>{html.escape(printable(title))}</title>')
+    page = page.replace('<title>Viser</title>', f'<title>{html.escape(printable(title))}</title>')
+    path.write_bytes(_picture(page) if path.suffix.lower() == '.png' else page.encode())
 
 
-def write_picture(page: str, path: Path) -> None:
-    """
-    Write what a page shows as a picture, by a browser without a window.
-
-    :param page: the HTML of the page.
-    :param path: where to write the picture.
-    :raises PictureError: if there is no browser, or it does not draw the page.
-    :raises OSError: if the picture cannot be written.
-    """
+def _picture(page: str) -> bytes:
     browser = next(filter(None, map(shutil.which, _BROWSERS)), None)
     if browser is None:
         msg = 'a picture needs Chrome or Chromium; a file that ends with .html does not'
-        raise PictureError(msg)
+        raise FileNotFoundError(msg)
     # The last processes of the browser may still write while the first has ended.
     with tempfile.TemporaryDirectory(
             prefix='sdf_pose_view_', ignore_cleanup_errors=True) as folder:
@@ -95,10 +86,9 @@ def write_picture(page: str, path: Path) -> None:
         source.write_text(page + _ONLY_THE_SCENE, encoding='utf-8')
         command = [browser, *_BROWSER_OPTIONS, f'--user-data-dir={folder}',
                    f'--screenshot={picture}', source.as_uri()]
-        try:
-            subprocess.run(command, capture_output=True, check=True, timeout=_MOST_SECONDS)
-            pixels = picture.read_bytes()
-        except (subprocess.SubprocessError, FileNotFoundError) as error:
-            msg = f'the browser did not draw the page: {error}'
-            raise PictureError(msg) from error
-    path.write_bytes(pixels)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            subprocess.run(command, capture_output=True, check=False, timeout=_MOST_SECONDS)
+        if picture.exists():
+            return picture.read_bytes()
+    msg = f'{browser} did not draw the page'
+    raise ChildProcessError(msg)
