@@ -17,7 +17,6 @@ from pathlib import Path
 import stat
 import subprocess
 import sys
-from typing import BinaryIO
 
 from sdf_pose_bridge.errors import FileWriteError
 from sdf_pose_bridge.errors import Place
@@ -40,7 +39,8 @@ def replace_file(path: str, old: bytes, new: bytes) -> None:
             if not os.access(real_path, os.W_OK):
                 raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
             status = os.fstat(file.fileno())
-            with _nameless_file(real_path.parent) as target:
+            descriptor = os.open(real_path.parent, os.O_TMPFILE | os.O_WRONLY, 0o600)
+            with os.fdopen(descriptor, 'wb') as target:
                 target.write(new)
                 os.fchown(target.fileno(), status.st_uid, status.st_gid)
                 os.fchmod(target.fileno(), stat.S_IMODE(status.st_mode))
@@ -55,11 +55,6 @@ def replace_file(path: str, old: bytes, new: bytes) -> None:
     except OSError as error:
         msg = f'the file cannot be written: {(error.strerror or str(error)).lower()}'
         raise FileWriteError(msg, Place(path)) from error
-
-
-def _nameless_file(directory: Path) -> BinaryIO:
-    descriptor = os.open(directory, os.O_TMPFILE | os.O_WRONLY, 0o600)
-    return os.fdopen(descriptor, 'wb')
 
 
 def _put_in_place(descriptor: int, path: Path, locked: int) -> None:

@@ -22,6 +22,7 @@ import numpy as np
 
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 from sdf_pose_bridge.sdformat.values import boolean_from_text
+from sdf_pose_bridge.sdformat.values import DECIMAL
 from sdf_pose_bridge.sdformat.values import is_representable
 from sdf_pose_bridge.sdformat.values import LONGEST_PLAIN
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
@@ -44,7 +45,7 @@ _LARGEST_ANGLE_RAD = 6.3
 """A larger angle, of more than a turn, was probably meant in degrees."""
 
 _IDENTITY_TEXTS = {6: '0 0 0 0 0 0', 7: '0 0 0 0 0 0 1'}
-_DECIMAL_NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?')
+_DECIMAL_NUMBER = re.compile(rf'[+-]?{DECIMAL}')
 _NUMBER_CHARACTERS = b'0123456789+-.eE \t\n\r'
 _THREE_DIGIT_EXPONENT = re.compile(r'[eE]-0*[1-9][0-9][0-9]')
 
@@ -152,11 +153,10 @@ def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> list[float]:
     words = _words(text) or _IDENTITY_TEXTS[count].split()
     shown = _shown(text)
     for word in words[:count]:
-        if not _DECIMAL_NUMBER.fullmatch(word):
-            msg = f'"{word[:80]}" in the pose "{shown}" is not a finite decimal number'
-            raise PoseTextError(msg)
-        if not is_representable(word, float(word)):
-            msg = f'"{word[:80]}" in the pose "{shown}" is beyond the range of a double'
+        is_decimal = _DECIMAL_NUMBER.fullmatch(word) is not None
+        if not is_decimal or not is_representable(word, float(word)):
+            rule = 'beyond the range of a double' if is_decimal else 'not a finite decimal number'
+            msg = f'"{word[:80]}" in the pose "{shown}" is {rule}'
             raise PoseTextError(msg)
     if len(words) != count:
         msg = f'a pose has {count} values ({layout}), "{shown}" has {len(words)}'

@@ -59,9 +59,7 @@ class UndefinedReporter:
         tag = written_tag(xml)
         parent_xml = xml.getparent()
         if (not isinstance(xml.tag, str) or ':' in tag or parent.takes_any_children
-                or parent_xml is None):
-            return
-        if self._is_only_counted():
+                or parent_xml is None or self._is_only_counted()):
             return
         if tag == 'include':
             self._sources.warning(xml, f'<include> in <{written_tag(parent_xml)}> is not read')

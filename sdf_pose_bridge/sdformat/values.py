@@ -24,13 +24,14 @@ from sdf_pose_bridge.sdformat.xml_tree import child_value
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-_DECIMAL = r'(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?'
+DECIMAL = r'(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?'
+"""A decimal number without its sign."""
 _C_NUMBER = re.compile(
-    rf'[+-]?(?:0x(?:[0-9a-f]+\.?[0-9a-f]*|\.[0-9a-f]+)(?:p[+-]?[0-9]+)?|{_DECIMAL}|inf(?:inity)?|nan)',
+    rf'[+-]?(?:0x(?:[0-9a-f]+\.?[0-9a-f]*|\.[0-9a-f]+)(?:p[+-]?[0-9]+)?|{DECIMAL}|inf(?:inity)?|nan)',
     re.IGNORECASE)
 """What C's ``strtod`` takes from the beginning of a word; it drops the rest."""
 _C_INTEGER = re.compile(r'0x[0-9a-f]+|[+-]?[0-9]+', re.IGNORECASE)
-_STREAM_NUMBER = re.compile(rf'[{WHITE_SPACE}]*([+-]?{_DECIMAL})')
+_STREAM_NUMBER = re.compile(rf'[{WHITE_SPACE}]*([+-]?{DECIMAL})')
 """What a C++ stream takes; it leaves the rest for the next number."""
 _STREAM_INTEGER = re.compile(rf'[{WHITE_SPACE}]*([+-]?[0-9]+)')
 _PLAIN_NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,2})?')
@@ -43,7 +44,7 @@ A number with fewer characters, and an exponent of two digits at most, is in the
 """
 _NOT_ZERO = re.compile(r'[^eE]*[1-9]')
 _FEWEST_COLOR_NUMBERS = 3
-_BOOLEANS = {'true': 1.0, 'false': 0.0}
+_BOOLEANS = {'true': True, '1': True, 'false': False, '0': False}
 _INTEGER_RANGES = {
     ValueType.INTEGER: (-2 ** 31, 2 ** 31 - 1),
     # A negative number is taken modulo 2 ** 64.
@@ -63,12 +64,7 @@ def boolean_from_text(text: str) -> bool | None:
     :param text: the value, with or without white space around it.
     :return: the boolean; None if the text is not ``true``, ``false``, ``1`` or ``0`` in any case.
     """
-    value = text.strip(WHITE_SPACE).lower()
-    if value in ('true', '1'):
-        return True
-    if value in ('false', '0'):
-        return False
-    return None
+    return _BOOLEANS.get(text.strip(WHITE_SPACE).lower())
 
 
 def frame_of_attribute(xml: XmlElement, attribute: str) -> str:
@@ -213,9 +209,9 @@ def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
         words = text.split()
         numbers = [number for word in words for number in number_from_word(word)]
         return numbers if len(numbers) == len(words) else ()
-    boolean = None if value_type.count > 1 else _BOOLEANS.get(stripped.lower())
+    boolean = None if value_type.count > 1 else boolean_from_text(stripped)
     if boolean is not None:
-        return (boolean,)
+        return (float(boolean),)
     if value_type is ValueType.NUMBER:
         return number_from_word(stripped)
     if value_type in _INTEGER_RANGES:

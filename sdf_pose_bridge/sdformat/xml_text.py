@@ -17,6 +17,7 @@ element, and what follows it if that is not text alone. Lines stay where they ar
 from __future__ import annotations
 
 import codecs
+from collections.abc import Callable
 import re
 import sys
 from typing import NamedTuple
@@ -51,8 +52,9 @@ _REFERENCE = re.compile(r'&#(?:([0-9]+)|x([0-9a-fA-F]+));')
 _NOT_XML = re.compile('[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]')
 """A character that XML does not have."""
 _REPLACEMENT = '\ufffd'
-_LONGEST_REFERENCE = 8
-"""Digits of a character reference; longer ones without zeros before them mean no character."""
+_LONGEST_REFERENCE = 9
+"""How many digits of a character reference are read; as many, not beginning with zero, are more
+than any character has."""
 
 
 class DecodedText(NamedTuple):
@@ -138,16 +140,13 @@ class _Repairer:
         position = 0
         while position < len(decoded):
             token = _TOKEN.match(decoded, position)
-            if token is None:
-                return None
-            rest = _rest_of_tag(token) if token['tag'] else token
-            if rest is None:
+            rest = _rest_of_tag(token) if token is not None and token['tag'] else token
+            if token is None or rest is None:
                 return None
             begin, position = position, rest.end()
-            if token['instruction'] and not self._may_declare:
-                return None
-            is_last = position == len(decoded)
-            if self._is_after_root() and is_last and (token['text'] or '').strip():
+            is_last_text = position == len(decoded) and bool((token['text'] or '').strip())
+            if (token['instruction'] and not self._may_declare) or (
+                    self._is_after_root() and is_last_text):
                 return None
             self._may_declare &= bool(token['instruction']) or (
                 not (token['text'] or 'x').strip('\ufeff \t\r\n'))
@@ -198,20 +197,16 @@ class _Repairer:
         elif not rest['empty']:
             self._depth += 1
         self._has_root = True
-        attributes = ''.join(
-            f'{self._space(each[1])}{each[2]}{self._repaired_value(each[3])}'
-            for each in _ATTRIBUTE.finditer(token.string, token.end(), rest.start()))
-        return f'{token[0]}{attributes}{rest[0]}'
-
-    def _space(self, space: str) -> str:
-        if not space:
-            self._note('no white space before an attribute')
-        return space or ' '
-
-    def _repaired_value(self, value: str) -> str:
-        if '<' in value:
-            self._note('"<" in the value of an attribute')
-        return self._repaired_ampersands(value).replace('<', '&lt;')
+        parts = [token[0]]
+        for attribute in _ATTRIBUTE.finditer(token.string, token.end(), rest.start()):
+            space, name, value = attribute.groups()
+            if not space:
+                self._note('no white space before an attribute')
+            if '<' in value:
+                self._note('"<" in the value of an attribute')
+            value = self._repaired_ampersands(value).replace('<', '&lt;')
+            parts.append(f'{space or " "}{name}{value}')
+        return ''.join([*parts, rest[0]])
 
     def _repaired_text(self, text: str) -> str:
         if ']]>' in text:
@@ -220,36 +215,37 @@ class _Repairer:
         return self._repaired_ampersands(text).replace(']]>', ']]&gt;')
 
     def _repaired_reference(self, reference: re.Match[str]) -> str:
-        digits = (reference[1] or reference[2]).lstrip('0')
-        code = int(digits or '0', 10 if reference[1] else 16) if (
-            len(digits) <= _LONGEST_REFERENCE) else sys.maxunicode + 1
+        digits = (reference[1] or reference[2]).lstrip('0') or '0'
+        code = int(digits[:_LONGEST_REFERENCE], 10 if reference[1] else 16)
         if 0 < code <= sys.maxunicode and not _NOT_XML.match(chr(code)):
             return reference[0]
         self._note(f'{reference[0][:20]} is no character of XML; it is replaced')
         return _REPLACEMENT
 
     def _with_xml_characters(self, text: str) -> str:
-        found = _NOT_XML.search(text)
-        if found is None:
-            return text
-        line = self._line + text.count('\n', 0, found.start())
-        self._note(f'U+{ord(found[0]):04X} is no character of XML; it is replaced', line)
-        return _NOT_XML.sub(_REPLACEMENT, text)
+        return self._replaced(
+            _NOT_XML, _REPLACEMENT, text, 'U+{:04X} is no character of XML; it is replaced')
 
     def _repaired_ampersands(self, text: str) -> str:
-        ampersand = _BARE_AMPERSAND.search(text)
-        if ampersand is not None:
-            line = self._line + text.count('\n', 0, ampersand.start())
-            self._note('"&" is not the beginning of a known entity', line)
-        return _BARE_AMPERSAND.sub('&amp;', text)
+        return self._replaced(
+            _BARE_AMPERSAND, '&amp;', text, '"&" is not the beginning of a known entity')
 
     def _decoded(self, text: bytes) -> str:
-        result = text.decode('utf-8', errors='surrogateescape')
-        escaped = _ESCAPED_BYTE.search(result)
-        if escaped is not None:
-            self._note('bytes that are not UTF-8, which are read as Latin-1',
-                       1 + result.count('\n', 0, escaped.start()))
-        return _ESCAPED_BYTE.sub(lambda byte: chr(ord(byte[0]) - 0xdc00), result)
+        return self._replaced(
+            _ESCAPED_BYTE, lambda byte: chr(ord(byte[0]) - 0xdc00),
+            text.decode('utf-8', errors='surrogateescape'),
+            'bytes that are not UTF-8, which are read as Latin-1')
+
+    def _replaced(
+        self, pattern: re.Pattern[str], new: str | Callable[[re.Match[str]], str], text: str,
+        fault: str,
+    ) -> str:
+        """Replace characters; ``fault`` can have the number of the first one in it."""
+        found = pattern.search(text)
+        if found is not None:
+            line = self._line + text.count('\n', 0, found.start())
+            self._note(fault.format(ord(found[0])), line)
+        return pattern.sub(new, text)
 
     def _note(self, fault: str, line: int = 0) -> None:
         """Note the first line with a fault."""

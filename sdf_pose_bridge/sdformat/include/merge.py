@@ -79,7 +79,10 @@ def _proxy_frame(
         return None
     if not attribute_of(proxy_pose, 'relative_to'):
         proxy_pose.set('relative_to', MODEL_FRAME if parent.tag == 'model' else WORLD_FRAME)
-    canonical_link = _canonical_link(include, model, sources, canonical_link_of)
+    root = etree.Element('sdf')
+    root.append(model)
+    sources.set_source(root, sources.path(include), sources.line(include))
+    canonical_link = canonical_link_of(root)
     if canonical_link is None:
         return None
     name = f'_merged__{attribute_of(model, "name")}__model__'
@@ -95,16 +98,6 @@ def _proxy_frame(
         proxy, include=sources.place(include),
         is_named_by_include=first_child(include, 'name') is not None)
     return proxy
-
-
-def _canonical_link(
-    include: XmlElement, model: XmlElement, sources: Sources,
-    canonical_link_of: Callable[[XmlElement], str | None],
-) -> str | None:
-    root = etree.Element('sdf')
-    root.append(model)
-    sources.set_source(root, sources.path(include), sources.line(include))
-    return canonical_link_of(root)
 
 
 def _fits_in(parent: XmlElement, model: XmlElement, sources: Sources) -> bool:

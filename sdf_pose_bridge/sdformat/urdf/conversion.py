@@ -195,10 +195,10 @@ class _Conversion:
             elif is_massless and name != WORLD_FRAME and not (
                     joint is not None and self._is_reducible(joint)):
                 left_out.add(name)
-                self._warning(
-                    'the link has no mass, so Gazebo leaves it out with all links and joints '
-                    f'below it{"" if self._for_ros else "; here, too"}',
-                    link.xml, 'LINK_INERTIA_INVALID')
+                self._sources.warning(
+                    link.xml, 'the link has no mass, so Gazebo leaves it out with all links and '
+                    f'joints below it{"" if self._for_ros else "; here, too"}',
+                    'LINK_INERTIA_INVALID')
             is_kept = self._for_ros or not (is_massless or name in left_out)
             if is_kept and not self._is_lumped(link) and (
                     joint is not None or name != WORLD_FRAME):
@@ -252,7 +252,7 @@ class _Conversion:
                 msg += f', so link "{joint.child}" has no place'
                 self._sources.error(RelativeToError, joint.xml, msg)
                 return False
-            self._warning(f'{msg}; it is fixed here', joint.xml)
+            self._sources.warning(joint.xml, f'{msg}; it is fixed here')
             joint_type = 'fixed'
         elif (joint.type == 'fixed' and joint.name in self._settings.revolute_joints
                 and not self._for_ros):
@@ -292,7 +292,8 @@ class _Conversion:
             name = mimic.get('joint', '')
             leader = self._robot.joint_names.get(name)
             if leader is None and self._for_ros:
-                self._warning(f'the mimic is left out: there is no joint "{name}"', mimic)
+                msg = f'the mimic is left out: there is no joint "{name}"'
+                self._sources.warning(mimic, msg)
                 return
             self._add_numbers(
                 self._element(axis, 'mimic', mimic, joint=leader or name), mimic,
@@ -351,8 +352,9 @@ class _Conversion:
         if pose is None:
             pose = self._element(xml, 'pose', xml)
         elif pose.keys():
-            self._warning('the attributes of this <pose> are ignored, as libsdformat ignores them '
-                          'where a fixed joint is removed', pose)
+            self._sources.warning(
+                pose, 'the attributes of this <pose> are ignored, as libsdformat ignores them '
+                'where a fixed joint is removed')
             pose.attrib.clear()
         numbers = list(leading_numbers(text_of(pose) or '0 0 0 0 0 0', 6))
         name = link.name
@@ -376,8 +378,6 @@ class _Conversion:
 
     def _report_unused_extensions(self) -> None:
         for reference, children in self._extensions.items():
-            self._warning(f'what <gazebo reference="{reference}"> holds is left out: the '
-                          'converted model has no link or joint of that name', children[0])
-
-    def _warning(self, message: str, xml: XmlElement, code: str = 'WARNING') -> None:
-        self._sources.problems.warning(message, self._sources.place(xml), code)
+            self._sources.warning(
+                children[0], f'what <gazebo reference="{reference}"> holds is left out: the '
+                'converted model has no link or joint of that name')
