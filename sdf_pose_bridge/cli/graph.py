@@ -16,7 +16,6 @@ import os
 from pathlib import Path
 import shutil
 import subprocess
-import sys
 
 import numpy as np
 
@@ -25,6 +24,7 @@ from sdf_pose_bridge.cli.loading import add_kinds_argument
 from sdf_pose_bridge.cli.loading import add_model_argument
 from sdf_pose_bridge.cli.loading import scene_of
 from sdf_pose_bridge.cli.printing import add_output_argument
+from sdf_pose_bridge.cli.printing import CommandError
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.scene import Scene
@@ -75,14 +75,16 @@ def run(options: argparse.Namespace) -> int:
     """
     Draw the graph of a file.
 
-    :return: exit code: 0 if it is drawn, else 1.
+    :return: exit code: 0.
+    :raises CommandError: if it cannot be written or drawn.
     """
     scene = scene_of(options.files[0], options)
     text = dot_from_scene(scene, options.kinds, options.model)
     if options.output is None:
         print(text, end='')
-        return 0
-    return _write(text, options.output)
+    else:
+        _write(text, options.output)
+    return 0
 
 
 def dot_from_scene(scene: Scene, kinds: Sequence[Kind] = _KINDS, model: str = '') -> str:
@@ -155,23 +157,22 @@ def _escaped(name: str) -> str:
     return printable(shortened(name)).replace('\\', '\\\\').replace('"', '\\"')
 
 
-def _write(text: str, path: Path) -> int:
-    """Write a graph in the format that the path says; return the exit code."""
-    error = ''
+def _write(text: str, path: Path) -> None:
+    """Write a graph in the format that the path says."""
     if path.suffix.lower() == '.dot':
         try:
             path.write_text(text, encoding='utf-8')
-        except OSError as os_error:
-            error = f'cannot write {path}: {os_error.strerror}'
-    elif shutil.which('dot') is None:
-        error = ('the program dot is not installed; install the package graphviz, or write a '
-                 'file that ends with .dot')
-    else:
-        done = subprocess.run(
-            ['dot', f'-T{path.suffix[1:].lower()}', '-o', os.fspath(path)],
-            input=text, encoding='utf-8', capture_output=True, check=False)
-        if done.returncode:
-            error = f'dot cannot draw the graph: {done.stderr.strip()}'
-    if error:
-        print(f'sdf_pose graph: {printable(error)}', file=sys.stderr)
-    return 1 if error else 0
+        except OSError as error:
+            msg = f'cannot write {path}: {error.strerror}'
+            raise CommandError(msg) from error
+        return
+    if shutil.which('dot') is None:
+        msg = ('the program dot is not installed; install the package graphviz, or write a file '
+               'that ends with .dot')
+        raise CommandError(msg)
+    done = subprocess.run(
+        ['dot', f'-T{path.suffix[1:].lower()}', '-o', os.fspath(path)],
+        input=text, encoding='utf-8', capture_output=True, check=False)
+    if done.returncode:
+        msg = f'dot cannot draw the graph: {done.stderr.strip()}'
+        raise CommandError(msg)

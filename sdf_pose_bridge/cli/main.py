@@ -18,8 +18,11 @@ from sdf_pose_bridge.cli import poses
 from sdf_pose_bridge.cli import set as set_command
 from sdf_pose_bridge.cli import tree
 from sdf_pose_bridge.cli import view
+from sdf_pose_bridge.cli.printing import CommandError
 from sdf_pose_bridge.cli.printing import print_problems
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.formats import PoseFormatError
+from sdf_pose_bridge.names import printable
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -47,6 +50,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         # The reader, such as head, has closed the pipe; closing stdout must not raise again.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except (CommandError, PoseFormatError) as error:
+        print(f'sdf_pose {options.command}: {printable(str(error))}', file=sys.stderr)
         return 1
     except SdfError as error:
         print_problems(error.errors, error.warnings, sys.stderr)

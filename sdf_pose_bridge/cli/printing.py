@@ -52,6 +52,10 @@ def print_problems(
         print(f'{bold}{place}:{plain} {color}{kind}{problem.code}:{plain} {message}', file=stream)
 
 
+class CommandError(Exception):
+    """The reason, in a sentence, why a command fails."""
+
+
 class Units(NamedTuple):
     """Units of the poses that a command shows."""
 

@@ -13,11 +13,11 @@ from sdf_pose_bridge.cli.convert import NEGATIVE_NUMBER
 from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import scene_from_file
 from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.printing import CommandError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.formats import converted_rotations
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS
-from sdf_pose_bridge.geometry.formats import PoseFormatError
 from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_inverse
@@ -69,16 +69,15 @@ def run(options: argparse.Namespace) -> int:
     """
     Set a pose.
 
-    :return: exit code: 0 if the file says it now, else 1.
+    :return: exit code: 0.
+    :raises CommandError: if the numbers are wrong.
+    :raises SdfError: if the file cannot say this, or cannot be written.
     """
     source = {**POSE_FORMATS, **ROTATION_FORMATS}[options.format]
     line = line_from_text(0, ' '.join(options.numbers), source)
     if line.error:
-        return _fail(line.error)
-    try:
-        return _set(scene_of(options.files[0], options), line.values, options)
-    except PoseFormatError as error:
-        return _fail(str(error))
+        raise CommandError(line.error)
+    return _set(scene_of(options.files[0], options), line.values, options)
 
 
 def set_pose(
@@ -136,8 +135,3 @@ def _lookup(scene: Scene) -> PoseLookup:
         # Frames that would share an id have their names in SDF.
         tree = tf_tree_from_scene(scene, TfOptions(kinds=frozenset()))
     return PoseLookup(scene, tree)
-
-
-def _fail(message: str) -> int:
-    print(f'sdf_pose set: {printable(message)}', file=sys.stderr)
-    return 1

@@ -21,10 +21,10 @@ from sdf_pose_bridge.cli.loading import scene_of
 from sdf_pose_bridge.cli.loading import tf_options_from_arguments
 from sdf_pose_bridge.cli.printing import add_output_argument
 from sdf_pose_bridge.cli.printing import add_unit_arguments
+from sdf_pose_bridge.cli.printing import CommandError
 from sdf_pose_bridge.cli.printing import units_from_arguments
 from sdf_pose_bridge.cli.set import set_pose
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 
@@ -61,14 +61,15 @@ def run(options: argparse.Namespace) -> int:
     """
     Show a file.
 
-    :return: exit code: 0 if it is shown or written, else 1.
+    :return: exit code: 0.
+    :raises CommandError: if it cannot be shown or written.
     """
     try:
         # Other commands need none of this.
         servers, pages, meshes = (
             importlib.import_module(f'{_ROOM}.{name}') for name in ('server', 'page', 'meshes'))
     except ImportError:
-        return _fail(_NEEDS_VISER)
+        raise CommandError(_NEEDS_VISER) from None
     # Else a browser that draws a picture would outlive this process.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     path = options.files[0]
@@ -87,16 +88,12 @@ def run(options: argparse.Namespace) -> int:
         else:
             servers.write_page(server, path, options.output)
     except OSError as error:
-        return _fail(f'cannot write {options.output}: {error}')
+        msg = f'cannot write {options.output}: {error}'
+        raise CommandError(msg) from error
     finally:
         reader.close()
         server.stop()
     return 0
-
-
-def _fail(message: str) -> int:
-    print(f'sdf_pose view: {printable(message)}', file=sys.stderr)
-    return 1
 
 
 def _open(address: str) -> None:

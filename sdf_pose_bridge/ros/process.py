@@ -105,7 +105,9 @@ def _exit_code_from_node(node: Node) -> int:
         with _interrupted_by_signals():
             loaded = loaded_scene_from_settings(settings)
     except (SdfError, SettingsError, AddressError) as error:
-        _log_failure(node, error)
+        _log_warnings(node, error.warnings if isinstance(error, SdfError) else ())
+        for line in lines_from_error(error):
+            node.get_logger().fatal(line)
         return 1
     frames = PublishedFrames(Publishers(node), loaded.tree, loaded.joint_positions, {})
     frames.publish_tf()
@@ -165,12 +167,6 @@ def _spin_until_signal(executor: SingleThreadedExecutor, node: Node, start: Task
 def _log_warnings(node: Node, warnings: Sequence[object]) -> None:
     for line in lines_from_warnings(warnings):
         node.get_logger().warning(line)
-
-
-def _log_failure(node: Node, error: Exception) -> None:
-    _log_warnings(node, error.warnings if isinstance(error, SdfError) else ())
-    for line in lines_from_error(error):
-        node.get_logger().fatal(line)
 
 
 def _sentence_from_ros_error(error: RuntimeError) -> str:
