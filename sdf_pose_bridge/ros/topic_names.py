@@ -28,10 +28,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
-from itertools import groupby
-from operator import itemgetter
 import re
-import string
 from typing import NamedTuple
 
 from sdf_pose_bridge.ros.log_lines import names_in_line
@@ -48,10 +45,15 @@ SHORTEST_LIMIT = 48
 MOST_BY_DEFAULT = 1000
 """Largest number of topics that are made by default; each takes time and memory."""
 
-_PLAIN = re.compile(r'[A-Za-z](?:_?[A-Za-z0-9])*_?')
-_READS_AS_ESCAPE = re.compile(r'(?:^|_)x(?:[0-9a-f]{2})+(?=[^A-Za-z0-9])')
-_EMPTY_LEVEL = 'x_'
-_KEPT = frozenset(string.ascii_letters + string.digits + '_')
+_ESCAPED = re.compile(r"""
+    \A[0-9_][^A-Za-z0-9]*                             # a digit or underscores at the beginning
+    | _*[^A-Za-z0-9_][^A-Za-z0-9]*                    # others, with the underscores beside them
+    | __+
+    | (?=_?x(?:[0-9a-f]{2})+[^A-Za-z0-9])(?:\Ax|_)    # what reads as an escape
+    | \Ax_\Z                                          # what reads as an empty level
+    """, re.VERBOSE)
+"""The runs of characters in a level that are escaped."""
+
 _CUT = re.compile(r'_xh[0-9a-f]{32}_$')
 _CUT_LENGTH = len('_xh_') + 32
 
@@ -122,25 +124,8 @@ def pose_topics_from_patterns(
 
 def _level_from_text(text: str) -> str:
     if not text:
-        return _EMPTY_LEVEL
-    escapes = [match.start() for match in _READS_AS_ESCAPE.finditer(text)]
-    if not escapes and text != _EMPTY_LEVEL and _PLAIN.fullmatch(text):
-        return text
-    escaped = [character not in _KEPT for character in text]
-    for place in escapes:
-        escaped[place] = True
-    if text[0] in string.digits or text == _EMPTY_LEVEL:
-        escaped[0] = True
-    for place, character in enumerate(text):
-        if character == '_':
-            before, after = text[place - 1:place], text[place + 1:place + 2]
-            escaped[place] |= (
-                before in ('', '_') or after == '_'
-                or escaped[place - 1] or (after != '' and escaped[place + 1]))
-    runs = groupby(zip(text, escaped, strict=True), key=itemgetter(1))
-    parts = [(special, ''.join(character for character, _ in run)) for special, run in runs]
-    level = ''.join(
-        f'_x{_bytes_from_text(part).hex()}_' if special else part for special, part in parts)
+        return 'x_'
+    level = _ESCAPED.sub(lambda run: f'_x{_bytes_from_text(run[0]).hex()}_', text)
     return level.removeprefix('_')
 
 
