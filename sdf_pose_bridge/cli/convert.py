@@ -145,26 +145,23 @@ def _print_converted(
     lines: Sequence[Line], source: Format, targets: Sequence[Format], *, has_labels: bool,
 ) -> int:
     """Print the result or the error of each line and return the exit code."""
-    valid = [line for line in lines if not line.error]
-    columns = [_converted(valid, source, target) for target in targets]
-    results = dict(zip((line.number for line in valid), zip(*columns, strict=True), strict=True))
+    results = iter(_converted([line for line in lines if not line.error], source, targets))
     width = max(len(target.name) for target in targets)
     exit_code = 0
     output = []
     for line in lines:
-        row = results.get(line.number, (line.error,))
-        errors = [result for result in row if isinstance(result, str)]
-        if errors:
+        result = line.error or next(results)
+        if isinstance(result, str):
             exit_code = 1
             place = f'line {line.number}: ' if line.number else ''
-            print(f'sdf_pose convert: {place}{printable(errors[0])}', file=sys.stderr)
+            print(f'sdf_pose convert: {place}{printable(result)}', file=sys.stderr)
             if line.number:
                 # A comment keeps the lines of output beside those of input.
                 output.append(f'# line {line.number} is not converted')
         else:
-            for target, result in zip(targets, row, strict=True):
+            for target, numbers in zip(targets, result, strict=True):
                 label = f'{target.name:{width}}  ' if has_labels else ''
-                output.append(label + ' '.join(map(repr, result)))
+                output.append(label + ' '.join(map(repr, numbers)))
         if has_labels and line.number:
             output.append('')
     sys.stdout.write(''.join(f'{text}\n' for text in output))
@@ -172,19 +169,20 @@ def _print_converted(
 
 
 def _converted(
-    lines: Sequence[Line], source: Format, target: Format,
-) -> list[list[float] | str]:
-    """Return the numbers of each line in another format, or the error."""
+    lines: Sequence[Line], source: Format, targets: Sequence[Format],
+) -> list[Sequence[list[float]] | str]:
+    """Return the numbers of each line in other formats, or the error."""
     if not lines:
         return []
     convert = converted_poses if source.name in POSE_FORMATS else converted_rotations
     values = np.array([line.values for line in lines])
     try:
-        results: list[list[float] | str] = convert(values, source.name, target.name).tolist()
+        return list(zip(*(
+            convert(values, source.name, target.name).tolist() for target in targets),
+            strict=True))
     except PoseFormatError as error:
         if len(lines) == 1:
             return [str(error)]
         half = len(lines) // 2
         return [
-            *_converted(lines[:half], source, target), *_converted(lines[half:], source, target)]
-    return results
+            *_converted(lines[:half], source, targets), *_converted(lines[half:], source, targets)]
