@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+import trimesh
 import viser
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
@@ -50,10 +51,9 @@ _LIGHT_FROM_BELOW = (160, 160, 160)
 _OPACITY = 0.6
 """That of surfaces, so that the frames in them are seen."""
 
-_SCALE_OF_NAMES = 0.8
-_LINE_HEIGHT, _CHARACTER_WIDTH = 0.018, 0.0062
-"""Size of a name, as a part of the height of the picture."""
-_MOST_IN_A_LABEL = 4
+_LINE_HEIGHT, _CHARACTER_WIDTH = 0.018, 0.008
+"""Size of a name, as a part of the height of a window of 720 pixels."""
+_MOST_IN_A_LABEL = 8
 
 
 class Surface(NamedTuple):
@@ -167,8 +167,7 @@ class Drawing:
             self._labels.pop().remove()
         for number, (text, point) in enumerate(labels):
             if number == len(self._labels):
-                self._labels.append(self._server.scene.add_label(
-                    f'/names/{number}', text, font_screen_scale=_SCALE_OF_NAMES))
+                self._labels.append(self._server.scene.add_label(f'/names/{number}', text))
             self._labels[number].text, self._labels[number].position = text, point
 
     def _look_at(self, middle: Points, view_m: float, size_m: float) -> None:
@@ -269,10 +268,11 @@ def bounds_of_scene(scene: Scene, origins: Points, surfaces: Sequence[Surface]) 
     """
     points = [origins, np.zeros((1, 3))]
     for surface in surfaces:
-        half = np.abs(surface.part.points).max(axis=0) * np.abs(surface.scales)
-        poses = scene.poses[surface.elements]
-        reach = np.abs(matrix_from_quaternion(poses[:, 3:])) @ half[:, :, np.newaxis]
-        points += [poses[:, :3] - reach[:, :, 0], poses[:, :3] + reach[:, :, 0]]
+        part, poses = surface.part.points, scene.poses[surface.elements]
+        corners = trimesh.bounds.corners([part.min(axis=0), part.max(axis=0)])
+        matrices = matrix_from_quaternion(poses[:, 3:])
+        turned = (surface.scales[:, np.newaxis] * corners) @ matrices.transpose(0, 2, 1)
+        points.append((turned + poses[:, np.newaxis, :3]).reshape(-1, 3))
     together = np.concatenate(points)
     return np.array([together.min(axis=0), together.max(axis=0)])
 

@@ -139,8 +139,8 @@ def test_label_that_grows_joins_the_one_that_it_reaches():
 
 
 def test_many_names_of_one_place_are_counted():
-    ((text, _),) = labels(*((name, (0, 0, 0)) for name in 'abcdef'))
-    assert text == 'a\nb\nc\nd\nand 2 more'
+    ((text, _),) = labels(*((name, (0, 0, 0)) for name in 'abcdefghij'))
+    assert text == 'a\nb\nc\nd\ne\nf\ng\nh\nand 2 more'
 
 
 @pytest.mark.parametrize(('name', 'is_joined'), [('a', False), ('a' * 40, True)])
