@@ -140,7 +140,6 @@ _UNREAD = frozenset({'population', 'road', 'state', *_KINDS})
 """Elements that hold no frames; kinds are among them where the content of another one names them,
 such as the links of an actor."""
 
-
 _VALUE_TYPES = {each.label: each for each in ValueType} | dict.fromkeys(CHOICES, ValueType.CHOICE)
 
 
@@ -161,34 +160,32 @@ class Definition:
     :param content: what the element holds, as this module describes it.
     :param has_frames: whether kinds of elements are frames here. Otherwise they are parts of what
         libsdformat compares with the specification, but does not read, such as a state.
-    :param value_type: type of the value as definitions name it, if the content does not tell.
     :param is_required: whether the value may not be blank.
     """
 
     def __init__(
         self, identifier: str, content: str, *, has_frames: bool = False,
-        value_type: str = '', minimum: float = -math.inf,
-        maximum: float = math.inf, is_required: bool = False,
+        is_required: bool = False,
     ) -> None:
         self.identifier = identifier
         self.is_required = is_required
-        self.minimum = minimum
-        self.maximum = maximum
         self.kind = _KINDS.get(identifier) if has_frames else None
         """The kind of the element; None for an element that is no frame."""
         self.has_frames = has_frames
         self._items = [item for item in map(_ITEM.fullmatch, content.split()) if item]
-        own_types = [item['type'] for item in self._items if not item['name']]
-        type_name = own_types[0] if own_types else value_type
-        self.value_type = _VALUE_TYPES[type_name] if type_name else None
+        value = next((item for item in self._items if not item['name']), None)
+        self.value_type = None if value is None else _VALUE_TYPES[value['type']]
         """Type of the value; None for an element that holds others."""
-        self.choice = CHOICES.get(type_name)
+        self.choice = None if value is None else CHOICES.get(value['type'])
         """What the value can be, of a choice."""
+        self.minimum, self.maximum = (-math.inf, math.inf) if value is None else (
+            float(value['minimum'] or -math.inf), float(value['maximum'] or math.inf))
         # Python takes longer to look up a member of an Enum than to read an attribute.
         self.is_pose = self.value_type is ValueType.POSE
         self.is_scope = self.kind in (Kind.WORLD, Kind.MODEL)
         self.is_text = self.value_type is ValueType.STRING
-        self.takes_any_number = self.value_type is ValueType.NUMBER and minimum == -math.inf
+        self.takes_any_number = (
+            self.value_type is ValueType.NUMBER and self.minimum == -math.inf)
 
     @cached_property
     def takes_any_children(self) -> bool:
@@ -238,17 +235,15 @@ class Definition:
             if item['name'] not in ('', '*') and not item['attribute']]
 
     def _child(self, item: re.Match[str]) -> Definition:
-        tag = item['name']
+        tag, is_required = item['name'], item['required'] == '!'
         if not item['type']:
             for identifier in (item['identifier'], f'{self.identifier}/{tag}', tag):
                 if identifier in ELEMENTS or (identifier and item['identifier']):
                     return definition_of(
-                        identifier, is_required=item['required'] == '!',
+                        identifier, is_required=is_required,
                         has_frames=self.has_frames and identifier not in _UNREAD)
-        return Definition(
-            tag, '', value_type=item['type'] or 'string',
-            minimum=float(item['minimum'] or -math.inf),
-            maximum=float(item['maximum'] or math.inf), is_required=item['required'] == '!')
+        value = ':string' if not item['type'] else item[0][item.start('type') - 1:]
+        return Definition(tag, value, is_required=is_required)
 
 
 @cache

@@ -39,9 +39,9 @@ class SiblingNames:
     def __init__(self, builder: ElementsBuilder, sources: Sources) -> None:
         self._builder = builder
         self._sources = sources
-        self._used: dict[tuple[int, Kind | None, str], tuple[Kind, int]] = {}
+        self._used: dict[tuple[int, Kind | None, str], tuple[Kind, int, bool]] = {}
+        """By parent, kind and name: the kind, the index, and whether the name is a new one."""
         self._renamed: set[tuple[int, Kind, str]] = set()
-        self._new_names: set[tuple[int, Kind | None, str]] = set()
 
     def add(self, kind: Kind, xml: XmlElement, parent: int, parent_path: str) -> str | None:
         """
@@ -60,10 +60,10 @@ class SiblingNames:
             self._check_reserved_name(kind, xml, name)
         key = (parent, None if kind.is_frame else kind, name)
         if key not in self._used:
-            self._used[key] = (kind, len(self._builder.names))
+            self._used[key] = (kind, len(self._builder.names), False)
             return name
-        other, index = self._used[key]
-        has_duplicate = (other is kind and key not in self._new_names) or (
+        other, index, is_new = self._used[key]
+        has_duplicate = (other is kind and not is_new) or (
             (parent, kind, name) in self._renamed)
         if not has_duplicate and self._is_renamed(kind, parent, parent_path):
             self._renamed.add((parent, kind, name))
@@ -99,8 +99,7 @@ class SiblingNames:
             [f'{name}_{kind.label}'], (f'{name}_{kind.label}{number}' for number in count()))
         new_name = next(
             each for each in candidates if (parent, None, each) not in self._used)
-        self._used[parent, None, new_name] = (kind, len(self._builder.names))
-        self._new_names.add((parent, None, new_name))
+        self._used[parent, None, new_name] = (kind, len(self._builder.names), True)
         msg = (f'the name "{name}" is that of another kind of element in this scope; this '
                f'{kind.label} is called "{new_name}" instead, and references to "{name}" mean the '
                'other one')
