@@ -101,13 +101,17 @@ class _Builder:
         joints = self._joint_ends()
         canonical = self._canonical_pointers()
         attachments = self._attachments(joints, canonical)
+        is_joint_or_frame = np.isin(elements.kinds, (Kind.JOINT, Kind.FRAME))
+        references = np.where(
+            is_joint_or_frame & (attachments != NO_ELEMENT), attachments, elements.parents)
+        self._break_cycles(attachments, AttachedToCycleError, 'attached to')
         bodies = ends_from_pointers(attachments)
         bodies[(elements.parents >= 0) & ~IS_FRAME_KIND[elements.kinds]] = NO_ELEMENT
         joints_of_bodies = valid_joints(
             elements, self._scopes,
             [ends for ends in joints.values() if ends.joint not in self._unresolved],
             bodies, self._problems)
-        references = self._references(joints)
+        self._set_references(references)
         placements = self._placements(references)
         self._add_dependents(references, attachments, joints)
         return FrameGraph(
@@ -148,7 +152,6 @@ class _Builder:
                 attachments[model] = canonical[model]
         for frame, frame_details in elements.frames.items():
             attachments[frame] = self._attached_to(frame, frame_details)
-        self._break_cycles(attachments, AttachedToCycleError, 'attached to')
         return attachments
 
     def _attached_to(self, frame: int, details: FrameDetails) -> int:
@@ -214,22 +217,12 @@ class _Builder:
 
     # Placement
 
-    def _references(self, joints: Mapping[int, JointEnds]) -> Indices:
-        elements = self._elements
-        references: Indices = elements.parents.copy()
-        for joint, ends in joints.items():
-            if ends.child != NO_ELEMENT:
-                references[joint] = ends.child
-        for frame, details in elements.frames.items():
-            if details.attached_to:
-                found = self._scopes.frame(self._scope_of[frame], details.attached_to)
-                if found is not None:
-                    references[frame] = found
-        for index, name in elements.relative_to.items():
+    def _set_references(self, references: Indices) -> None:
+        """Replace the default references of elements by those that the file gives."""
+        for index, name in self._elements.relative_to.items():
             found = self._scopes.frame(self._scope_of[index], name)
             references[index] = self._default_reference(index, name) if found is None else found
         self._break_cycles(references, RelativeToCycleError, 'relative to')
-        return references
 
     def _default_reference(self, index: int, name: str) -> int:
         """Report an unknown ``relative_to``; return the reference to use instead."""
@@ -244,11 +237,9 @@ class _Builder:
             return int(elements.parents[index])
         self._unresolved[index] = self._scopes.missing_uri(scope, name)
         if not self._unresolved[index]:
-            msg = (f'relative_to="{name}" names no frame in {self._scopes.described(scope)}'
-                   f'{self._scopes.hint(scope, name, self._problems)}; the '
-                   f'{elements.kind(index).label} is left out')
-            place = elements.place_of_pose(index)
-            self._problems.warning(msg, place, RelativeToError.code)
+            reason = self._scopes.reason_without_frame(scope, name, self._problems)
+            msg = f'relative_to="{name}" {reason}; the {elements.kind(index).label} is left out'
+            self._problems.warning(msg, elements.place_of_pose(index), RelativeToError.code)
         return NO_ELEMENT
 
     def _placements(self, references: Indices) -> dict[int, int]:
@@ -290,9 +281,9 @@ class _Builder:
         if uri:
             self._unresolved[index] = uri
             return
-        msg = (f'{attribute}="{name}" names no frame in {self._scopes.described(scope)}'
-               f'{self._scopes.hint(scope, name, self._problems)}')
-        self._problems.error(error_class(msg, self._elements.place(index, line, part)))
+        reason = self._scopes.reason_without_frame(scope, name, self._problems)
+        place = self._elements.place(index, line, part)
+        self._problems.error(error_class(f'{attribute}="{name}" {reason}', place))
 
     def _add_dependents(
         self, references: Indices, attachments: Indices, joints: Mapping[int, JointEnds],

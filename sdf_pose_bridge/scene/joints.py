@@ -121,7 +121,7 @@ class _JointChecks:
         parent, child = details.parent, details.child
         if child.name == WORLD_FRAME:
             msg = '"world" cannot be the child of a joint, only its parent'
-            self._error(JointChildError, msg, joint, child.line, 'child')
+            self._report(JointChildError, msg, joint, child.line, 'child')
         elif child_index < 0 and child.name:
             self._report_unknown(JointChildError, joint, child, 'child')
         if parent_index < 0 and parent.name:
@@ -146,38 +146,37 @@ class _JointChecks:
         parent, child = details.parent, details.child
         if child_body == root:
             msg = f'child "{child.name}" is attached to the world, so nothing can move it'
-            self._error(JointChildError, msg, joint, child.line, 'child')
+            self._report(JointChildError, msg, joint, child.line, 'child')
         else:
             msg = (f'parent "{parent.name}" and child "{child.name}" are both attached to '
                    f'"{self._scopes.names[child_body]}"; a joint joins two bodies')
-            report = self._error if parent.name == child.name else self._report
-            report(JointSameLinkError, msg, joint, 0, '')
+            self._report(
+                JointSameLinkError, msg, joint, is_checked=parent.name == child.name)
         return False
 
     def _report_unknown(
         self, error_class: type[SdfError], joint: int, reference: Reference, what: str,
         part: str = '',
     ) -> None:
-        scope = self._scope_of[joint]
-        msg = (f'{what} "{reference.name}" names no frame in {self._scopes.described(scope)}'
-               f'{self._scopes.hint(scope, reference.name, self._problems)}')
-        report = self._error if error_class is JointChildError else self._report
-        report(error_class, msg, joint, reference.line, part or what)
+        reason = self._scopes.reason_without_frame(
+            self._scope_of[joint], reference.name, self._problems)
+        msg = f'{what} "{reference.name}" {reason}'
+        self._report(error_class, msg, joint, reference.line, part or what)
 
     def _report(
-        self, error_class: type[SdfError], message: str, joint: int, line: int, part: str,
+        self, error_class: type[SdfError], message: str, joint: int, line: int = 0,
+        part: str = '', *, is_checked: bool = False,
     ) -> None:
-        """Report what libsdformat does not check in models in models."""
-        scope = self._scope_of[joint]
-        if scope == self._scopes.roots[joint] or (
-                self._elements.parents[scope] == self._scopes.roots[joint]):
-            self._error(error_class, message, joint, line, part)
+        """
+        Report an error, or a warning where libsdformat does not check this.
+
+        :param is_checked: whether it checks this in models in models too, as it does children.
+        """
+        scope, root = self._scope_of[joint], self._scopes.roots[joint]
+        place = self._elements.place(joint, line, part)
+        if is_checked or error_class is JointChildError or (
+                root in (scope, self._elements.parents[scope])):
+            self._problems.error(error_class(message, place))
         else:
-            place = self._elements.place(joint, line, part)
             self._problems.warning(
                 f'{message}; libsdformat does not check this here', place, error_class.code)
-
-    def _error(
-        self, error_class: type[SdfError], message: str, joint: int, line: int, part: str,
-    ) -> None:
-        self._problems.error(error_class(message, self._elements.place(joint, line, part)))

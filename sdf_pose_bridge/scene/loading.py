@@ -54,6 +54,7 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+_Details = TypeVar('_Details')
 _Scalar = TypeVar('_Scalar', bound=np.generic)
 
 
@@ -66,6 +67,19 @@ class MissingInclude(enum.Enum):
     """The include is left out, with a warning."""
 
 
+@contextlib.contextmanager
+def _without_garbage_collection() -> Iterator[None]:
+    """Disable the collector, which would search the elements of a large file again and again."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+@_without_garbage_collection()
 def load(
     path: str | os.PathLike[str],
     *,
@@ -87,9 +101,29 @@ def load(
         what a change would mean before it is made.
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
     """
-    return _scene_from_file(
-        os.fspath(path), resource_paths, MissingInclude(on_missing_include), limits,
-        shapes=shapes, texts=texts or {})
+    on_missing_include = MissingInclude(on_missing_include)
+    gazebo_errors: Sequence[SdfError] = ()
+    while True:
+        sources = Sources(limits, texts)
+        problems = sources.problems
+        for error in gazebo_errors:
+            problems.warning(
+                f'{error.message}; so what <gazebo> elements hold is left out', error.place,
+                error.code)
+        try:
+            document = document_from_file(
+                os.fspath(path), sources, reads_gazebo_elements=not gazebo_errors)
+            try:
+                return _scene(document, sources, resource_paths, on_missing_include, shapes=shapes)
+            except LoadError as error:
+                if gazebo_errors or not document.has_gazebo_elements:
+                    raise
+                # ROS does not read what <gazebo> elements hold, so that must not keep a robot from
+                # being read.
+                gazebo_errors = error.errors
+        except LimitError as error:
+            # It ends a load at once, behind the errors found so far.
+            raise LoadError([*problems.errors, error], problems.warnings) from None
 
 
 def load_text(
@@ -112,58 +146,6 @@ def load_text(
     return load(
         name, resource_paths=resource_paths, on_missing_include=on_missing_include, limits=limits,
         shapes=shapes, texts={name: text, **(texts or {})})
-
-
-def _scene_from_file(
-    path: str, resource_paths: Iterable[str | os.PathLike[str]],
-    on_missing_include: MissingInclude, limits: Limits, *, shapes: bool,
-    texts: Mapping[str, bytes | str], gazebo_errors: Sequence[SdfError] = (),
-) -> Scene:
-    """
-    Read a file and make the scene.
-
-    :param gazebo_errors: what is wrong with ``<gazebo>`` elements, which are left out then.
-    """
-    sources = Sources(limits, texts)
-    problems = sources.problems
-    for error in gazebo_errors:
-        problems.warning(
-            f'{error.message}; so what <gazebo> elements hold is left out', error.place,
-            error.code)
-    with _without_garbage_collection(), _limit_error_last(problems):
-        document = document_from_file(
-            path, sources, reads_gazebo_elements=not gazebo_errors)
-        try:
-            return _scene(document, sources, resource_paths, on_missing_include, shapes=shapes)
-        except LoadError as error:
-            if gazebo_errors or not document.has_gazebo_elements:
-                raise
-            errors = error.errors
-    # ROS does not read what <gazebo> elements hold, so that must not keep a robot from being read.
-    return _scene_from_file(
-        path, resource_paths, on_missing_include, limits, shapes=shapes, texts=texts,
-        gazebo_errors=errors)
-
-
-@contextlib.contextmanager
-def _without_garbage_collection() -> Iterator[None]:
-    """Disable the collector, which would search the elements of a large file again and again."""
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.enable()
-
-
-@contextlib.contextmanager
-def _limit_error_last(problems: Problems) -> Iterator[None]:
-    """Raise an error about a limit, which ends a load at once, behind the errors found so far."""
-    try:
-        yield
-    except LimitError as error:
-        raise LoadError([*problems.errors, error], problems.warnings) from None
 
 
 def _scene(
@@ -221,6 +203,10 @@ def _scene_from_graph(
     def reindexed(old: Sequence[int] | Indices) -> Indices:
         return _frozen(new_index[np.asarray(old, dtype=np.intp)[is_kept]].astype(np.int32))
 
+    def kept(details: Mapping[int, _Details]) -> Mapping[int, _Details]:
+        return MappingProxyType({
+            new_index_of[index]: each for index, each in details.items() if is_kept[index]})
+
     return Scene(
         path=path,
         files=tuple(elements.paths),
@@ -230,35 +216,27 @@ def _scene_from_graph(
         roots=reindexed(graph.roots),
         poses=_frozen(poses[is_kept]),
         references=reindexed(graph.references),
-        placements=MappingProxyType({
-            new_index_of[model]: new_index_of[frame]
-            for model, frame in graph.placements.items() if is_kept[model] and is_kept[frame]}),
+        placements=kept({
+            model: new_index_of[frame] for model, frame in graph.placements.items()
+            if is_kept[frame]}),
         attachments=reindexed(graph.attachments),
         bodies=reindexed(graph.bodies),
         canonical_links=reindexed(graph.canonical_links),
         static_models=frozenset(
-            new_index_of[index] for index, details in elements.models.items()
-            if details.is_static and is_kept[index]),
+            model for model, details in kept(elements.models).items() if details.is_static),
         joints=tuple(
             _joint(ends, elements, poses, new_index_of)
             for ends in graph.joints if is_kept[ends.joint]),
-        sensors=MappingProxyType({
-            new_index_of[index]: details for index, details in elements.sensors.items()
-            if is_kept[index]}),
-        shapes=MappingProxyType({
-            new_index_of[index]: shape for index, shape in elements.shapes.items()
-            if is_kept[index]}),
+        sensors=kept(elements.sensors),
+        shapes=kept(elements.shapes),
         lines=_frozen(elements.lines[is_kept]),
         pose_lines=_frozen(elements.pose_lines[is_kept]),
-        includes=MappingProxyType({
-            new_index_of[index]: place for index, place in elements.includes.items()
-            if is_kept[index]}),
-        automatic_inertials=frozenset(
-            new_index_of[index] for index in elements.automatic_inertials if is_kept[index]),
+        includes=kept(elements.includes),
+        automatic_inertials=frozenset(kept(elements.automatic_inertials)),
         file_indices=_frozen(elements.file_indices[is_kept]),
-        world_names=MappingProxyType({
-            new_index_of[index]: elements.names[index]
-            for index in np.flatnonzero(is_kept & (elements.kinds == Kind.WORLD)).tolist()}),
+        world_names=kept({
+            index: elements.names[index]
+            for index in np.flatnonzero(elements.kinds == Kind.WORLD).tolist()}),
         warnings=problems.warnings,
     )
 

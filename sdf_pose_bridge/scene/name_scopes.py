@@ -9,12 +9,13 @@ Source: ``ScopedGraph.hh`` of libsdformat. A reference in a scope is the absolut
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator
-from collections.abc import Sequence
 from itertools import islice
 
 import numpy as np
 
+from sdf_pose_bridge.geometry.chains import ends_from_pointers
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import ROOT_FRAME
@@ -52,16 +53,12 @@ class NameScopes:
     def __init__(self, elements: Elements, usage: Usage) -> None:
         self._elements = elements
         self.names = _absolute_names(elements, usage)
-        self.roots = _roots(elements)
+        self.roots: list[int] = ends_from_pointers(elements.parents).tolist()
         self._is_model: list[bool] = (elements.kinds == Kind.MODEL).tolist()
-        self._frames: dict[int, dict[str, int]] = {}
-        frames = np.flatnonzero(IS_FRAME_KIND[elements.kinds])
-        # Elements stand in file order, so those of a root stand before the next root.
-        roots = np.flatnonzero(elements.parents < 0)
-        frames_of_roots = np.split(frames, np.searchsorted(frames, roots))[1:]
-        for root, indices in zip(roots.tolist(), frames_of_roots, strict=True):
-            # Of equal names, which are errors, the first one counts.
-            self._frames[root] = {self.names[index]: index for index in indices[::-1].tolist()}
+        self._frames = defaultdict[int, dict[str, int]](dict)
+        # Of equal names, which are errors, the first one counts.
+        for index in np.flatnonzero(IS_FRAME_KIND[elements.kinds])[::-1].tolist():
+            self._frames[self.roots[index]][self.names[index]] = index
 
     def frame(self, scope: int, reference: str) -> int | None:
         """
@@ -107,30 +104,27 @@ class NameScopes:
                 return uri
         return ''
 
-    def described(self, scope: int) -> str:
-        """
-        Return a scope as part of a message.
-
-        :param scope: index of a model, world or root.
-        :return: such as ``model "robot::arm"``.
-        """
+    def _described(self, scope: int) -> str:
+        """Return a scope as part of a message: ``model "robot::arm"``."""
         kind = self._elements.kind(scope)
         if kind is Kind.ROOT:
             return 'the top of the file'
         name = self._elements.names[scope] if kind is Kind.WORLD else self.names[scope]
         return f'{kind.label} "{name}"'
 
-    def hint(self, scope: int, reference: str, problems: Problems) -> str:
+    def reason_without_frame(self, scope: int, reference: str, problems: Problems) -> str:
         """
-        Return the end of a message about a reference that names no frame.
+        Return what to say of a reference that names no frame.
 
         :param scope: index of the model, world or root in which the reference is written.
         :param reference: the name as written.
         :param problems: those of the load, which limit the number of hints.
-        :return: the likely reason, or the nearest name that exists; else an empty string.
+        :return: the end of a message, with the likely reason, or the nearest name that exists.
         """
-        if not problems.allows_hint():
-            return ''
+        hint = self._hint(scope, reference) if problems.allows_hint() else ''
+        return f'names no frame in {self._described(scope)}{hint}'
+
+    def _hint(self, scope: int, reference: str) -> str:
         first = reference.split(SEPARATOR, 1)[0]
         if self._is_model[scope]:
             if first == self._elements.names[scope]:
@@ -140,7 +134,7 @@ class NameScopes:
             outer = int(self._elements.parents[scope])
             while outer >= 0:
                 if self.frame(outer, reference) is not None:
-                    return (f'; {self.described(outer)} has a frame of that name, but names of '
+                    return (f'; {self._described(outer)} has a frame of that name, but names of '
                             'enclosing scopes cannot be used')
                 outer = int(self._elements.parents[outer])
         scoped = reference.replace('/', SEPARATOR)
@@ -176,11 +170,3 @@ def _absolute_names(elements: Elements, usage: Usage) -> list[str]:
     if characters:
         usage.add('work', -(-characters // CHARACTERS_OF_STEP), elements.place(len(names) - 1))
     return names
-
-
-def _roots(elements: Elements) -> Sequence[int]:
-    tops = np.flatnonzero(elements.parents < 0)
-    # Elements stand in file order, so each belongs to the top before it.
-    counts = np.diff(np.append(tops, len(elements.names)))
-    roots: list[int] = np.repeat(tops, counts).tolist()
-    return roots
