@@ -20,6 +20,7 @@ import numpy as np
 
 from sdf_pose_bridge.geometry.formulas import row_blocks
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
+from sdf_pose_bridge.geometry.rotations import Floats
 
 PoseArray: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
 """Poses as rows: shape (n, 7), x y z in metres, unit quaternion x y z w."""
@@ -95,27 +96,26 @@ def canonical_relative_pose(reference: Pose, pose: Pose) -> Pose:
     :return: pose of frame C in frame B; its quaternion is canonical as that of
         :func:`~sdf_pose_bridge.geometry.rotations.canonical_quaternion`, and no zero is negative.
     """
-    relative = relative_pose(reference, pose)
-    x, y, z = (value + 0.0 for value in relative[:3])
-    return Pose(x, y, z, *canonical_quaternion(relative[3:]))
+    x, y, z, *quat_xyzw = relative_pose(reference, pose)
+    return Pose(x + 0.0, y + 0.0, z + 0.0, *canonical_quaternion(quat_xyzw))
 
 
 def pose_products(a: PoseArray, b: PoseArray) -> PoseArray:
     """
     Chain many pairs of poses with :func:`pose_product`.
 
-    :param a: poses of frames B in frames A, shape (n, 7) or (1, 7).
+    :param a: poses of frames B in frames A, shape (n, 7), or (7,) if it is one for all.
     :param b: poses of frames C in frames B, shape (n, 7).
     :return: poses of frames C in frames A, shape (n, 7).
     """
-    return _in_blocks(pose_product, np.broadcast_to(a, b.shape), b)
+    return _in_blocks(pose_product, a, b)
 
 
 def relative_poses(references: PoseArray, poses: PoseArray) -> PoseArray:
     """
     Return many poses in other frames with :func:`relative_pose`.
 
-    :param references: poses of frames B in frames A, shape (n, 7).
+    :param references: poses of frames B in frames A, shape (n, 7), or (7,) if it is one for all.
     :param poses: poses of frames C in frames A, shape (n, 7).
     :return: poses of frames C in frames B, shape (n, 7).
     """
@@ -126,19 +126,36 @@ def canonical_relative_poses(references: PoseArray, poses: PoseArray) -> PoseArr
     """
     Return what :func:`relative_poses` does, in the canonical form in which poses are published.
 
-    :param references: poses of frames B in frames A, shape (n, 7).
-    :param poses: poses of frames C in frames A, shape (n, 7).
-    :return: poses of frames C in frames B, shape (n, 7), with canonical quaternions
-        and without negative zeros.
+    :return: poses of frames C in frames B, shape (n, 7), canonical.
     """
-    relative = relative_poses(references, poses)
-    relative[:, 3:] = canonical_quaternion(relative[:, 3:])
-    relative += 0.0
-    return relative
+    return canonical_poses(relative_poses(references, poses))
+
+
+def canonical_poses(poses: PoseArray) -> PoseArray:
+    """
+    Return poses in the form in which they are shown and published.
+
+    :param poses: shape (n, 7); the quaternions may have any norm but zero.
+    :return: shape (n, 7), with canonical quaternions and without negative zeros.
+    """
+    return np.concatenate([poses[:, :3] + 0.0, canonical_quaternion(poses[:, 3:])], axis=1)
+
+
+def transformed_points(poses: PoseArray, points: Floats) -> Floats:
+    """
+    Return points in other frames.
+
+    :param poses: poses of frames B in frames A, shape (n, 7).
+    :param points: points in frames B, shape (n, 3), in metres.
+    :return: the points in frames A, shape (n, 3).
+    """
+    translations = np.tile(Pose(), (len(points), 1))
+    translations[:, :3] = points
+    return pose_products(poses, translations)[:, :3]
 
 
 def _in_blocks(formula: Callable[[Pose, Pose], Pose], a: PoseArray, b: PoseArray) -> PoseArray:
-    results = np.empty(b.shape)
+    a, results = np.broadcast_to(a, b.shape), np.empty(b.shape)
     for block in row_blocks(len(b)):
         results[block] = np.transpose(formula(_columns(a[block]), _columns(b[block])))
     return results

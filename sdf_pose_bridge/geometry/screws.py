@@ -10,16 +10,12 @@ parts of x - p along the axis and normal to it. The quaternion is ``(a sin(r/2),
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.poses import PoseArray
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-    Floats = NDArray[np.float64]
+from sdf_pose_bridge.geometry.poses import transformed_points
+from sdf_pose_bridge.geometry.rotations import Floats
 
 
 class ScrewMotions:
@@ -47,14 +43,17 @@ class ScrewMotions:
         normal = arms - along
         half_turns = np.zeros((len(axes), 7))
         half_turns[:, 3:6] = axes
+        rotations = before.copy()
+        rotations[:, :3] = 0.0
         # Shape (n, 6, 7): the factors of 1, the position, and the cosines and sines of the angle
         # and of its half.
         self._factors = np.zeros((len(axes), 6, 7))
-        self._factors[:, 0, :3] = pose_products(before, _translations(points + along))[:, :3]
-        self._factors[:, 1, :3] = _rotated(before, m_per_unit[:, np.newaxis] * axes)
-        self._factors[:, 2, :3] = _rotated(before, normal)
+        self._factors[:, 0, :3] = transformed_points(before, points + along)
+        self._factors[:, 1, :3] = transformed_points(
+            rotations, m_per_unit[:, np.newaxis] * axes)
+        self._factors[:, 2, :3] = transformed_points(rotations, normal)
         self._factors[:, 3, 3:] = pose_products(before, after)[:, 3:]
-        self._factors[:, 4, :3] = _rotated(before, np.cross(axes, normal))
+        self._factors[:, 4, :3] = transformed_points(rotations, np.cross(axes, normal))
         self._factors[:, 5, 3:] = pose_products(pose_products(before, half_turns), after)[:, 3:]
         self._angles_per_unit = np.stack([rad_per_unit, 0.5 * rad_per_unit], axis=1)
 
@@ -75,14 +74,3 @@ class ScrewMotions:
         return poses
 
 
-def _translations(vectors: Floats) -> PoseArray:
-    poses = np.zeros((len(vectors), 7))
-    poses[:, :3] = vectors
-    poses[:, 6] = 1.0
-    return poses
-
-
-def _rotated(poses: PoseArray, vectors: Floats) -> Floats:
-    rotations = poses.copy()
-    rotations[:, :3] = 0.0
-    return pose_products(rotations, _translations(vectors))[:, :3]

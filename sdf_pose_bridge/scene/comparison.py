@@ -40,6 +40,15 @@ class Difference(NamedTuple):
     angle_rad: float = 0.0
 
 
+class _Place(NamedTuple):
+    """What an element keeps that only gets another name."""
+
+    world: str
+    scope: str
+    kind: int
+    pose: bytes
+
+
 def differences_of_scenes(
     old: Scene, new: Scene, *, relative_to: str = '', tolerance: float = TOLERANCE,
 ) -> list[Difference]:
@@ -57,25 +66,27 @@ def differences_of_scenes(
     """
     old_poses, new_poses = _poses(old, relative_to), _poses(new, relative_to)
     old_keys, new_keys = _indices(old), _indices(new)
-    gone = [index for key, index in old_keys.items() if key not in new_keys]
-    come = [index for key, index in new_keys.items() if key not in old_keys]
-    renamed = _renamed(old, new, gone, come)
+    renamed = _renamed(
+        old, new, [index for key, index in old_keys.items() if key not in new_keys],
+        [index for key, index in new_keys.items() if key not in old_keys])
+    old_of_new = renamed | {
+        new_keys[key]: index for key, index in old_keys.items() if key in new_keys}
+    remaining = set(old_of_new.values())
     differences = [
         Difference(Change.REMOVED, Kind(old.kinds[index]), old.names[index], old.names[index])
-        for index in gone if index not in renamed]
-    old_of_new = {new_keys[key]: index for key, index in old_keys.items() if key in new_keys}
-    old_of_new |= {after: before for before, after in renamed.items()}
-    pairs = sorted(old_of_new)
-    before = old_poses[[old_of_new[index] for index in pairs]]
-    distances, angles = _distances_and_angles(before, new_poses[pairs])
-    movements = dict(zip(pairs, zip(distances, angles, strict=True), strict=True))
+        for index in old_keys.values() if index not in remaining]
+    between = relative_poses(old_poses[list(old_of_new.values())], new_poses[list(old_of_new)])
+    distances = np.linalg.norm(between[:, :3], axis=1)
+    angles = 2.0 * np.arctan2(np.linalg.norm(between[:, 3:6], axis=1), np.abs(between[:, 6]))
+    movements = dict(zip(
+        old_of_new, zip(distances.tolist(), angles.tolist(), strict=True), strict=True))
     for index in new_keys.values():
         kind, name = Kind(new.kinds[index]), new.names[index]
         if index not in old_of_new:
             differences.append(Difference(Change.ADDED, kind, name, ''))
             continue
         old_name = old.names[old_of_new[index]]
-        if index in renamed.values():
+        if index in renamed:
             differences.append(Difference(Change.RENAMED, kind, name, old_name))
         if max(movements[index]) > tolerance:
             differences.append(Difference(Change.MOVED, kind, name, old_name, *movements[index]))
@@ -92,36 +103,28 @@ def _indices(scene: Scene) -> dict[tuple[str, int, str], int]:
 def _poses(scene: Scene, relative_to: str) -> PoseArray:
     if not relative_to:
         return scene.poses
-    reference = scene.poses[scene.index(relative_to)]
-    return relative_poses(np.tile(reference, (len(scene.poses), 1)), scene.poses)
-
-
-def _distances_and_angles(
-    before: PoseArray, after: PoseArray,
-) -> tuple[list[float], list[float]]:
-    between = relative_poses(before, after)
-    angles = 2.0 * np.arctan2(
-        np.linalg.norm(between[:, 3:6], axis=1), np.abs(between[:, 6]))
-    return np.linalg.norm(between[:, :3], axis=1).tolist(), angles.tolist()
+    return relative_poses(scene.poses[scene.index(relative_to)], scene.poses)
 
 
 def _renamed(old: Scene, new: Scene, gone: list[int], come: list[int]) -> dict[int, int]:
-    """Return the new index of each element that has another name now."""
+    """Return the old index of each element that has another name now, by the new one."""
     renamed: dict[int, int] = {}
     new_names: dict[str, str] = {}
-    places: dict[tuple[object, ...], list[int]] = {}
-    for index in come:
-        places.setdefault(_place(new, index, new.names[new.parents[index]]), []).append(index)
-    for index in gone:
-        scope = old.names[old.parents[index]]
-        place = _place(old, index, new_names.get(scope, scope))
-        same = [other for other in gone if other not in renamed and _place(
-            old, other, new_names.get(scope := old.names[old.parents[other]], scope)) == place]
-        if len(same) == 1 and len(places.get(place, ())) == 1:
-            renamed[index] = places[place][0]
-            new_names[old.names[index]] = new.names[places[place][0]]
+    places = _indices_by_place(new, come)
+    # An element stands after the one that holds it.
+    for place, indices in _indices_by_place(old, gone).items():
+        found = places.get(place._replace(scope=new_names.get(place.scope, place.scope)), [])
+        if len(indices) == len(found) == 1:
+            renamed[found[0]] = indices[0]
+            new_names[old.names[indices[0]]] = new.names[found[0]]
     return renamed
 
 
-def _place(scene: Scene, index: int, scope: str) -> tuple[object, ...]:
-    return scene.world_of(index), int(scene.kinds[index]), scope, scene.poses[index].tobytes()
+def _indices_by_place(scene: Scene, indices: list[int]) -> dict[_Place, list[int]]:
+    places: dict[_Place, list[int]] = {}
+    for index in indices:
+        place = _Place(
+            scene.world_of(index), scene.names[scene.parents[index]], int(scene.kinds[index]),
+            scene.poses[index].tobytes())
+        places.setdefault(place, []).append(index)
+    return places

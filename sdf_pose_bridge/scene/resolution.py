@@ -9,13 +9,14 @@ import math
 import numpy as np
 
 from sdf_pose_bridge.geometry.chains import poses_along_chains
+from sdf_pose_bridge.geometry.poses import canonical_poses
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_inverse
 from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.poses import relative_pose
-from sdf_pose_bridge.geometry.rotations import canonical_quaternion
+from sdf_pose_bridge.geometry.poses import transformed_points
 from sdf_pose_bridge.scene.frame_graph import FrameGraph
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -38,9 +39,7 @@ def root_poses_from_graph(poses: PoseArray, graph: FrameGraph) -> PoseArray:
     resolved = poses_along_chains(edges, references, np.flatnonzero(is_reference))
     others = np.flatnonzero(~is_reference & (references >= 0))
     resolved[others] = pose_products(resolved[references[others]], edges[others])
-    resolved[:, 3:] = canonical_quaternion(resolved[:, 3:])
-    resolved[:, :3] += 0.0  # no negative zeros
-    return resolved
+    return canonical_poses(resolved)
 
 
 def set_automatic_inertials(root_poses: PoseArray, elements: Elements) -> None:
@@ -55,9 +54,9 @@ def set_automatic_inertials(root_poses: PoseArray, elements: Elements) -> None:
             collisions.setdefault(int(elements.parents[index]), []).append(index)
     for index, masses in elements.automatic_inertials.items():
         link = int(elements.parents[index])
-        centers = np.tile(Pose(), (len(masses), 1))
-        centers[:, 2] = [mass.center_z_m for mass in masses]
-        points = pose_products(root_poses[collisions[link]], centers)[:, :3]
+        points = transformed_points(
+            root_poses[collisions[link]],
+            np.array([(0.0, 0.0, mass.center_z_m) for mass in masses]))
         root_poses[index, :3] = np.average(
             points, axis=0, weights=[mass.mass_kg for mass in masses])
         root_poses[index, 3:] = root_poses[link, 3:]

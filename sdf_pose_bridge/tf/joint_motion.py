@@ -23,7 +23,9 @@ from sdf_pose_bridge.geometry.chains import poses_along_chains
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.geometry.poses import transformed_points
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
+from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.geometry.screws import ScrewMotions
 from sdf_pose_bridge.scene.scene import Joint
 from sdf_pose_bridge.scene.scene import Scene
@@ -34,7 +36,6 @@ from sdf_pose_bridge.tf.parents import TfParents
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-    Floats = NDArray[np.float64]
 
 NO_DOF = -1
 """Index that means no degree of freedom."""
@@ -122,9 +123,9 @@ class JointMotion:
 
     def _axes_in_root(self, scene: Scene) -> tuple[Floats, Floats]:
         poses = scene.poses[[dof.joint.element for dof in self.dofs]]
-        directions = np.tile(Pose(), (len(poses), 1))
-        directions[:, :3] = np.reshape([each.direction for each in self.dofs], (-1, 3))
-        return pose_products(poses, directions)[:, :3] - poses[:, :3], poses[:, :3]
+        points = poses[:, :3]
+        directions = np.reshape([each.direction for each in self.dofs], (-1, 3))
+        return transformed_points(poses, directions) - points, points
 
     def screw_motions(
         self, before: PoseArray, dofs: NDArray[np.intp], after: PoseArray,

@@ -103,7 +103,7 @@ class MovingFrames:
         if self._pose_frame < 0:
             return poses
         reference = self.pose_of_frame(self._pose_frame, positions)
-        return canonical_relative_poses(np.broadcast_to(reference, poses.shape), poses)
+        return canonical_relative_poses(np.array(reference), poses)
 
     def pose_of_frame(self, index: int, positions: NDArray[np.float64]) -> Pose:
         """

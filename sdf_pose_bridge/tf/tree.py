@@ -193,7 +193,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     pose_frame = options.pose_frame or options.root_frame
     reference = _index_of_pose_frame(pose_frame, frame_ids, options.root_frame, scene)
     poses_in_pose_frame = poses[:-2] if reference < 0 else canonical_relative_poses(
-        np.broadcast_to(poses[reference], poses[:-2].shape), poses[:-2])
+        poses[reference], poses[:-2])
     moving = None
     if options.use_joint_states:
         motion = JointMotion(scene, tf_parents)

@@ -10,11 +10,15 @@ import numpy as np
 import pytest
 
 from sdf_pose_bridge import Pose
+from sdf_pose_bridge.geometry.poses import canonical_poses
+from sdf_pose_bridge.geometry.poses import canonical_relative_pose
+from sdf_pose_bridge.geometry.poses import canonical_relative_poses
 from sdf_pose_bridge.geometry.poses import pose_inverse
 from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.geometry.poses import relative_poses
+from sdf_pose_bridge.geometry.poses import transformed_points
 
 NUMBERS = st.floats(-100.0, 100.0, allow_subnormal=False)
 QUATERNIONS = st.tuples(*[st.floats(-1.0, 1.0)] * 4).filter(
@@ -113,6 +117,24 @@ def test_many_relative_poses_are_the_same_as_one_by_one(pairs):
     relative = relative_poses(rows([a for a, _ in pairs]), rows([b for _, b in pairs]))
     np.testing.assert_array_equal(
         relative, rows([relative_pose(a, b) for a, b in pairs]))
+
+
+@settings(max_examples=30)
+@given(POSES, st.lists(POSES, min_size=1, max_size=12))
+def test_many_poses_in_one_frame_are_canonical_as_one_by_one(a, poses):
+    relative = canonical_relative_poses(np.array(a), rows(poses))
+    assert_near(relative, rows([canonical_relative_pose(a, b) for b in poses]))
+
+
+def test_canonical_poses_have_no_negative_zero_and_w_is_positive():
+    poses = canonical_poses(rows([Pose(-0.0, 1.0, -2.0, -0.0, 0.6, -0.0, -0.8)]))
+    assert str(poses.tolist()) == '[[0.0, 1.0, -2.0, 0.0, -0.6, 0.0, 0.8]]'
+
+
+@given(POSES, st.tuples(NUMBERS, NUMBERS, NUMBERS))
+def test_a_transformed_point_is_that_of_the_matrix(a, point):
+    expected = matrix_from_pose(a) @ (*point, 1.0)
+    assert_near(transformed_points(rows([a]), np.array([point])), [expected[:3]])
 
 
 def more_poses_than_a_block():
