@@ -248,7 +248,7 @@ def joint_state_from_bytes(data: bytes, known_names: bytes = b'') -> JointStateB
                 end = _aligned(end, 4) + 4 + length
         (count,) = struct.unpack_from(f'{order}I', data, _aligned(end, 4))
         # Numbers are aligned to eight bytes, counted from where the fields begin.
-        numbers = _aligned(_aligned(end, 4) + 4 - _START, 8) + _START if count else 0
+        numbers = _aligned(_aligned(end, 4) + 4 - _START, 8) + _START
         positions = np.frombuffer(data, f'{order}f8', count, numbers)
     except (struct.error, ValueError) as error:
         msg = f'it ends too early: {error}'

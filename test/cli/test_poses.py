@@ -27,6 +27,12 @@ def test_poses_prints_a_json_object_for_each_file(sdf_pose):
         'kind': 'link', 'name': 'm::l', 'world': 'w', 'pose': [2.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]}
 
 
+def test_tables_of_several_files_have_their_names_above_them(run_main):
+    lines = run_main('poses', 'good.sdf', 'warned.sdf').stdout.splitlines()
+    assert [line for line in lines if line.endswith('.sdf')] == ['good.sdf', 'warned.sdf']
+    assert not run_main('poses', 'good.sdf').stdout.startswith('good.sdf')
+
+
 @pytest.mark.parametrize(('written', 'shown'), [
     ('a&#10;link  b', r'a\nlink  b'), ('\x9b31m', r'\x9b31m'), ('\u202egnp', r'\u202egnp'),
     ('größe', 'größe'),
@@ -86,3 +92,12 @@ def test_poses_at_positions_of_joints(sdf_pose, files):
     done = sdf_pose('poses', 'arm.sdf', '--json', '--joint', 'j=7', '--joint', 'm::j=0.5')
     poses = {each['name']: each['pose'] for each in json.loads(done.stdout)['elements']}
     assert poses['m::b'][:3] == [0.0, 0.0, 0.5]
+
+
+@pytest.mark.parametrize('arguments', [(), ('--relative-to', 'none')])
+def test_a_position_beyond_the_limits_of_its_joint_is_a_warning(run_main, files, arguments):
+    limit = '<axis><xyz>0 0 1</xyz><limit><lower>0</lower><upper>1</upper></limit></axis></joint>'
+    (files / 'arm.sdf').write_text(ARM.replace('</joint>', limit))
+    done = run_main('poses', 'arm.sdf', '--json', '--joint', 'j=2', *arguments)
+    (warning,) = json.loads(done.stdout)['warnings']
+    assert 'the position 2 of "j" is beyond its limits, 0 to 1' in warning['message']

@@ -234,6 +234,13 @@ def test_the_file_is_read_again_where_that_changes_anything(settings, name, valu
     assert changed.needs_load_after(settings) is needs_load
 
 
+def test_only_the_permission_to_write_files_cannot_be_changed(make_node):
+    node = make_node('bridge', *FILE)
+    settings_from_node(node)
+    descriptors = node.describe_parameters(list(DECLARATIONS))
+    assert [each.name for each in descriptors if each.read_only] == ['allow_set_pose']
+
+
 @pytest.mark.parametrize('name', DECLARATIONS)
 def test_every_parameter_explains_itself(make_node, name):
     node = make_node('bridge', *FILE)
