@@ -165,12 +165,12 @@ class PoseText:
 
     def _with_content(self, element: int, content: bytes) -> bytes:
         """Return the text of the file with content behind the start tag of an element."""
-        end, text = self._tags[element][1], self._text
-        if self._is_closed(end):
-            tag = written_tag(self._elements[element]).encode()
-            return self._encoded(
-                text[:end - 1] + b'>' + content + b'</%s>' % tag + text[end + 1:])
-        return self._encoded(text[:end + 1] + content + text[end + 1:])
+        end = self._tags[element][1]
+        is_closed = self._is_closed(end)
+        end_tag = f'</{written_tag(self._elements[element])}>' if is_closed else ''
+        return self._encoded(
+            self._text[:end - is_closed] + b'>' + content + end_tag.encode()
+            + self._text[end + 1:])
 
     def _format(self, element: int) -> PoseFormat:
         xml = self._elements[element]

@@ -32,7 +32,7 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-SHORTEST_QUATERNION = 1e-9
+_SHORTEST_QUATERNION = 1e-9
 """A quaternion with a smaller norm has no meaningful direction."""
 
 _LARGEST_NORM = 1e150
@@ -122,9 +122,8 @@ def poses_from_texts(texts: Sequence[str], pose_format: PoseFormat) -> PosesFrom
                 failures.append((index, str(error)))
                 rows.append(pose_numbers_from_text('', pose_format))
         numbers = np.array(rows)
-    doubts = [
-        (row, _doubt(texts[row], pose_format)) for row in _doubtful_rows(numbers, pose_format)]
-    return PosesFromTexts(_poses_from_numbers(numbers, pose_format), failures, doubts)
+    return PosesFromTexts(
+        _poses_from_numbers(numbers, pose_format), failures, _doubts(texts, numbers, pose_format))
 
 
 def pose_from_text(text: str, pose_format: PoseFormat) -> Sequence[float]:
@@ -164,11 +163,10 @@ def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> list[float]:
     numbers = [float(word) for word in words]
     if pose_format.is_quaternion:
         norm = math.hypot(*numbers[3:])
-        if norm < SHORTEST_QUATERNION:
-            msg = f'the quaternion of the pose "{shown}" is zero, so it is not a rotation'
-            raise PoseTextError(msg)
-        if math.isinf(norm):
-            msg = f'the quaternion of the pose "{shown}" is beyond the range of a double'
+        if norm < _SHORTEST_QUATERNION or math.isinf(norm):
+            rule = ('zero, so it is not a rotation' if norm < _SHORTEST_QUATERNION
+                    else 'beyond the range of a double')
+            msg = f'the quaternion of the pose "{shown}" is {rule}'
             raise PoseTextError(msg)
         if norm > _LARGEST_NORM:
             numbers[3:] = [number / norm for number in numbers[3:]]
@@ -184,21 +182,19 @@ def _shown(text: str) -> str:
     return shown if len(shown) <= 80 else shown[:77] + '...'
 
 
-def _doubtful_rows(numbers: npt.NDArray[np.float64], pose_format: PoseFormat) -> list[int]:
+def _doubts(
+    texts: Sequence[str], numbers: npt.NDArray[np.float64], pose_format: PoseFormat,
+) -> list[tuple[int, str]]:
     if pose_format.is_quaternion:
         is_doubtful = np.abs(np.linalg.norm(numbers[:, 3:], axis=1) - 1.0) > _NORM_TOLERANCE
+        doubt = 'the quaternion of the pose "{}" is not of length 1; it is normalised'
     elif pose_format.is_degrees:
         return []
     else:
         is_doubtful = np.abs(numbers[:, 3:]).max(axis=1, initial=0.0) > _LARGEST_ANGLE_RAD
+        doubt = 'the angles of the pose "{}" are radians; did you mean degrees="true"?'
     rows: list[int] = np.flatnonzero(is_doubtful).tolist()
-    return rows
-
-
-def _doubt(text: str, pose_format: PoseFormat) -> str:
-    if pose_format.is_quaternion:
-        return f'the quaternion of the pose "{_shown(text)}" is not of length 1; it is normalised'
-    return f'the angles of the pose "{_shown(text)}" are radians; did you mean degrees="true"?'
+    return [(row, doubt.format(_shown(texts[row]))) for row in rows]
 
 
 def _numbers_from_texts(texts: Sequence[str], count: int) -> npt.NDArray[np.float64] | None:
@@ -225,7 +221,7 @@ def _numbers_from_texts(texts: Sequence[str], count: int) -> npt.NDArray[np.floa
     is_quaternion = count == 7
     if np.abs(numbers).max(initial=0.0) > (_LARGEST_NORM if is_quaternion else sys.float_info.max):
         return None
-    if is_quaternion and (np.linalg.norm(numbers[:, 3:], axis=1) < SHORTEST_QUATERNION).any():
+    if is_quaternion and (np.linalg.norm(numbers[:, 3:], axis=1) < _SHORTEST_QUATERNION).any():
         return None
     return numbers
 
@@ -233,13 +229,11 @@ def _numbers_from_texts(texts: Sequence[str], count: int) -> npt.NDArray[np.floa
 def _poses_from_numbers(
     numbers: npt.NDArray[np.float64], pose_format: PoseFormat,
 ) -> npt.NDArray[np.float64]:
-    poses = np.empty((len(numbers), 7))
-    poses[:, :3] = numbers[:, :3]
     rotations = numbers[:, 3:]
     if pose_format.is_quaternion:
         norms = np.sqrt(np.einsum('ij,ij->i', rotations, rotations))
-        poses[:, 3:] = rotations / norms[:, np.newaxis]
+        quaternions = rotations / norms[:, np.newaxis]
     else:
-        rpy_rad = np.radians(rotations) if pose_format.is_degrees else rotations
-        poses[:, 3:] = quaternion_from_rpy(rpy_rad)
-    return poses
+        quaternions = quaternion_from_rpy(
+            np.radians(rotations) if pose_format.is_degrees else rotations)
+    return np.hstack((numbers[:, :3], quaternions))

@@ -99,7 +99,7 @@ class Judgment(NamedTuple):
     """How a value is read that probably means something else; empty if it is plain."""
 
 
-RIGHT = Judgment()
+_RIGHT = Judgment()
 """The one judgment of all values that are right and plain."""
 
 
@@ -115,12 +115,12 @@ def judged_value(text: str, definition: Definition) -> Judgment:
     if value_type is None or (
             definition.takes_any_number and len(text) < LONGEST_PLAIN
             and _PLAIN_NUMBER.fullmatch(text)):
-        return RIGHT
+        return _RIGHT
     stripped = text.strip(WHITE_SPACE)
     if not stripped and definition.is_required:
         return Judgment(f'<{definition.identifier}> is empty; it must have a value')
     if not stripped or definition.is_text:
-        return RIGHT
+        return _RIGHT
     if definition.choice is not None:
         fault = choice_fault(stripped, definition.choice)
         return Judgment(f'"{stripped}" of <{definition.identifier}> {fault}' if fault else '')
@@ -136,7 +136,7 @@ def judged_value(text: str, definition: Definition) -> Judgment:
         rule = (f'at least {minimum:g}' if maximum == math.inf
                 else f'from {minimum:g} to {maximum:g}')
         return Judgment(f'"{stripped}" must be {rule}')
-    return RIGHT if plain_numbers else Judgment(doubt=_doubt(stripped, numbers))
+    return _RIGHT if plain_numbers else Judgment(doubt=_doubt(stripped, numbers))
 
 
 def _doubt(text: str, numbers: Sequence[float]) -> str:
