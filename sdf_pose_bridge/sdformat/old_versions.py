@@ -37,6 +37,9 @@ _MOVED_ELEMENTS = (
 """Elements without poses: in files below a version, what an element at a path held as, and its
 tag in that element now."""
 
+_MODELS = ('model', 'world/model')
+"""Paths of the models that are in no other model."""
+
 _SCOPED_TAGS = frozenset({'link', 'joint', 'frame', 'model', 'gripper'})
 _REFERENCE_ATTRIBUTES = ('relative_to', 'attached_to', 'expressed_in')
 
@@ -70,21 +73,17 @@ def _move_elements(root: XmlElement, version: Version) -> None:
                 parent.append(element)
     if version < Version(1, 6):
         # Its numbers become those of the noise of each axis.
-        for path in ('world/model/link/sensor/imu', 'model/link/sensor/imu'):
-            for imu in root.iterfind(path):
-                noise = first_child(imu, 'noise')
-                if noise is not None:
-                    imu.remove(noise)
+        for path in _MODELS:
+            for noise in root.xpath(f'{path}/link/sensor/imu/noise[1]'):
+                noise.getparent().remove(noise)
 
 
 def _express_axes_in_model(root: XmlElement) -> None:
     """1.4 to 1.5: axes are given in the model frame if nothing else is said."""
-    for parent in (root, *child_elements(root, 'world')):
-        for axis in parent.iterfind('model/joint/*'):
-            xyz = first_child(axis, 'xyz')
-            if (axis.tag in ('axis', 'axis2') and xyz is not None
-                    and first_child(axis, 'use_parent_model_frame') is None):
-                xyz.set('expressed_in', MODEL_FRAME)
+    axes = '*[self::axis or self::axis2][not(use_parent_model_frame)]'
+    for path in _MODELS:
+        for xyz in root.xpath(f'{path}/joint/{axes}/xyz[1]'):
+            xyz.set('expressed_in', MODEL_FRAME)
 
 
 def _rename_frame_attributes(root: XmlElement) -> None:
@@ -110,9 +109,8 @@ def _convert_use_parent_model_frame(root: XmlElement) -> None:
 
 def _remove_empty_relative_to(root: XmlElement) -> None:
     """1.7 to 1.8: ``inertial/pose`` has no ``relative_to``; an empty one meant nothing."""
-    for pose in root.iterfind('.//inertial/pose'):
-        if not pose.get('relative_to', 'none'):
-            del pose.attrib['relative_to']
+    for pose in root.xpath('.//inertial/pose[@relative_to=""]'):
+        del pose.attrib['relative_to']
 
 
 def _nest_scoped_elements(model: XmlElement, sources: Sources) -> None:
