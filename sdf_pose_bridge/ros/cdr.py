@@ -15,6 +15,7 @@ of TFMessage, TransformStamped, PoseStamped and JointState.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from itertools import pairwise
 import struct
 from typing import NamedTuple
@@ -66,9 +67,17 @@ class StampedMessages:
         self._buffer = buffer
         self._integers = buffer.view('<i4')
         self._floats = buffer.view('<f8')
-        self._places_of_stamps = (stamps // 4)[:, np.newaxis] + np.arange(2)
-        self._places_of_numbers = (numbers // 8)[:, np.newaxis] + np.arange(7)
+        self._stamps = stamps
+        self._numbers = numbers
         self._bounds = bounds
+
+    @cached_property
+    def _places_of_stamps(self) -> npt.NDArray[np.int64]:
+        return _places(self._stamps, 4, 2)
+
+    @cached_property
+    def _places_of_numbers(self) -> npt.NDArray[np.int64]:
+        return _places(self._numbers, 8, 7)
 
     def with_stamp(self, sec: int, nanosec: int) -> list[bytes]:
         """
@@ -104,13 +113,11 @@ def tf_message(
     # The length of the sequence is before the first transform.
     room = np.zeros(len(transforms), np.int64)
     room[:1] = _LENGTH
-    buffer, stamps, numbers, ends = _records([parent_ids, child_ids], room, _HEADER)
+    buffer, stamps, numbers, ends = _records([parent_ids, child_ids], transforms, room, _HEADER)
     buffer.view('<i4')[_HEADER // 4] = len(transforms)
     buffer[_HEADER - 3] = 1
     end = int(ends[-1]) if len(transforms) else _HEADER + _LENGTH
-    message = StampedMessages(buffer, stamps, numbers, [(_HEADER - 4, end)])
-    message.set_poses(transforms)
-    return message
+    return StampedMessages(buffer, stamps, numbers, [(_HEADER - 4, end)])
 
 
 def transform_stamped_messages(
@@ -141,28 +148,27 @@ def pose_stamped_messages(frame_ids: Sequence[str], poses: PoseArray) -> Stamped
 
 def _messages(columns: Sequence[Sequence[str]], poses: PoseArray) -> StampedMessages:
     """Serialize a message for each stamp, strings (one of each column) and seven numbers."""
-    buffer, stamps, numbers, ends = _records(columns, np.full(len(poses), _HEADER), 0)
+    buffer, stamps, numbers, ends = _records(columns, poses, np.full(len(poses), _HEADER), 0)
     begins = stamps - 4
     buffer[begins + 1] = 1
-    messages = StampedMessages(
+    return StampedMessages(
         buffer, stamps, numbers, list(zip(begins.tolist(), ends.tolist(), strict=True)))
-    messages.set_poses(poses)
-    return messages
 
 
 def _records(
-    columns: Sequence[Sequence[str]], room: npt.NDArray[np.int64], start: int,
+    columns: Sequence[Sequence[str]], poses: PoseArray, room: npt.NDArray[np.int64], start: int,
 ) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.int64], npt.NDArray[np.int64],
            npt.NDArray[np.int64]]:
     """
     Write records of a stamp, strings and seven numbers, one after the other.
 
     :param columns: sequences of as many strings as there are records.
+    :param poses: the seven numbers of each record.
     :param room: bytes to leave free at the beginning of each record.
     :param start: offset of the first record in the buffer, a multiple of 8. All others follow at
         multiples of 8, since each one ends with the numbers.
-    :return: a buffer with the records, which have zeros for stamps and numbers; and the offsets of
-        the stamp and the numbers of each record, and that behind its last byte.
+    :return: a buffer with the records, which have zeros for stamps; and the offsets of the stamp
+        and the numbers of each record, and that behind its last byte.
     """
     # Offsets in a record at first, one for each record.
     offsets = room + _STAMP
@@ -192,7 +198,14 @@ def _records(
             begin, end = bounds[[first, last]].tolist()
             targets = np.arange(begin, end) + np.repeat(moves[first:last], lengths[first:last])
             buffer[targets] = data[begin:end]
-    return buffer, begins + room, begins + offsets, ends
+    numbers = begins + offsets
+    buffer.view('<f8')[_places(numbers, 8, 7)] = poses
+    return buffer, begins + room, numbers, ends
+
+
+def _places(offsets: npt.NDArray[np.int64], size: int, count: int) -> npt.NDArray[np.int64]:
+    """Return where so many values of a size are that follow one another from each offset on."""
+    return (offsets // size)[:, np.newaxis] + np.arange(count)
 
 
 class JointStateBytes(NamedTuple):

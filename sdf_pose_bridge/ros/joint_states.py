@@ -15,7 +15,7 @@ import time
 from typing import TYPE_CHECKING
 
 import numpy as np
-from rclpy.callback_groups import CallbackGroup
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock
 from rclpy.clock import ClockType
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -48,19 +48,6 @@ _WARNING_PERIOD_S = 10.0
 _NANOSECONDS = 1_000_000_000
 _MOST_PLANS = 20
 _MOST_WAITING = 1000
-
-
-class _NotExecuted(CallbackGroup):
-    """A callback group whose entities executors ignore."""
-
-    def can_execute(self, _entity: object) -> bool:
-        return False
-
-    def beginning_execution(self, _entity: object) -> bool:
-        return False
-
-    def ending_execution(self, _entity: object) -> None:
-        pass
 
 
 @dataclass
@@ -112,13 +99,16 @@ class JointStates:
             # The messages of a period wait in the subscription, which does not wake the executor:
             # that takes ten times as long as everything that is done with a message.
             quality = QoSProfile(depth=_MOST_WAITING, reliability=ReliabilityPolicy.BEST_EFFORT)
-            group = _NotExecuted()
+            group = MutuallyExclusiveCallbackGroup()
             self._timers.append(node.create_timer(
                 TOPICS_PERIOD_S, self._take_waiting, clock=steady_clock))
         # What is best effort and volatile fits every publisher, so there is nothing to report.
         self._subscription = node.create_subscription(
             JointState, 'joint_states', self.take, quality, callback_group=group, raw=True,
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False))
+        if group is not None:
+            # To executors a callback of the group is always running, so they take no messages.
+            group.beginning_execution(self._subscription)
 
     def destroy(self) -> None:
         """Stop following, and destroy what was created for it."""
