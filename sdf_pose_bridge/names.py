@@ -64,15 +64,16 @@ def scoped_name(scope: str, name: str) -> str:
     return f'{scope}{SEPARATOR}{name}' if scope else name
 
 
-def shortened(value: str) -> str:
+def shortened(value: str, longest: int = _LONGEST_VALUE) -> str:
     """
     Return a value from a file for a message.
 
-    :return: the text, without its middle if it has more than 80 characters.
+    :param longest: how many characters it may have.
+    :return: the text, without its middle if it has more characters.
     """
-    if len(value) <= _LONGEST_VALUE:
+    if len(value) <= longest:
         return value
-    half = (_LONGEST_VALUE - 3) // 2
+    half = (longest - 3) // 2
     return f'{value[:half]}...{value[-half:]}'
 
 
@@ -82,12 +83,8 @@ def shortened_message(message: str) -> str:
 
     :return: the sentence with at most 2000 characters.
     """
-    if len(message) <= _LONGEST_VALUE:
-        return message
-    if len(message) > _LONGEST_MESSAGE:
-        half = (_LONGEST_MESSAGE - 3) // 2
-        message = f'{message[:half]}...{message[-half:]}'
-    return _QUOTED.sub(lambda match: f'"{shortened(match[1])}"', message)
+    return _QUOTED.sub(
+        lambda match: f'"{shortened(match[1])}"', shortened(message, _LONGEST_MESSAGE))
 
 
 def printable(text: str) -> str:
@@ -112,17 +109,7 @@ def hint_from_names(wanted: str, names: Iterable[str]) -> str:
 
     :return: ``; did you mean "..."?`` with the nearest name, or an empty string.
     """
-    nearest = nearest_name(wanted, names)
-    return f'; did you mean "{nearest}"?' if nearest else ''
-
-
-def nearest_name(wanted: str, names: Iterable[str]) -> str:
-    """
-    Return the name that was probably meant.
-
-    :return: the nearest of them, or an empty string if none is near.
-    """
-    return NameIndex(names).nearest(wanted) if len(wanted) <= _LONGEST_COMPARED else ''
+    return NameIndex(names).hint(wanted)
 
 
 class NameIndex:
@@ -138,7 +125,7 @@ class NameIndex:
         self._reversed_names = sorted((name[::-1] for name in short), key=_sort_key)
 
     def nearest(self, wanted: str) -> str:
-        """Return the name that was probably meant."""
+        """Return the name that was probably meant; an empty string if none is near."""
         if len(wanted) > _LONGEST_COMPARED:
             return ''
         # The import takes a millisecond, and most processes do not need it.
@@ -147,6 +134,11 @@ class NameIndex:
             name[::-1] for name in _neighbors(self._reversed_names, wanted[::-1]))]
         near = difflib.get_close_matches(wanted, _comparable(wanted, likely), n=1, cutoff=0.6)
         return near[0] if near else ''
+
+    def hint(self, wanted: str) -> str:
+        """Return the end of a message about a name that was not found."""
+        nearest = self.nearest(wanted)
+        return f'; did you mean "{nearest}"?' if nearest else ''
 
 
 def _sort_key(name: str) -> str:

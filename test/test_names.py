@@ -9,7 +9,6 @@ import pytest
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import is_reserved
 from sdf_pose_bridge.names import NameIndex
-from sdf_pose_bridge.names import nearest_name
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.names import shortened
@@ -75,7 +74,7 @@ def test_printable_text_is_one_line_without_control_characters(text, shown):
 
 
 def test_very_long_name_has_no_hint():
-    assert nearest_name('x' * 10**6, ['x' * (10**6 - 1)]) == ''
+    assert hint_from_names('x' * 10**6, ['x' * (10**6 - 1)]) == ''
 
 
 @pytest.mark.parametrize('wanted', ['ba' * 100, 'abc' * 60, 'b' * 200])
@@ -83,7 +82,7 @@ def test_names_of_few_repeated_letters_are_compared_in_bounded_time(wanted):
     names = [f'{"ab" * 95}{number}' for number in range(400)]
     begin = time.process_time()
     for _ in range(10):
-        nearest_name(wanted, names)
+        hint_from_names(wanted, names)
     assert time.process_time() - begin < 2.0  # 0.1 s; 10 s where all of them are compared
 
 

@@ -5,7 +5,6 @@
 from collections.abc import Iterator
 from collections.abc import Mapping
 from dataclasses import dataclass
-from dataclasses import replace
 from functools import cached_property
 import math
 from typing import NamedTuple
@@ -157,11 +156,7 @@ class Scene:
         return self.relative_pose_of(index, reference)
 
     def pose_of(self, index: int) -> Pose:
-        """
-        Return the pose of an element in its root.
-
-        :return: its pose in its world or implicit root.
-        """
+        """Return the pose of an element in its world or implicit root."""
         return Pose(*self.poses[index].tolist())
 
     def relative_pose_of(self, index: int, reference: int) -> Pose:
@@ -174,23 +169,11 @@ class Scene:
         return canonical_relative_pose(self.pose_of(reference), self.pose_of(index))
 
     def world_of(self, index: int) -> str:
-        """
-        Return the world of an element.
-
-        :return: the world's name; empty in a model file.
-        """
+        """Return the name of the world of an element; empty in a model file."""
         return self.world_names.get(self._root_of[index], '')
 
-    def with_poses(self, poses: PoseArray, warnings: tuple[SdfWarning, ...]) -> 'Scene':
-        """Return a scene with the same elements at other poses."""
-        return replace(self, poses=poses, warnings=warnings)
-
     def has(self, name: str) -> bool:
-        """
-        Return whether an element exists, in any world.
-
-        :param name: absolute name such as ``robot::arm::hand``.
-        """
+        """Return whether an element has an absolute name, in any world."""
         return name in self._indices
 
     def index(self, name: str, *, world: str = '') -> int:
@@ -204,22 +187,16 @@ class Scene:
         :raises UnknownFrameError: if there is no such name, or more than one.
         """
         found = self._indices.get(name, [])
-        if len(found) == 1 and (not world or self.world_of(found[0]) == world):
-            return found[0]
         if world:
             found = [i for i in found if self.world_of(i) == world]
-        frames = [i for i in found if self.kinds[i] in _FRAMES_AND_ROOTS]
-        for candidates in (frames, found):
-            if len(candidates) == 1:
-                return candidates[0]
-        raise self._unknown(name, world, frames or found)
+        if len(found) > 1:
+            found = [i for i in found if self.kinds[i] in _FRAMES_AND_ROOTS] or found
+        if len(found) == 1:
+            return found[0]
+        raise self._unknown(name, world, found)
 
     def own_name(self, index: int) -> str:
-        """
-        Return the name of an element without its scope.
-
-        :return: such as ``hand``; for a world its name.
-        """
+        """Return the name of an element without its scope; for a world its name."""
         parent = int(self.parents[index])
         if parent < 0:
             return self.world_names.get(index, self.names[index])
@@ -231,11 +208,7 @@ class Scene:
         return Place(self.files[self.file_indices[index]], int(self.lines[index]))
 
     def with_ancestors(self, index: int) -> Iterator[int]:
-        """
-        Walk from an element to its root.
-
-        :return: the element itself, then each time the element that holds the last one.
-        """
+        """Iterate over an element and all that hold it, from the innermost to its root."""
         while index >= 0:
             yield index
             index = int(self.parents[index])
@@ -249,7 +222,7 @@ class Scene:
         the one that holds it; -1 for worlds and implicit roots.
         """
         references = np.where(
-            self.kinds == int(Kind.FRAME), self.attachments, self.parents)
+            self.kinds == Kind.FRAME, self.attachments, self.parents)
         for joint in self.joints:
             references[joint.element] = joint.child
         return references

@@ -81,7 +81,7 @@ class FrameNaming(NamedTuple):
             own_name = scene.own_name(int(elements[position]))
             label = Kind(kinds[position]).label
             names[position] = scoped_name(scope, f'{label}{SEPARATOR}{own_name}')
-        is_in_model_file = (scene.kinds[scene.roots[elements[:1]]] == int(Kind.ROOT)).any()
+        is_in_model_file = (scene.kinds[scene.roots[elements[:1]]] == Kind.ROOT).any()
         if self.names is FrameNames.RELATIVE or (
                 self.names is FrameNames.AUTO and is_in_model_file):
             models = _top_level_elements(scene)[elements]
@@ -136,7 +136,7 @@ def with_ids_of_sensors(
     """
     sensor_ids = {
         int(elements[index]): frame_ids[index]
-        for index in np.flatnonzero(scene.kinds[elements] == int(Kind.SENSOR)).tolist()}
+        for index in np.flatnonzero(scene.kinds[elements] == Kind.SENSOR).tolist()}
     names = {sensor: scene.sensors[sensor].frame_id for sensor in sensor_ids}
     if not any(names.values()):
         return elements, frame_ids, sensor_ids

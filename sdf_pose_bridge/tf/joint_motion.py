@@ -28,8 +28,8 @@ from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.geometry.screws import ScrewMotions
 from sdf_pose_bridge.scene.scene import Joint
+from sdf_pose_bridge.scene.scene import JointAxis
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.specification import DofType
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
 from sdf_pose_bridge.sdformat.specification import Motion
 from sdf_pose_bridge.tf.parents import TfParents
@@ -47,12 +47,12 @@ class DegreeOfFreedom(NamedTuple):
     """One of the ways in which a joint can move."""
 
     joint: Joint
-    axis: int | None
+    number: int | None
     """Which axis of the joint it is, 0 or 1; None for a ball joint."""
     suffix: str
     """What its name in ``joint_states`` has after that of the joint."""
-    direction: tuple[float, float, float]
-    """Unit vector of the axis in the frame of the joint."""
+    axis: JointAxis
+    """The axis, with its limits; a ball joint has none."""
     rad_per_unit: float
     """How far it turns about the axis for a position of 1."""
     m_per_unit: float
@@ -67,19 +67,14 @@ def dofs_from_joint(joint: Joint) -> list[DegreeOfFreedom]:
         joint has yaw, pitch and roll of its child in its parent.
     :raises KeyError: if :data:`JOINT_TYPES` does not have the type of the joint.
     """
-    return [_dof(joint, dof_type) for dof_type in JOINT_TYPES[joint.type].dofs]
-
-
-def _dof(joint: Joint, dof_type: DofType) -> DegreeOfFreedom:
-    motion, axis, suffix = dof_type
-    index, direction = (
-        (axis, joint.axes[axis].xyz) if isinstance(axis, int) else (None, axis))
-    return DegreeOfFreedom(
-        joint, index, suffix, direction,
-        rad_per_unit=0.0 if motion is Motion.SLIDE else 1.0,
-        m_per_unit=(
-            1.0 if motion is Motion.SLIDE else
-            joint.screw_pitch_m / _TURN_RAD if motion is Motion.SCREW else 0.0))
+    rad_and_m_per_unit = {
+        Motion.TURN: (1.0, 0.0), Motion.SLIDE: (0.0, 1.0),
+        Motion.SCREW: (1.0, joint.screw_pitch_m / _TURN_RAD)}
+    return [
+        DegreeOfFreedom(joint, axis, suffix, joint.axes[axis], *rad_and_m_per_unit[motion])
+        if isinstance(axis, int) else
+        DegreeOfFreedom(joint, None, suffix, JointAxis(axis), *rad_and_m_per_unit[motion])
+        for motion, axis, suffix in JOINT_TYPES[joint.type].dofs]
 
 
 class JointMotion:
@@ -94,38 +89,32 @@ class JointMotion:
         signs: list[float] = []
         ranges: dict[int, range] = {}
         for body, step in tf_parents.joints.items():
-            if not _is_in_static_model(scene, body):
-                path = dofs_from_joint(step.joint)
+            path = dofs_from_joint(step.joint)
+            if path and scene.static_models.isdisjoint(scene.with_ancestors(body)):
+                ranges[body] = range(len(dofs), len(dofs) + len(path))
                 dofs += reversed(path) if step.is_reversed else path
                 signs += [-1.0 if step.is_reversed else 1.0] * len(path)
-                if path:
-                    ranges[body] = range(len(signs) - len(path), len(signs))
         self.dofs = tuple(dofs)
         """All degrees of freedom; those of a joint stand together."""
         bodies = list(ranges)
-        is_moved = np.zeros(len(scene.kinds), np.bool_)
-        is_moved[bodies] = True
         last_of_bodies = np.full(len(scene.kinds), NO_DOF, np.int32)
         last_of_bodies[bodies] = [each[-1] for each in ranges.values()]
         self.last_dofs: Indices = last_of_bodies[
-            ends_from_pointers(np.where(is_moved, -1, tf_parents.parents))]
+            ends_from_pointers(np.where(last_of_bodies != NO_DOF, -1, tf_parents.parents))]
         """For each element the last degree of freedom between the root and it; -1 for none."""
         self.previous: Indices = np.arange(-1, len(dofs) - 1, dtype=np.int32)
         """For each degree of freedom the one before it on the way from the root; -1 for none."""
         self.previous[[each[0] for each in ranges.values()]] = self.last_dofs[
             tf_parents.parents[bodies]]
-        self._axes, self._points = self._axes_in_root(scene)
+        poses = scene.poses[[each.joint.element for each in dofs]]
+        directions = np.reshape([each.axis.xyz for each in dofs], (-1, 3))
+        self._points = poses[:, :3]
+        self._axes = transformed_points(poses, directions) - self._points
         self._rad_per_unit = np.array([each.rad_per_unit for each in dofs]) * signs
         self._m_per_unit = np.array([each.m_per_unit for each in dofs]) * signs
         identities = np.tile(Pose(), (len(dofs), 1))
         self._displacements = self.screw_motions(
             identities, np.arange(len(dofs)), identities)
-
-    def _axes_in_root(self, scene: Scene) -> tuple[Floats, Floats]:
-        poses = scene.poses[[dof.joint.element for dof in self.dofs]]
-        points = poses[:, :3]
-        directions = np.reshape([each.direction for each in self.dofs], (-1, 3))
-        return transformed_points(poses, directions) - points, points
 
     def screw_motions(
         self, before: PoseArray, dofs: NDArray[np.intp], after: PoseArray,
@@ -162,7 +151,3 @@ class JointMotion:
             moved[rows] = pose_products(displacements[last[rows]], poses[rows])
             moved[rows, 3:] = canonical_quaternion(moved[rows, 3:])
         return moved
-
-
-def _is_in_static_model(scene: Scene, element: int) -> bool:
-    return any(model in scene.static_models for model in scene.with_ancestors(element))

@@ -10,10 +10,9 @@ called ``<joint>_axis2``; a ball joint has ``<joint>_roll``, ``<joint>_pitch`` a
 
 from __future__ import annotations
 
-from collections.abc import Container
-from collections.abc import Iterable
 from collections.abc import Mapping
 from collections.abc import Sequence
+import dataclasses
 from typing import NamedTuple
 from typing import TYPE_CHECKING
 
@@ -87,17 +86,11 @@ class JointPositions:
         """Whether each has been given a position, or follows from one that has."""
         self.dofs = tuple(dofs)
         joints = np.array([each.joint.element for each in dofs], np.int32)
-        is_named = [
-            scene.roots[joint] == 0
-            and (not model or scene.names[joint].startswith(model + SEPARATOR))
-            for joint in joints.tolist()]
         names = FrameNaming(frame_names).frame_ids_from_scene(scene, joints)
         self.names = tuple(
             name + each.suffix for name, each in zip(names, dofs, strict=True))
         """The name of each degree of freedom."""
-        self._indices = _indices_from_names(
-            self.names, [scene.names[joint] for joint in joints.tolist()],
-            [each.suffix for each in dofs], is_named, frozenset(scene.names))
+        self._indices = _indices_from_names(self.names, scene, dofs, model)
         self._followers = _followers(dofs)
 
     def selection(self, names: Sequence[str]) -> Selection:
@@ -133,22 +126,17 @@ class JointPositions:
         :param values: a value for each name that was looked up, in radians or metres.
         :return: the names whose values are not finite or too large; their positions stay.
         """
-        dofs, new = selection.dofs, values[selection.rows]
-        invalid: list[str] = []
-        sizes = np.abs(new)
-        # One that is not a number is the largest.
-        if not sizes.max(initial=0.0) <= LARGEST_POSITION:
-            is_valid = sizes <= LARGEST_POSITION
-            invalid = [self.names[dof] for dof in dofs[~is_valid].tolist()]
-            dofs, new = dofs[is_valid], new[is_valid]
-        self.values[dofs] = new
+        new = values[selection.rows]
+        is_valid = np.abs(new) <= LARGEST_POSITION
+        dofs = selection.dofs[is_valid]
+        self.values[dofs] = new[is_valid]
         self.is_known[dofs] = True
         for dof, leader, mimic in selection.followers:
             value = mimic.multiplier * (self.values[leader] - mimic.reference) + mimic.offset
             if self.is_known[leader] and abs(value) <= LARGEST_POSITION:
                 self.values[dof] = value
                 self.is_known[dof] = True
-        return invalid
+        return [self.names[dof] for dof in selection.dofs[~is_valid].tolist()]
 
     def take_over(self, before: JointPositions) -> None:
         """
@@ -191,17 +179,15 @@ def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
     warnings = []
     for name, dof, value in zip(
             state.names, motion.dofs, state.values.tolist(), strict=True):
-        axis = None if dof.axis is None else dof.joint.axes[dof.axis]
-        if axis is not None and not axis.lower <= value <= axis.upper:
-            msg = (f'the position {value:g} of "{name}" is beyond its limits, {axis.lower:g} to '
-                   f'{axis.upper:g}')
+        if not dof.axis.lower <= value <= dof.axis.upper:
+            msg = (f'the position {value:g} of "{name}" is beyond its limits, '
+                   f'{dof.axis.lower:g} to {dof.axis.upper:g}')
             warnings.append(SdfWarning('WARNING', msg, scene.place(dof.joint.element)))
-    return scene.with_poses(poses, (*scene.warnings, *warnings))
+    return dataclasses.replace(scene, poses=poses, warnings=(*scene.warnings, *warnings))
 
 
 def _indices_from_names(
-    names: Iterable[str], scoped_names: Iterable[str], suffixes: Iterable[str],
-    is_named: Iterable[bool], all_names: Container[str],
+    names: Sequence[str], scene: Scene, dofs: Sequence[DegreeOfFreedom], model: str,
 ) -> dict[str, int]:
     """
     Return all names by which a degree of freedom can be meant.
@@ -211,30 +197,29 @@ def _indices_from_names(
     """
     own: dict[str, int] = {}
     shorter: dict[str, set[int]] = {}
-    for index, (name, scoped, suffix, is_visible) in enumerate(
-            zip(names, scoped_names, suffixes, is_named, strict=True)):
-        if not is_visible:
+    for index, (name, dof) in enumerate(zip(names, dofs, strict=True)):
+        scoped = scene.names[dof.joint.element]
+        if scene.roots[dof.joint.element] or (
+                model and not scoped.startswith(model + SEPARATOR)):
             continue
         own.setdefault(name, index)
         before = scoped.removesuffix(JOINT_SUFFIX)
-        for each in {scoped, before} if before in all_names else {scoped}:
+        for each in {scoped, before} if scene.has(before) else {scoped}:
             steps = each.split(SEPARATOR)
             # All endings of names that are nested deep would take the square of their memory.
             for count in {0, *range(max(len(steps) - _MOST_STEPS, 0), len(steps))}:
                 for separator in (SEPARATOR, '/'):
-                    alias = separator.join(steps[count:]) + suffix
+                    alias = separator.join(steps[count:]) + dof.suffix
                     shorter.setdefault(alias, set()).add(index)
     return {name: min(found) for name, found in shorter.items() if len(found) == 1} | own
 
 
 def _followers(dofs: Sequence[DegreeOfFreedom]) -> Mapping[int, list[Follower]]:
     """Return the degrees of freedom that mimic each one."""
-    indices = {
-        (each.joint.element, each.axis): index for index, each in enumerate(dofs)
-        if each.axis is not None}
+    indices = {(each.joint.element, each.number): index for index, each in enumerate(dofs)}
     followers: dict[int, list[Follower]] = {}
     for index, dof in enumerate(dofs):
-        mimic = None if dof.axis is None else dof.joint.axes[dof.axis].mimic
+        mimic = dof.axis.mimic
         leader = None if mimic is None else indices.get((mimic.joint, mimic.axis))
         if mimic is not None and leader is not None:
             followers.setdefault(leader, []).append(Follower(index, leader, mimic))

@@ -121,9 +121,7 @@ class PoseLookup:
         """Find an element by its name in SDF."""
         scene = self._scene
         if not scene.has(name):
-            nearest = self._name_index.nearest(name)
-            hint = f'; did you mean "{nearest}"?' if nearest else ''
-            msg = f'"{name}" is the name of nothing{hint}'
+            msg = f'"{name}" is the name of nothing{self._name_index.hint(name)}'
             raise UnknownFrameError(msg, Place(scene.path))
         element = scene.index(name, world=self._tree.world)
         if scene.roots[element]:

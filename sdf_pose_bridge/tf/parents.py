@@ -29,13 +29,6 @@ ROOT_IS_PARENT = -1
 NO_PARENT = -2
 """Parent of a frame that has no transform."""
 
-# Plain integers: numpy is slow at comparing an array with an Enum.
-_MODEL = int(Kind.MODEL)
-_LINK = int(Kind.LINK)
-_JOINT = int(Kind.JOINT)
-_FRAME = int(Kind.FRAME)
-_SENSOR = int(Kind.SENSOR)
-
 
 class JointStep(NamedTuple):
     """A step along a joint, away from the root."""
@@ -73,20 +66,16 @@ def tf_parents_from_scene(scene: Scene) -> TfParents:
     representatives = np.where(
         scene.canonical_links < 0, np.arange(len(kinds), dtype=np.int32), scene.canonical_links)
     bodies = representatives[scene.bodies]
-    is_sensor_of_joint = (kinds == _SENSOR) & (kinds[scene.parents] == _JOINT)
+    is_sensor_of_joint = (kinds == Kind.SENSOR) & (kinds[scene.parents] == Kind.JOINT)
     parents = np.select(
-        [kinds == _FRAME, kinds == _MODEL, kinds == _JOINT, is_sensor_of_joint],
+        [kinds == Kind.FRAME, kinds == Kind.MODEL, kinds == Kind.JOINT, is_sensor_of_joint],
         [scene.attachments, scene.canonical_links, bodies, bodies[scene.parents]], scene.parents)
     bodies_of_frames = bodies.tolist()
     ends = [
         (bodies_of_frames[joint.parent], bodies_of_frames[joint.child]) for joint in scene.joints]
     starts = representatives[_elements_by_rank(scene, [child for _, child in ends])].tolist()
-    steps = _steps_along_joints(ends, starts)
-    loop_joints: list[int] = []
-    # Without loops every joint leads to another body.
-    if len(steps) < len(ends):
-        loop_joints = _joints_that_close_loops(ends)
-        steps = _steps_along_joints(ends, starts, left_out=set(loop_joints))
+    loop_joints = _joints_that_close_loops(ends)
+    steps = _steps_along_joints(ends, starts, frozenset(loop_joints))
     joint_parents = {
         body: ends[joint][is_reversed] for body, (joint, is_reversed) in steps.items()}
     free_parents = _parents_of_free_bodies(scene, joint_parents)
@@ -109,7 +98,7 @@ def _elements_by_rank(scene: Scene, children: Sequence[int]) -> Indices:
     :return: all roots, models and links.
     """
     kinds, has_link = scene.kinds, scene.canonical_links >= 0
-    is_root, is_model, is_link = scene.parents < 0, kinds == _MODEL, kinds == _LINK
+    is_root, is_model, is_link = scene.parents < 0, kinds == Kind.MODEL, kinds == Kind.LINK
     is_static, is_child = np.zeros((2, len(kinds)), np.bool_)
     is_static[list(scene.static_models)] = True
     is_child[children] = True
@@ -125,7 +114,7 @@ def _elements_by_rank(scene: Scene, children: Sequence[int]) -> Indices:
 
 
 def _steps_along_joints(
-    ends: Sequence[tuple[int, int]], starts: Sequence[int], left_out: Container[int] = (),
+    ends: Sequence[tuple[int, int]], starts: Sequence[int], left_out: Container[int],
 ) -> dict[int, tuple[int, bool]]:
     """
     Walk along joints, in both directions, from one start after the other.
@@ -135,18 +124,18 @@ def _steps_along_joints(
     :return: for each body that a joint led to: that joint, and whether it led from its child.
     """
     joints_of_bodies = defaultdict[int, list[int]](list)
-    for joint, (parent, child) in enumerate(ends):
+    for joint, bodies in enumerate(ends):
         if joint not in left_out:
-            joints_of_bodies[parent].append(joint)
-            joints_of_bodies[child].append(joint)
+            for body in bodies:
+                joints_of_bodies[body].append(joint)
     steps: dict[int, tuple[int, bool]] = {}
     reached: set[int] = set()
     for start in starts:
-        waiting = [] if start in reached or start not in joints_of_bodies else [start]
+        waiting = [] if start in reached else [start]
         reached.add(start)
         while waiting:
             body = waiting.pop()
-            for joint in joints_of_bodies[body]:
+            for joint in joints_of_bodies.get(body, ()):
                 parent, child = ends[joint]
                 neighbour = parent if body == child else child
                 if neighbour not in reached:
@@ -182,7 +171,7 @@ def _parents_of_free_bodies(scene: Scene, connected: Container[int]) -> dict[int
     model, the canonical link of the next model around.
     """
     parents, canonical_links = scene.parents.tolist(), scene.canonical_links.tolist()
-    is_link, is_model = scene.kinds == _LINK, scene.kinds == _MODEL
+    is_link, is_model = scene.kinds == Kind.LINK, scene.kinds == Kind.MODEL
     common_parents = {root: root for root in np.flatnonzero(scene.parents < 0).tolist()}
     outermost_models: dict[int, int] = {}
     for model in np.flatnonzero(is_model).tolist():

@@ -252,7 +252,7 @@ def elements_in_model(scene: Scene, name: str) -> NDArray[np.bool_]:
 
 def _model_from_name(scene: Scene, name: str) -> int:
     models: dict[str, int] = {}
-    for model in np.flatnonzero(scene.kinds == int(Kind.MODEL)).tolist():
+    for model in np.flatnonzero(scene.kinds == Kind.MODEL).tolist():
         models.setdefault(scene.names[model], model)
     if name not in models:
         msg = f'there is no model "{name}" to publish{hint_from_names(name, models)}'
@@ -344,7 +344,7 @@ def _is_anchored(
     element: int, scene: Scene, tf_parents: TfParents, anchor_models: AnchorModels,
 ) -> bool:
     """Return whether an element whose TF parent is the root gets a transform from it."""
-    if scene.kinds[element] not in (int(Kind.LINK), int(Kind.MODEL)):
+    if scene.kinds[element] not in (Kind.LINK, Kind.MODEL):
         return True
     if anchor_models is AnchorModels.NONE:
         return False

@@ -80,7 +80,7 @@ def visual_markers_from_scene(
     :raises UnknownFrameError: if there is no such model.
     """
     is_shown = (
-        elements_in_model(scene, model) & (scene.roots == 0) & (scene.kinds == int(Kind.VISUAL)))
+        elements_in_model(scene, model) & (scene.roots == 0) & (scene.kinds == Kind.VISUAL))
     problems = Problems(scene.files)
     markers: list[VisualMarker] = []
     point_count = 0

@@ -170,8 +170,7 @@ class Page:
         names = JointPositions(self._loaded, dofs).names
         return {
             name: _range_of_dof(dof) for name, dof in zip(names, dofs, strict=True)
-            if self._is_in_model[dof.joint.element]
-            and (dof.axis is None or dof.joint.axes[dof.axis].mimic is None)}
+            if self._is_in_model[dof.joint.element] and dof.axis.mimic is None}
 
     def _move(self) -> None:
         self._drawn_positions = dict(self._positions)
@@ -326,9 +325,8 @@ def _html_of_lines(name: str, lines: Iterable[str]) -> str:
 
 
 def _range_of_dof(dof: DegreeOfFreedom) -> tuple[bool, float, float]:
-    turns = dof.rad_per_unit != 0.0
-    axis = None if dof.axis is None else dof.joint.axes[dof.axis]
-    if axis is None or axis.upper - axis.lower >= _LARGEST_RANGE:
+    turns, axis = dof.rad_per_unit != 0.0, dof.axis
+    if axis.upper - axis.lower >= _LARGEST_RANGE:
         return (True, -math.pi, math.pi) if turns else (False, -0.5, 0.5)
     # Where the file puts the joint need not be within its limits.
     return turns, min(axis.lower, 0.0), max(axis.upper, 0.0)
