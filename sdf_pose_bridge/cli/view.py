@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable
 from functools import partial
 import importlib
 import os
@@ -107,10 +106,10 @@ def _open(address: str) -> None:
 
 def _follow(page: Any, files: tuple[str, ...], options: argparse.Namespace) -> None:
     """Show the file again whenever it, or a file that it includes, changes; never returns."""
-    known = _signatures(files)
+    known = list(map(_signature, files))
     while True:
         page.act(_PERIOD_S)
-        now = _signatures(files)
+        now = list(map(_signature, files))
         if now == known:
             continue
         known = now
@@ -119,17 +118,13 @@ def _follow(page: Any, files: tuple[str, ...], options: argparse.Namespace) -> N
         if loaded.scene is not None:
             if loaded.scene.files != files:
                 files = loaded.scene.files
-                known = _signatures(files)
+                known = list(map(_signature, files))
             try:
                 page.show(loaded.scene)
             except SdfError as error:
                 errors = error.errors
         if errors:
             page.show_errors(list(map(str, errors)))
-
-
-def _signatures(paths: Iterable[str]) -> list[tuple[int, ...] | None]:
-    return [_signature(path) for path in paths]
 
 
 def _signature(path: str) -> tuple[int, ...] | None:
