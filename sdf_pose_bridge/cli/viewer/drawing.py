@@ -85,6 +85,7 @@ class Drawing:
         self.gizmo: Any = None
         """The gizmo, which is not visible at first."""
         self._camera: Any = None
+        self._labels: list[viser.LabelHandle] = []
 
     def look_from(self, camera: viser.CameraHandle) -> None:
         """Place names for this camera from the next :meth:`place` on."""
@@ -101,7 +102,10 @@ class Drawing:
         :return: why visuals and collisions are not drawn as the file means them, for each of them.
         """
         nodes, self._hidden = self._server.scene, hidden
-        nodes.reset()
+        # Those of other names replace themselves. A browser takes what is removed and added again
+        # at once for the same, and leaves it where it was.
+        for name in ('/visuals', '/collisions'):
+            nodes.remove_by_name(name)
         nodes.add_light_hemisphere('/light', ground_color=_LIGHT_FROM_BELOW, intensity=1.5)
         # An optical frame is shown with its parent.
         elements = np.where(
@@ -138,7 +142,6 @@ class Drawing:
         self._copies = [
             (self._add_surface(number, surface, scene, tree), surface.elements)
             for number, surface in enumerate(surfaces)]
-        self._labels: list[viser.LabelHandle] = []
         self.place(scene, tree)
         return reasons
 
@@ -148,8 +151,7 @@ class Drawing:
         for copies, elements in self._copies:
             copies.batched_wxyzs, copies.batched_positions = _places(scene.poses[elements])
         self._lines.points = _lines(tree, self._frames)
-        if 'names' not in self._hidden:
-            self._place_names(tree)
+        self._place_names(tree)
 
     def mark(self, pose: Pose | None) -> None:
         """Show larger axes at a pose in the root frame; none for None."""
@@ -158,17 +160,17 @@ class Drawing:
             self._marker.position, self._marker.wxyz = pose[:3], (pose.qw, *pose[3:6])
 
     def _place_names(self, tree: TfTree) -> None:
-        frames = self._frames[:MOST_NAMES].tolist()
+        frames = [] if 'names' in self._hidden else self._frames[:MOST_NAMES].tolist()
         names = [
             printable(shortened(tree.frame_ids[frame].rpartition('/')[2])) for frame in frames]
         labels = list(labels_from_names(
             names, tree.poses[frames, :3], self._camera.position, self._camera.look_at))
-        while len(self._labels) > len(labels):
-            self._labels.pop().remove()
-        for number, (text, point) in enumerate(labels):
-            if number == len(self._labels):
-                self._labels.append(self._server.scene.add_label(f'/names/{number}', text))
-            self._labels[number].text, self._labels[number].position = text, point
+        while len(self._labels) < len(labels):
+            self._labels.append(self._server.scene.add_label(f'/names/{len(self._labels)}', ''))
+        for number, label in enumerate(self._labels):
+            label.visible = number < len(labels)
+            if label.visible:
+                label.text, label.position = labels[number]
 
     def _look_at(self, middle: Points, view_m: float, size_m: float) -> None:
         """Choose what a browser sees at first."""

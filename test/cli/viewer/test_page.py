@@ -59,11 +59,13 @@ def test_what_is_switched_off_is_not_drawn(page, server, tmp_path):
     box = '<visual name="v"><geometry><box/></geometry></visual>'
     (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{box}</link>'))
     page.show(load(tmp_path / 'm.sdf', shapes=True))
-    names = ('/visuals/0', '/names/0')
-    assert None not in [server.scene.get_handle_by_name(name) for name in names]
+    name = server.scene.get_handle_by_name('/names/0')
+    assert name.visible
+    assert server.scene.get_handle_by_name('/visuals/0') is not None
     for switch in page._server.gui._gui_input_handle_from_uuid.values():
         if switch.value is True:
             switch.value = False
     while not page._actions.empty() or {'visuals', 'names'} - page._hidden:
         page.act(0.1)
-    assert [server.scene.get_handle_by_name(name) for name in names] == [None, None]
+    assert not name.visible
+    assert server.scene.get_handle_by_name('/visuals/0') is None
