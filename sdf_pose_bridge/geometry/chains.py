@@ -34,7 +34,6 @@ def ends_from_pointers(pointers: Indices) -> Indices:
         a cycle, any node of that cycle.
     """
     ends = np.where(pointers < 0, np.arange(len(pointers), dtype=np.int32), pointers)
-    # Each round doubles the length of what has been followed.
     for _ in range(len(pointers).bit_length()):
         further = ends[ends]
         if np.array_equal(further, ends):
@@ -69,8 +68,6 @@ def poses_along_chains(
 ) -> PoseArray:
     """
     Multiply poses along chains of references.
-
-    Each round doubles the length of the chains, so a chain of a thousand takes ten rounds.
 
     :param edges: the pose of each element in the one that it is relative to.
     :param references: the element that each is relative to; -1 at the end of a chain.

@@ -155,13 +155,10 @@ class _Builder:
         return attachments
 
     def _attached_to(self, frame: int, details: FrameDetails) -> int:
-        scope = self._scope_of[frame]
-        if not details.attached_to:
-            return scope
-        found = self._scopes.frame(scope, details.attached_to)
+        scope, name = self._scope_of[frame], details.attached_to
+        found = self._scopes.frame(scope, name) if name else scope
         if found is None:
-            self._report_unknown(
-                AttachedToError, frame, 'attached_to', details.attached_to, scope)
+            self._report_unknown(AttachedToError, frame, 'attached_to', name, scope)
             return scope
         return found
 

@@ -119,17 +119,16 @@ def _change_of_own_pose(
     if marked.names != scene.names or not np.array_equal(marked.poses, scene.poses):
         msg = 'the file has changed since it was read'
         raise PoseNotSetError(msg, Place(path))
-    place = _place_of_pose(marked, element)
-    target = text.element_at_line(place[1])
+    _, line, is_written = place = _place_of_pose(marked, element)
+    target = text.element_at_line(line)
     at = Place(path, text.line(target))
     if not all_instances:
         _check_instances(marked, element, place, at)
-    is_written = place[2]
     reference = int(scene.references[element])
     in_asked, old = measure(scene, reference), measure(scene, element)
     _check_joints(scene, element, relative_pose(in_asked, old), at)
     written = text.pose(target) if is_written else relative_pose(in_asked, old)
-    new, current, tolerance = scene, old, TOLERANCE
+    current, tolerance = old, TOLERANCE
     for _ in range(_MOST_ATTEMPTS):
         # What is at the pose that was asked for is C in the frame that the pose in the file
         # places, most often the element itself. So asked = R written C before and after, and the
@@ -196,7 +195,8 @@ def _check_instances(
 def _check_joints(scene: Scene, element: int, in_reference: Pose, at: Place) -> None:
     reference = int(scene.references[element])
     expected = scene.relative_pose_of(element, reference)
-    if _distance(in_reference, expected) > TOLERANCE * (1.0 + _size(scene)):
+    size_m = float(np.abs(scene.poses[:, :3]).max())
+    if _distance(in_reference, expected) > TOLERANCE * (1.0 + size_m):
         msg = (f'a joint has moved "{scene.names[element]}" away from "{scene.names[reference]}", '
                'which its pose in the file is relative to; move the joint back, or set the pose '
                'of another frame')
@@ -207,7 +207,3 @@ def _distance(a: Pose, b: Pose) -> float:
     """Return the distance of two poses in metres, or their angle in radians if that is larger."""
     between = canonical_relative_pose(a, b)
     return max(math.hypot(*between[:3]), 2.0 * math.atan2(math.hypot(*between[3:6]), between.qw))
-
-
-def _size(scene: Scene) -> float:
-    return float(np.abs(scene.poses[:, :3]).max(initial=0.0))

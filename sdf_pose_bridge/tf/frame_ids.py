@@ -14,7 +14,6 @@ the camera with ``_optical`` appended.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from collections.abc import Mapping
 from collections.abc import Sequence
 import enum
@@ -62,8 +61,8 @@ class FrameNaming(NamedTuple):
         :param name: a name as in SDF, its parts separated by ``::``.
         :return: the frame id; empty if the name consists of slashes only.
         """
-        (frame_id,) = self._frame_ids_from_names([name])
-        return frame_id
+        rest = name.replace(SEPARATOR, self.separator).lstrip('/')
+        return self.prefix + rest if rest else ''
 
     def frame_ids_from_scene(self, scene: Scene, elements: Indices) -> list[str]:
         """
@@ -84,24 +83,13 @@ class FrameNaming(NamedTuple):
         is_in_model_file = (scene.kinds[scene.roots[elements[:1]]] == Kind.ROOT).any()
         if self.names is FrameNames.RELATIVE or (
                 self.names is FrameNames.AUTO and is_in_model_file):
-            models = _top_level_elements(scene)[elements]
+            is_top_level = scene.parents[scene.parents] < 0
+            models = ends_from_pointers(np.where(is_top_level, -1, scene.parents))[elements]
             names = [
                 name if model == element else name[len(scoped_name(scene.names[model], '')):]
                 for name, element, model in zip(
                     names, elements.tolist(), models.tolist(), strict=True)]
-        return self._frame_ids_from_names(names)
-
-    def _frame_ids_from_names(self, names: Iterable[str]) -> list[str]:
-        separator, prefix = self.separator, self.prefix
-        return [
-            prefix + rest if (rest := name.replace(SEPARATOR, separator).lstrip('/')) else ''
-            for name in names]
-
-
-def _top_level_elements(scene: Scene) -> Indices:
-    """Return for each element the child of a world or implicit root that it is or belongs to."""
-    is_child_of_root = scene.parents[scene.parents] < 0
-    return ends_from_pointers(np.where(is_child_of_root, -1, scene.parents))
+        return list(map(self.frame_id_from_name, names))
 
 
 OPTICAL_SUFFIX = '_optical'

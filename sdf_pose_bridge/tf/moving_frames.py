@@ -59,8 +59,8 @@ class MovingFrames:
                 last_of_parents[self.indices].tolist(), last[self.indices].tolist(), strict=True)]
         identities = np.tile(Pose(), (len(self.indices), 1))
         parents = parents[self.indices]
-        poses_of_parents = np.where((parents < 0)[:, np.newaxis], identities, poses[parents])
-        before = relative_poses(poses_of_parents, identities)
+        # The last pose is for ROOT_IS_PARENT.
+        before = relative_poses(np.concatenate([poses, [Pose()]])[parents], identities)
         after = poses[self.indices]
         # The first part has all frames, the second those that cross two degrees of freedom, ...
         self._parts = []

@@ -243,21 +243,17 @@ def elements_in_model(scene: Scene, name: str) -> NDArray[np.bool_]:
     """
     if not name:
         return np.ones(len(scene.names), np.bool_)
-    model = _model_from_name(scene, name)
-    is_model = np.arange(len(scene.names)) == model
-    is_inside: NDArray[np.bool_] = (
-        ends_from_pointers(np.where(is_model, -1, scene.parents)) == model)
-    return is_inside
-
-
-def _model_from_name(scene: Scene, name: str) -> int:
-    models: dict[str, int] = {}
-    for model in np.flatnonzero(scene.kinds == Kind.MODEL).tolist():
-        models.setdefault(scene.names[model], model)
+    # Of several models of that name the first one is meant.
+    models = {
+        scene.names[model]: model
+        for model in np.flatnonzero(scene.kinds == Kind.MODEL)[::-1].tolist()}
     if name not in models:
         msg = f'there is no model "{name}" to publish{hint_from_names(name, models)}'
         raise UnknownFrameError(msg, Place(scene.path))
-    return models[name]
+    is_model = np.arange(len(scene.names)) == models[name]
+    is_inside: NDArray[np.bool_] = is_model[
+        ends_from_pointers(np.where(is_model, -1, scene.parents))]
+    return is_inside
 
 
 def _check_frame_ids(
@@ -326,8 +322,11 @@ def _nearest_frames_and_parents(
     if anchor_models is AnchorModels.AUTO:
         anchor_models = AnchorModels.ALL if 0 in scene.world_names else AnchorModels.STATIC
     if anchor_models is not AnchorModels.ALL:
-        for element in np.flatnonzero(is_root[tf_parents.parents] & ~is_root).tolist():
-            is_detached[element] = not _is_anchored(element, scene, tf_parents, anchor_models)
+        is_body = np.isin(scene.kinds, (Kind.LINK, Kind.MODEL))
+        for body in np.flatnonzero(is_body & is_root[tf_parents.parents]).tolist():
+            *_, top_level_model, _ = scene.with_ancestors(body)
+            is_detached[body] = anchor_models is AnchorModels.NONE or (
+                body in tf_parents.free_bodies and top_level_model not in scene.static_models)
     frames = np.full(len(is_root), NO_PARENT, np.int32)
     frames[is_root] = ROOT_IS_PARENT
     frames[elements] = np.arange(len(elements))
@@ -338,15 +337,3 @@ def _nearest_frames_and_parents(
     parents: Indices = nearest_frames[tf_parents.parents[elements]]
     parents[is_detached[elements]] = NO_PARENT
     return nearest_frames, parents
-
-
-def _is_anchored(
-    element: int, scene: Scene, tf_parents: TfParents, anchor_models: AnchorModels,
-) -> bool:
-    """Return whether an element whose TF parent is the root gets a transform from it."""
-    if scene.kinds[element] not in (Kind.LINK, Kind.MODEL):
-        return True
-    if anchor_models is AnchorModels.NONE:
-        return False
-    *_, top_level_model, _ = scene.with_ancestors(element)
-    return element not in tf_parents.free_bodies or top_level_model in scene.static_models
