@@ -9,7 +9,6 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from rclpy.executors import SingleThreadedExecutor
 
 from sdf_pose_bridge.ros.background import run_in_thread
 from sdf_pose_bridge.ros.background import run_other_callbacks
@@ -19,15 +18,6 @@ SECONDS = 20.0
 
 class Large:
     """What a function makes before it runs out of memory."""
-
-
-@pytest.fixture(name='node')
-def spinnable_node(make_node):
-    node = make_node('bridge')
-    executor = SingleThreadedExecutor(context=node.context)
-    executor.add_node(node)
-    yield node
-    executor.shutdown()
 
 
 def finished(node, *callbacks):

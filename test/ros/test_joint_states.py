@@ -10,7 +10,6 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy
 from rclpy.qos import QoSProfile
 from rclpy.qos import ReliabilityPolicy
@@ -75,11 +74,9 @@ def listener(make_node):
 
 
 @pytest.fixture(name='wait_until')
-def make_wait_until(listener, states):
+def make_wait_until(listener, states, make_executor):
     """Runs both nodes until a condition is true; ``wait_until(condition, collection)``."""
-    executor = SingleThreadedExecutor(context=listener.context)
-    for node in (listener, states._node):
-        executor.add_node(node)
+    executor = make_executor(listener, states._node)
 
     def wait_until(condition, collection):
         deadline = time.monotonic() + 20.0
@@ -87,8 +84,7 @@ def make_wait_until(listener, states):
             assert time.monotonic() < deadline, collection
             executor.spin_once(timeout_sec=0.1)
 
-    yield wait_until
-    executor.shutdown()
+    return wait_until
 
 
 @pytest.fixture(name='published')
@@ -230,7 +226,7 @@ def test_what_was_created_for_it_is_destroyed_with_it(states, is_published_later
 
 
 def test_what_waits_in_the_subscription_is_taken_before_it_is_published(
-        listener, states):
+        listener, states, make_executor):
     states.destroy()
     later = JointStates(states._node, states._frames, is_published_later=True)
     found = []
@@ -238,12 +234,10 @@ def test_what_waits_in_the_subscription_is_taken_before_it_is_published(
         TFMessage, '/tf', lambda each: found.append(each.transforms[0].header.stamp.sec), 100)
     publisher = listener.create_publisher(JointState, 'joint_states', 10)
     # The timers of the node, which take messages too, do not run.
-    executor = SingleThreadedExecutor(context=listener.context)
-    executor.add_node(listener)
+    executor = make_executor(listener)
     deadline = time.monotonic() + 20.0
     while 5 not in found:
         assert time.monotonic() < deadline, found
         publisher.publish(joint_state(5, {'turn': 0.5}))
         later.publish_waiting()
         executor.spin_once(timeout_sec=0.1)
-    executor.shutdown()

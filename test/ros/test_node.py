@@ -6,7 +6,6 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from rclpy.executors import SingleThreadedExecutor
 
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
@@ -26,25 +25,16 @@ def write_file(tmp_path):
 
 
 @pytest.fixture(name='check_files')
-def make_check_files(make_node, file):
+def make_check_files(make_node, make_executor, finish, file):
     """Checks the files once, as the node does in each period; ``check_files()``."""
     # It does not watch them, so that nothing else has them checked.
     node = make_node('bridge', '-p', f'sdf_file:={file}', '-p', 'watch:=false')
-    executor = SingleThreadedExecutor(context=node.context)
-    executor.add_node(node)
+    executor = make_executor(node)
     settings = settings_from_node(node)
     loaded = loaded_scene_from_settings(settings)
     frames = PublishedFrames(Publishers(node), loaded.tree, loaded.joint_positions, {})
     bridge = SdfPoseBridge(node, frames, settings, loaded)
-
-    def check_files():
-        task = executor.create_task(bridge._check_files)
-        executor.spin_until_future_complete(task, timeout_sec=20.0)
-        assert task.done()
-        task.result()
-
-    yield check_files
-    executor.shutdown()
+    return lambda: finish(executor, bridge._check_files)
 
 
 def test_a_failure_is_reported_when_the_file_has_rested(check_files, file, capfd):

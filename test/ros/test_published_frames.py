@@ -9,7 +9,6 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from geometry_msgs.msg import PoseStamped
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy
 from rclpy.qos import QoSProfile
 from tf_checks import tree_of
@@ -33,17 +32,8 @@ def tree_of_frames(*names):
     return tree_of(WORLD.format(''.join(f'<frame name="{name}"/>' for name in names)))
 
 
-@pytest.fixture(name='node')
-def spinnable_node(make_node):
-    node = make_node('bridge')
-    executor = SingleThreadedExecutor(context=node.context)
-    executor.add_node(node)
-    yield node
-    executor.shutdown()
-
-
 @pytest.fixture(name='publish')
-def make_publish(node):
+def make_publish(node, finish):
     """Publishes frames and pose topics; ``publish(names, topics)``."""
     publishers = Publishers(node)
 
@@ -51,10 +41,7 @@ def make_publish(node):
         frames = PublishedFrames(
             publishers, tree_of_frames(*names), None, {name: f'topic_{name}' for name in topics})
         frames.publish_tf()
-        task = node.executor.create_task(frames.publish_topics)
-        node.executor.spin_until_future_complete(task, timeout_sec=20.0)
-        assert task.done()
-        task.result()
+        finish(node.executor, frames.publish_topics)
 
     return publish
 

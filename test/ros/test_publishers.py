@@ -7,32 +7,15 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from geometry_msgs.msg import PoseStamped
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy
 
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.publishers import Topic
 
 
-@pytest.fixture(name='node')
-def spinnable_node(make_node):
-    node = make_node('bridge')
-    executor = SingleThreadedExecutor(context=node.context)
-    executor.add_node(node)
-    yield node
-    executor.shutdown()
-
-
 @pytest.fixture(name='publishers')
 def publishers_of_node(node):
     return Publishers(node)
-
-
-def run(node, coroutine):
-    task = node.executor.create_task(coroutine)
-    node.executor.spin_until_future_complete(task, timeout_sec=20.0)
-    assert task.done()
-    task.result()
 
 
 def topics_of(node):
@@ -64,11 +47,11 @@ def test_messages_are_kept_as_the_topic_says(node, publishers):
     assert found['b'].durability is DurabilityPolicy.VOLATILE
 
 
-def test_topics_are_replaced(node, publishers):
+def test_topics_are_replaced(node, publishers, finish):
     a, b, c = (Topic(f'~/{name}', PoseStamped) for name in 'abc')
     kept = publishers.opened(b)
     publishers.opened(a)
-    run(node, publishers.replace([b, c]))
+    finish(node.executor, publishers.replace, [b, c])
     assert topics_of(node) == {'/bridge/b', '/bridge/c'}
     assert publishers.get(a) is None
     assert publishers.get(b) is kept

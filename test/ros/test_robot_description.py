@@ -8,7 +8,6 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy
 from rclpy.qos import QoSProfile
 from std_msgs.msg import String
@@ -16,14 +15,11 @@ from std_msgs.msg import String
 from sdf_pose_bridge.ros.robot_description import RobotDescription
 
 
-def test_each_text_is_published_and_nothing_without_one(make_node):
-    node = make_node('bridge')
+def test_each_text_is_published_and_nothing_without_one(node):
     quality = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     received, sent = [], []
     node.create_subscription(
         String, 'robot_description', lambda message: received.append(message.data), quality)
-    executor = SingleThreadedExecutor(context=node.context)
-    executor.add_node(node)
     description = RobotDescription(node)
     for text in ('<robot/>', '<robot/>', '', '<robot name="r"/>'):
         description.update(text)
@@ -33,5 +29,5 @@ def test_each_text_is_published_and_nothing_without_one(make_node):
             deadline = time.monotonic() + 20
             while len(received) < len(sent):
                 assert time.monotonic() < deadline
-                executor.spin_once(timeout_sec=0.1)
+                node.executor.spin_once(timeout_sec=0.1)
     assert received == sent

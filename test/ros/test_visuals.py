@@ -9,7 +9,6 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
@@ -96,7 +95,8 @@ def test_mesh_without_a_color_keeps_its_own():
     assert message.mesh_use_embedded_materials
 
 
-def test_shapes_that_were_read_too_late_are_not_shown(make_node, tmp_path):
+def test_shapes_that_were_read_too_late_are_not_shown(
+        make_node, make_executor, finish, tmp_path):
     node, listener = make_node('bridge'), make_node('listener')
     settings = {}
     for shape in ('box', 'sphere'):
@@ -104,17 +104,13 @@ def test_shapes_that_were_read_too_late_are_not_shown(make_node, tmp_path):
         path.write_text(SDF.format(shape=shape), encoding='utf-8')
         settings[shape] = settings_from_values({'sdf_file': str(path)})
     old, new = (loaded_scene_from_settings(each) for each in settings.values())
-    executor = SingleThreadedExecutor(context=node.context)
-    executor.add_node(node)
+    executor = make_executor(node)
     visuals = VisualPublisher(node, old, settings['box'])
     visuals.replace(new, settings['sphere'])
     for loaded, setting in ((new, settings['sphere']), (old, settings['box'])):
-        task = executor.create_task(visuals._publish, loaded, setting)
-        executor.spin_until_future_complete(task, timeout_sec=20.0)
-        assert task.done()
-        task.result()
-    executor.remove_node(node)  # so that nothing is read again for the listener
-    executor.add_node(listener)
+        finish(executor, visuals._publish, loaded, setting)
+    # The node has no part in it, so that nothing is read again for the listener.
+    executor = make_executor(listener)
     found = []
     listener.create_subscription(
         MarkerArray, '/bridge/visuals', found.append,
@@ -123,5 +119,4 @@ def test_shapes_that_were_read_too_late_are_not_shown(make_node, tmp_path):
     while not found:
         assert time.monotonic() < deadline
         executor.spin_once(timeout_sec=0.1)
-    executor.shutdown()
     assert [each.type for each in found[0].markers[1:]] == [Marker.SPHERE]

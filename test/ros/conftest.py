@@ -1,0 +1,41 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Fixtures that run callbacks of real nodes in this process."""
+
+import pytest
+
+
+@pytest.fixture
+def make_executor(make_node):
+    """Makes executors with nodes; ``make_executor(node, ...)``."""
+    from rclpy.executors import SingleThreadedExecutor
+    executors = []
+
+    def make(*nodes):
+        executors.append(SingleThreadedExecutor(context=nodes[0].context))
+        for node in nodes:
+            executors[-1].add_node(node)
+        return executors[-1]
+
+    yield make
+    for executor in executors:
+        executor.shutdown()
+
+
+@pytest.fixture(name='node')
+def spinnable_node(make_node, make_executor):
+    """Return a node that has an executor."""
+    node = make_node('bridge')
+    make_executor(node)
+    return node
+
+
+@pytest.fixture
+def finish():
+    """Runs a function or coroutine on an executor; ``finish(executor, function, *arguments)``."""
+    def run(executor, function, *arguments):
+        task = executor.create_task(function, *arguments)
+        executor.spin_until_future_complete(task, timeout_sec=20.0)
+        assert task.done()
+        return task.result()
+    return run
