@@ -95,10 +95,10 @@ def elements_from_tree(
     :return: the elements. One with an error is kept if that is possible, so that other errors are
         found and none follows from the first.
     """
-    with sources.unchanged_trees():
-        if sources.may_hold_scoped_names:
-            _check_scoped_names(root, sources)
-        return _Reader(sources, shapes=shapes).elements(root)
+    sources = sources.of_unchanged_trees()
+    if sources.may_hold_scoped_names:
+        _check_scoped_names(root, sources)
+    return _Reader(sources, shapes=shapes).elements(root)
 
 
 def check_element(xml: XmlElement, definition: Definition, sources: Sources) -> None:

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from collections.abc import Mapping
-import contextlib
 import copy
 from itertools import islice
 from typing import Any
@@ -91,13 +90,22 @@ class Sources:
         self._origins: dict[XmlElement, Origin] = {}
         self._parsed_lines: dict[XmlElement, int] = {}
         self._composed_trees: set[XmlElement] = set()
-        self._places: dict[XmlElement, Place] = {}
-        self._remembers_places = False
+        self._places: dict[XmlElement, Place] | None = None
 
     def with_own_problems(self) -> Sources:
         """Return the same sources, whose problems become those of the load only when asked to."""
         part = copy.copy(self)
         part.problems = Problems(self.paths, parent=self.problems)
+        return part
+
+    def of_unchanged_trees(self) -> Sources:
+        """
+        Return the same sources, which remember places.
+
+        With very long names, or very deep, each place takes long to make.
+        """
+        part = copy.copy(self)
+        part._places = {}  # noqa: SLF001
         return part
 
     def error(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
@@ -215,22 +223,12 @@ class Sources:
         self.usage.add('work', STEPS_OF_PLACE, place)
         return place
 
-    @contextlib.contextmanager
-    def unchanged_trees(self) -> Iterator[None]:
-        """Remember places: with very long names, or very deep, each of them takes long to make."""
-        self._remembers_places = True
-        try:
-            yield
-        finally:
-            self._remembers_places = False
-            self._places.clear()
-
     def _place_in_tree(self, xml: XmlElement) -> Place:
         """Return the file and the path of an element that holds another."""
         file, path = '', ''
         steps: list[str] = []
         for element in with_ancestors(xml):
-            if element in self._places:
+            if self._places and element in self._places:
                 outer = self._places[element]
                 file, path = file or outer.file, outer.element
                 break
@@ -238,7 +236,7 @@ class Sources:
             steps.append(described(element))
         place = Place(file, element='/'.join([path, *reversed(steps)]))
         self.usage.add('work', len(steps), place._replace(line=self.line(xml)))
-        if self._remembers_places:
+        if self._places is not None:
             if len(self._places) == _MOST_PLACES_REMEMBERED:
                 self._places.clear()
             self._places[xml] = place

@@ -154,10 +154,8 @@ def _warn_of_model_frame_in(xml: XmlElement, sources: Sources) -> None:
     """Libsdformat does not adapt the poses of visuals and the like."""
     if xml.tag not in ('link', 'joint'):
         return
-    for pose in xml.iterfind('*/pose'):
-        parent = pose.getparent()
-        if attribute_of(pose, 'relative_to') == MODEL_FRAME and (
-                parent is not None and parent.tag != 'inertial'):
+    for pose in xml.xpath('*[not(self::inertial)]/pose'):
+        if attribute_of(pose, 'relative_to') == MODEL_FRAME:
             msg = ('relative_to="__model__" means the model that this is merged into, not the one '
                    'that it was written in')
             sources.warning(pose, msg)

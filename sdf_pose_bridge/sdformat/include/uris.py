@@ -104,30 +104,26 @@ class ResourceFinder(NamedTuple):
             raise AddressError(msg) from error
         path = unquote(parts.path)
         if parts.query or parts.fragment:
-            msg = f'"{address}" has a "?" or "#" in it; write %3F or %23 in a URI'
-            raise AddressError(msg)
-        if parts.scheme == 'file':
-            if parts.netloc not in ('', 'localhost'):
-                msg = (f'"{address}" names the host "{parts.netloc}"; a file:// URI has three '
-                       f'slashes before an absolute path')
-                raise AddressError(msg)
-            return Path(path)
-        if parts.scheme == 'package':
-            share = next(self._package_shares(parts.netloc), None)
-            if share is None:
-                msg = (f'"{address}" names the package "{parts.netloc}", which is not installed '
-                       f'here')
-                raise AddressError(msg)
-            return Path(share, path.lstrip('/')).absolute()
-        if parts.scheme == 'model':
+            fault = 'has a "?" or "#" in it; write %3F or %23 in a URI'
+        elif parts.scheme == 'file':
+            if parts.netloc in ('', 'localhost'):
+                return Path(path)
+            fault = (f'names the host "{parts.netloc}"; a file:// URI has three slashes before an '
+                     'absolute path')
+        elif parts.scheme == 'package':
+            for share in self._package_shares(parts.netloc):
+                return Path(share, path.lstrip('/')).absolute()
+            fault = f'names the package "{parts.netloc}", which is not installed here'
+        elif parts.scheme == 'model':
             found = self.path_from_uri(address, including_file='')
-            if found is None:
-                msg = (f'"{address}" is found neither in resource_paths nor in the directories of '
-                       f'GZ_SIM_RESOURCE_PATH and SDF_PATH')
-                raise AddressError(msg)
-            return Path(found).absolute()
-        msg = (f'"{address}" is a {parts.scheme}:// URI; it must be a path, or a file://, '
-               f'package:// or model:// URI')
+            if found is not None:
+                return Path(found).absolute()
+            fault = ('is found neither in resource_paths nor in the directories of '
+                     'GZ_SIM_RESOURCE_PATH and SDF_PATH')
+        else:
+            fault = (f'is a {parts.scheme}:// URI; it must be a path, or a file://, package:// or '
+                     'model:// URI')
+        msg = f'"{address}" {fault}'
         raise AddressError(msg)
 
     def reason_not_found(self, uri: str) -> str:
