@@ -110,7 +110,7 @@ class _Conversion:
         self._sdf.sourceline = root.sourceline  # type: ignore[misc]  # it can be set
         self._model = self._element(self._sdf, 'model', root, name=robot.name)
         self._settings, self._extensions = settings_and_extensions_from_robot(root)
-        self._links = robot.links_in_order()
+        self._links = robot.links_in_order
         self._bases: dict[str, _Base] = {}
         self._find_bases()
         self._inertials = {link.name: link.inertial for link in self._links}
@@ -224,7 +224,7 @@ class _Conversion:
     def _add_shapes(self, xml: XmlElement, tag: str, link: Link, members: Sequence[Link]) -> None:
         index = 0
         for member in members:
-            for shape in member.visuals if tag == 'visual' else member.collisions:
+            for shape in member.shapes[tag]:
                 name = f'{shape.name or member.name}_{tag}{f"_{index}" if index else ""}'
                 if not name.startswith(link.name):
                     name = f'{self._counted(link.name, shape.geometry)}{_LUMP_PREFIX}{name}'

@@ -83,8 +83,8 @@ class Link(NamedTuple):
     xml: XmlElement
     name: str
     inertial: Inertial | None
-    visuals: Sequence[Shape]
-    collisions: Sequence[Shape]
+    shapes: Mapping[str, Sequence[Shape]]
+    """By ``visual`` and ``collision``."""
 
 
 class Joint(NamedTuple):
@@ -107,24 +107,13 @@ class Robot(NamedTuple):
     name: str
     origin: Pose
     """Where the file places it."""
-    root: Link
     links: Mapping[str, Link]
+    links_in_order: Sequence[Link]
+    """Those in the tree, each before its children, which are in the order of their joints."""
     parent_joints: Mapping[str, Joint]
-    """By the name of the child link."""
-    child_joints: Mapping[str, Sequence[Joint]]
-    """By the name of the parent link, ordered by their own names."""
+    """By the name of the child link, ordered by their own names."""
     joint_names: Mapping[str, str]
     """The name of each joint by its name in the file."""
-
-    def links_in_order(self) -> list[Link]:
-        """Return the links, each before its children; those are in the order of their joints."""
-        links = []
-        names = [self.root.name]
-        while names:
-            name = names.pop()
-            links.append(self.links[name])
-            names += [joint.child for joint in reversed(self.child_joints.get(name, ()))]
-        return links
 
 
 class Settings(NamedTuple):
@@ -179,16 +168,24 @@ class _RobotReader:
             child_joints.setdefault(joint.parent, []).append(joint)
         roots = [link for name, link in links.items() if name not in parent_joints]
         if len(roots) != 1:
-            names = ', '.join(f'"{link.name}"' for link in roots[:10])
+            shown = ', '.join(f'"{link.name}"' for link in roots[:10])
             self._errors.error(
                 ParsingError, self._root, 'the links must be one tree, in which one link has no '
-                f'parent; here these have none: {names or "no link"}')
+                f'parent; here these have none: {shown or "no link"}')
         self._errors.problems.raise_errors()
-        robot = Robot(
-            self._root.get('name', ''), origin, roots[0], links, parent_joints, child_joints,
+        in_order: dict[str, Link] = {}
+        names = [roots[0].name]
+        while names:
+            name = names.pop()
+            in_order[name] = links[name]
+            names += [joint.child for joint in reversed(child_joints.get(name, ()))]
+        for name, link in links.items():
+            if name not in in_order:
+                self._sources.warning(
+                    link.xml, f'link "{name}" is left out: its joints form a cycle')
+        return Robot(
+            self._root.get('name', ''), origin, links, list(in_order.values()), parent_joints,
             {joint.name: joint.name for joint in parent_joints.values()})
-        self._warn_of_cycles(robot)
-        return robot
 
     def _check_names(self, tag: str) -> list[tuple[str, XmlElement]]:
         named: dict[str, XmlElement] = {}
@@ -216,13 +213,6 @@ class _RobotReader:
                 self._sources.warning(origin, f'{error}; libsdformat takes zeros for it')
         return pose_from_numbers([*numbers['xyz'], *numbers['rpy']])
 
-    def _warn_of_cycles(self, robot: Robot) -> None:
-        reached = {link.name for link in robot.links_in_order()}
-        for name, link in robot.links.items():
-            if name not in reached:
-                self._sources.warning(
-                    link.xml, f'link "{name}" is left out: its joints form a cycle')
-
     def _link(self, xml: XmlElement) -> Link:
         inertial = None
         shapes: dict[str, list[Shape]] = {'visual': [], 'collision': []}
@@ -241,7 +231,7 @@ class _RobotReader:
             self._errors.error(ElementInvalidError, xml, str(error))
         except ValueError as error:
             self._sources.warning(xml, f'{error}; libsdformat reads the link no further')
-        return Link(xml, xml.get('name', ''), inertial, shapes['visual'], shapes['collision'])
+        return Link(xml, xml.get('name', ''), inertial, shapes)
 
     def _joint(self, name: str, xml: XmlElement, links: Mapping[str, Link]) -> Joint | None:
         ends = {}
@@ -334,17 +324,12 @@ def robot_with_different_names(robot: Robot, sources: Sources) -> Robot:
                 joint.xml, f'the joint has the name of link "{joint.name}"; it is called '
                 f'"{names[joint.name]}" here')
 
-    def renamed(joint: Joint) -> Joint:
-        return joint._replace(name=names[joint.name])
-
     return robot._replace(
         name=_unused_name(f'{robot.name}_model', used) if robot.name in used else robot.name,
         joint_names=names,
         parent_joints={
-            child: renamed(joint) for child, joint in robot.parent_joints.items()},
-        child_joints={
-            parent: [renamed(joint) for joint in joints]
-            for parent, joints in robot.child_joints.items()})
+            child: joint._replace(name=names[joint.name])
+            for child, joint in robot.parent_joints.items()})
 
 
 def _unused_name(name: str, used: set[str]) -> str:
