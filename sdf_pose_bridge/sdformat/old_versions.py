@@ -58,7 +58,9 @@ def convert(root: XmlElement, version: Version, sources: Sources) -> None:
         _rename_frame_attributes(root)
         _convert_use_parent_model_frame(root)
     if version < Version(1, 8):
-        _remove_empty_relative_to(root)
+        # An <inertial> may be placed in nothing but its link; an empty attribute meant that.
+        for pose in root.xpath('.//inertial/pose[@relative_to=""]'):
+            del pose.attrib['relative_to']
     if allows_scoped_names(version) and sources.may_hold_scoped_names:
         for model in root.iterfind('world/model'):
             _nest_scoped_elements(model, sources)
@@ -105,12 +107,6 @@ def _convert_use_parent_model_frame(root: XmlElement) -> None:
         if boolean_from_text(text_of(flag)) and xyz is not None:
             xyz.set('expressed_in', MODEL_FRAME)
         axis.remove(flag)
-
-
-def _remove_empty_relative_to(root: XmlElement) -> None:
-    """1.7 to 1.8: ``inertial/pose`` has no ``relative_to``; an empty one meant nothing."""
-    for pose in root.xpath('.//inertial/pose[@relative_to=""]'):
-        del pose.attrib['relative_to']
 
 
 def _nest_scoped_elements(model: XmlElement, sources: Sources) -> None:

@@ -43,11 +43,7 @@ def first_child(xml: XmlElement, tag: str) -> XmlElement | None:
 
     :return: the child, or None.
     """
-    # For the few children that most elements have, this is faster than iterchildren.
-    for child in xml:
-        if child.tag == tag:
-            return child
-    return None
+    return next(xml.iterchildren(tag), None)
 
 
 def written_tag(xml: XmlElement) -> str:
