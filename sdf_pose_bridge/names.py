@@ -44,9 +44,8 @@ _MOST_PAIRS = 5_000
 
 def is_reserved(name: str) -> bool:
     """
-    Return whether a name is reserved (``isReservedName`` of libsdformat).
+    Return whether a name without its scope is reserved (``isReservedName`` of libsdformat).
 
-    :param name: an element's own name, without its scope.
     :return: True for ``world``, and for four or more characters that begin and end with ``__``.
     """
     return name == WORLD_FRAME or (
@@ -55,22 +54,15 @@ def is_reserved(name: str) -> bool:
 
 def scoped_name(scope: str, name: str) -> str:
     """
-    Return the absolute name of an element.
+    Return the absolute name of an element, or of what a reference names.
 
     :param scope: absolute name of its scope; empty for a world or the implicit root.
-    :param name: its name, or a reference, in that scope.
-    :return: the two joined by ``::``.
     """
     return f'{scope}{SEPARATOR}{name}' if scope else name
 
 
 def shortened(value: str, longest: int = _LONGEST_VALUE) -> str:
-    """
-    Return a value from a file for a message.
-
-    :param longest: how many characters it may have.
-    :return: the text, without its middle if it has more characters.
-    """
+    """Return a value from a file for a message, without its middle if it is too long."""
     if len(value) <= longest:
         return value
     half = (longest - 3) // 2
@@ -78,11 +70,7 @@ def shortened(value: str, longest: int = _LONGEST_VALUE) -> str:
 
 
 def shortened_message(message: str) -> str:
-    """
-    Return a message without the middles of long values in double quotes.
-
-    :return: the sentence with at most 2000 characters.
-    """
+    """Return at most 2000 characters of a message, with shorter values in double quotes."""
     return _QUOTED.sub(
         lambda match: f'"{shortened(match[1])}"', shortened(message, _LONGEST_MESSAGE))
 

@@ -87,19 +87,11 @@ class Problems:
         self._warnings.more += warnings
 
     def keeps_warnings(self) -> bool:
-        """
-        Return whether another warning would be kept, and not only counted.
-
-        :return: False if it need not be made, but only counted.
-        """
+        """Return whether another warning would be kept, so that it has to be made."""
         return len(self._warnings.problems) < MOST_PROBLEMS
 
     def allows_hint(self) -> bool:
-        """
-        Return whether a message may end in a hint that takes long to find, and count it.
-
-        :return: True for the first ``MOST_HINTS`` times of a load.
-        """
+        """Return whether a message may end in a hint that takes long to find, and count it."""
         if self._parent is not None:
             return self._parent.allows_hint()
         self._hints += 1

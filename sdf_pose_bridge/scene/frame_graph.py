@@ -88,7 +88,7 @@ class _Builder:
         self._elements = elements
         self._usage = usage
         self._problems = problems
-        self._scopes = NameScopes(elements, usage)
+        self._scopes = NameScopes(elements, usage, problems)
         self._scope_of: list[int] = elements.scopes.tolist()
         self._reported_cycles: set[frozenset[int]] = set()
         self._links_with_automatic_inertial = {
@@ -234,7 +234,7 @@ class _Builder:
             return int(elements.parents[index])
         self._unresolved[index] = self._scopes.missing_uri(scope, name)
         if not self._unresolved[index]:
-            reason = self._scopes.reason_without_frame(scope, name, self._problems)
+            reason = self._scopes.reason_without_frame(scope, name)
             msg = f'relative_to="{name}" {reason}; the {elements.kind(index).label} is left out'
             self._problems.warning(msg, elements.place_of_pose(index), RelativeToError.code)
         return NO_ELEMENT
@@ -278,7 +278,7 @@ class _Builder:
         if uri:
             self._unresolved[index] = uri
             return
-        reason = self._scopes.reason_without_frame(scope, name, self._problems)
+        reason = self._scopes.reason_without_frame(scope, name)
         place = self._elements.place(index, line, part)
         self._problems.error(error_class(f'{attribute}="{name}" {reason}', place))
 

@@ -158,8 +158,7 @@ class _JointChecks:
         self, error_class: type[SdfError], joint: int, reference: Reference, what: str,
         part: str = '',
     ) -> None:
-        reason = self._scopes.reason_without_frame(
-            self._scope_of[joint], reference.name, self._problems)
+        reason = self._scopes.reason_without_frame(self._scope_of[joint], reference.name)
         msg = f'{what} "{reference.name}" {reason}'
         self._report(error_class, msg, joint, reference.line, part or what)
 

@@ -42,7 +42,10 @@ class NameScopes:
     """
     The absolute names of all elements, and the frames that they name.
 
+    A scope is the index of the model, world or root in which a reference is written.
+
     :param usage: counts the work of joining them.
+    :param problems: those of the load, which limit the number of hints.
     :raises LimitError: if there are too many.
 
     ``names[i]`` is the absolute name of element i, such as ``robot::arm::hand``, without the name
@@ -50,8 +53,9 @@ class NameScopes:
     space of its own.
     """
 
-    def __init__(self, elements: Elements, usage: Usage) -> None:
+    def __init__(self, elements: Elements, usage: Usage, problems: Problems) -> None:
         self._elements = elements
+        self._problems = problems
         self.names = _absolute_names(elements, usage)
         self.roots: list[int] = ends_from_pointers(elements.parents).tolist()
         self._is_model: list[bool] = (elements.kinds == Kind.MODEL).tolist()
@@ -64,7 +68,6 @@ class NameScopes:
         """
         Find the frame that a reference names.
 
-        :param scope: index of the model, world or root in which the reference is written.
         :param reference: the name as written, not empty.
         :return: index of the frame, or None if there is none.
         """
@@ -85,13 +88,7 @@ class NameScopes:
         return found
 
     def missing_uri(self, scope: int, reference: str) -> str:
-        """
-        Return the URI of the missing include that a reference would lead into.
-
-        :param scope: index of the model, world or root in which the reference is written.
-        :param reference: the name as written.
-        :return: the URI; empty if the reference leads into none.
-        """
+        """Return the URI of the missing include that a reference would lead into, else ''."""
         missing = self._elements.missing_includes
         if not missing:
             return ''
@@ -112,16 +109,13 @@ class NameScopes:
         name = self._elements.names[scope] if kind is Kind.WORLD else self.names[scope]
         return f'{kind.label} "{name}"'
 
-    def reason_without_frame(self, scope: int, reference: str, problems: Problems) -> str:
+    def reason_without_frame(self, scope: int, reference: str) -> str:
         """
-        Return what to say of a reference that names no frame.
+        Return the end of a message about a reference that names no frame.
 
-        :param scope: index of the model, world or root in which the reference is written.
-        :param reference: the name as written.
-        :param problems: those of the load, which limit the number of hints.
-        :return: the end of a message, with the likely reason, or the nearest name that exists.
+        :return: in which scope, with the likely reason or the nearest name that exists.
         """
-        hint = self._hint(scope, reference) if problems.allows_hint() else ''
+        hint = self._hint(scope, reference) if self._problems.allows_hint() else ''
         return f'names no frame in {self._described(scope)}{hint}'
 
     def _hint(self, scope: int, reference: str) -> str:

@@ -83,7 +83,6 @@ def pose_change(
     :param asked: the pose, as ``measure`` shall return it.
     :param measure: says where elements are, in a frame of the caller's choice. Joints may be
         anywhere, but always at the same positions.
-    :param load: loads the scene.
     :param all_instances: whether elements that the same ``<pose>`` places may move too.
     :return: the text of one file in which one pose is different. The pose in it is right to 1e-9
         metres and radians.

@@ -28,7 +28,6 @@ def root_poses_from_graph(poses: PoseArray, graph: FrameGraph) -> PoseArray:
 
     :param poses: shape (n, 7), pose of each element, or of its placement frame, in the frame that
         it is relative to.
-    :param graph: what each pose is relative to; without cycles.
     :return: shape (n, 7), pose of each element in its world or implicit root; unit quaternions
         with w >= 0.
     """

@@ -95,9 +95,8 @@ class JointPositions:
 
     def selection(self, names: Sequence[str]) -> Selection:
         """Look up names."""
-        found = [self._indices.get(name) for name in names]
-        rows = [row for row, dof in enumerate(found) if dof is not None]
-        dofs = [dof for dof in found if dof is not None]
+        rows = [row for row, name in enumerate(names) if name in self._indices]
+        dofs = [self._indices[names[row]] for row in rows]
         reached = dict.fromkeys(dofs)
         followers: list[Follower] = []
         for leader in (waiting := list(reached)):
@@ -108,7 +107,7 @@ class JointPositions:
                     waiting.append(follower.dof)
         return Selection(
             np.array(rows, np.intp), np.array(dofs, np.intp), tuple(followers),
-            tuple(name for name, dof in zip(names, found, strict=True) if dof is None))
+            tuple(name for name in names if name not in self._indices))
 
     def hint(self, name: str) -> str:
         """
@@ -220,7 +219,7 @@ def _followers(dofs: Sequence[DegreeOfFreedom]) -> Mapping[int, list[Follower]]:
     followers: dict[int, list[Follower]] = {}
     for index, dof in enumerate(dofs):
         mimic = dof.axis.mimic
-        leader = None if mimic is None else indices.get((mimic.joint, mimic.axis))
-        if mimic is not None and leader is not None:
+        if mimic is not None and (mimic.joint, mimic.axis) in indices:
+            leader = indices[mimic.joint, mimic.axis]
             followers.setdefault(leader, []).append(Follower(index, leader, mimic))
     return followers

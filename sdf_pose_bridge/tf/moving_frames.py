@@ -28,7 +28,8 @@ class MovingFrames:
     The frames whose transforms depend on the positions of joints.
 
     The way from the parent of a frame to the frame crosses degrees of freedom: most often one,
-    more for joints with several, and where frames between both are not published.
+    more for joints with several, and where frames between both are not published. Methods take
+    the position of each degree of freedom, shape (n,), in radians or metres.
 
     :param poses: shape (n, 7): pose of each frame in the root.
     :param parents: index of the parent of each frame, or :data:`ROOT_IS_PARENT`, or
@@ -76,7 +77,6 @@ class MovingFrames:
         """
         Return the transforms of the frames that move in their parents.
 
-        :param positions: the position of each degree of freedom, in radians or metres.
         :return: shape (m, 7), pose of each frame in its parent; unit quaternions with w >= 0.
         """
         transforms = np.empty((0, 7))
@@ -95,8 +95,8 @@ class MovingFrames:
         """
         Return the poses of the frames that move in the frame that poses are given in.
 
-        :param positions: the position of each degree of freedom, in radians or metres.
-        :return: pose of each of them in that frame; unit quaternions with w >= 0.
+        :return: shape (k, 7), pose of each of :attr:`posed_indices` in that frame; unit
+            quaternions with w >= 0.
         """
         poses = self._motion.moved_poses(
             self._poses[self.posed_indices], self._elements[self.posed_indices], positions)
@@ -106,33 +106,22 @@ class MovingFrames:
         return canonical_relative_poses(np.array(reference), poses)
 
     def pose_of_frame(self, index: int, positions: NDArray[np.float64]) -> Pose:
-        """
-        Return the pose of one frame.
-
-        :param positions: the position of each degree of freedom, in radians or metres.
-        :return: its pose in the root.
-        """
+        """Return the pose of one frame in the root."""
         pose = Pose(*self._poses[index].tolist())
         return self.pose_of_element(int(self._elements[index]), pose, positions)
 
     def pose_of_element(self, element: int, pose: Pose, positions: NDArray[np.float64]) -> Pose:
         """
-        Return the pose of an element, which need not have a frame.
+        Return the pose of an element, which need not have a frame, in the root.
 
         :param pose: its pose in the root where the file puts it.
-        :param positions: the position of each degree of freedom, in radians or metres.
-        :return: its pose in the root.
         """
         (moved,) = self._motion.moved_poses(
             np.array([pose]), np.array([element], np.int32), positions)
         return Pose(*moved.tolist())
 
     def rows_moved_by(self, dofs: Sequence[int]) -> NDArray[np.intp]:
-        """
-        Find the transforms that depend on some degrees of freedom.
-
-        :return: their rows in :meth:`transforms`.
-        """
+        """Return the rows of :meth:`transforms` that depend on some degrees of freedom."""
         chosen = set(dofs)
         return np.flatnonzero([not chosen.isdisjoint(each) for each in self._crossed])
 

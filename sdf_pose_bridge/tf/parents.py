@@ -120,7 +120,6 @@ def _steps_along_joints(
     Walk along joints, in both directions, from one start after the other.
 
     :param ends: the two bodies that each joint connects, parent and child.
-    :param left_out: joints not to walk along.
     :return: for each body that a joint led to: that joint, and whether it led from its child.
     """
     joints_of_bodies = defaultdict[int, list[int]](list)

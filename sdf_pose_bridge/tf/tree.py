@@ -135,14 +135,9 @@ class TfTree:
         return np.flatnonzero(is_fixed)
 
     def ids_of_transforms(self, indices: NDArray[np.intp]) -> tuple[list[str], list[str]]:
-        """
-        Return the frame ids of transforms.
-
-        :return: the frame id of the parent of each, and its own.
-        """
-        parent_ids = self.parent_ids
+        """Return the frame ids of the parents of some frames, and their own."""
         rows = indices.tolist()
-        return [parent_ids[row] for row in rows], [self.frame_ids[row] for row in rows]
+        return [self.parent_ids[row] for row in rows], [self.frame_ids[row] for row in rows]
 
     @property
     def transform_count(self) -> int:
@@ -263,7 +258,6 @@ def _check_frame_ids(
     """
     Check that frame ids are unique and that TF accepts them.
 
-    :param frame_ids: the ids of all frames.
     :param owners: the element of each frame; the camera of an optical frame.
     """
     first: dict[str, int] = {}

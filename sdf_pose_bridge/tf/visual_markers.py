@@ -75,7 +75,6 @@ def visual_markers_from_scene(
 
     :param scene: the scene, loaded with its shapes.
     :param model: scoped name of the only model to show; empty for everything.
-    :param finder: finds the files of meshes.
     :return: the markers in file order, and warnings about visuals that cannot be shown.
     :raises UnknownFrameError: if there is no such model.
     """
