@@ -14,7 +14,6 @@ import gc
 from itertools import compress
 import os
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 from typing import TypeVar
 
 import numpy as np
@@ -51,11 +50,7 @@ from sdf_pose_bridge.sdformat.reader import elements_from_tree
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
 _Details = TypeVar('_Details')
-_Scalar = TypeVar('_Scalar', bound=np.generic)
 
 
 class MissingInclude(enum.Enum):
@@ -201,7 +196,7 @@ def _scene_from_graph(
     new_index_of: list[int] = new_index.tolist()
 
     def reindexed(old: Sequence[int] | Indices) -> Indices:
-        return _frozen(new_index[np.asarray(old, dtype=np.intp)[is_kept]].astype(np.int32))
+        return new_index[np.asarray(old, dtype=np.intp)[is_kept]].astype(np.int32)
 
     def kept(details: Mapping[int, _Details]) -> Mapping[int, _Details]:
         return MappingProxyType({
@@ -211,10 +206,10 @@ def _scene_from_graph(
         path=path,
         files=tuple(elements.paths),
         names=tuple(compress(graph.names, is_kept.tolist())),
-        kinds=_frozen(elements.kinds[is_kept]),
+        kinds=elements.kinds[is_kept],
         parents=reindexed(elements.parents),
         roots=reindexed(graph.roots),
-        poses=_frozen(poses[is_kept]),
+        poses=poses[is_kept],
         references=reindexed(graph.references),
         placements=kept({
             model: new_index_of[frame] for model, frame in graph.placements.items()
@@ -229,11 +224,11 @@ def _scene_from_graph(
             for ends in graph.joints if is_kept[ends.joint]),
         sensors=kept(elements.sensors),
         shapes=kept(elements.shapes),
-        lines=_frozen(elements.lines[is_kept]),
-        pose_lines=_frozen(elements.pose_lines[is_kept]),
+        lines=elements.lines[is_kept],
+        pose_lines=elements.pose_lines[is_kept],
         includes=kept(elements.includes),
         automatic_inertials=frozenset(kept(elements.automatic_inertials)),
-        file_indices=_frozen(elements.file_indices[is_kept]),
+        file_indices=elements.file_indices[is_kept],
         world_names=kept({
             index: elements.names[index]
             for index in np.flatnonzero(elements.kinds == Kind.WORLD).tolist()}),
@@ -266,8 +261,3 @@ def _joint_axis(
         None if mimic is None or leader == NO_ELEMENT else Mimic(
             leader, AXIS_TAGS.index(mimic.axis), mimic.multiplier, mimic.offset,
             mimic.reference))
-
-
-def _frozen(array: npt.NDArray[_Scalar]) -> npt.NDArray[_Scalar]:
-    array.setflags(write=False)
-    return array

@@ -131,6 +131,11 @@ class Scene:
     warnings: tuple[SdfWarning, ...]
     """What libsdformat accepts, but the author of the file should know of, in file order."""
 
+    def __post_init__(self) -> None:
+        for value in vars(self).values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
     def __repr__(self) -> str:
         return f'<Scene of {self.path}: {len(self.names)} elements>'
 

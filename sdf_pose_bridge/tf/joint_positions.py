@@ -174,7 +174,6 @@ def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
         raise JointPositionError(msg, Place(scene.path))
     elements = np.arange(len(scene.names), dtype=np.int32)
     poses = motion.moved_poses(scene.poses, elements, state.values)
-    poses.setflags(write=False)
     warnings = []
     for name, dof, value in zip(
             state.names, motion.dofs, state.values.tolist(), strict=True):

@@ -112,6 +112,11 @@ class TfTree:
     """The name of the world that the frames belong to; empty for a model file."""
     warnings: tuple[SdfWarning, ...]
 
+    def __post_init__(self) -> None:
+        for value in vars(self).values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
     @cached_property
     def parent_ids(self) -> tuple[str, ...]:
         """Frame id of the parent of each frame; empty for a frame without a transform."""
@@ -194,7 +199,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         motion = JointMotion(scene, tf_parents)
         moving = MovingFrames(
             motion, poses[:-2], parents, np.array(owners, np.int32), reference)
-    tree = TfTree(
+    return TfTree(
         root_frame=options.root_frame,
         frame_ids=tuple(frame_ids),
         poses=poses[:-2],
@@ -208,11 +213,6 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         world=scene.world_names.get(0, ''),
         warnings=problems.warnings,
     )
-    for array in (
-            tree.poses, tree.poses_in_pose_frame, tree.parents, tree.transforms, tree.elements,
-            tree.nearest_frames):
-        array.setflags(write=False)
-    return tree
 
 
 def _published_elements(scene: Scene, options: TfOptions, problems: Problems) -> Indices:
