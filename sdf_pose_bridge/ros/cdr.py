@@ -98,14 +98,11 @@ class StampedMessages:
         self._floats[self._places_of_numbers] = poses
 
 
-def tf_message(
-    parent_ids: Sequence[str], child_ids: Sequence[str], transforms: PoseArray,
-) -> StampedMessages:
+def tf_message(ids: Sequence[Sequence[str]], transforms: PoseArray) -> StampedMessages:
     """
     Serialize one tf2_msgs/TFMessage.
 
-    :param parent_ids: the parent frame of each transform.
-    :param child_ids: the child frame of each transform.
+    :param ids: the parent frame of each transform, and the child frame of each.
     :param transforms: shape (n, 7): pose of each child in its parent, in metres, quaternion
         x y z w.
     :raises ValueError: if a frame id contains a zero character.
@@ -113,42 +110,25 @@ def tf_message(
     # The length of the sequence is before the first transform.
     room = np.zeros(len(transforms), np.int64)
     room[:1] = _LENGTH
-    buffer, stamps, numbers, ends = _records([parent_ids, child_ids], transforms, room, _HEADER)
+    buffer, stamps, numbers, ends = _records(ids, transforms, room, _HEADER)
     buffer.view('<i4')[_HEADER // 4] = len(transforms)
     buffer[_HEADER - 3] = 1
     end = int(ends[-1]) if len(transforms) else _HEADER + _LENGTH
     return StampedMessages(buffer, stamps, numbers, [(_HEADER - 4, end)])
 
 
-def transform_stamped_messages(
-    parent_ids: Sequence[str], child_ids: Sequence[str], transforms: PoseArray,
-) -> StampedMessages:
+def stamped_messages(ids: Sequence[Sequence[str]], poses: PoseArray) -> StampedMessages:
     """
-    Serialize a geometry_msgs/TransformStamped for each transform.
+    Serialize a geometry_msgs/TransformStamped or PoseStamped for each pose.
 
-    :param parent_ids: the parent frame of each transform.
-    :param child_ids: the child frame of each transform.
-    :param transforms: shape (n, 7): pose of each child in its parent, in metres, quaternion
-        x y z w.
-    :raises ValueError: if a frame id contains a zero character.
-    """
-    return _messages([parent_ids, child_ids], transforms)
+    Both are a stamp, frame ids and seven numbers.
 
-
-def pose_stamped_messages(frame_ids: Sequence[str], poses: PoseArray) -> StampedMessages:
-    """
-    Serialize a geometry_msgs/PoseStamped for each pose.
-
-    :param frame_ids: the frame that each pose is given in.
+    :param ids: for TransformStamped the parent frame of each transform, and the child frame of
+        each; for PoseStamped only the frame that each pose is given in.
     :param poses: shape (n, 7), in metres, quaternion x y z w.
     :raises ValueError: if a frame id contains a zero character.
     """
-    return _messages([frame_ids], poses)
-
-
-def _messages(columns: Sequence[Sequence[str]], poses: PoseArray) -> StampedMessages:
-    """Serialize a message for each stamp, strings (one of each column) and seven numbers."""
-    buffer, stamps, numbers, ends = _records(columns, poses, np.full(len(poses), _HEADER), 0)
+    buffer, stamps, numbers, ends = _records(ids, poses, np.full(len(poses), _HEADER), 0)
     begins = stamps - 4
     buffer[begins + 1] = 1
     return StampedMessages(

@@ -21,10 +21,9 @@ from rclpy.publisher import Publisher
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.ros.cdr import pose_stamped_messages
+from sdf_pose_bridge.ros.cdr import stamped_messages
 from sdf_pose_bridge.ros.cdr import StampedMessages
 from sdf_pose_bridge.ros.cdr import tf_message
-from sdf_pose_bridge.ros.cdr import transform_stamped_messages
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.publishers import Stamp
 from sdf_pose_bridge.ros.publishers import Topic
@@ -115,7 +114,7 @@ class PublishedFrames:
     @cached_property
     def _fixed_transforms(self) -> tuple[Sequence[Topic], StampedMessages]:
         indices = self.tree.fixed_indices
-        messages = transform_stamped_messages(*_transforms(self.tree, indices))
+        messages = stamped_messages(*_transforms(self.tree, indices))
         return [self._transforms_topic] * len(indices), messages
 
     @cached_property
@@ -126,8 +125,8 @@ class PublishedFrames:
             (index, self._pose_topics[frame_id]) for index, frame_id in enumerate(tree.frame_ids)
             if frame_id in self._pose_topics and index not in moving]
         poses = tree.poses_in_pose_frame[[index for index, _ in posed]]
-        return [topic for _, topic in posed], pose_stamped_messages(
-            [tree.pose_frame] * len(posed), poses)
+        return [topic for _, topic in posed], stamped_messages(
+            [[tree.pose_frame] * len(posed)], poses)
 
 
 class PublishedMovingFrames:
@@ -155,12 +154,12 @@ class PublishedMovingFrames:
             positions.take_over(before.positions)
         self._tf = publishers.opened(TF)
         self.transforms_topic = _transforms_topic(len(moving.indices), 'moving')
-        self._transform_messages = transform_stamped_messages(*_transforms(tree, moving.indices))
+        self._transform_messages = stamped_messages(*_transforms(tree, moving.indices))
         topics = [pose_topics.get(tree.frame_ids[index]) for index in moving.posed_indices]
         self._posed_rows = [row for row, topic in enumerate(topics) if topic is not None]
         self._posed_topics = [topic for topic in topics if topic is not None]
-        self._pose_messages = pose_stamped_messages(
-            [tree.pose_frame] * len(self._posed_rows),
+        self._pose_messages = stamped_messages(
+            [[tree.pose_frame] * len(self._posed_rows)],
             tree.poses_in_pose_frame[moving.posed_indices[self._posed_rows]])
 
     def tf_message(self, rows: NDArray[np.intp]) -> StampedMessages:
@@ -221,9 +220,9 @@ class PublishedMovingFrames:
 
 def _transforms(
     tree: TfTree, indices: NDArray[np.intp],
-) -> tuple[Sequence[str], Sequence[str], PoseArray]:
-    """Return the parents, the children and the transforms of frames, as messages have them."""
-    return *tree.ids_of_transforms(indices), tree.transforms[indices]
+) -> tuple[Sequence[Sequence[str]], PoseArray]:
+    """Return the parents and children of transforms, and the transforms."""
+    return tree.ids_of_transforms(indices), tree.transforms[indices]
 
 
 def _transforms_topic(count: int, part: str) -> Topic:

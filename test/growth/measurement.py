@@ -55,7 +55,7 @@ def outcome_of_load(path: str) -> str:
         if tree.moving is not None:
             JointPositions(scene, tree.moving.dofs, FrameNames.AUTO, '')
         fixed = tree.fixed_indices
-        tf_message(*tree.ids_of_transforms(fixed), tree.transforms[fixed])
+        tf_message(tree.ids_of_transforms(fixed), tree.transforms[fixed])
         PoseLookup(scene, tree)
     except SdfError as error:
         return ' '.join(dict.fromkeys(each.code for each in error.errors))

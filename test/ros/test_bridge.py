@@ -75,7 +75,7 @@ def test_what_can_wait_for_the_first_message_is_not_imported_before():
         'from sdf_pose_bridge.ros.cdr import tf_message\n'
         'from sdf_pose_bridge.tf.tree import tf_tree_from_scene\n'
         'tree = tf_tree_from_scene(load("examples/work_cell.sdf"))\n'
-        'tf_message(tree.parent_ids, tree.frame_ids, tree.transforms).with_stamp(1, 2)\n'
+        'tf_message([tree.parent_ids, tree.frame_ids], tree.transforms).with_stamp(1, 2)\n'
         'import sys\n'
         f'print([name for name in {WAITS_FOR_THE_FIRST_MESSAGE} if name in sys.modules])')
     result = subprocess.run(

@@ -18,9 +18,8 @@ import pytest
 
 from sdf_pose_bridge.ros.cdr import joint_state_from_bytes
 from sdf_pose_bridge.ros.cdr import MOST_BYTES
-from sdf_pose_bridge.ros.cdr import pose_stamped_messages
+from sdf_pose_bridge.ros.cdr import stamped_messages
 from sdf_pose_bridge.ros.cdr import tf_message
-from sdf_pose_bridge.ros.cdr import transform_stamped_messages
 
 STAMPS = st.tuples(st.integers(0, 2**31 - 1), st.integers(0, 999_999_999))
 NAMES = st.text(st.characters(codec='utf-8', exclude_characters='\0'), max_size=20)
@@ -35,7 +34,7 @@ POSITIONS = st.lists(st.floats(allow_nan=False), max_size=5)
 def columns(rows):
     """Return rows of (parent, child, numbers) as what the functions take."""
     numbers = np.array([row[2] for row in rows], dtype=np.float64).reshape(-1, 7)
-    return [row[0] for row in rows], [row[1] for row in rows], numbers
+    return ([row[0] for row in rows], [row[1] for row in rows]), numbers
 
 
 class Mask:
@@ -109,9 +108,9 @@ def serialized():
 
 
 @pytest.mark.parametrize('make', [
-    lambda name: tf_message([name], ['a'], np.zeros((1, 7))),
-    lambda name: transform_stamped_messages(['a'], [name], np.zeros((1, 7))),
-    lambda name: pose_stamped_messages([name], np.zeros((1, 7)))])
+    lambda name: tf_message([[name], ['a']], np.zeros((1, 7))),
+    lambda name: stamped_messages([['a'], [name]], np.zeros((1, 7))),
+    lambda name: stamped_messages([[name]], np.zeros((1, 7)))])
 def test_a_zero_character_is_refused(make):
     with pytest.raises(ValueError, match='zero character'):
         make('a\0b')
@@ -126,7 +125,7 @@ def test_a_tf_message_has_the_bytes_of_the_serializer(serialized, rows, stamp):
 
 @given(rows=ROWS, stamp=STAMPS)
 def test_transforms_have_the_bytes_of_the_serializer(serialized, rows, stamp):
-    ours = transform_stamped_messages(*columns(rows)).with_stamp(*stamp)
+    ours = stamped_messages(*columns(rows)).with_stamp(*stamp)
     assert len(ours) == len(rows)
     for data, row in zip(ours, rows, strict=True):
         mask = mask_of_records(row[:2])
@@ -136,8 +135,8 @@ def test_transforms_have_the_bytes_of_the_serializer(serialized, rows, stamp):
 @given(rows=ROWS, stamp=STAMPS)
 def test_poses_have_the_bytes_of_the_serializer(serialized, rows, stamp):
     from geometry_msgs.msg import PoseStamped
-    frame_ids, _, numbers = columns(rows)
-    ours = pose_stamped_messages(frame_ids, numbers).with_stamp(*stamp)
+    (frame_ids, _), numbers = columns(rows)
+    ours = stamped_messages([frame_ids], numbers).with_stamp(*stamp)
     assert len(ours) == len(rows)
     for data, (frame_id, _, values) in zip(ours, rows, strict=True):
         message = stamped(PoseStamped(), stamp, frame_id)
@@ -175,7 +174,7 @@ def test_names_of_two_megabytes_have_the_bytes_of_the_serializer(serialized):
 def test_long_names_take_little_more_memory_than_the_message():
     names = [str(number) * 1000 for number in range(1000, 2000)]
     tracemalloc.start()
-    messages = tf_message(names, names, np.zeros((len(names), 7)))
+    messages = tf_message([names, names], np.zeros((len(names), 7)))
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     (data,) = messages.with_stamp(1, 2)
@@ -191,37 +190,37 @@ def test_what_is_between_the_fields_is_zero(rows):
 
 @given(rows=ROWS, first=STAMPS, second=STAMPS)
 def test_messages_can_be_stamped_again(rows, first, second):
-    messages = transform_stamped_messages(*columns(rows))
+    messages = stamped_messages(*columns(rows))
     before = messages.with_stamp(*first)
     again = messages.with_stamp(*second)
-    assert again == transform_stamped_messages(*columns(rows)).with_stamp(*second)
-    assert before == transform_stamped_messages(*columns(rows)).with_stamp(*first)
+    assert again == stamped_messages(*columns(rows)).with_stamp(*second)
+    assert before == stamped_messages(*columns(rows)).with_stamp(*first)
 
 
 def test_no_transforms_are_one_empty_message():
-    messages = tf_message([], [], np.empty((0, 7))).with_stamp(1, 2)
+    messages = tf_message([[], []], np.empty((0, 7))).with_stamp(1, 2)
     assert messages == [bytes([0, 1, 0, 0, 0, 0, 0, 0])]
 
 
 def test_no_poses_are_no_messages():
-    assert pose_stamped_messages([], np.empty((0, 7))).with_stamp(1, 2) == []
+    assert stamped_messages([[]], np.empty((0, 7))).with_stamp(1, 2) == []
 
 
 def test_a_message_of_100000_transforms_ends_with_the_last_number():
     count = 100_000
     names = [f'frame_{number}' for number in range(count)]
     numbers = np.arange(7.0 * count).reshape(-1, 7)
-    (data,) = tf_message(['world'] * count, names, numbers).with_stamp(1, 2)
+    (data,) = tf_message([['world'] * count, names], numbers).with_stamp(1, 2)
     assert struct.unpack_from('<I', data, 4) == (count,)
     assert struct.unpack('<7d', data[-56:]) == tuple(numbers[-1])
 
 
 @given(ROWS)
 def test_poses_can_be_replaced(rows):
-    parents, children, numbers = columns(rows)
-    messages = tf_message(parents, children, np.zeros_like(numbers))
+    ids, numbers = columns(rows)
+    messages = tf_message(ids, np.zeros_like(numbers))
     messages.set_poses(numbers)
-    assert messages.with_stamp(1, 2) == tf_message(parents, children, numbers).with_stamp(1, 2)
+    assert messages.with_stamp(1, 2) == tf_message(ids, numbers).with_stamp(1, 2)
 
 
 def joint_state(names, positions, *, frame_id='', sec=0, nanosec=0, velocities=()):
