@@ -79,7 +79,7 @@ class Page:
         self._drawing = Drawing(
             server, meshes, lambda frame: self._actions.put(partial(self._select, frame)))
         self._positions: dict[str, float] = {}
-        self._selected = self._reference = ''
+        self._selected = ''
         self._dragged: Pose | None = None
         self._hidden = {'collisions'}
         self._listed: object = None
@@ -113,11 +113,11 @@ class Page:
                 for element in np.unique(self._tops).tolist()
                 if scene.kinds[element] == Kind.MODEL and self._is_in_model[element]}
             switches = *dict.fromkeys(kind_labels_of(scene, tree)), *GROUPS
-            listed = scene.path, tree.frame_ids, switches, list(self._models), ranges
+            listed = scene.path, switches, list(self._models), ranges
             if self._listed != listed:
                 self._listed = listed
                 self._add_controls(switches, ranges)
-            self._show_rows()
+            self._list_frames()
             lines = [
                 f'{"1 shape is" if count == 1 else f"{count} shapes are"} not drawn as the file '
                 f'means it: {printable(reason)}'
@@ -213,21 +213,15 @@ class Page:
                     for name, (turns, lower, upper) in ranges.items()]
                 zero = gui.add_button('all at zero')
             self._when(zero.on_click, lambda _: _set_to_zero(sliders))
-        with gui.add_folder('Frames'):
+        self._folder_of_frames = gui.add_folder('Frames')
+        with self._folder_of_frames:
             self._search = gui.add_text('search', '')
             self._rows = gui.add_html('')
-            # The rows are labels of these buttons, which are not shown: HTML cannot do more.
-            self._buttons = [
-                gui.add_button('select')
-                for _ in range(min(len(self._tree.frame_ids), MOST_ROWS))]
         self._when(self._search.on_update, lambda _: self._show_rows())
-        for number, button in enumerate(self._buttons):
-            self._when(button.on_click, partial(self._select_row, number))
+        # The rows are labels of these buttons, which are not shown: HTML cannot do more.
+        self._buttons: list[Any] = []
         with gui.add_folder('Selected frame'):
-            ids = (self._tree.root_frame, *self._tree.frame_ids[:_MOST_CHOICES])
-            self._choice = gui.add_dropdown(
-                'in', ids,
-                initial_value=self._reference if self._reference in ids else ids[0])
+            self._choice = gui.add_dropdown('in', (self._tree.root_frame,))
             self._description = gui.add_html('')
             self._write = gui.add_button('write to file', visible=False)
         self._when(self._choice.on_update, lambda _: self._show_frame())
@@ -242,6 +236,15 @@ class Page:
         self._when(switch.on_update, change)
 
     # Frames
+
+    def _list_frames(self) -> None:
+        ids = self._tree.frame_ids
+        self._choice.options = (self._tree.root_frame, *ids[:_MOST_CHOICES])
+        with self._folder_of_frames:
+            for number in range(len(self._buttons), min(len(ids), MOST_ROWS)):
+                self._buttons.append(self._server.gui.add_button('select'))
+                self._when(self._buttons[-1].on_click, partial(self._select_row, number))
+        self._show_rows()
 
     def _show_rows(self) -> None:
         rows = list(islice(rows_of_tree(self._tree, self._search.value), len(self._buttons)))
@@ -296,8 +299,8 @@ class Page:
         self._drawing.mark(pose)
         poses = self._tree.poses.copy()
         poses[frame] = pose
-        self._reference, ids = self._choice.value, self._tree.frame_ids
-        reference = ids.index(self._reference) if self._reference in ids else ROOT_IS_PARENT
+        other, ids = self._choice.value, self._tree.frame_ids
+        reference = ids.index(other) if other in ids else ROOT_IS_PARENT
         self._description.content = html_of_frame(
             self._scene, replace(self._tree, poses=poses), frame, reference, self._units)
 
