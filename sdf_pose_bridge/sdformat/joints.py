@@ -156,10 +156,9 @@ def _screw_pitch_m(joint: XmlElement) -> float:
     ``<thread_pitch>``, which older files have, is in radians per metre and positive for a
     left-handed thread.
     """
-    if first_child(joint, 'screw_thread_pitch') is not None:
-        (pitch_m,) = numbers_of_child(joint, 'screw_thread_pitch', (1.0,))
-        return pitch_m
-    if first_child(joint, 'thread_pitch') is None:
-        return 1.0
-    (rad_per_m,) = numbers_of_child(joint, 'thread_pitch', (1.0,))
-    return -2.0 * math.pi / rad_per_m if rad_per_m else 0.0
+    if first_child(joint, 'screw_thread_pitch') is None and (
+            first_child(joint, 'thread_pitch') is not None):
+        (rad_per_m,) = numbers_of_child(joint, 'thread_pitch', (1.0,))
+        return -2.0 * math.pi / rad_per_m if rad_per_m else 0.0
+    (pitch_m,) = numbers_of_child(joint, 'screw_thread_pitch', (1.0,))
+    return pitch_m

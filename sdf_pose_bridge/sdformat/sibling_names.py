@@ -56,8 +56,8 @@ class SiblingNames:
         if not name:
             self._report_no_name(kind, xml)
             return None
-        if is_reserved(name):
-            self._check_reserved_name(kind, xml, name)
+        if is_reserved(name) and kind is not Kind.ACTOR:
+            self._report_reserved_name(xml, name)
         key = (parent, None if kind.is_frame else kind, name)
         if key not in self._used:
             self._used[key] = (kind, len(self._builder.names), False)
@@ -68,8 +68,9 @@ class SiblingNames:
         if not has_duplicate and self._is_renamed(kind, parent, parent_path):
             self._renamed.add((parent, kind, name))
             return self._new_name(kind, xml, parent, name)
+        path = self._sources.paths[self._builder.file_indices[index]]
         msg = (f'the name "{name}" belongs to {_ARTICLES.get(other, "a")} {other.label} of this '
-               f'scope already, {self._described_place(index)}')
+               f'scope already, see {Place(path, self._builder.lines[index])}')
         self._sources.error_in_name(DuplicateNameError, xml, msg)
         return None
 
@@ -81,12 +82,11 @@ class SiblingNames:
             msg = f'the name of the {kind.label} is empty'
             self._sources.error_in_name(AttributeInvalidError, xml, msg)
 
-    def _check_reserved_name(self, kind: Kind, xml: XmlElement, name: str) -> None:
-        if kind is not Kind.ACTOR:
-            rule = ('it means the frame of the world' if name == WORLD_FRAME else
-                    'so are all that begin and end with two underscores')
-            msg = f'the name "{name}" is reserved; {rule}'
-            self._sources.error_in_name(ReservedNameError, xml, msg)
+    def _report_reserved_name(self, xml: XmlElement, name: str) -> None:
+        rule = ('it means the frame of the world' if name == WORLD_FRAME else
+                'so are all that begin and end with two underscores')
+        msg = f'the name "{name}" is reserved; {rule}'
+        self._sources.error_in_name(ReservedNameError, xml, msg)
 
     def _is_renamed(self, kind: Kind, parent: int, parent_path: str) -> bool:
         if parent < 0 or not kind.is_frame or kind is Kind.MODEL:
@@ -105,7 +105,3 @@ class SiblingNames:
                'other one')
         self._sources.warning(xml, msg)
         return new_name
-
-    def _described_place(self, index: int) -> str:
-        path = self._sources.paths[self._builder.file_indices[index]]
-        return f'see {Place(path, self._builder.lines[index])}'

@@ -40,11 +40,12 @@ def element_by_id(
     :param count: is called with the number of children of each element that is searched.
     :return: the element, or None.
     """
-    count(len(top))
-    children = child_elements(top)
     start = longest = 0
-    while True:
-        match: XmlElement | None = None
+    match: XmlElement | None = top
+    while match is not None:
+        count(len(match))
+        children = child_elements(match)
+        match = None
         for child in children:
             written = child.get('name')
             if written is None:
@@ -58,13 +59,10 @@ def element_by_id(
             if element_id[start:] == name and tag in ('', written_tag(child)):
                 return child
             match, longest = child, last
-        if match is None:
-            return None
-        count(len(match))
-        children = child_elements(match)
         start = longest
         if element_id.startswith(SEPARATOR, start + 1):
             start += 1 + len(SEPARATOR)
+    return None
 
 
 def hint_for_id(top: XmlElement, element_id: str, tag: str = '') -> str:
