@@ -16,31 +16,17 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from sdf_pose_bridge.errors import Place
-    from sdf_pose_bridge.errors import SdfError
-    from sdf_pose_bridge.errors import SdfWarning
-    from sdf_pose_bridge.errors import UnknownFrameError
-    from sdf_pose_bridge.geometry.poses import Pose
-    from sdf_pose_bridge.scene.loading import load
-    from sdf_pose_bridge.scene.loading import load_text
-    from sdf_pose_bridge.scene.scene import Scene
-    from sdf_pose_bridge.sdformat.grammar import Kind
-    from sdf_pose_bridge.sdformat.limits import Limits
-    from sdf_pose_bridge.tf.joint_positions import scene_at_positions
-
-__all__ = [
-    'Kind',
-    'Limits',
-    'Place',
-    'Pose',
-    'Scene',
-    'SdfError',
-    'SdfWarning',
-    'UnknownFrameError',
-    'load',
-    'load_text',
-    'scene_at_positions',
-]
+    from sdf_pose_bridge.errors import Place as Place
+    from sdf_pose_bridge.errors import SdfError as SdfError
+    from sdf_pose_bridge.errors import SdfWarning as SdfWarning
+    from sdf_pose_bridge.errors import UnknownFrameError as UnknownFrameError
+    from sdf_pose_bridge.geometry.poses import Pose as Pose
+    from sdf_pose_bridge.scene.loading import load as load
+    from sdf_pose_bridge.scene.loading import load_text as load_text
+    from sdf_pose_bridge.scene.scene import Scene as Scene
+    from sdf_pose_bridge.sdformat.grammar import Kind as Kind
+    from sdf_pose_bridge.sdformat.limits import Limits as Limits
+    from sdf_pose_bridge.tf.joint_positions import scene_at_positions as scene_at_positions
 
 _HOMES = {
     'Kind': 'sdformat.grammar',
@@ -55,6 +41,8 @@ _HOMES = {
     'load_text': 'scene.loading',
     'scene_at_positions': 'tf.joint_positions',
 }
+
+__all__ = list(_HOMES)
 
 
 def __getattr__(name: str) -> object:
