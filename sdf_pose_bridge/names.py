@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Iterable
 from collections.abc import Iterator
 from collections.abc import Sequence
+import difflib
 import re
 
 SEPARATOR = '::'
@@ -116,8 +117,6 @@ class NameIndex:
         """Return the name that was probably meant; an empty string if none is near."""
         if len(wanted) > _LONGEST_COMPARED:
             return ''
-        # The import takes a millisecond, and most processes do not need it.
-        import difflib
         likely = [*_neighbors(self._names, wanted), *(
             name[::-1] for name in _neighbors(self._reversed_names, wanted[::-1]))]
         near = difflib.get_close_matches(wanted, _comparable(wanted, likely), n=1, cutoff=0.6)

@@ -9,19 +9,15 @@ each round doubles the length of what has been followed, so a chain of a thousan
 
 from __future__ import annotations
 
-from typing import Any
-from typing import TYPE_CHECKING
 from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.poses import PoseArray
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-Indices: TypeAlias = 'np.ndarray[Any, np.dtype[np.int32]]'
+Indices: TypeAlias = NDArray[np.int32]
 """Shape (n,): indices of elements or nodes; -1 for none."""
 
 

@@ -12,7 +12,6 @@ this is how the functions for many poses use them.
 """
 
 from collections.abc import Callable
-from typing import Any
 from typing import NamedTuple
 from typing import TypeAlias
 
@@ -22,7 +21,7 @@ from sdf_pose_bridge.geometry.formulas import row_blocks
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.geometry.rotations import Floats
 
-PoseArray: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
+PoseArray: TypeAlias = Floats
 """Poses as rows: shape (n, 7), x y z in metres, unit quaternion x y z w."""
 
 

@@ -35,25 +35,22 @@ import math
 from typing import Any
 from typing import NamedTuple
 from typing import overload
-from typing import TYPE_CHECKING
 from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry import floats
 from sdf_pose_bridge.geometry import formulas
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-Floats: TypeAlias = 'NDArray[np.float64]'
+Floats: TypeAlias = NDArray[np.float64]
 Triple: TypeAlias = tuple[float, float, float]
 Quaternion: TypeAlias = tuple[float, float, float, float]
 Matrix: TypeAlias = tuple[Triple, Triple, Triple]
 One: TypeAlias = Sequence[float]
 OneMatrix: TypeAlias = Sequence[Sequence[float]]
-Many: TypeAlias = 'Floats | Sequence[Sequence[float]]'
-ManyMatrices: TypeAlias = 'Floats | Sequence[Sequence[Sequence[float]]]'
+Many: TypeAlias = Floats | Sequence[Sequence[float]]
+ManyMatrices: TypeAlias = Floats | Sequence[Sequence[Sequence[float]]]
 
 LOCK_TOLERANCE = 1e-15
 """Of gz-math: at gimbal lock the sine of pitch differs from 1 or -1 by less than this."""

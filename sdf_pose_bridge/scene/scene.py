@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 import math
 from typing import NamedTuple
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
@@ -24,9 +24,6 @@ from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.shapes import Shape
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
 
 
 class Mimic(NamedTuple):
@@ -89,7 +86,7 @@ class Scene:
     """All files that were read, this one included."""
     names: tuple[str, ...]
     """Absolute names such as ``robot::arm::hand``; ``world`` for a world's own frame."""
-    kinds: 'npt.NDArray[np.uint8]'
+    kinds: NDArray[np.uint8]
     """Values of :class:`~sdf_pose_bridge.sdformat.grammar.Kind`."""
     parents: Indices
     """The parent element of each element; -1 for a world and the implicit root."""
@@ -154,7 +151,7 @@ class Scene:
         if not relative_to:
             return self.pose_of(index)
         reference = self.index(relative_to, world=world or self.world_of(index))
-        if self._root_of[reference] != self._root_of[index]:
+        if self.roots[reference] != self.roots[index]:
             msg = (f'"{frame}" and "{relative_to}" have nothing in common: one is in a world, the '
                    'other is the model beside it')
             raise UnknownFrameError(msg, Place(self.path))
@@ -175,7 +172,7 @@ class Scene:
 
     def world_of(self, index: int) -> str:
         """Return the name of the world of an element; empty in a model file."""
-        return self.world_names.get(self._root_of[index], '')
+        return self.world_names.get(int(self.roots[index]), '')
 
     def has(self, name: str) -> bool:
         """Return whether an element has an absolute name, in any world."""
@@ -231,11 +228,6 @@ class Scene:
         for joint in self.joints:
             references[joint.element] = joint.child
         return references
-
-    @cached_property
-    def _root_of(self) -> list[int]:
-        roots: list[int] = self.roots.tolist()
-        return roots
 
     @cached_property
     def _indices(self) -> dict[str, list[int]]:

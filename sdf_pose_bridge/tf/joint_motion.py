@@ -13,9 +13,9 @@ from __future__ import annotations
 
 import math
 from typing import NamedTuple
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
 from sdf_pose_bridge.geometry.chains import Indices
@@ -33,9 +33,6 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
 from sdf_pose_bridge.sdformat.specification import Motion
 from sdf_pose_bridge.tf.parents import TfParents
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 NO_DOF = -1
 """Index that means no degree of freedom."""

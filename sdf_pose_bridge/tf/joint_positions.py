@@ -14,9 +14,9 @@ from collections.abc import Mapping
 from collections.abc import Sequence
 import dataclasses
 from typing import NamedTuple
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.errors import Place
@@ -31,9 +31,6 @@ from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 LARGEST_POSITION = 1e9
 """The largest position, in radians or metres, that counts as one."""

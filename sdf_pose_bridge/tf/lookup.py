@@ -6,7 +6,9 @@ from __future__ import annotations
 
 from functools import cached_property
 from typing import NamedTuple
-from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import UnknownFrameError
@@ -15,10 +17,6 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.tree import TfTree
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 
 class FoundPose(NamedTuple):

@@ -5,9 +5,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import canonical_relative_poses
@@ -18,9 +18,6 @@ from sdf_pose_bridge.geometry.poses import relative_poses
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.parents import NO_PARENT
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 
 class MovingFrames:

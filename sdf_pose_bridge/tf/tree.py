@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import enum
 from functools import cached_property
 from typing import NamedTuple
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementInvalidError
@@ -37,9 +37,6 @@ from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 from sdf_pose_bridge.tf.parents import TfParents
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 DEFAULT_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.FRAME, Kind.SENSOR})
 """The kinds of element that become frames unless the options say otherwise."""
