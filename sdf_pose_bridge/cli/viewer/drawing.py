@@ -102,8 +102,7 @@ class Drawing:
         :return: why visuals and collisions are not drawn as the file means them, for each of them.
         """
         nodes, self._hidden = self._server.scene, hidden
-        # Those of other names replace themselves. A browser takes what is removed and added again
-        # at once for the same, and leaves it where it was.
+        # Other nodes replace those of their name. Of these there may be fewer now.
         for name in ('/visuals', '/collisions'):
             nodes.remove_by_name(name)
         nodes.add_light_hemisphere('/light', ground_color=_LIGHT_FROM_BELOW, intensity=1.5)
@@ -165,6 +164,7 @@ class Drawing:
             printable(shortened(tree.frame_ids[frame].rpartition('/')[2])) for frame in frames]
         labels = list(labels_from_names(
             names, tree.poses[frames, :3], self._camera.position, self._camera.look_at))
+        # A browser leaves a label that is removed and added again at once where it was.
         while len(self._labels) < len(labels):
             self._labels.append(self._server.scene.add_label(f'/names/{len(self._labels)}', ''))
         for number, label in enumerate(self._labels):

@@ -118,16 +118,12 @@ class Page:
                 self._listed = listed
                 self._add_controls(switches, ranges)
             self._list_frames()
-            lines = [
-                f'{"1 shape is" if count == 1 else f"{count} shapes are"} not drawn as the file '
-                f'means it: {printable(reason)}'
-                for reason, count in Counter(self._draw()).items()]
-            self._lines.content = _html_of_lines('reasons', lines)
-        return lines
+            self.show_errors([])
+            return self._draw()
 
     def show_errors(self, lines: Iterable[str]) -> None:
         """Show the errors of a file, a line for each, above its last scene."""
-        self._lines.content = _html_of_lines('errors', lines)
+        self._errors.content = _html_of_lines('errors', lines)
 
     def act(self, seconds: float) -> None:
         """Do what browsers ask for; wait for it, but no longer than this."""
@@ -156,7 +152,11 @@ class Page:
         reasons = self._drawing.draw(self._scene, self._tree, is_shown, self._hidden)
         self._when(self._drawing.gizmo.on_update, lambda _: self._drag())
         self._show_frame()
-        return reasons
+        lines = [
+            f'{"1 shape is" if count == 1 else f"{count} shapes are"} not drawn as the file means '
+            f'it: {printable(reason)}' for reason, count in Counter(reasons).items()]
+        self._reasons.content = _html_of_lines('reasons', lines)
+        return lines
 
     # Joints
 
@@ -198,7 +198,7 @@ class Page:
         # What was asked for until now, was asked by controls that are gone.
         self._actions = SimpleQueue()
         gui.set_panel_label(printable(self._loaded.path))
-        self._lines = gui.add_html('')
+        self._errors, self._reasons = gui.add_html(''), gui.add_html('')
         with gui.add_folder('Show'):
             for name in switches:
                 self._add_switch(name)

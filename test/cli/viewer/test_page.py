@@ -43,7 +43,7 @@ def test_page_says_what_it_does_not_draw(page, tmp_path):
     (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{geometry}</link>'))
     assert page.show(load(tmp_path / 'm.sdf', shapes=True)) == [
         '1 shape is not drawn as the file means it: the mesh "<b>": it is not found']
-    assert '&lt;b&gt;&quot;: it is not found' in page._lines.content
+    assert '&lt;b&gt;&quot;: it is not found' in page._reasons.content
 
 
 def test_gizmo_is_there_for_frames_that_can_be_placed_only(page, server, tmp_path):
@@ -69,3 +69,16 @@ def test_what_is_switched_off_is_not_drawn(page, server, tmp_path):
         page.act(0.1)
     assert not name.visible
     assert server.scene.get_handle_by_name('/visuals/0') is None
+
+
+def test_page_says_so_when_collisions_are_switched_on(page, tmp_path):
+    mesh = '<collision name="c"><geometry><mesh><uri>a</uri></mesh></geometry></collision>'
+    (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{mesh}</link>'))
+    assert page.show(load(tmp_path / 'm.sdf', shapes=True)) == []
+    (switch,) = (
+        switch for switch in page._server.gui._gui_input_handle_from_uuid.values()
+        if switch.label == 'collisions')
+    switch.value = True
+    while 'collisions' in page._hidden:
+        page.act(0.1)
+    assert '1 shape is not drawn as the file means it' in page._reasons.content
