@@ -19,18 +19,14 @@ from functools import cached_property
 from itertools import pairwise
 import struct
 from typing import NamedTuple
-from typing import TYPE_CHECKING
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry.poses import PoseArray
 
-if TYPE_CHECKING:
-    from typing import TypeVar
-
-    import numpy.typing as npt
-
-    Offset = TypeVar('Offset', int, npt.NDArray[np.int64])
+Offset = TypeVar('Offset', int, NDArray[np.int64])
 
 # Sizes in bytes.
 _LENGTH = 4
@@ -61,8 +57,8 @@ class StampedMessages:
     """
 
     def __init__(
-        self, buffer: npt.NDArray[np.uint8], stamps: npt.NDArray[np.int64],
-        numbers: npt.NDArray[np.int64], bounds: Sequence[tuple[int, int]],
+        self, buffer: NDArray[np.uint8], stamps: NDArray[np.int64],
+        numbers: NDArray[np.int64], bounds: Sequence[tuple[int, int]],
     ) -> None:
         self._buffer = buffer
         self._integers = buffer.view('<i4')
@@ -72,11 +68,11 @@ class StampedMessages:
         self._bounds = bounds
 
     @cached_property
-    def _places_of_stamps(self) -> npt.NDArray[np.int64]:
+    def _places_of_stamps(self) -> NDArray[np.int64]:
         return _places(self._stamps, 4, 2)
 
     @cached_property
-    def _places_of_numbers(self) -> npt.NDArray[np.int64]:
+    def _places_of_numbers(self) -> NDArray[np.int64]:
         return _places(self._numbers, 8, 7)
 
     def with_stamp(self, sec: int, nanosec: int) -> list[bytes]:
@@ -136,9 +132,8 @@ def stamped_messages(ids: Sequence[Sequence[str]], poses: PoseArray) -> StampedM
 
 
 def _records(
-    columns: Sequence[Sequence[str]], poses: PoseArray, room: npt.NDArray[np.int64], start: int,
-) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.int64], npt.NDArray[np.int64],
-           npt.NDArray[np.int64]]:
+    columns: Sequence[Sequence[str]], poses: PoseArray, room: NDArray[np.int64], start: int,
+) -> tuple[NDArray[np.uint8], NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
     """
     Write records of a stamp, strings and seven numbers, one after the other.
 
@@ -183,7 +178,7 @@ def _records(
     return buffer, begins + room, numbers, ends
 
 
-def _places(offsets: npt.NDArray[np.int64], size: int, count: int) -> npt.NDArray[np.int64]:
+def _places(offsets: NDArray[np.int64], size: int, count: int) -> NDArray[np.int64]:
     """Return where so many values of a size are that follow one another from each offset on."""
     return (offsets // size)[:, np.newaxis] + np.arange(count)
 
@@ -196,7 +191,7 @@ class JointStateBytes(NamedTuple):
     names: bytes
     """The serialized names. The bytes that align them may differ from message to message."""
     name_count: int
-    positions: npt.NDArray[np.float64]
+    positions: NDArray[np.float64]
     order: str
     """The order of bytes, ``<`` or ``>``."""
 

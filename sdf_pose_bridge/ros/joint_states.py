@@ -12,9 +12,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 import time
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock
 from rclpy.clock import ClockType
@@ -33,9 +33,6 @@ from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.publishers import Stamp
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION
 from sdf_pose_bridge.tf.joint_positions import Selection
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 INITIAL_PERIOD_S = 0.1
 """How often ``/tf`` is published before the first message of ``joint_states``."""

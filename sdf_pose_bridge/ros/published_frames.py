@@ -12,11 +12,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from geometry_msgs.msg import PoseStamped
 from geometry_msgs.msg import TransformStamped
 import numpy as np
+from numpy.typing import NDArray
 from rclpy.publisher import Publisher
 from tf2_msgs.msg import TFMessage
 
@@ -30,9 +30,6 @@ from sdf_pose_bridge.ros.publishers import Topic
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.moving_frames import MovingFrames
 from sdf_pose_bridge.tf.tree import TfTree
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 TF_STATIC = Topic('/tf_static', TFMessage)
 TF = Topic('/tf', TFMessage, depth=100, is_latched=False)

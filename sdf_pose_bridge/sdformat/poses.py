@@ -16,9 +16,9 @@ import math
 import re
 import sys
 from typing import NamedTuple
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 from sdf_pose_bridge.sdformat.values import boolean_from_text
@@ -28,9 +28,6 @@ from sdf_pose_bridge.sdformat.values import LONGEST_PLAIN
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
 
 _SHORTEST_QUATERNION = 1e-9
 """A quaternion with a smaller norm has no meaningful direction."""
@@ -95,7 +92,7 @@ def pose_format_of(xml: XmlElement) -> PoseFormat:
 class PosesFromTexts(NamedTuple):
     """Result of :func:`poses_from_texts`."""
 
-    poses: npt.NDArray[np.float64]
+    poses: NDArray[np.float64]
     """Shape (n, 7): x y z in metres, unit quaternion x y z w; the identity for each failure."""
     failures: list[tuple[int, str]]
     """The index of each text that is not a pose, and the reason."""
@@ -183,7 +180,7 @@ def _shown(text: str) -> str:
 
 
 def _doubts(
-    texts: Sequence[str], numbers: npt.NDArray[np.float64], pose_format: PoseFormat,
+    texts: Sequence[str], numbers: NDArray[np.float64], pose_format: PoseFormat,
 ) -> list[tuple[int, str]]:
     if pose_format.is_quaternion:
         is_doubtful = np.abs(np.linalg.norm(numbers[:, 3:], axis=1) - 1.0) > _NORM_TOLERANCE
@@ -197,7 +194,7 @@ def _doubts(
     return [(row, doubt.format(_shown(texts[row]))) for row in rows]
 
 
-def _numbers_from_texts(texts: Sequence[str], count: int) -> npt.NDArray[np.float64] | None:
+def _numbers_from_texts(texts: Sequence[str], count: int) -> NDArray[np.float64] | None:
     """
     Read the numbers of many texts at once, which takes a tenth of the time.
 
@@ -227,8 +224,8 @@ def _numbers_from_texts(texts: Sequence[str], count: int) -> npt.NDArray[np.floa
 
 
 def _poses_from_numbers(
-    numbers: npt.NDArray[np.float64], pose_format: PoseFormat,
-) -> npt.NDArray[np.float64]:
+    numbers: NDArray[np.float64], pose_format: PoseFormat,
+) -> NDArray[np.float64]:
     rotations = numbers[:, 3:]
     if pose_format.is_quaternion:
         norms = np.sqrt(np.einsum('ij,ij->i', rotations, rotations))
