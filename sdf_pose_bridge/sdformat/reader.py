@@ -81,9 +81,7 @@ _CHECKS_OF_UNREAD = {
 """The same for elements in what libsdformat does not read, such as a state."""
 
 
-def elements_from_tree(
-    root: XmlElement, sources: Sources, *, shapes: bool = False,
-) -> Elements:
+def elements_from_tree(root: XmlElement, sources: Sources, *, shapes: bool = False) -> Elements:
     """
     Read all elements with a pose.
 
