@@ -93,9 +93,8 @@ def _proxy_frame(
         proxy.set(PLACEMENT_OF_MERGED_MODEL, name if placement == MODEL_FRAME else placement)
     proxy.append(proxy_pose)
     place = sources.place(model)
-    sources.set_source(proxy, place.file, place.line)
     sources.set_origin(
-        proxy, include=sources.place(include),
+        proxy, file=place.file, line=place.line, include=sources.place(include),
         is_named_by_include=first_child(include, 'name') is not None)
     return proxy
 
