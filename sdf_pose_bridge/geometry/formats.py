@@ -109,12 +109,9 @@ def converted_rotations(
     to_format: str,
 ) -> Floats:
     """
-    Convert rotations from one format to another.
+    Convert rotations as :func:`converted_poses` does poses, between :data:`ROTATION_FORMATS`.
 
-    :param values: any number of rotations one after another, shape (n * row_length,), or one in
-        each row, shape (n, row_length).
-    :param from_format: format of the values, a name in :data:`ROTATION_FORMATS`.
-    :param to_format: format of the result; if it is the same, the rotations become canonical.
+    :param values: shape (n * row_length,) or (n, row_length).
     :return: the rotations, shape (n * row_length,) or (n, row_length) like the values; new memory.
     :raises PoseFormatError: as :func:`converted_poses`.
     """

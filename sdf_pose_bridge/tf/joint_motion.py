@@ -49,7 +49,7 @@ class DegreeOfFreedom(NamedTuple):
     suffix: str
     """What its name in ``joint_states`` has after that of the joint."""
     axis: JointAxis
-    """The axis, with its limits; a ball joint has none."""
+    """The axis with its limits; of a ball joint a fixed direction without limits."""
     rad_per_unit: float
     """How far it turns about the axis for a position of 1."""
     m_per_unit: float
