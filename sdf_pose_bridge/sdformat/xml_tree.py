@@ -43,7 +43,11 @@ def first_child(xml: XmlElement, tag: str) -> XmlElement | None:
 
     :return: the child, or None.
     """
-    return next(xml.iterchildren(tag), None)
+    # For the few children that most elements have, this is faster than iterchildren.
+    for child in xml:
+        if child.tag == tag:
+            return child
+    return None
 
 
 def written_tag(xml: XmlElement) -> str:
