@@ -29,6 +29,7 @@ from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 
 _LABELLED_KINDS = (
     Kind.VISUAL, Kind.COLLISION, Kind.LIGHT, Kind.PARTICLE_EMITTER, Kind.PROJECTOR, Kind.ACTOR)
@@ -107,8 +108,8 @@ class OpticalFrame(NamedTuple):
     """The element of the camera."""
     pose: Pose
     """Pose in the root frame."""
-    parent: int | None
-    """Index of the camera's frame; None if the camera uses the root frame."""
+    parent: int
+    """Index of the camera's frame; :data:`ROOT_IS_PARENT` if the camera uses the root frame."""
 
 
 def with_ids_of_sensors(
@@ -180,5 +181,6 @@ def optical_frames_of_cameras(
         if pose != (poses.get(frame_id) if other is None else scene.pose_of(other)):
             poses.setdefault(frame_id, pose)
             frames.append(
-                OpticalFrame(frame_id, camera, pose, indices.get(sensor_ids[camera])))
+                OpticalFrame(
+                    frame_id, camera, pose, indices.get(sensor_ids[camera], ROOT_IS_PARENT)))
     return frames

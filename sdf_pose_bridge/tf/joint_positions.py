@@ -122,17 +122,22 @@ class JointPositions:
         :param values: a value for each name that was looked up, in radians or metres.
         :return: the names whose values are not finite or too large; their positions stay.
         """
-        new = values[selection.rows]
-        is_valid = np.abs(new) <= LARGEST_POSITION
-        dofs = selection.dofs[is_valid]
-        self.values[dofs] = new[is_valid]
+        dofs, new = selection.dofs, values[selection.rows]
+        invalid: list[str] = []
+        sizes = np.abs(new)
+        # One that is not a number is the largest.
+        if not sizes.max(initial=0.0) <= LARGEST_POSITION:
+            is_valid = sizes <= LARGEST_POSITION
+            invalid = [self.names[dof] for dof in dofs[~is_valid].tolist()]
+            dofs, new = dofs[is_valid], new[is_valid]
+        self.values[dofs] = new
         self.is_known[dofs] = True
         for dof, leader, mimic in selection.followers:
             value = mimic.multiplier * (self.values[leader] - mimic.reference) + mimic.offset
             if self.is_known[leader] and abs(value) <= LARGEST_POSITION:
                 self.values[dof] = value
                 self.is_known[dof] = True
-        return [self.names[dof] for dof in selection.dofs[~is_valid].tolist()]
+        return invalid
 
     def take_over(self, before: JointPositions) -> None:
         """

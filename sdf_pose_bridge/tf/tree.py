@@ -179,27 +179,25 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     nearest_frames, parents_of_elements = _nearest_frames_and_parents(
         scene, tf_parents, options.anchor_models, elements)
     parents = np.concatenate([
-        parents_of_elements,
-        np.array([ROOT_IS_PARENT if frame.parent is None else frame.parent
-                  for frame in optical_frames], np.int32)])
-    # The last two poses serve the two negative indices among the parents.
-    others = np.array([*(frame.pose for frame in optical_frames), Pose(), Pose()])
-    poses = np.concatenate([scene.poses[elements], others])
-    transforms = canonical_relative_poses(poses[parents], poses[:-2])
+        parents_of_elements, np.array([frame.parent for frame in optical_frames], np.int32)])
+    poses = np.concatenate([
+        scene.poses[elements], np.reshape([frame.pose for frame in optical_frames], (-1, 7))])
+    # The last two poses are for ROOT_IS_PARENT and NO_PARENT, which are negative.
+    transforms = canonical_relative_poses(
+        np.concatenate([poses, [Pose(), Pose()]])[parents], poses)
     transforms[parents == NO_PARENT] = Pose()
     pose_frame = options.pose_frame or options.root_frame
     reference = _index_of_pose_frame(pose_frame, frame_ids, options.root_frame, scene)
-    poses_in_pose_frame = poses[:-2] if reference < 0 else canonical_relative_poses(
-        poses[reference], poses[:-2])
+    poses_in_pose_frame = poses if reference < 0 else canonical_relative_poses(
+        poses[reference], poses)
     moving = None
     if options.use_joint_states:
         motion = JointMotion(scene, tf_parents)
-        moving = MovingFrames(
-            motion, poses[:-2], parents, np.array(owners, np.int32), reference)
+        moving = MovingFrames(motion, poses, parents, np.array(owners, np.int32), reference)
     return TfTree(
         root_frame=options.root_frame,
         frame_ids=tuple(frame_ids),
-        poses=poses[:-2],
+        poses=poses,
         pose_frame=pose_frame,
         poses_in_pose_frame=poses_in_pose_frame,
         parents=parents,
