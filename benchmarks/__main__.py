@@ -40,7 +40,10 @@ def main() -> int:
     for turn, (number, bench) in enumerate(chosen, start=1):
         print(f'{turn}/{len(chosen)} {bench.what} / {bench.counterpart}', file=sys.stderr)
         with ProcessPoolExecutor(1, mp_context=spawning) as process:
-            results.append(process.submit(result_of_number, number).result())
+            result = process.submit(result_of_number, number).result()
+        # All of them take more than half an hour, and a run that is ended early keeps these.
+        print(f'    {result.ours}, {result.ratio}: {result.reached}', file=sys.stderr)
+        results.append(result)
     print(
         f'Python {platform.python_version()}, numpy {np.__version__}, {os.cpu_count()} cores;'
         f' medians of {RUNS} runs of each, in turns'
