@@ -72,5 +72,3 @@ class ScrewMotions:
         np.sin(angles, out=terms[:, 4:])
         poses: PoseArray = np.einsum('nt,ntk->nk', terms, self._factors)
         return poses
-
-

@@ -40,4 +40,3 @@ def test_plane_has_its_normal(normal):
     first, second, third = np.moveaxis(triangles.points[triangles.faces], 1, 0)
     areas = 0.5 * np.cross(second - first, third - first)
     assert areas.sum(axis=0) == pytest.approx(8.0 * np.array(normal) / np.linalg.norm(normal))
-
