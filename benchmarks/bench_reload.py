@@ -157,7 +157,7 @@ def asked_reload() -> Iterator[tuple[Function, Function | None]]:
     'work cell: change of the file, right after the watch looked, to its transforms at a listener',
     counterpart='the period of the watch', goal=AtMostTimes(1.2))
 def noticed_change() -> Iterator[tuple[Function, Function | None]]:
-    from sdf_pose_bridge.ros.file_watcher import PERIOD_S
+    from sdf_pose_bridge.ros.background import PERIOD_S
     assert PERIOD_S * 0.2 <= LONGEST_RELOAD_S
     with work_cell() as (bridge, next_message):
         numbers = itertools.count(1)

@@ -8,9 +8,9 @@ import argparse
 from functools import partial
 import importlib
 import os
-from pathlib import Path
 import signal
 import sys
+import time
 from typing import Any
 
 from sdf_pose_bridge.cli.loading import add_file_arguments
@@ -24,6 +24,7 @@ from sdf_pose_bridge.cli.printing import CommandError
 from sdf_pose_bridge.cli.printing import units_from_arguments
 from sdf_pose_bridge.cli.set import set_pose
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 
@@ -72,7 +73,9 @@ def run(options: argparse.Namespace) -> int:
     # Else a browser that draws a picture would outlive this process.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     path = options.files[0]
+    watcher, read_since_ns = FileWatcher(), time.time_ns()
     scene = scene_of(path, options, shapes=True)
+    watcher.watch(scene.files, read_since_ns)
     reader = meshes.MeshReader(resource_finder(options.resource_paths, os.environ))
     server = servers.server_for_this_machine(0 if options.output else options.port)
     page = pages.Page(
@@ -83,7 +86,7 @@ def run(options: argparse.Namespace) -> int:
             print(f'sdf_pose view: {line}', file=sys.stderr)
         if options.output is None:
             _open(f'http://{servers.ADDRESS}:{server.get_port()}')
-            _follow(page, scene.files, options)
+            _follow(page, watcher, options)
         else:
             servers.write_page(server, path, options.output)
     except OSError as error:
@@ -104,32 +107,20 @@ def _open(address: str) -> None:
               file=sys.stderr)
 
 
-def _follow(page: Any, files: tuple[str, ...], options: argparse.Namespace) -> None:
+def _follow(page: Any, watcher: FileWatcher, options: argparse.Namespace) -> None:
     """Show the file again whenever it, or a file that it includes, changes; never returns."""
-    known = list(map(_signature, files))
     while True:
         page.act(_PERIOD_S)
-        now = list(map(_signature, files))
-        if now == known:
+        if not watcher.has_changed():
             continue
-        known = now
+        read_since_ns = time.time_ns()
         loaded = load_file(options.files[0], options, shapes=True)
         errors = loaded.errors
         if loaded.scene is not None:
-            if loaded.scene.files != files:
-                files = loaded.scene.files
-                known = list(map(_signature, files))
+            watcher.watch(loaded.scene.files, read_since_ns)
             try:
                 page.show(loaded.scene)
             except SdfError as error:
                 errors = error.errors
         if errors:
             page.show_errors(list(map(str, errors)))
-
-
-def _signature(path: str) -> tuple[int, ...] | None:
-    try:
-        status = Path(path).stat()
-    except OSError:
-        return None
-    return status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Run long work beside the other callbacks of a node."""
+"""Run work beside the callbacks of a node, in threads or between the callbacks."""
 
 from __future__ import annotations
 
@@ -8,10 +8,17 @@ from collections.abc import Callable
 import contextlib
 import os
 import threading
+import time
 
 from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
 from rclpy.task import Future
+
+PERIOD_S = 0.25
+"""Seconds between two evaluations of the condition of a :class:`PollingThread`."""
+
+LARGEST_SHARE = 0.001
+"""Largest share of a core for evaluating it; where that takes long, the period gets longer."""
 
 
 def run_in_thread(node: Node, function: Callable[[], object]) -> Future:
@@ -60,3 +67,38 @@ async def run_other_callbacks(node: Node) -> None:
     # To wake the executor is what the task is for: releases of rclpy differ in whether it wakes up
     # by itself to go on with a coroutine when the task that the coroutine awaits has ended.
     await node.executor.create_task(node.executor.wake)
+
+
+class PollingThread:
+    """
+    A thread that calls a function whenever a condition is true.
+
+    A timer of the node would wake its executor for each look at the condition, which takes ten
+    times as much of the processor.
+
+    :param condition: is evaluated every ``PERIOD_S``.
+    :param call: is called if it is true; nothing more happens until :meth:`resume`.
+    """
+
+    def __init__(self, condition: Callable[[], bool], call: Callable[[], None]) -> None:
+        self._condition = condition
+        self._call = call
+        self._may_resume = threading.Event()
+        threading.Thread(target=self._run, name='polling', daemon=True).start()
+
+    def resume(self) -> None:
+        """Evaluate the condition again, first after one period."""
+        self._may_resume.set()
+
+    def _run(self) -> None:
+        period = PERIOD_S
+        while True:
+            time.sleep(period)
+            # A look that waits, for a disk or for a core, must not make the next one late.
+            begin = time.thread_time()
+            is_due = self._condition()
+            period = max(PERIOD_S, (time.thread_time() - begin) / LARGEST_SHARE)
+            if is_due:
+                self._may_resume.clear()
+                self._call()
+                self._may_resume.wait()

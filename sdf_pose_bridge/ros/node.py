@@ -24,11 +24,10 @@ from rclpy.timer import Timer
 from std_srvs.srv import Trigger
 
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.ros.background import PollingThread
 from sdf_pose_bridge.ros.background import run_in_thread
 from sdf_pose_bridge.ros.diagnostics import Diagnostics
 from sdf_pose_bridge.ros.diagnostics import PERIOD_S
-from sdf_pose_bridge.ros.file_watcher import FileWatcher
-from sdf_pose_bridge.ros.file_watcher import PollingThread
 from sdf_pose_bridge.ros.given_parameters import add_parameter_services
 from sdf_pose_bridge.ros.given_parameters import changed_settings
 from sdf_pose_bridge.ros.loaded_scene import files_behind_error
@@ -47,6 +46,7 @@ from sdf_pose_bridge.ros.services import add_services
 from sdf_pose_bridge.ros.services import SERVICE_QOS
 from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
 from sdf_pose_bridge.ros.topic_names import PoseTopics
+from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
 from sdf_pose_bridge.sdformat.include.uris import AddressError
 
 if TYPE_CHECKING:

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Coroutines on a real executor: what they wait for, and what runs meanwhile."""
+"""Coroutines on a real executor, and threads: what they wait for, and what runs meanwhile."""
 
 import threading
 import weakref
@@ -9,7 +9,8 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-
+from sdf_pose_bridge.ros import background
+from sdf_pose_bridge.ros.background import PollingThread
 from sdf_pose_bridge.ros.background import run_in_thread
 from sdf_pose_bridge.ros.background import run_other_callbacks
 
@@ -97,3 +98,48 @@ def test_a_thread_may_end_after_the_executor_was_shut_down(node):
     goes_on.set()
     thread.join(SECONDS)
     assert future.result()
+
+
+@pytest.fixture
+def calls(monkeypatch):
+    """A semaphore that counts the calls of a thread with a short period."""
+    monkeypatch.setattr(background, 'PERIOD_S', 0.001)
+    return threading.Semaphore(0)
+
+
+def test_a_thread_calls_once_until_it_is_resumed(calls):
+    is_due = threading.Event()
+    thread = PollingThread(is_due.is_set, calls.release)
+    is_due.set()
+    assert calls.acquire(timeout=20)
+    assert not calls.acquire(timeout=0.05)
+    thread.resume()
+    assert calls.acquire(timeout=20)
+    is_due.clear()
+    thread.resume()
+
+
+def test_a_look_that_has_to_wait_is_soon_followed_by_another(calls):
+    looks = threading.Semaphore(0)
+
+    def is_due():
+        # As a disk on the network may let it.
+        looks.release()
+        return threading.Event().wait(0.1)
+
+    PollingThread(is_due, calls.release)
+    for _ in range(3):
+        assert looks.acquire(timeout=20)
+
+
+def test_a_thread_calls_nothing_while_the_condition_is_false(calls):
+    looks = threading.Semaphore(0)
+
+    def is_due():
+        looks.release()
+        return False
+
+    PollingThread(is_due, calls.release)
+    for _ in range(3):
+        assert looks.acquire(timeout=20)
+    assert not calls.acquire(blocking=False)

@@ -1,26 +1,12 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Notice changes of files, with ``os.stat`` in a thread.
-
-Neither rclpy nor the standard library watches files, and a timer of the node would wake its
-executor for each look, which takes ten times as much of the processor.
-"""
+"""Notice changes of files with ``os.stat``, as the standard library watches no files."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from collections.abc import Iterable
 import os
-import threading
-import time
 from typing import TypeAlias
-
-PERIOD_S = 0.25
-"""Seconds between two looks at the files."""
-
-LARGEST_SHARE = 0.001
-"""Largest share of a core for looking; for thousands of files the period gets longer."""
 
 Signature: TypeAlias = tuple[int, ...] | None
 """Device, inode, size, and both times of change of a file; None if there is no file."""
@@ -88,38 +74,6 @@ class FileWatcher:
         """
         signatures = self._signatures
         return _signatures(signatures) != signatures
-
-
-class PollingThread:
-    """
-    A thread that calls a function whenever a condition is true.
-
-    :param condition: is evaluated every ``PERIOD_S``.
-    :param call: is called if it is true; nothing more happens until :meth:`resume`.
-    """
-
-    def __init__(self, condition: Callable[[], bool], call: Callable[[], None]) -> None:
-        self._condition = condition
-        self._call = call
-        self._may_resume = threading.Event()
-        threading.Thread(target=self._run, name='polling', daemon=True).start()
-
-    def resume(self) -> None:
-        """Evaluate the condition again, first after one period."""
-        self._may_resume.set()
-
-    def _run(self) -> None:
-        period = PERIOD_S
-        while True:
-            time.sleep(period)
-            # A look that waits, for a disk or for a core, must not make the next one late.
-            begin = time.thread_time()
-            is_due = self._condition()
-            period = max(PERIOD_S, (time.thread_time() - begin) / LARGEST_SHARE)
-            if is_due:
-                self._may_resume.clear()
-                self._call()
-                self._may_resume.wait()
 
 
 def _signatures(paths: Iterable[str]) -> dict[str, Signature]:

@@ -3,13 +3,10 @@
 """Changes of files are noticed once each, whatever way they come about."""
 
 import os
-import threading
 
 import pytest
 
-from sdf_pose_bridge.ros import file_watcher
-from sdf_pose_bridge.ros.file_watcher import FileWatcher
-from sdf_pose_bridge.ros.file_watcher import PollingThread
+from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
 
 LONG_AGO = 10 ** 18
 LATER = 10 ** 19
@@ -164,48 +161,3 @@ def test_a_path_that_cannot_exist_is_a_file_that_is_not_there(name):
     watcher = FileWatcher()
     watcher.watch([name, f'{name}/x'], LONG_AGO)
     assert not watcher.has_changed() or not name
-
-
-@pytest.fixture
-def calls(monkeypatch):
-    """A semaphore that counts the calls of a thread with a short period."""
-    monkeypatch.setattr(file_watcher, 'PERIOD_S', 0.001)
-    return threading.Semaphore(0)
-
-
-def test_a_thread_calls_once_until_it_is_resumed(calls):
-    is_due = threading.Event()
-    thread = PollingThread(is_due.is_set, calls.release)
-    is_due.set()
-    assert calls.acquire(timeout=20)
-    assert not calls.acquire(timeout=0.05)
-    thread.resume()
-    assert calls.acquire(timeout=20)
-    is_due.clear()
-    thread.resume()
-
-
-def test_a_look_that_has_to_wait_is_soon_followed_by_another(calls):
-    looks = threading.Semaphore(0)
-
-    def is_due():
-        # As a disk on the network may let it.
-        looks.release()
-        return threading.Event().wait(0.1)
-
-    PollingThread(is_due, calls.release)
-    for _ in range(3):
-        assert looks.acquire(timeout=20)
-
-
-def test_a_thread_calls_nothing_while_the_condition_is_false(calls):
-    looks = threading.Semaphore(0)
-
-    def is_due():
-        looks.release()
-        return False
-
-    PollingThread(is_due, calls.release)
-    for _ in range(3):
-        assert looks.acquire(timeout=20)
-    assert not calls.acquire(blocking=False)
