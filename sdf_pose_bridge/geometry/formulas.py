@@ -244,10 +244,10 @@ def canonical_quaternion(
     xp: Any, x: Component, y: Component, z: Component, w: Component,
 ) -> Quaternion:
     """Return the unit quaternion in which the first of w, x, y, z that is not zero is positive."""
-    x, y, z, w, square = _scaled(xp, x, y, z, w)
-    error = abs(square - 1.0)
-    if xp.any(error >= NEARLY_UNIT):
-        norm = xp.where(error < NEARLY_UNIT, 1.0, xp.sqrt(square))
+    is_nearly_unit = abs(x * x + y * y + z * z + w * w - 1.0) < NEARLY_UNIT
+    if not xp.all(is_nearly_unit):
+        x, y, z, w, square = _scaled(xp, x, y, z, w)
+        norm = xp.where(is_nearly_unit, 1.0, xp.sqrt(square))
         x, y, z, w = x / norm, y / norm, z / norm, w / norm
     return _corrected(xp, x, y, z, w)
 

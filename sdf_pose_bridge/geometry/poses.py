@@ -72,7 +72,14 @@ def pose_inverse(a: Pose) -> Pose:
     :return: pose of frame A in frame B.
     """
     x, y, z, qx, qy, qz, qw = a
-    return pose_product(Pose(0.0, 0.0, 0.0, -qx, -qy, -qz, qw), Pose(-x, -y, -z))
+    ux = 2.0 * (qy * z - qz * y)
+    uy = 2.0 * (qz * x - qx * z)
+    uz = 2.0 * (qx * y - qy * x)
+    return Pose(
+        0.0 - x + qw * ux - qy * uz + qz * uy,
+        0.0 - y + qw * uy - qz * ux + qx * uz,
+        0.0 - z + qw * uz - qx * uy + qy * ux,
+        0.0 - qx, 0.0 - qy, 0.0 - qz, qw)
 
 
 def relative_pose(reference: Pose, pose: Pose) -> Pose:
@@ -95,8 +102,8 @@ def canonical_relative_pose(reference: Pose, pose: Pose) -> Pose:
     :return: pose of frame C in frame B; its quaternion is canonical as that of
         :func:`~sdf_pose_bridge.geometry.rotations.canonical_quaternion`, and no zero is negative.
     """
-    x, y, z, *quat_xyzw = relative_pose(reference, pose)
-    return Pose(x + 0.0, y + 0.0, z + 0.0, *canonical_quaternion(quat_xyzw))
+    x, y, z, qx, qy, qz, qw = relative_pose(reference, pose)
+    return Pose(x + 0.0, y + 0.0, z + 0.0, *canonical_quaternion((qx, qy, qz, qw)))
 
 
 def pose_products(a: PoseArray, b: PoseArray) -> PoseArray:

@@ -151,7 +151,7 @@ class Scene:
         if not relative_to:
             return self.pose_of(index)
         reference = self.index(relative_to, world=world or self.world_of(index))
-        if self.roots[reference] != self.roots[index]:
+        if self.roots.item(reference) != self.roots.item(index):
             msg = (f'"{frame}" and "{relative_to}" have nothing in common: one is in a world, the '
                    'other is the model beside it')
             raise UnknownFrameError(msg, Place(self.path))
@@ -172,7 +172,7 @@ class Scene:
 
     def world_of(self, index: int) -> str:
         """Return the name of the world of an element; empty in a model file."""
-        return self.world_names.get(int(self.roots[index]), '')
+        return self.world_names.get(self.roots.item(index), '')
 
     def has(self, name: str) -> bool:
         """Return whether an element has an absolute name, in any world."""

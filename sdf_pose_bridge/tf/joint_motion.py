@@ -85,12 +85,13 @@ class JointMotion:
         dofs: list[DegreeOfFreedom] = []
         signs: list[float] = []
         ranges: dict[int, range] = {}
-        for body, step in tf_parents.joints.items():
-            path = dofs_from_joint(step.joint)
+        for body, joint in tf_parents.joints.items():
+            path = dofs_from_joint(joint)
             if path and scene.static_models.isdisjoint(scene.with_ancestors(body)):
                 ranges[body] = range(len(dofs), len(dofs) + len(path))
-                dofs += reversed(path) if step.is_reversed else path
-                signs += [-1.0 if step.is_reversed else 1.0] * len(path)
+                is_reversed = body in tf_parents.reversed_bodies
+                dofs += reversed(path) if is_reversed else path
+                signs += [-1.0 if is_reversed else 1.0] * len(path)
         self.dofs = tuple(dofs)
         """All degrees of freedom; those of a joint stand together."""
         bodies = list(ranges)

@@ -30,14 +30,6 @@ NO_PARENT = -2
 """Parent of a frame that has no transform."""
 
 
-class JointStep(NamedTuple):
-    """A step along a joint, away from the root."""
-
-    joint: Joint
-    is_reversed: bool
-    """Whether the step goes from the child of the joint to its parent."""
-
-
 class TfParents(NamedTuple):
     """The TF parents of all elements of a scene."""
 
@@ -45,8 +37,10 @@ class TfParents(NamedTuple):
     """Index of the parent of each element; -1 for worlds and implicit roots."""
     free_bodies: frozenset[int]
     """Links and models whose parent is the root, although no joint connects them to it."""
-    joints: Mapping[int, JointStep]
-    """For each body that a joint connects to its parent: the step that leads to it."""
+    joints: Mapping[int, Joint]
+    """For each body that a joint connects to its parent: that joint."""
+    reversed_bodies: frozenset[int]
+    """Those of these bodies that are at the parent's end of their joint."""
     loop_joints: tuple[Joint, ...]
     """Joints that close a loop, which a tree cannot have; in file order."""
 
@@ -75,19 +69,21 @@ def tf_parents_from_scene(scene: Scene) -> TfParents:
         (bodies_of_frames[joint.parent], bodies_of_frames[joint.child]) for joint in scene.joints]
     starts = representatives[_elements_by_rank(scene, [child for _, child in ends])].tolist()
     loop_joints = _joints_that_close_loops(ends)
-    steps = _steps_along_joints(ends, starts, frozenset(loop_joints))
+    joints = _joints_from_bodies(ends, starts, frozenset(loop_joints))
     joint_parents = {
-        body: ends[joint][is_reversed] for body, (joint, is_reversed) in steps.items()}
+        body: parent if body == child else child
+        for body, joint in joints.items() for parent, child in [ends[joint]]}
+    parents[list(joint_parents)] = list(joint_parents.values())
     free_parents = _parents_of_free_bodies(scene, joint_parents)
-    for chosen in (joint_parents, free_parents):
-        parents[list(chosen)] = list(chosen.values())
-    free_bodies = frozenset(
-        body for body, parent in free_parents.items() if scene.parents[parent] < 0)
-    joints = {
-        body: JointStep(scene.joints[joint], is_reversed)
-        for body, (joint, is_reversed) in steps.items()}
+    free_bodies = np.array(list(free_parents), np.int32)
+    parents[free_bodies] = list(free_parents.values())
     return TfParents(
-        parents, free_bodies, joints, tuple(scene.joints[joint] for joint in loop_joints))
+        parents=parents,
+        free_bodies=frozenset(free_bodies[scene.parents[parents[free_bodies]] < 0].tolist()),
+        joints={body: scene.joints[joint] for body, joint in joints.items()},
+        reversed_bodies=frozenset(
+            body for body, joint in joints.items() if body == ends[joint][0]),
+        loop_joints=tuple(scene.joints[joint] for joint in loop_joints))
 
 
 def _elements_by_rank(scene: Scene, children: Sequence[int]) -> Indices:
@@ -113,35 +109,34 @@ def _elements_by_rank(scene: Scene, children: Sequence[int]) -> Indices:
     return elements[np.argsort(ranks[elements], kind='stable')]
 
 
-def _steps_along_joints(
+def _joints_from_bodies(
     ends: Sequence[tuple[int, int]], starts: Sequence[int], left_out: Container[int],
-) -> dict[int, tuple[int, bool]]:
+) -> dict[int, int]:
     """
     Walk along joints, in both directions, from one start after the other.
 
     :param ends: the two bodies that each joint connects, parent and child.
-    :return: for each body that a joint led to: that joint, and whether it led from its child.
+    :param left_out: the joints that close loops.
+    :return: for each body that a joint led to: that joint.
     """
     joints_of_bodies = defaultdict[int, list[int]](list)
-    for joint, bodies in enumerate(ends):
+    for joint, (parent, child) in enumerate(ends):
         if joint not in left_out:
-            for body in bodies:
-                joints_of_bodies[body].append(joint)
-    steps: dict[int, tuple[int, bool]] = {}
-    reached: set[int] = set()
+            joints_of_bodies[parent].append(joint)
+            joints_of_bodies[child].append(joint)
+    joints: dict[int, int] = {}
     for start in starts:
-        waiting = [] if start in reached else [start]
-        reached.add(start)
+        waiting = [start] if start in joints_of_bodies else []
         while waiting:
             body = waiting.pop()
-            for joint in joints_of_bodies.get(body, ()):
+            for joint in joints_of_bodies.pop(body):
                 parent, child = ends[joint]
                 neighbour = parent if body == child else child
-                if neighbour not in reached:
-                    reached.add(neighbour)
-                    steps[neighbour] = joint, neighbour == parent
+                # Without loops only one joint leads to a body; the other end is where it led from.
+                if neighbour in joints_of_bodies:
+                    joints[neighbour] = joint
                     waiting.append(neighbour)
-    return steps
+    return joints
 
 
 def _joints_that_close_loops(ends: Iterable[tuple[int, int]]) -> list[int]:

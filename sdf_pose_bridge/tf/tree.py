@@ -255,23 +255,26 @@ def _check_frame_ids(
 
     :param owners: the element of each frame; the camera of an optical frame.
     """
-    first: dict[str, int] = {}
-    for index, (frame_id, owner) in enumerate(zip(frame_ids, owners, strict=True)):
+    first = {root_frame: ROOT_IS_PARENT}
+    for index, frame_id in enumerate(frame_ids):
+        other = first.setdefault(frame_id, index)
+        if other == index and frame_id.split() == [frame_id]:
+            continue
+        owner = owners[index]
         if not frame_id:
             msg = (f'"{scene.names[owner]}" leaves no frame id: TF takes no leading slash and no '
                    'empty name')
             problems.error(ElementInvalidError(msg, scene.place(owner)))
-        elif frame_id == root_frame:
+        elif other == ROOT_IS_PARENT:
             msg = (f'"{scene.names[owner]}" would have the frame id "{frame_id}", which is that '
                    'of the root frame')
             problems.error(DuplicateNameError(msg, scene.place(owner)))
-        elif first.setdefault(frame_id, index) != index:
-            other = owners[first[frame_id]]
-            msg = (f'{_description(scene, owner)} and {_description(scene, other)} (line '
-                   f'{scene.lines[other]}) would share the frame id "{frame_id}"; frame_names '
-                   '"scoped", or another frame_separator, can tell them apart')
+        elif other != index:
+            msg = (f'{_description(scene, owner)} and {_description(scene, owners[other])} (line '
+                   f'{scene.lines[owners[other]]}) would share the frame id "{frame_id}"; '
+                   'frame_names "scoped", or another frame_separator, can tell them apart')
             problems.error(DuplicateNameError(msg, scene.place(owner)))
-        elif frame_id.split() != [frame_id]:
+        else:
             msg = f'the frame id "{frame_id}" holds white space, which some tools cannot take'
             problems.warning(msg, scene.place(owner))
 
