@@ -20,6 +20,7 @@ from typing import NamedTuple
 
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
 from sdf_pose_bridge.sdformat.limits import Limits
@@ -28,6 +29,7 @@ from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.versions import Version
 from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import with_ancestors
+from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _MOST_PLACES_REMEMBERED = 1000
@@ -219,7 +221,7 @@ class Sources:
         file = outer.file if origin.file is None else origin.file
         place = Place(
             file if origin.pose is None else origin.pose.file, self.line(xml),
-            f'{outer.element}/{described(xml)}')
+            f'{outer.element}/{_step(xml)}')
         self.usage.add('work', STEPS_OF_PLACE, place)
         return place
 
@@ -233,7 +235,7 @@ class Sources:
                 file, path = file or outer.file, outer.element
                 break
             file = file or self.origin(element).file or ''
-            steps.append(described(element))
+            steps.append(_step(element))
         place = Place(file, element='/'.join([path, *reversed(steps)]))
         self.usage.add('work', len(steps), place._replace(line=self.line(xml)))
         if self._places is not None:
@@ -257,3 +259,10 @@ class Sources:
                     self._parsed_lines[new] = self._parsed_lines[old]
         self.set_source(result, self.path(xml))
         return result
+
+
+def _step(xml: XmlElement) -> str:
+    """Return one step of a path; a parameter of an include has an id instead of a name."""
+    element_id = xml.get('element_id')
+    return described(xml) if element_id is None else (
+        f'{written_tag(xml)}[@element_id="{shortened(element_id)}"]')

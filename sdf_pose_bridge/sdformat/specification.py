@@ -344,3 +344,13 @@ ELEMENTS = {
     'z': 'noise',
 }
 """The content of each element, by its tag, ``parent/tag`` or a name that ``tag=name`` uses."""
+
+DEFINED_ALONE = frozenset(
+    'actor air_pressure air_speed altimeter atmosphere audio_sink audio_source battery box_shape '
+    'camera capsule_shape collision cone_shape contact cylinder_shape ellipsoid_shape forcetorque '
+    'frame geometry gps gripper gui heightmap_shape image_shape imu inertial joint lidar light '
+    'light_state link link_state logical_camera magnetometer material mesh_shape mimic model '
+    'model_state navsat noise particle_emitter physics plane_shape plugin polyline_shape '
+    'population pose projector ray rfid rfidtag road root scene sensor sonar sphere_shape '
+    'spherical_coordinates state surface transceiver visual world'.split())
+"""The elements that parameters can add or replace: those with a file of the specification."""

@@ -28,8 +28,7 @@ _LONGEST_ID_COMPARED = 200
 
 
 def element_by_id(
-    top: XmlElement, element_id: str, tag: str = '',
-    *, count: Callable[[int], object] = lambda _children: None,
+    top: XmlElement, element_id: str, tag: str, count: Callable[[int], object],
 ) -> XmlElement | None:
     """
     Find an element.
@@ -44,8 +43,7 @@ def element_by_id(
     match: XmlElement | None = top
     while match is not None:
         count(len(match))
-        children = child_elements(match)
-        match = None
+        children, match = child_elements(match), None
         for child in children:
             written = child.get('name')
             if written is None:

@@ -36,11 +36,9 @@ from sdf_pose_bridge.sdformat.documents import document_from_file
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.merge import merge
 from sdf_pose_bridge.sdformat.include.params import apply_params
-from sdf_pose_bridge.sdformat.include.params import params_of
 from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
 from sdf_pose_bridge.sdformat.include.uris import ModelFile
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
-from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_LOOK
 from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_DIRECTORY
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
@@ -156,13 +154,8 @@ class IncludeExpansion:
         top = self._sources.copy_of(chosen)
         self._sources.set_origin(top, include=place)
         self._override(include, top)
-        params = params_of(include)
-        if params is not None:
-            looks = int(params.xpath('count(.//*)'))
-            characters = len(etree.tostring(top, with_tail=False))
-            self._sources.count_work(looks * characters // CHARACTERS_OF_LOOK, include)
-            for added in apply_params(params, top, self._sources):
-                self._expand_in(added, files)
+        for added in apply_params(include, top, self._sources):
+            self._expand_in(added, files)
         if is_merge:
             self._merge(include, top, chosen)
         else:

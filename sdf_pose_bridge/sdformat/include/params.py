@@ -19,19 +19,17 @@ from sdf_pose_bridge.errors import AttributeMissingError
 from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ElementMissingError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.element_ids import element_by_id
 from sdf_pose_bridge.sdformat.include.element_ids import hint_for_id
+from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_LOOK
 from sdf_pose_bridge.sdformat.reader import check_element
 from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.specification import DEFINED_ALONE
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
-from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import text_of
-from sdf_pose_bridge.sdformat.xml_tree import with_ancestors
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
@@ -48,30 +46,22 @@ _STEPS_OF_SOURCE = 4
 _DEFAULT_JOINT_END = '__default__'
 """The value of a joint's parent or child for which none is given."""
 
-_DEFINED_ALONE = frozenset(
-    'actor air_pressure air_speed altimeter atmosphere audio_sink audio_source battery box_shape '
-    'camera capsule_shape collision cone_shape contact cylinder_shape ellipsoid_shape forcetorque '
-    'frame geometry gps gripper gui heightmap_shape image_shape imu inertial joint lidar light '
-    'light_state link link_state logical_camera magnetometer material mesh_shape mimic model '
-    'model_state navsat noise particle_emitter physics plane_shape plugin polyline_shape '
-    'population pose projector ray rfid rfidtag road root scene sensor sonar sphere_shape '
-    'spherical_coordinates state surface transceiver visual world'.split())
-"""The elements that parameters can add or replace: those with a file of the specification."""
 
-
-def params_of(include: XmlElement) -> XmlElement | None:
-    """Return the first ``<experimental:params>`` of an include, or None."""
-    return next((xml for xml in child_elements(include) if written_tag(xml) == _PARAMS), None)
-
-
-def apply_params(params: XmlElement, top: XmlElement, sources: Sources) -> list[XmlElement]:
+def apply_params(include: XmlElement, top: XmlElement, sources: Sources) -> list[XmlElement]:
     """
-    Change an included element.
+    Change an included element by the first ``<experimental:params>`` of its include.
 
-    :param params: the ``<experimental:params>``; it is not changed.
+    :param include: the include; it is not changed.
+    :param top: the included element.
     :param sources: takes what is wrong with the parameters. What has an error is not applied.
     :return: the elements that were added.
     """
+    params = next((xml for xml in child_elements(include) if written_tag(xml) == _PARAMS), None)
+    if params is None:
+        return []
+    looks = int(params.xpath('count(.//*)'))
+    characters = len(etree.tostring(top, with_tail=False))
+    sources.count_work(looks * characters // CHARACTERS_OF_LOOK, include)
     changer = _Changer(top, sources)
     for xml in child_elements(params):
         changer.apply(xml)
@@ -90,10 +80,10 @@ class _Changer:
     def apply(self, xml: XmlElement) -> None:
         tag, element_id, action = written_tag(xml), xml.get('element_id'), xml.get('action')
         if element_id is None:
-            self._error(AttributeMissingError, xml, f'<{tag}> has no element_id')
+            self._sources.error(AttributeMissingError, xml, f'<{tag}> has no element_id')
         elif element_id.endswith(SEPARATOR):
             msg = f'element_id="{element_id}" ends with "{SEPARATOR}"; a name has to follow'
-            self._error(AttributeInvalidError, xml, msg)
+            self._sources.error(AttributeInvalidError, xml, msg)
         elif action not in (None, *_ACTIONS):
             self._report_action(xml)
         elif action == 'add':
@@ -101,10 +91,11 @@ class _Changer:
         elif (target := self._element(xml, element_id, tag)) is None:
             msg = (f'the included model has no <{tag}> "{element_id}"'
                    f'{self._hint(element_id, tag)}')
-            self._error(ElementMissingError, xml, msg)
-        elif action is not None:
-            self._act(action, xml, target)
-        elif self._is_defined(xml):
+            self._sources.error(ElementMissingError, xml, msg)
+        elif action in ('modify', 'remove') or self._is_defined(xml):
+            if action is not None:
+                self._act(action, xml, target)
+                return
             for child in child_elements(xml):
                 self._change_child(child, tag, target)
 
@@ -113,7 +104,7 @@ class _Changer:
             self._modify(xml, target)
         elif action == 'remove':
             self._remove(xml, target)
-        elif self._is_defined(xml):
+        else:
             self._replace(xml, target)
 
     def _add(self, xml: XmlElement, tag: str, element_id: str) -> None:
@@ -121,14 +112,14 @@ class _Changer:
         scoped = f'{element_id}{SEPARATOR}{name}'
         if not name:
             missing = AttributeMissingError if name is None else AttributeInvalidError
-            self._error(missing, xml, f'<{tag}> is to be added, so it needs a name')
+            self._sources.error(missing, xml, f'<{tag}> is to be added, so it needs a name')
         elif tag != 'plugin' and self._element(xml, scoped, tag) is not None:
             msg = f'<{tag}> cannot be added: the included model has a <{tag}> "{scoped}" already'
-            self._error(DuplicateNameError, xml, msg)
+            self._sources.error(DuplicateNameError, xml, msg)
         elif (parent := self._element(xml, element_id) if element_id else self._top) is None:
             msg = (f'<{tag}> cannot be added to element_id="{element_id}": the included model has '
                    f'no such element{self._hint(element_id)}')
-            self._error(ElementMissingError, xml, msg)
+            self._sources.error(ElementMissingError, xml, msg)
         elif self._is_defined(xml):
             parent.append(self._new_element(xml))
 
@@ -136,21 +127,18 @@ class _Changer:
         tag, action = written_tag(xml), xml.get('action')
         if action is None:
             msg = f'<{tag}> has no action; it must have one, as <{parent_tag}> has none'
-            self._error(AttributeMissingError, xml, msg)
+            self._sources.error(AttributeMissingError, xml, msg)
         elif action not in _ACTIONS:
             self._report_action(xml)
         elif action in ('add', 'replace') and tag not in _definition_alone(parent_tag).children:
             msg = f'SDFormat defines no <{tag}> in a <{parent_tag}>'
-            self._error(ElementInvalidError, xml, msg)
+            self._sources.error(ElementInvalidError, xml, msg)
         elif action == 'add' and tag == 'include':
-            self._warning(xml, 'an <include> that is added by itself includes nothing')
+            self._sources.warning(xml, 'an <include> that is added by itself includes nothing')
         elif action == 'add':
             target.append(self._new_element(xml))
         elif (found := self._child(target, xml, takes_first=action == 'modify')) is not None:
-            if action == 'replace':
-                self._replace(xml, found)
-            else:
-                self._act(action, xml, found)
+            self._act(action, xml, found)
 
     # Actions
 
@@ -172,7 +160,7 @@ class _Changer:
         parent = target.getparent()
         if target.get('name') is not None and xml.get('name') is None:
             msg = f'<{written_tag(xml)}> is to replace {_start_tag(target)}, so it needs a name'
-            self._error(AttributeMissingError, xml, msg)
+            self._sources.error(AttributeMissingError, xml, msg)
         elif parent is not None:
             self._check_before_change(target)
             parent.replace(target, self._new_element(xml))
@@ -219,7 +207,8 @@ class _Changer:
             self._set_text(_DEFAULT_JOINT_END if is_end else '', xml, found)
             self._change_attributes(xml, found, is_read_before=False)
         else:
-            self._warning(xml, f'<{written_tag(xml)}> holds nothing, so it changes nothing')
+            msg = f'<{written_tag(xml)}> holds nothing, so it changes nothing'
+            self._sources.warning(xml, msg)
 
     def _take_out(self, target: XmlElement) -> None:
         self._check_before_change(target)
@@ -249,13 +238,13 @@ class _Changer:
             if attribute not in target.attrib and (
                     definition is None or attribute not in definition.attributes):
                 msg = f'SDFormat defines no attribute {attribute} of <{tag}>'
-                self._error(AttributeInvalidError, xml, msg)
+                self._sources.error(AttributeInvalidError, xml, msg)
             elif (tag == 'pose' and attribute in _POSE_FORMAT_ATTRIBUTES and is_read_before
                     and text_of(target).strip()):
                 if target.get(attribute) != value:
                     msg = (f'{attribute}="{value}" has no effect: libsdformat has read the '
                            'numbers of this pose before')
-                    self._warning(xml, msg)
+                    self._sources.warning(xml, msg)
             else:
                 target.set(attribute, str(value))
                 is_changed = True
@@ -266,7 +255,7 @@ class _Changer:
         """Set that an element and those around it, up to the one with the id, stand in params."""
         path = self._sources.path(xml)
         while True:
-            self._count(_STEPS_OF_SOURCE * len(target), xml)
+            self._sources.count_work(_STEPS_OF_SOURCE * len(target), xml)
             for child in child_elements(target):
                 self._sources.set_source(child, self._sources.path(child))
             parts = (part for child in child_elements(target, *_PARTS)
@@ -283,14 +272,15 @@ class _Changer:
 
     def _element(self, xml: XmlElement, element_id: str, tag: str = '') -> XmlElement | None:
         return element_by_id(
-            self._top, element_id, tag, count=lambda children: self._count(children, xml))
+            self._top, element_id, tag,
+            lambda children: self._sources.count_work(children, xml))
 
     def _child(
         self, parent: XmlElement, xml: XmlElement, *, takes_first: bool = False,
     ) -> XmlElement | None:
         """Find the child with the tag and the name of a parameter; report it if there is none."""
         tag, name = written_tag(xml), xml.get('name')
-        self._count(len(parent), xml)
+        self._sources.count_work(len(parent), xml)
         children = [child for child in child_elements(parent) if written_tag(child) == tag]
         definition = self._definition(parent)
         if not children and definition is not None and tag in definition.required_children:
@@ -298,18 +288,14 @@ class _Changer:
             self._sources.set_source(
                 children[0], self._sources.path(xml), self._sources.line(xml))
         if name is None and children and children[0].get('name') is not None:
-            self._warning(xml, f'<{tag}> has no name; {_start_tag(children[0])} is taken')
+            self._sources.warning(xml, f'<{tag}> has no name; {_start_tag(children[0])} is taken')
         same = [child for child in children if name is None or child.get('name') == name]
         found = same[:1] or (children[:1] if takes_first else [])
         if found:
             return found[0]
         msg = f'{_start_tag(parent)} of the included model has no {_start_tag(xml)}'
-        self._error(ElementMissingError, xml, msg)
+        self._sources.error(ElementMissingError, xml, msg)
         return None
-
-    def _count(self, children: int, xml: XmlElement) -> None:
-        """Count the work of looking at children for a parameter."""
-        self._sources.usage.add('work', children, lambda: self._place(xml))
 
     def _definition(self, xml: XmlElement) -> Definition | None:
         """Return the definition of an element of the included model; None if there is none."""
@@ -331,30 +317,20 @@ class _Changer:
 
     def _report_action(self, xml: XmlElement) -> None:
         msg = f'action="{xml.get("action")}" must be one of {", ".join(_ACTIONS)}'
-        self._error(AttributeInvalidError, xml, msg)
+        self._sources.error(AttributeInvalidError, xml, msg)
 
     def _is_defined(self, xml: XmlElement) -> bool:
         tag = written_tag(xml)
-        if tag not in _DEFINED_ALONE:
+        if tag not in DEFINED_ALONE:
             msg = f'<{tag}> is not an element that SDFormat defines by itself'
-            self._error(ElementInvalidError, xml, msg)
-        return tag in _DEFINED_ALONE
-
-    def _error(self, error_class: type[SdfError], xml: XmlElement, message: str) -> None:
-        self._sources.problems.error(error_class(message, self._place(xml)))
-
-    def _warning(self, xml: XmlElement, message: str) -> None:
-        self._sources.problems.warning(message, self._place(xml))
-
-    def _place(self, xml: XmlElement) -> Place:
-        steps = [_step(each) for each in with_ancestors(xml)]
-        return self._sources.place(xml)._replace(element='/' + '/'.join(reversed(steps)))
+            self._sources.error(ElementInvalidError, xml, msg)
+        return tag in DEFINED_ALONE
 
 
 def _definition_of_parameter(xml: XmlElement) -> Definition:
     """Return the definition of an element to add, or of a child to add to another element."""
     tag, parent = written_tag(xml), xml.getparent()
-    if tag in _DEFINED_ALONE or parent is None:
+    if tag in DEFINED_ALONE or parent is None:
         return _definition_alone(tag)
     return _definition_alone(written_tag(parent)).children[tag]
 
@@ -363,12 +339,6 @@ def _definition_alone(tag: str) -> Definition:
     if tag == 'forcetorque':
         return definition_of('force_torque')
     return definition_of(tag.removesuffix('_shape'))
-
-
-def _step(xml: XmlElement) -> str:
-    element_id = xml.get('element_id')
-    return described(xml) if element_id is None else (
-        f'{written_tag(xml)}[@element_id="{element_id}"]')
 
 
 def _start_tag(xml: XmlElement) -> str:
