@@ -29,7 +29,7 @@ from sdf_pose_bridge.scene.pose_setting import Measure
 from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.file_replacement import replace_file
+from sdf_pose_bridge.sdformat.pose_writing import replace_file
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions

@@ -34,7 +34,7 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.pose_text import PoseText
+from sdf_pose_bridge.sdformat.pose_writing import PoseText
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 
 _MOST_ATTEMPTS = 4

@@ -5,25 +5,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from collections.abc import Mapping
 from pathlib import Path
 import re
 import shlex
 from typing import NamedTuple
-
-from lxml import etree
 
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.sdformat.old_versions import convert
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.versions import NEWEST
+from sdf_pose_bridge.sdformat.versions import convert
 from sdf_pose_bridge.sdformat.versions import version_from_text
-from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
-from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
+from sdf_pose_bridge.sdformat.xml_file import xml_from_file
+from sdf_pose_bridge.sdformat.xml_tree import child_elements
 from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
@@ -63,33 +59,26 @@ def document_from_file(
     :raises ConversionError: if its version is not supported, or names in it cannot be converted.
     """
     sources.add_path(path)
-    text, encoding = sources.texts.get(path), None
-    if text is None:
-        text = bytes_from_file(path, sources.usage)
-    else:
-        if isinstance(text, str):
-            text, encoding = text.encode(errors='surrogatepass'), 'utf-8'
-        sources.usage.add('bytes_read', len(text), Place(path))
-    sources.usage.add_elements_of(text, Place(path))
-    file = xml_from_bytes(text, path, encoding)
-    root, lines = file.root, file.lines
+    file = xml_from_file(path, sources.usage, sources.texts.get(path))
+    root = file.root
+    sources.add_tree(path, root, file.lines)
     sources.problems.extend(file.warnings)
     if b'$' in file.text or b'xacro' in file.text:
-        _check_is_expanded(root, path, lines)
+        _check_is_expanded(root, path, sources)
     has_gazebo_elements = False
     if root.tag == 'robot':
         # Most files are not URDF and need not wait for this import.
         from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
-        sources.add_tree(path, root, NEWEST, lines)
         gazebo_elements = root.findall('gazebo')
         has_gazebo_elements = bool(gazebo_elements)
         if not reads_gazebo_elements:
             for element in gazebo_elements:
                 root.remove(element)
-        root, lines = sdf_from_urdf(root, lines, sources, is_included=is_included)
-    line = lines.get(root) or root.sourceline or 0
-    version = version_from_text(_declared_version(root, path, line), Place(path, line))
-    sources.add_tree(path, root, version, lines)
+        root = sdf_from_urdf(root, sources, is_included=is_included)
+        sources.add_tree(path, root, file.lines)
+    place = Place(path, sources.line(root))
+    version = version_from_text(_declared_version(root, place), place)
+    sources.versions[path] = version
     # A colon may be written as a character reference. Python finds one byte much faster than two.
     sources.may_hold_scoped_names |= b'&' in file.text or (
         b':' in file.text and SEPARATOR.encode() in file.text)
@@ -98,8 +87,8 @@ def document_from_file(
     return Document(path, root, has_gazebo_elements)
 
 
-def _declared_version(root: XmlElement, path: str, line: int) -> str:
-    place = Place(path, line, f'/{written_tag(root)}')
+def _declared_version(root: XmlElement, place: Place) -> str:
+    place = place._replace(element=f'/{written_tag(root)}')
     if root.tag != 'sdf':
         msg = f'the outermost element is <{written_tag(root)}>, it must be <sdf> or <robot>'
         raise ParsingError(msg, place)
@@ -123,7 +112,7 @@ def _check_top_model(root: XmlElement, sources: Sources) -> None:
         del pose.attrib['relative_to']
 
 
-def _check_is_expanded(root: XmlElement, path: str, lines: Mapping[XmlElement, int]) -> None:
+def _check_is_expanded(root: XmlElement, path: str, sources: Sources) -> None:
     """
     Refuse a file that xacro has not expanded yet.
 
@@ -137,23 +126,21 @@ def _check_is_expanded(root: XmlElement, path: str, lines: Mapping[XmlElement, i
         command = f': xacro {shlex.quote(name)} -o {shlex.quote(target)}' if '.' in name else ''
         msg = (f'{found} is for xacro, which has to be run before, and what it writes has to be '
                f'read{command}')
-        raise ParsingError(msg, Place(path, lines.get(xml, xml.sourceline or 0)))
+        raise ParsingError(msg, Place(path, sources.line(xml)))
 
 
-def _unexpanded(root: XmlElement) -> Iterator[tuple[XmlElement, str]]:
+def _unexpanded(xml: XmlElement) -> Iterator[tuple[XmlElement, str]]:
     """Find what is left to do; return each element, and what is in it."""
-    waiting = [root]
-    while waiting:
-        xml = waiting.pop()
-        tag = written_tag(xml)
-        if tag == 'plugin' or tag in _XACRO_DECLARATIONS:
-            continue
-        if tag.startswith('xacro:'):
-            yield xml, f'<{tag}>'
-        for name, value in xml.items():
-            if _XACRO_EXPRESSION.search(value):
-                yield xml, f'{name}="{value}" of <{tag}>'
-        text = text_of(xml)
-        if _XACRO_EXPRESSION.search(text) and not tag.endswith('topic'):
-            yield xml, f'"{text.strip()}" in <{tag}>'
-        waiting += reversed(list(xml.iterchildren(etree.Element)))
+    tag = written_tag(xml)
+    if tag == 'plugin' or tag in _XACRO_DECLARATIONS:
+        return
+    if tag.startswith('xacro:'):
+        yield xml, f'<{tag}>'
+    for name, value in xml.items():
+        if _XACRO_EXPRESSION.search(value):
+            yield xml, f'{name}="{value}" of <{tag}>'
+    text = text_of(xml)
+    if _XACRO_EXPRESSION.search(text) and not tag.endswith('topic'):
+        yield xml, f'"{text.strip()}" in <{tag}>'
+    for child in child_elements(xml):
+        yield from _unexpanded(child)

@@ -98,16 +98,6 @@ class Usage:
         """
         return self._most(limit) - self._used[limit]
 
-    def add_elements_of(self, text: bytes, place: Place) -> None:
-        """
-        Count the elements in a text before it is parsed, which takes many times its memory.
-
-        :param text: XML; comments in it are counted too.
-        :param place: its file.
-        :raises LimitError: if it has more elements than the limit allows.
-        """
-        self.add('elements', text.count(b'<') - text.count(b'</'), place)
-
     def check(self, limit: str, value: int, place: Place | Callable[[], Place]) -> None:
         """
         Compare a value with a limit.

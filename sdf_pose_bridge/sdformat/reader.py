@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from itertools import chain
+from itertools import islice
 from typing import Any
 
 from sdf_pose_bridge.errors import AttributeInvalidError
@@ -22,7 +23,6 @@ from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.sdformat.automatic_inertials import collision_masses
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.elements import FrameDetails
@@ -40,6 +40,7 @@ from sdf_pose_bridge.sdformat.poses import PoseFormat
 from sdf_pose_bridge.sdformat.poses import PoseTextError
 from sdf_pose_bridge.sdformat.shapes import check_material
 from sdf_pose_bridge.sdformat.shapes import check_submesh
+from sdf_pose_bridge.sdformat.shapes import collision_masses
 from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sibling_names import SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources
@@ -109,8 +110,10 @@ def _check_scoped_names(root: XmlElement, sources: Sources) -> None:
     xmls: list[XmlElement] = root.xpath('//*[contains(@name, "::")]')
     for xml in xmls:
         sources.count_work(sum(1 for _ in xml.iterancestors()), xml)
-        if is_foreign(xml) or all(allows_scoped_names(sources.versions[path])
-               for path in sources.enclosing_paths_of_name(xml)):
+        # The name may be written in the file that includes the element.
+        is_named_by_include = sources.origin(xml).is_named_by_include
+        paths = islice(sources.enclosing_paths(xml), int(is_named_by_include), None)
+        if is_foreign(xml) or all(allows_scoped_names(sources.versions[path]) for path in paths):
             continue
         msg = f'the name "{xml.get("name")}" holds "{SEPARATOR}", which separates scopes'
         sources.error_in_name(ReservedNameError, xml, msg)

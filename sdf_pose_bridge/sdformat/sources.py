@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from collections.abc import Mapping
 import copy
-from itertools import islice
 from typing import Any
 from typing import NamedTuple
 
@@ -26,7 +25,6 @@ from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
 from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_PLACE
 from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.versions import Version
 from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import with_ancestors
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
@@ -63,7 +61,7 @@ class Sources:
     """
     The files of a load, where each XML element was written, and what is wrong with them.
 
-    An element stands in the file that :meth:`set_source` gave to it or to its nearest ancestor.
+    An element stands in the file that :meth:`set_origin` gave to it or to its nearest ancestor.
 
     :param limits: what the load may use.
     :param texts: what to read instead of the files at some paths.
@@ -81,17 +79,18 @@ class Sources:
         """All files that were read, in the order of reading."""
         self.file_indices: dict[str, int] = {}
         """The index of each of them."""
-        self.versions: dict[str, Version] = {}
+        self.versions: dict[str, tuple[int, int]] = {}
         """The version of each SDFormat file by its path."""
         self.includes: dict[str, Place] = {}
         """The place of the include that first led to each included file, by its path."""
         self.may_hold_scoped_names = False
         """False if no name in these files can hold ``::``."""
+        self.composed_trees: set[XmlElement] = set()
+        """The outermost elements of trees whose elements have sources of their own."""
         self.problems = Problems(self.paths, self.includes)
         """What is wrong with these files."""
         self._origins: dict[XmlElement, Origin] = {}
         self._parsed_lines: dict[XmlElement, int] = {}
-        self._composed_trees: set[XmlElement] = set()
         self._places: dict[XmlElement, Place] | None = None
 
     def with_own_problems(self) -> Sources:
@@ -133,7 +132,7 @@ class Sources:
             self.paths.append(path)
 
     def add_tree(
-        self, path: str, root: XmlElement, version: Version, lines: Mapping[XmlElement, int],
+        self, path: str, root: XmlElement, lines: Mapping[XmlElement, int],
     ) -> None:
         """
         Add a file that was read.
@@ -141,27 +140,20 @@ class Sources:
         :param lines: the lines of those of its elements whose lines lxml does not know.
         """
         self.add_path(path)
-        self.versions[path] = version
-        self.set_source(root, path)
+        self.set_origin(root, file=path)
         self._parsed_lines.update(lines)
         if lines:
-            self.set_composed(root)
+            self.composed_trees.add(root)
 
-    def set_composed(self, root: XmlElement) -> None:
-        """
-        Set that elements in a tree have sources of their own.
+    def set_source(self, xml: XmlElement, source: XmlElement) -> None:
+        """Set that an element, with those in it that have no other source, stands with another."""
+        self.set_origin(xml, file=self.path(source), line=self.line(source))
 
-        :param root: the outermost element of the tree.
-        """
-        self._composed_trees.add(root)
-
-    def set_source(self, xml: XmlElement, path: str, line: int | None = None) -> None:
-        """
-        Set where an element was written, with the elements in it that have no other source.
-
-        :param line: its line; None for the line that it has.
-        """
-        self.set_origin(xml, file=path, line=self.origin(xml).line if line is None else line)
+    def set_parsed_line(self, xml: XmlElement, source: XmlElement) -> None:
+        """Set that an element, in a tree that replaces another, has the line of one of that."""
+        xml.sourceline = source.sourceline  # type: ignore[misc]  # it can be set
+        if source in self._parsed_lines:
+            self._parsed_lines[xml] = self._parsed_lines[source]
 
     def set_origin(self, xml: XmlElement, **changes: Any) -> None:
         """Set fields of the origin of an element."""
@@ -187,15 +179,6 @@ class Sources:
         """
         files = (self.origin(each).file for each in with_ancestors(xml))
         return (file for file in files if file is not None)
-
-    def enclosing_paths_of_name(self, xml: XmlElement) -> Iterator[str]:
-        """
-        Iterate over the files that lead to the name of an element.
-
-        :return: as of :meth:`enclosing_paths`, from the file in which the name is written.
-        """
-        return islice(
-            self.enclosing_paths(xml), int(self.origin(xml).is_named_by_include), None)
 
     def line(self, xml: XmlElement) -> int:
         """
@@ -251,13 +234,13 @@ class Sources:
         :return: the copy, in a tree of its own, written where the original was.
         """
         result = copy.deepcopy(xml)
-        if xml.getroottree().getroot() in self._composed_trees:
+        if xml.getroottree().getroot() in self.composed_trees:
             for old, new in zip(xml.iter(), result.iter(), strict=True):
                 if old in self._origins:
                     self._origins[new] = self._origins[old]
                 if old in self._parsed_lines:
                     self._parsed_lines[new] = self._parsed_lines[old]
-        self.set_source(result, self.path(xml))
+        self.set_origin(result, file=self.path(xml))
         return result
 
 

@@ -1,17 +1,33 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-The versions of SDFormat: which are supported, how they are written, and what they allow.
+The versions of SDFormat: which are supported, what they allow, and what older ones mean.
 
-The declared version switches nothing off: what newer versions brought works in every file.
+The declared version switches nothing off: what newer versions brought works in every file. It
+decides what names and attributes of its time mean, and such files are converted to the newest one.
+Source: libsdformat's ``Converter.cc`` and ``sdf/*.convert``.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
+from lxml import etree
+
 from sdf_pose_bridge.errors import ConversionError
 from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.names import MODEL_FRAME
+from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.values import boolean_from_text
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of
+from sdf_pose_bridge.sdformat.xml_tree import child_elements
+from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import is_foreign
+from sdf_pose_bridge.sdformat.xml_tree import text_of
+from sdf_pose_bridge.sdformat.xml_tree import value_of
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 
 class Version(NamedTuple):
@@ -26,6 +42,22 @@ class Version(NamedTuple):
 
 OLDEST = Version(1, 2)
 NEWEST = Version(1, 12)
+
+_MOVED_ELEMENTS = (
+    (Version(1, 4), 'world/physics', 'update_rate', 'real_time_update_rate'),
+    (Version(1, 4), 'world/physics', 'ode/solver/dt', 'max_step_size'),
+    (Version(1, 4), 'world/physics', 'bullet/dt', 'max_step_size'),
+    (Version(1, 6), 'world', 'physics/gravity', 'gravity'),
+    (Version(1, 6), 'world', 'physics/magnetic_field', 'magnetic_field'),
+)
+"""Elements without poses: in files below a version, what an element at a path held as, and its
+tag in that element now."""
+
+_MODELS = ('model', 'world/model')
+"""Paths of the models that are in no other model."""
+
+_SCOPED_TAGS = frozenset({'link', 'joint', 'frame', 'model', 'gripper'})
+_REFERENCE_ATTRIBUTES = ('relative_to', 'attached_to', 'expressed_in')
 
 
 def version_numbers(text: str) -> tuple[int, ...]:
@@ -58,19 +90,148 @@ def version_from_text(text: str, place: Place) -> Version:
     raise ConversionError(msg, place)
 
 
-def allows_scoped_names(version: Version) -> bool:
+def allows_scoped_names(version: tuple[int, int]) -> bool:
     """
     Return whether names in a file may hold ``::``.
 
     :return: True below 1.8, where old libraries wrote such names.
     """
-    return version < Version(1, 8)
+    return version < (1, 8)
 
 
-def renames_duplicates(version: Version) -> bool:
+def renames_duplicates(version: tuple[int, int]) -> bool:
     """
     Return whether an element is renamed that shares its name with one of another kind.
 
     :return: True below 1.7; in later files it is an error.
     """
-    return version < Version(1, 7)
+    return version < (1, 7)
+
+
+def convert(root: XmlElement, version: Version, sources: Sources) -> None:
+    """
+    Convert a file to the newest version, in place.
+
+    :param root: the ``sdf`` element.
+    :raises ConversionError: if names in it cannot be converted.
+    """
+    _move_elements(root, version)
+    if version < Version(1, 5):
+        _express_axes_in_model(root)
+    if version < Version(1, 7):
+        _rename_frame_attributes(root)
+        _convert_use_parent_model_frame(root)
+    if version < Version(1, 8):
+        # An <inertial> may be placed in nothing but its link; an empty attribute meant that.
+        for pose in root.xpath('.//inertial/pose[@relative_to=""]'):
+            del pose.attrib['relative_to']
+    if allows_scoped_names(version) and sources.may_hold_scoped_names:
+        for model in root.iterfind('world/model'):
+            _nest_scoped_elements(model, sources)
+
+
+def _move_elements(root: XmlElement, version: Version) -> None:
+    for first_version, path, old, new_tag in _MOVED_ELEMENTS:
+        for parent in root.iterfind(path) if version < first_version else ():
+            element = parent.find(old)
+            if element is not None:
+                element.tag = new_tag
+                parent.append(element)
+    if version < Version(1, 6):
+        # Its numbers become those of the noise of each axis.
+        for path in _MODELS:
+            for noise in root.xpath(f'{path}/link/sensor/imu/noise[1]'):
+                noise.getparent().remove(noise)
+
+
+def _express_axes_in_model(root: XmlElement) -> None:
+    """1.4 to 1.5: axes are given in the model frame if nothing else is said."""
+    axes = '*[self::axis or self::axis2][not(use_parent_model_frame)]'
+    for path in _MODELS:
+        for xyz in root.xpath(f'{path}/joint/{axes}/xyz[1]'):
+            xyz.set('expressed_in', MODEL_FRAME)
+
+
+def _rename_frame_attributes(root: XmlElement) -> None:
+    """1.6 to 1.7: ``pose/@frame`` becomes ``relative_to``."""
+    for pose in root.iter('pose'):
+        frame = pose.get('frame')
+        if frame is not None and not is_foreign(pose):
+            del pose.attrib['frame']
+            pose.set('relative_to', frame)
+
+
+def _convert_use_parent_model_frame(root: XmlElement) -> None:
+    """1.6 to 1.7: ``axis/use_parent_model_frame`` becomes ``axis/xyz/@expressed_in``."""
+    for flag in list(root.iter('use_parent_model_frame')):
+        axis = flag.getparent()
+        if axis is None or is_foreign(flag):
+            continue
+        xyz = first_child(axis, 'xyz')
+        if boolean_from_text(text_of(flag)) and xyz is not None:
+            xyz.set('expressed_in', MODEL_FRAME)
+        axis.remove(flag)
+
+
+def _nest_scoped_elements(model: XmlElement, sources: Sources) -> None:
+    """
+    1.7 to 1.8: move elements named ``nested::name`` into a new model ``nested``, recursively.
+
+    Old libraries could not nest models. They wrote the content of an included model into the
+    model around it, with such names, and a frame ``nested::__model__`` for its model frame.
+
+    :raises ConversionError: if a moved element refers to something outside its new model.
+    """
+    nested_models: dict[str, XmlElement] = {}
+    for child in list(child_elements(model)):
+        scope, separator, name = attribute_of(child, 'name').partition(SEPARATOR)
+        if child.tag not in _SCOPED_TAGS or not separator or not scope or not name:
+            continue
+        if scope not in nested_models:
+            nested_models[scope] = etree.Element('model', {'name': scope})
+            sources.set_source(nested_models[scope], child)
+        prefix = scope + SEPARATOR
+        if child.tag == 'frame' and name == MODEL_FRAME:
+            _replace_model_frame(child, nested_models[scope], prefix)
+            continue
+        _remove_prefix_from_references(child, prefix, sources)
+        child.set('name', name)
+        nested_models[scope].append(child)
+    for nested_model in nested_models.values():
+        model.append(nested_model)
+        _nest_scoped_elements(nested_model, sources)
+
+
+def _replace_model_frame(frame: XmlElement, nested_model: XmlElement, prefix: str) -> None:
+    """Give the pose and the attachment of ``nested::__model__`` to the nested model."""
+    parent = frame.getparent()
+    attached_to = attribute_of(frame, 'attached_to')
+    if attached_to.startswith(prefix):
+        nested_model.set('canonical_link', attached_to[len(prefix):])
+    pose = frame.find('pose')
+    if pose is not None:
+        nested_model.insert(0, pose)
+    if parent is not None:
+        parent.remove(frame)
+
+
+def _remove_prefix_from_references(xml: XmlElement, prefix: str, sources: Sources) -> None:
+    for element in xml.iter(etree.Element):
+        for attribute in _REFERENCE_ATTRIBUTES:
+            name = attribute_of(element, attribute)
+            if name:
+                element.set(attribute, _without_prefix(name, prefix, element, sources))
+    if xml.tag == 'joint':
+        for end in child_elements(xml, 'parent', 'child'):
+            end.text = _without_prefix(value_of(end), prefix, end, sources)
+
+
+def _without_prefix(name: str, prefix: str, xml: XmlElement, sources: Sources) -> str:
+    if name.startswith(prefix):
+        return name[len(prefix):]
+    if name in (WORLD_FRAME, MODEL_FRAME, ''):
+        return name
+    nested = prefix.removesuffix(SEPARATOR)
+    msg = (f'"{name}" cannot be converted: "{nested}" becomes a nested model, in which names of '
+           'the model around it are not visible')
+    raise ConversionError(msg, sources.place(xml))

@@ -9,6 +9,7 @@ Depth and sizes are limited as libxml2 does without its option ``huge``.
 from __future__ import annotations
 
 from collections.abc import Mapping
+import contextlib
 import errno
 from itertools import chain
 from itertools import islice
@@ -123,6 +124,27 @@ def _descriptor_without_waiting(path: str, flags: int) -> int:
         return os.open(path, flags | os.O_NOCTTY)
 
 
+def xml_from_file(path: str, usage: Usage, text: bytes | str | None = None) -> XmlFile:
+    """
+    Read and parse a file.
+
+    :param usage: counts its bytes and its elements.
+    :param text: what to read instead of the file.
+    :return: the tree.
+    :raises FileReadError: as :func:`bytes_from_file` and :func:`xml_from_bytes`.
+    :raises LimitError: if it is too large.
+    """
+    encoding = 'utf-8' if isinstance(text, str) else None
+    if text is None:
+        content = bytes_from_file(path, usage)
+    else:
+        content = text.encode(errors='surrogatepass') if isinstance(text, str) else text
+        usage.add('bytes_read', len(content), Place(path))
+    # Counted before they are parsed, which takes many times the memory; with comments.
+    usage.add('elements', content.count(b'<') - content.count(b'</'), Place(path))
+    return xml_from_bytes(content, path, encoding)
+
+
 def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFile:
     """
     Parse XML.
@@ -137,19 +159,15 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
     decoded = text_from_bytes(text, path) if encoding is None else DecodedText(text, encoding)
     text = decoded.utf8
     faults = [(1, decoded.fault)] if decoded.fault else []
-    root, error, is_complete = _parsed(text, path)
-    if error is not None:
+    try:
+        root, is_complete = _parsed(text, path)
+    except FileReadError:
         repair = repaired(text)
         if repair is None:
-            raise error
+            raise
         text = repair.text
         faults += repair.faults
-        root, second_error, is_complete = _parsed(text, path)
-        if second_error is not None:
-            raise second_error
-    if root is None:
-        msg = 'this is not XML: it has no element'
-        raise FileReadError(msg, Place(path))
+        root, is_complete = _parsed(text, path)
     _check_document_type(root, text, path)
     _check_instructions(root, path)
     if not is_complete:
@@ -163,27 +181,27 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
     return XmlFile(root, tuple(warnings), lines, text, decoded.encoding)
 
 
-def _parsed(text: bytes, path: str) -> tuple[XmlElement | None, FileReadError | None, bool]:
+def _parsed(text: bytes, path: str) -> tuple[XmlElement, bool]:
     """
     Parse text.
 
-    :return: the outermost element; the first error that is not ignored; and whether there can be
-        no other errors.
+    :return: the outermost element, and whether there can be no other errors.
+    :raises FileReadError: for the first error that is not ignored.
     """
     parser = etree.XMLParser(
         encoding='utf-8', recover=True, resolve_entities=False, no_network=True, load_dtd=False,
         huge_tree=False, remove_blank_text=True)
     root = None
-    error = None
-    try:
+    with contextlib.suppress(etree.XMLSyntaxError):
         root = etree.fromstring(text, parser)
-    except etree.XMLSyntaxError as failure:
-        error = FileReadError(f'this is not XML: {failure.msg}', Place(path, failure.lineno or 0))
     errors = [entry for entry in parser.error_log if entry.type_name not in _IGNORED_ERRORS]
     if errors:
         msg = f'this is not well-formed XML: {errors[0].message.strip()}'
-        error = FileReadError(msg, Place(path, errors[0].line))
-    return root, error, len(parser.error_log) < _MOST_ERRORS
+        raise FileReadError(msg, Place(path, errors[0].line))
+    if root is None:
+        msg = 'this is not XML: it has no element'
+        raise FileReadError(msg, Place(path))
+    return root, len(parser.error_log) < _MOST_ERRORS
 
 
 def _check_document_type(root: XmlElement, text: bytes, path: str) -> None:

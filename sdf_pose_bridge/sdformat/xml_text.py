@@ -153,7 +153,7 @@ class _Repairer:
             parts.append(
                 self._repaired_tag(token, rest) if token['tag'] else self._repaired_token(token))
             self._line += decoded.count('\n', begin, position)
-        return Repair(
+        return None if not self._has_root else Repair(
             ''.join(parts).encode(errors='replace'),
             sorted((line, fault) for fault, line in self._faults.items()))
 

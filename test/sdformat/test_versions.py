@@ -1,14 +1,17 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Versions: which exist, and how they are written."""
+"""Versions: which exist, and how files of old ones are converted to the newest grammar."""
 
 import pytest
 from sdf_texts import codes_of
 from sdf_texts import LINK
 from sdf_texts import model_file
 from sdf_texts import names_of
+from sdf_texts import TWO_LINKS
 
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge.sdformat.documents import document_from_file
+from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.versions import version_numbers
 
 
@@ -33,3 +36,163 @@ def test_every_version_is_read_with_the_newest_grammar(minor):
 ])
 def test_numbers_of_a_version(text, numbers):
     assert version_numbers(text) == numbers
+
+
+def converted(text):
+    """Return the ``sdf`` element of a text in the newest version."""
+    return document_from_file('f', Sources(texts={'f': text})).root
+
+
+# 1.6 to 1.7: references of poses
+
+TWO_POSED_LINKS = ('<link name="a"><pose>1 0 0 0 0 0</pose></link>'
+                   '<link name="b"><pose {}>1 0 0 0 0 0</pose></link>')
+
+
+@pytest.mark.parametrize('version', ['1.4', '1.5', '1.6'])
+def test_unknown_frame_of_an_old_pose_is_an_error(version):
+    text = model_file(TWO_POSED_LINKS.format('frame="x"'), version=version)
+    assert codes_of(text) == ['POSE_RELATIVE_TO_INVALID']
+
+
+@pytest.mark.parametrize('version', ['1.4', '1.5', '1.6'])
+def test_frame_of_an_old_pose_replaces_its_reference(version):
+    text = model_file(TWO_POSED_LINKS.format('frame="a" relative_to="x"'), version=version)
+    assert load_text(text).pose('m::b').x == 2.0
+
+
+def test_frame_of_a_newer_pose_is_ignored_with_a_warning():
+    scene = load_text(model_file(TWO_POSED_LINKS.format('frame="a"'), version='1.7'))
+    assert scene.pose('m::b').x == 1.0
+    assert scene.warnings[0].message.endswith('since version 1.7 it is relative_to')
+
+
+@pytest.mark.parametrize('content', [
+    '<plugin name="p" filename="f"><pose frame="nowhere"/></plugin>',
+    '<x:y><pose frame="nowhere"/></x:y>',
+])
+def test_foreign_elements_are_not_converted(content):
+    root = converted(model_file(LINK + content, version='1.6'))
+    assert root.find('.//pose').get('frame') == 'nowhere'
+
+
+# 1.4 to 1.5 and 1.6 to 1.7: axes
+
+def file_with_axis(axis, version):
+    joint = ('<joint name="j" type="revolute"><parent>a</parent><child>b</child>'
+             f'<axis>{axis}</axis></joint>')
+    return model_file(TWO_LINKS + joint, version=version)
+
+
+def frame_of_axis(text):
+    return converted(text).find('.//xyz').get('expressed_in')
+
+
+@pytest.mark.parametrize('flag', ['true', '1', 'TRUE', ' true '])
+@pytest.mark.parametrize('version', ['1.4', '1.5', '1.6'])
+def test_old_axis_can_be_expressed_in_the_model(flag, version):
+    axis = f'<xyz>1 0 0</xyz><use_parent_model_frame>{flag}</use_parent_model_frame>'
+    assert frame_of_axis(file_with_axis(axis, version)) == '__model__'
+
+
+@pytest.mark.parametrize('flag', ['false', '0', '', 'maybe'])
+@pytest.mark.parametrize('version', ['1.4', '1.6'])
+def test_old_axis_can_be_expressed_in_the_joint(flag, version):
+    axis = f'<xyz>1 0 0</xyz><use_parent_model_frame>{flag}</use_parent_model_frame>'
+    assert frame_of_axis(file_with_axis(axis, version)) is None
+
+
+@pytest.mark.parametrize(('version', 'frame'), [
+    ('1.3', '__model__'), ('1.4', '__model__'), ('1.5', None), ('1.6', None)])
+def test_default_frame_of_an_old_axis(version, frame):
+    assert frame_of_axis(file_with_axis('<xyz>1 0 0</xyz>', version)) == frame
+
+
+def test_default_frame_of_an_axis_in_an_old_nested_model_is_the_joint():
+    inner = ('<model name="n"><link name="k"/><joint name="j" type="revolute"><parent>world'
+             '</parent><child>k</child><axis><xyz>1 0 0</xyz></axis></joint></model>')
+    assert frame_of_axis(model_file(LINK + inner, version='1.4')) is None
+
+
+def test_old_flag_means_nothing_in_newer_files():
+    axis = '<xyz>1 0 0</xyz><use_parent_model_frame>true</use_parent_model_frame>'
+    assert frame_of_axis(file_with_axis(axis, '1.7')) is None
+
+
+def test_old_axes_are_read():
+    axis = '<xyz>1 0 0</xyz><use_parent_model_frame>true</use_parent_model_frame>'
+    assert 'm::j' in load_text(file_with_axis(axis, '1.6')).names
+
+
+# 1.7 to 1.8: names such as nested::link become nested models
+
+NESTED = """
+  <frame name="n::__model__" attached_to="n::b"><pose>0 0 1 0 0 0</pose></frame>
+  <link name="n::a"><pose relative_to="n::__model__">1 0 0 0 0 0</pose></link>
+  <link name="n::b"/>
+"""
+
+
+def world(content, version='1.7'):
+    return (f'<sdf version="{version}"><world name="w"><model name="m">{content}</model></world>'
+            '</sdf>')
+
+
+@pytest.mark.parametrize('joint', [
+    '<parent>base</parent><child>n::a</child>', '<parent>n::a</parent><child>base</child>',
+])
+def test_joint_from_a_nested_model_to_outside_cannot_be_converted(joint):
+    text = world(f'<link name="base"/>{NESTED}<joint name="n::j" type="fixed">{joint}</joint>')
+    assert codes_of(text) == ['CONVERSION_ERROR']
+
+
+def test_reference_from_a_nested_model_to_outside_cannot_be_converted():
+    text = world('<link name="base"/><link name="n::l"><pose relative_to="base"/></link>')
+    assert codes_of(text) == ['CONVERSION_ERROR']
+
+
+def test_names_with_the_separator_are_refused_in_newer_files():
+    assert set(codes_of(world(NESTED, '1.8'))) == {'RESERVED_NAME'}
+
+
+def test_elements_with_scoped_names_move_into_a_nested_model():
+    scene = load_text(world('<link name="base"/>' + NESTED))
+    assert scene.names == ('world', 'm', 'm::base', 'm::n', 'm::n::a', 'm::n::b')
+
+
+def test_pose_of_a_nested_model_is_that_of_its_model_frame():
+    scene = load_text(world('<link name="base"/>' + NESTED))
+    assert scene.pose('m::n::a')[:3] == (1.0, 0.0, 1.0)
+
+
+def test_canonical_link_of_a_nested_model_is_that_of_its_model_frame():
+    scene = load_text(world('<link name="base"/>' + NESTED))
+    assert scene.canonical_links[scene.index('m::n')] == scene.index('m::n::b')
+
+
+def test_name_with_the_same_beginning_stays():
+    scene = load_text(world('<link name="b::l"/><link name="base"/>'))
+    assert scene.names == ('world', 'm', 'm::base', 'm::b', 'm::b::l')
+
+
+def test_models_are_nested_as_deep_as_their_names():
+    scene = load_text(world('<link name="base"/><link name="a::b::c"/>'))
+    assert scene.names[3:] == ('m::a', 'm::a::b', 'm::a::b::c')
+
+
+def test_world_stays_the_parent_of_a_joint():
+    scene = load_text(world(
+        '<link name="n::l"/>'
+        '<joint name="n::j" type="fixed"><parent>world</parent><child>n::l</child></joint>'))
+    assert scene.joints[0].parent == 0
+
+
+def test_scoped_names_stay_in_a_model_file():
+    scene = load_text(model_file('<link name="n::l"/>', version='1.7'))
+    assert scene.names == ('__root__', 'm', 'm::n::l')
+
+
+def test_moved_elements_keep_their_lines():
+    scene = load_text(world('\n<link name="base"/>' + NESTED))
+    assert [scene.place(scene.index(f'm::n{name}')).line for name in ('', '::a', '::b')] == [
+        3, 4, 5]

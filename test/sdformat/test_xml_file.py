@@ -112,6 +112,12 @@ def test_text_that_is_not_well_formed_is_refused(content):
     assert error_of(content).code == 'FILE_READ'
 
 
+@pytest.mark.parametrize('content', [
+    b'{\n  "sdf": 1\n}\n', b'solid part\n facet normal 0 0 1\nendsolid part\n', b'\0\n\1\n'])
+def test_file_that_is_not_xml_is_refused_in_its_first_line(content):
+    assert error_of(content).line == 1
+
+
 def test_error_has_the_line_of_broken_xml():
     error = error_of(b'<sdf version="1.9">\n<model name="m">\n</sdf>')
     assert (error.file, error.line) == ('file.sdf', 3)

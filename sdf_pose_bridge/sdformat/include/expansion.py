@@ -220,7 +220,7 @@ class IncludeExpansion:
             self._sources.problems.extend(error.errors)
             return None
         if next(document.root.iter('include'), None) is not None:
-            self._sources.set_composed(document.root)
+            self._sources.composed_trees.add(document.root)
             self._expand_in(document.root, files)
             self._check_depth(document.root)
         return document
@@ -303,7 +303,7 @@ class IncludeExpansion:
             top.insert(0, replacement)
         else:
             top.replace(old, replacement)
-        self._sources.set_source(replacement, self._sources.path(new), self._sources.line(new))
+        self._sources.set_source(replacement, new)
         return True
 
     def _placement_frame(self, include: XmlElement) -> str:

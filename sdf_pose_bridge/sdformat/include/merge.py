@@ -70,7 +70,7 @@ def _proxy_frame(
     proxy_pose = etree.Element('pose')
     if pose is not None:
         proxy_pose = copy.deepcopy(pose)
-        sources.set_source(proxy_pose, sources.path(pose), sources.line(pose))
+        sources.set_source(proxy_pose, pose)
         # By itself, the model has nothing to be relative to.
         pose.attrib.pop('relative_to', None)
     if attribute_of(proxy_pose, 'relative_to') == ROOT_FRAME:
@@ -81,7 +81,7 @@ def _proxy_frame(
         proxy_pose.set('relative_to', MODEL_FRAME if parent.tag == 'model' else WORLD_FRAME)
     root = etree.Element('sdf')
     root.append(model)
-    sources.set_source(root, sources.path(include), sources.line(include))
+    sources.set_source(root, include)
     canonical_link = canonical_link_of(root)
     if canonical_link is None:
         return None
@@ -114,7 +114,7 @@ def _move_children(include: XmlElement, model: XmlElement, proxy: str, sources: 
             continue
         _warn_of_model_frame_in(child, sources)
         _replace_model_frame(child, proxy)
-        sources.set_source(child, sources.path(child))
+        sources.set_origin(child, file=sources.path(child))
         include.addprevious(child)
 
 

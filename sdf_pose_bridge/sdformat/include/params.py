@@ -152,7 +152,7 @@ class _Changer:
             if attribute in _OWN_ATTRIBUTES or (
                     attribute not in definition.attributes and ':' not in attribute):
                 del element.attrib[attribute]
-        self._sources.set_source(element, self._sources.path(xml), self._sources.line(xml))
+        self._sources.set_source(element, xml)
         self.added.append(element)
         return element
 
@@ -257,12 +257,12 @@ class _Changer:
         while True:
             self._sources.count_work(_STEPS_OF_SOURCE * len(target), xml)
             for child in child_elements(target):
-                self._sources.set_source(child, self._sources.path(child))
+                self._sources.set_origin(child, file=self._sources.path(child))
             parts = (part for child in child_elements(target, *_PARTS)
                      for part in child.iter(etree.Element))
             for part in (target, *parts):
                 if self._sources.path(part) != path:
-                    self._sources.set_source(part, path, self._sources.line(xml))
+                    self._sources.set_source(part, xml)
             parent, above = target.getparent(), xml.getparent()
             if parent is None or above is None or xml.get('element_id') is not None:
                 return
@@ -285,8 +285,7 @@ class _Changer:
         definition = self._definition(parent)
         if not children and definition is not None and tag in definition.required_children:
             children = [etree.SubElement(parent, tag)]
-            self._sources.set_source(
-                children[0], self._sources.path(xml), self._sources.line(xml))
+            self._sources.set_source(children[0], xml)
         if name is None and children and children[0].get('name') is not None:
             self._sources.warning(xml, f'<{tag}> has no name; {_start_tag(children[0])} is taken')
         same = [child for child in children if name is None or child.get('name') == name]

@@ -27,8 +27,7 @@ from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.versions import NEWEST
 from sdf_pose_bridge.sdformat.versions import version_numbers
-from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
-from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
+from sdf_pose_bridge.sdformat.xml_file import xml_from_file
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
 from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import text_of
@@ -283,9 +282,7 @@ def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
     if manifests[0] == _DEPRECATED_NAME:
         msg = f'{_DEPRECATED_NAME} is deprecated; it should be called {_NAME}'
         warnings.append(SdfWarning('WARNING', msg, Place(manifest)))
-    text = bytes_from_file(manifest, usage)
-    usage.add_elements_of(text, Place(manifest))
-    file = xml_from_bytes(text, manifest)
+    file = xml_from_file(manifest, usage)
     root = file.root
     warnings += file.warnings
     best: tuple[int, ...] = ()

@@ -73,41 +73,35 @@ class _Base(NamedTuple):
     """The link itself and those that are lumped into it."""
 
 
-def sdf_from_urdf(
-    root: XmlElement, lines: Mapping[XmlElement, int], sources: Sources, *,
-    is_included: bool,
-) -> tuple[XmlElement, Mapping[XmlElement, int]]:
+def sdf_from_urdf(root: XmlElement, sources: Sources, *, is_included: bool) -> XmlElement:
     """
     Convert a file.
 
     :param root: the ``robot`` element; what ``<gazebo>`` elements hold is taken out of it.
-    :param lines: the lines of those of its elements whose lines lxml does not know.
+    :param sources: has the lines of its elements, and takes those of the new ones.
     :param is_included: whether to convert as libsdformat does, and not to read as ROS does.
-    :return: the ``sdf`` element, and the lines of its elements as in ``lines``.
+    :return: the ``sdf`` element.
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
     """
     robot = robot_from_tree(root, sources)
     if not is_included:
         robot = robot_with_different_names(robot, sources)
-    return _Conversion(
-        root, robot, lines, sources, for_ros=not is_included).result()
+    return _Conversion(root, robot, sources, for_ros=not is_included).result()
 
 
 class _Conversion:
     """Converts one file."""
 
     def __init__(
-        self, root: XmlElement, robot: Robot, lines: Mapping[XmlElement, int], sources: Sources, *,
-        for_ros: bool,
+        self, root: XmlElement, robot: Robot, sources: Sources, *, for_ros: bool,
     ) -> None:
         self._for_ros = for_ros
         self._root = root
         self._robot = robot
-        self._lines = dict(lines)
         self._sources = sources
         # libsdformat reads what <gazebo> elements hold in this version.
         self._sdf = etree.Element('sdf', version='1.11')
-        self._sdf.sourceline = root.sourceline  # type: ignore[misc]  # it can be set
+        sources.set_parsed_line(self._sdf, root)
         self._model = self._element(self._sdf, 'model', root, name=robot.name)
         self._settings, self._extensions = settings_and_extensions_from_robot(root)
         self._links = robot.links_in_order
@@ -117,7 +111,7 @@ class _Conversion:
         for link in reversed(self._links):
             self._lump_inertial(link)
 
-    def result(self) -> tuple[XmlElement, Mapping[XmlElement, int]]:
+    def result(self) -> XmlElement:
         self._replace_lumped_ends_of_joints()
         self._add_links()
         if self._settings.static is not None:
@@ -126,7 +120,7 @@ class _Conversion:
         self._add_frames()
         self._add_robot_origin()
         self._report_unused_extensions()
-        return self._sdf, self._lines
+        return self._sdf
 
     # Reading
 
@@ -173,9 +167,7 @@ class _Conversion:
         """Add an element with the line of the URDF element that it comes from."""
         element = etree.SubElement(parent, tag, attributes)
         element.text = text
-        element.sourceline = source.sourceline  # type: ignore[misc]  # it can be set
-        if source in self._lines:
-            self._lines[element] = self._lines[source]
+        self._sources.set_parsed_line(element, source)
         return element
 
     def _counted(self, name: str, xml: XmlElement) -> str:

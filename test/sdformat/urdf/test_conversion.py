@@ -27,7 +27,6 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
-from sdf_pose_bridge.sdformat.versions import NEWEST
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 
 FIXED = joint('j', 'a', 'b', 'fixed', origin('1 0 0', f'0 0 {math.pi / 2}'))
@@ -40,8 +39,8 @@ def converted(text, *, is_included=True):
     sources = Sources()
     sources.add_path('f')
     file = xml_from_bytes(text.encode(), 'f')
-    sources.add_tree('f', file.root, NEWEST, file.lines)
-    root, _ = sdf_from_urdf(file.root, file.lines, sources, is_included=is_included)
+    sources.add_tree('f', file.root, file.lines)
+    root = sdf_from_urdf(file.root, sources, is_included=is_included)
     return root.find('model')
 
 
