@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import AttachedToCycleError
 from sdf_pose_bridge.errors import AttachedToError
@@ -82,6 +83,21 @@ def frame_graph_from_elements(
     return _Builder(elements, usage, problems).graph()
 
 
+def default_references(
+    kinds: NDArray[np.uint8], parents: Indices, attachments: Indices,
+) -> Indices:
+    """
+    Find the frame that the pose of each element is relative to where the file does not say it.
+
+    :param attachments: the frame that each frame is attached to, of a joint its child; -1 for
+        none.
+    :return: of a joint its child, of an explicit frame what it is attached to, of another element
+        the one that holds it; -1 for worlds and implicit roots.
+    """
+    is_attached = np.isin(kinds, (Kind.JOINT, Kind.FRAME)) & (attachments != NO_ELEMENT)
+    return np.where(is_attached, attachments, parents)
+
+
 class _Builder:
 
     def __init__(self, elements: Elements, usage: Usage, problems: Problems) -> None:
@@ -101,9 +117,7 @@ class _Builder:
         joints = self._joint_ends()
         canonical = self._canonical_pointers()
         attachments = self._attachments(joints, canonical)
-        is_joint_or_frame = np.isin(elements.kinds, (Kind.JOINT, Kind.FRAME))
-        references = np.where(
-            is_joint_or_frame & (attachments != NO_ELEMENT), attachments, elements.parents)
+        references = default_references(elements.kinds, elements.parents, attachments)
         self._break_cycles(attachments, AttachedToCycleError, 'attached to')
         bodies = ends_from_pointers(attachments)
         bodies[(elements.parents >= 0) & ~IS_FRAME_KIND[elements.kinds]] = NO_ELEMENT

@@ -21,6 +21,7 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import scoped_name
+from sdf_pose_bridge.scene.frame_graph import default_references
 from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.shapes import Shape
@@ -217,17 +218,8 @@ class Scene:
 
     @cached_property
     def default_references(self) -> Indices:
-        """
-        The frame that the pose of each element is relative to where the file does not say it.
-
-        Of a joint it is its child, of an explicit frame what it is attached to, of another element
-        the one that holds it; -1 for worlds and implicit roots.
-        """
-        references = np.where(
-            self.kinds == Kind.FRAME, self.attachments, self.parents)
-        for joint in self.joints:
-            references[joint.element] = joint.child
-        return references
+        """The frame that the pose of each is relative to where the file does not say it."""
+        return default_references(self.kinds, self.parents, self.attachments)
 
     @cached_property
     def _indices(self) -> dict[str, list[int]]:

@@ -225,6 +225,16 @@ def test_default_reference_depends_on_the_kind():
         'j': 'b'}
 
 
+def test_default_reference_of_a_joint_that_is_only_warned_of():
+    scene = sdf_pose_bridge.load_text(model_file(
+        '<link name="base"/><model name="n"><link name="a"/><frame name="f" attached_to="a"/>'
+        '<joint name="j" type="fixed"><parent>a</parent><child>f</child></joint></model>'))
+    assert [warning.code for warning in scene.warnings] == ['JOINT_PARENT_SAME_AS_CHILD']
+    assert scene.joints == ()
+    joint = scene.index('m::n::j')
+    assert scene.default_references[joint] == scene.references[joint] == scene.index('m::n::f')
+
+
 def test_elements_around_an_element(scene):
     index = int(np.argmax(scene.parents))
     around = list(scene.with_ancestors(index))
