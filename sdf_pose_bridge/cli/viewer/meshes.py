@@ -11,7 +11,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 import io
 import multiprocessing
-from multiprocessing.pool import Pool
+from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnProcess
 import os
 from pathlib import Path
 import resource
@@ -78,7 +79,7 @@ class MeshReader:
 
     def __init__(self, finder: ResourceFinder) -> None:
         self._finder = finder
-        self._pool: Pool | None = None
+        self._process: SpawnProcess | None = None
         self._meshes: dict[object, Mesh] = {}
 
     def mesh(self, shape: Shape, file: str, size_m: float) -> Mesh:
@@ -100,9 +101,10 @@ class MeshReader:
 
     def close(self) -> None:
         """End the process."""
-        if self._pool is not None:
-            self._pool.terminate()
-            self._pool = None
+        if self._process is not None:
+            self._process.kill()
+            self._process.join()
+            self._process = None
 
     def _mesh_of_file(self, shape: Shape, file: str) -> Mesh:
         path = self._finder.file_from_uri(shape.mesh_uri, file)
@@ -115,16 +117,28 @@ class MeshReader:
         return self._meshes[key]
 
     def _read(self, path: str, submesh: str) -> Mesh:
-        if self._pool is None:
-            # Each thread of this library would take its share of the memory.
-            os.environ['OPENBLAS_NUM_THREADS'] = '1'
-            self._pool = multiprocessing.get_context('spawn').Pool(1, _limit_this_process)
+        if self._process is None or not self._process.is_alive():
+            self._start_process()
         try:
-            return self._pool.apply_async(mesh_from_file, (path, submesh)).get(MOST_SECONDS)
-        except multiprocessing.TimeoutError:
-            self.close()
-            return Mesh(reason=f'to read it takes more than {MOST_SECONDS:g} s, or ends the '
-                               'process that does so')
+            self._pipe.send((path, submesh))
+            if self._pipe.poll(MOST_SECONDS):
+                mesh: Mesh = self._pipe.recv()
+                return mesh
+            reason = f'to read it takes more than {MOST_SECONDS:g} s'
+        except (EOFError, OSError):
+            reason = 'to read it ends the process that does so'
+        self.close()
+        return Mesh(reason=reason)
+
+    def _start_process(self) -> None:
+        # Each thread of this library would take its share of the memory.
+        os.environ['OPENBLAS_NUM_THREADS'] = '1'
+        context = multiprocessing.get_context('spawn')
+        self._pipe, other_end = context.Pipe()
+        self._process = context.Process(target=_read_meshes, args=(other_end,), daemon=True)
+        self._process.start()
+        # That the process ends is seen only where nobody else holds this end open.
+        other_end.close()
 
 
 def _mesh_of_shape(shape: Shape, largest_m: float) -> Mesh:
@@ -147,11 +161,14 @@ def _mesh_of_shape(shape: Shape, largest_m: float) -> Mesh:
     return Mesh((MeshPart(np.asarray(surface.vertices), np.asarray(surface.faces)),))
 
 
-def _limit_this_process() -> None:
+def _read_meshes(pipe: Connection) -> None:
+    """Read what the other end of a pipe asks for, with little memory."""
     resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY_BYTES, MOST_MEMORY_BYTES))
     # Ctrl-C is for the process that started this one, and what libraries print for nobody.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+    while True:
+        pipe.send(mesh_from_file(*pipe.recv()))
 
 
 def mesh_from_file(path: str, submesh: str) -> Mesh:

@@ -3,6 +3,8 @@
 """Meshes of all formats, broken and hostile ones, and the process that reads them."""
 
 import os
+import signal
+from types import SimpleNamespace
 
 import mesh_texts
 import numpy as np
@@ -15,6 +17,8 @@ from sdf_pose_bridge.cli.viewer.meshes import mesh_from_file
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.shapes import Shape
+
+DEADLINE_S = 120.0
 
 
 @pytest.fixture
@@ -168,6 +172,31 @@ def test_mesh_that_takes_too_long(named, monkeypatch):
     monkeypatch.setattr(meshes, 'MOST_SECONDS', 0.0)
     assert 'takes more than' in named('a.stl', mesh_texts.STL.format(y=1)).reason
     monkeypatch.undo()
+    assert not named('b.stl', mesh_texts.STL.format(y=1)).reason
+
+
+def test_process_that_ends_while_it_reads(named, reader, monkeypatch):
+    assert not named('a.stl', mesh_texts.STL.format(y=1)).reason
+    process, pipe = reader._process, reader._pipe
+    # It has no time to answer.
+    os.kill(process.pid, signal.SIGSTOP)
+
+    def send(asked):
+        pipe.send(asked)
+        process.kill()
+
+    monkeypatch.setattr(reader, '_pipe', SimpleNamespace(
+        send=send, poll=pipe.poll, recv=pipe.recv))
+    monkeypatch.setattr(meshes, 'MOST_SECONDS', DEADLINE_S)
+    reason = 'the mesh "b.stl": to read it ends the process that does so'
+    assert named('b.stl', mesh_texts.STL.format(y=1)).reason == reason
+    assert not named('c.stl', mesh_texts.STL.format(y=1)).reason
+
+
+def test_process_that_has_ended_before(named, reader):
+    assert not named('a.stl', mesh_texts.STL.format(y=1)).reason
+    reader._process.kill()
+    reader._process.join()
     assert not named('b.stl', mesh_texts.STL.format(y=1)).reason
 
 
