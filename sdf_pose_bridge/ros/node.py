@@ -42,16 +42,18 @@ from sdf_pose_bridge.ros.log_lines import lines_from_warnings
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
+from sdf_pose_bridge.ros.publishers import TextPublisher
 from sdf_pose_bridge.ros.services import add_services
 from sdf_pose_bridge.ros.services import SERVICE_QOS
+from sdf_pose_bridge.ros.services import set_pose
 from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
 from sdf_pose_bridge.ros.topic_names import PoseTopics
 from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
 from sdf_pose_bridge.sdformat.include.uris import AddressError
+from sdf_pose_bridge_interfaces.srv import SetPose
 
 if TYPE_CHECKING:
     from sdf_pose_bridge.ros.joint_states import JointStates
-    from sdf_pose_bridge_interfaces.srv import SetPose
 
 
 RETRY_PERIOD_S = 1.0
@@ -93,8 +95,6 @@ class SdfPoseBridge:
             Trigger, '~/reload', self._answer_to_reload, qos_profile=SERVICE_QOS,
             callback_group=self._changes)
         if settings.allow_set_pose:
-            # Imported here because it takes time, and few nodes write files.
-            from sdf_pose_bridge_interfaces.srv import SetPose
             node.create_service(
                 SetPose, '~/set_pose', self._answer_to_set_pose, qos_profile=SERVICE_QOS,
                 callback_group=self._changes)
@@ -111,9 +111,9 @@ class SdfPoseBridge:
         self._polling = PollingThread(self._has_to_check_files, trigger)
         self._report_success()
         # Imported here because it takes 10 ms, and everything else is more urgent.
-        from sdf_pose_bridge.ros.robot_description import RobotDescription
         from sdf_pose_bridge.ros.visuals import VisualPublisher
-        self._robot_description = RobotDescription(node)
+        # With the quality of service that it has in robot_state_publisher.
+        self._robot_description = TextPublisher(node, 'robot_description')
         self._publish_robot_description()
         self._visuals = VisualPublisher(node, loaded, settings)
 
@@ -155,7 +155,7 @@ class SdfPoseBridge:
                 self._node, moving, is_published_later=is_published_later)
 
     def _publish_robot_description(self) -> None:
-        self._robot_description.update(
+        self._robot_description.publish(
             self._loaded.description if self._settings.publish_robot_description else '')
 
     def _report_success(self) -> None:
@@ -217,7 +217,6 @@ class SdfPoseBridge:
         self, request: SetPose.Request, response: SetPose.Response,
     ) -> SetPose.Response:
         """Write a measured pose, and answer when it is published."""
-        from sdf_pose_bridge.ros.set_pose import set_pose
         loaded, settings = self._loaded, self._settings
         try:
             answer: SetPose.Response = await run_in_thread(

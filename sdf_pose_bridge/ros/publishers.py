@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The publishers of a node; those of topics that the next scene has too are kept."""
+"""The publishers of a node, by which it publishes on its topics."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Topic(NamedTuple):
 
 
 class Publishers:
-    """The publishers of a node, by their topics."""
+    """The publishers of a node, by their topics; those that the next scene has too are kept."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -113,3 +113,32 @@ def new_publisher(
     return node.create_publisher(
         topic.message_type, topic.name, quality,
         event_callbacks=PublisherEventCallbacks(matched=matched, use_default_callbacks=False))
+
+
+class TextPublisher:
+    """
+    Publishes a text on a latched topic of std_msgs/String, which exists while there is a text.
+
+    :param name: the name of the topic.
+    """
+
+    def __init__(self, node: Node, name: str) -> None:
+        # Imported here because it takes 5 ms, and transforms are published before texts.
+        from std_msgs.msg import String
+        self._node = node
+        self._topic = Topic(name, String)
+        self._publisher: Publisher | None = None
+
+    def publish(self, text: str) -> None:
+        """
+        Publish a text.
+
+        :param text: the text; if it is empty, there is no topic, so that nobody gets a text of the
+            past.
+        """
+        if text:
+            self._publisher = self._publisher or new_publisher(self._node, self._topic)
+            self._publisher.publish(self._topic.message_type(data=text))
+        elif self._publisher is not None:
+            self._node.destroy_publisher(self._publisher)
+            self._publisher = None

@@ -2,14 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Publishers of a real node: which are made, shared, kept and destroyed."""
 
+import time
+
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from geometry_msgs.msg import PoseStamped
 from rclpy.qos import DurabilityPolicy
+from rclpy.qos import QoSProfile
+from std_msgs.msg import String
 
 from sdf_pose_bridge.ros.publishers import Publishers
+from sdf_pose_bridge.ros.publishers import TextPublisher
 from sdf_pose_bridge.ros.publishers import Topic
 
 
@@ -55,3 +60,21 @@ def test_topics_are_replaced(node, publishers, finish):
     assert topics_of(node) == {'/bridge/b', '/bridge/c'}
     assert publishers.get(a) is None
     assert publishers.get(b) is kept
+
+
+def test_each_text_is_published_and_nothing_without_one(node):
+    quality = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    received, sent = [], []
+    node.create_subscription(
+        String, 'robot_description', lambda message: received.append(message.data), quality)
+    publisher = TextPublisher(node, 'robot_description')
+    for text in ('<robot/>', '<robot/>', '', '<robot name="r"/>'):
+        publisher.publish(text)
+        assert node.count_publishers('robot_description') == bool(text)
+        if text:
+            sent.append(text)
+            deadline = time.monotonic() + 20
+            while len(received) < len(sent):
+                assert time.monotonic() < deadline
+                node.executor.spin_once(timeout_sec=0.1)
+    assert received == sent
