@@ -19,7 +19,6 @@ from rcl_interfaces.msg import SetParametersResult
 from rcl_interfaces.srv import SetParameters
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.callback_groups import CallbackGroup
-from rclpy.exceptions import InvalidParameterValueException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.parameter_service import ParameterService
@@ -28,7 +27,6 @@ from rclpy.qos import qos_profile_parameters
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
-from sdf_pose_bridge.ros.parameters import Declaration
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.ros.parameters import MOST_VALUES
 from sdf_pose_bridge.ros.parameters import Settings
@@ -49,18 +47,15 @@ _NAMES_OF_TYPES = {
 
 def settings_from_node(node: Node) -> Settings:
     """
-    Declare all parameters on a node and convert their values.
+    Declare all parameters on a node with the values that it was given, and convert these.
 
     :raises SettingsError: if a value has the wrong type or is not allowed.
     """
-    values = {}
-    sentences = []
-    for name, declaration in DECLARATIONS.items():
-        try:
-            values[name] = declaration.convert(_declared_value(node, declaration))
-        except ValueError as error:
-            sentences.append(f'parameter {name} {error}')
-    return _checked_settings(values, sentences)
+    parameters = _parameters_at_start(_given_parameters(node))
+    settings = changed_settings(Settings({}), parameters, shows_command_line=True)
+    for parameter in parameters:
+        _declare(node, parameter)
+    return settings
 
 
 def settings_from_values(values: Mapping[str, Any]) -> Settings:
@@ -70,16 +65,19 @@ def settings_from_values(values: Mapping[str, Any]) -> Settings:
     :param values: values by the names of parameters; the others have their defaults.
     :raises SettingsError: if a value has the wrong type or is not allowed.
     """
-    defaults = {name: each.convert(each.default) for name, each in DECLARATIONS.items()}
-    return changed_settings(
-        Settings(defaults), [Parameter(name, value=value) for name, value in values.items()])
+    given = {name: Parameter(name, value=value) for name, value in values.items()}
+    return changed_settings(Settings({}), _parameters_at_start(given))
 
 
-def changed_settings(settings: Settings, parameters: Iterable[Parameter]) -> Settings:
+def changed_settings(
+    settings: Settings, parameters: Iterable[Parameter], *, shows_command_line: bool = False,
+) -> Settings:
     """
     Convert new values of parameters.
 
-    :param parameters: the new values; parameters that are not declared here are ignored.
+    :param parameters: the new values, as :func:`parameter_with_type` returns them; parameters that
+        are not declared here are ignored.
+    :param shows_command_line: whether to show how to write a value on the command line.
     :raises SettingsError: if a value has the wrong type or is not allowed.
     """
     values = dict(settings.values)
@@ -87,10 +85,22 @@ def changed_settings(settings: Settings, parameters: Iterable[Parameter]) -> Set
     for given in parameters:
         if given.name in DECLARATIONS:
             try:
-                values[given.name] = _converted(given, DECLARATIONS[given.name])
+                values[given.name] = _converted(given, shows_command_line=shows_command_line)
             except ValueError as error:
                 sentences.append(f'parameter {given.name} {error}')
-    return _checked_settings(values, sentences)
+    sources = [values.get(name) for name in ('sdf_file', 'robot_description')]
+    if all(sources):
+        sentences.insert(
+            0, 'parameters sdf_file and robot_description are both set; set one of them, and the '
+            'other one to an empty string')
+    elif sources == ['', '']:
+        sentences.insert(
+            0, 'parameter sdf_file is not set; name the file to publish: --ros-args -p '
+            'sdf_file:=cell.sdf after "ros2 run ...", sdf_file:=cell.sdf after "ros2 launch '
+            '..."; or set robot_description to its text')
+    if sentences:
+        raise SettingsError(sentences)
+    return Settings(values)
 
 
 def warnings_about_unknown_parameters(node: Node) -> list[str]:
@@ -178,22 +188,6 @@ def _parameters_from_messages(
     return parameters
 
 
-def _checked_settings(values: Mapping[str, Any], sentences: Sequence[str]) -> Settings:
-    sources = [values.get(name) for name in ('sdf_file', 'robot_description')]
-    if all(sources):
-        msg = ('parameters sdf_file and robot_description are both set; set one of them, and the '
-               'other one to an empty string')
-        sentences = [msg, *sentences]
-    elif sources == ['', '']:
-        msg = ('parameter sdf_file is not set; name the file to publish: --ros-args -p '
-               'sdf_file:=cell.sdf after "ros2 run ...", sdf_file:=cell.sdf after "ros2 launch '
-               '..."; or set robot_description to its text')
-        sentences = [msg, *sentences]
-    if sentences:
-        raise SettingsError(sentences)
-    return Settings(values)
-
-
 def _given_parameters(node: Node) -> Mapping[str, Parameter]:
     """Return what was given when the node was started, by names."""
     # rclpy shows this in no public way but to declare all of it, with any type and unexplained.
@@ -201,45 +195,45 @@ def _given_parameters(node: Node) -> Mapping[str, Parameter]:
     return given
 
 
-def _declared_value(node: Node, declaration: Declaration[Any]) -> Any:
-    name, type_, value = declaration.name, declaration.type_, declaration.default
-    parameters = _given_parameters(node)
-    given = parameters.get(name) or (
-        parameters.get(FREQUENCY) if name == 'publish_rate' else None)
-    if given is not None and given.type_ is not Parameter.Type.NOT_SET:
-        given = parameter_with_type(given, type_)
-        if given.type_ is not type_:
-            msg = words_about_wrong_type(given, type_) + hint_about_command_line(given, type_)
-            raise ValueError(msg)
-        value = given.value
-    elif given is not None and type_ is Parameter.Type.STRING_ARRAY:
-        # rclpy reads an empty list on the command line as no value.
-        value = []
+def _parameters_at_start(given: Mapping[str, Parameter]) -> list[Parameter]:
+    """Return all parameters with the values that they are given, or with their defaults."""
+    parameters = []
+    for name, declaration in DECLARATIONS.items():
+        type_, value = declaration.type_, declaration.default
+        parameter = given.get(name) or (given.get(FREQUENCY) if name == 'publish_rate' else None)
+        if parameter is not None and parameter.type_ is not Parameter.Type.NOT_SET:
+            type_, value = parameter.type_, parameter.value
+        elif parameter is not None and type_ is Parameter.Type.STRING_ARRAY:
+            # rclpy reads an empty list on the command line as no value.
+            value = []
+        parameters.append(parameter_with_type(Parameter(name, type_, value), declaration.type_))
+    return parameters
+
+
+def _declare(node: Node, parameter: Parameter) -> None:
+    declaration = DECLARATIONS[parameter.name]
     descriptor = ParameterDescriptor(
-        type=type_.value, description=declaration.description,
-        additional_constraints=declaration.constraint, read_only=declaration.is_read_only)
+        description=declaration.description, additional_constraints=declaration.constraint,
+        read_only=declaration.is_read_only)
     if declaration.maximum is not None:
         descriptor.floating_point_range = [
             FloatingPointRange(from_value=0.0, to_value=declaration.maximum)]
-    try:
-        # rclpy cannot tell the type of an empty list.
-        node.declare_parameter(
-            name, type_ if value == [] else value, descriptor, ignore_override=True)
-    except InvalidParameterValueException as error:
-        msg = f'must be {declaration.constraint}: {error}'
-        raise ValueError(msg) from None
-    if value == []:
-        node.set_parameters([Parameter(name, type_, value)])
-    return value
+    # rclpy cannot tell the type of an empty list.
+    is_empty = parameter.value == []
+    node.declare_parameter(
+        parameter.name, parameter.type_ if is_empty else parameter.value, descriptor,
+        ignore_override=True)
+    if is_empty:
+        node.set_parameters([parameter])
 
 
-def _converted(given: Parameter, declaration: Declaration[Any]) -> Any:
-    given = parameter_with_type(given, declaration.type_)
-    if given.type_ is Parameter.Type.NOT_SET:
-        msg = 'cannot be without a value'
-        raise ValueError(msg)
+def _converted(given: Parameter, *, shows_command_line: bool) -> Any:
+    declaration = DECLARATIONS[given.name]
     if given.type_ is not declaration.type_:
-        raise ValueError(words_about_wrong_type(given, declaration.type_))
+        words = words_about_wrong_type(given, declaration.type_)
+        if shows_command_line:
+            words += hint_about_command_line(given, declaration.type_)
+        raise ValueError(words)
     return declaration.convert(given.value)
 
 
@@ -267,6 +261,8 @@ def words_about_wrong_type(given: Parameter, wanted: Parameter.Type) -> str:
 
     :return: the words that follow "parameter <name>" in a sentence.
     """
+    if given.type_ is Parameter.Type.NOT_SET:
+        return 'cannot be without a value'
     return (f'is {_shown_value(given)}, which is {_NAMES_OF_TYPES[given.type_]}; it must be '
             f'{_NAMES_OF_TYPES[wanted]}')
 

@@ -36,11 +36,6 @@ Value = str | bool | float | list[str]
 Setting = TypeVar('Setting')
 Choice = TypeVar('Choice', bound=enum.Enum)
 
-TYPES = {
-    str: Parameter.Type.STRING, bool: Parameter.Type.BOOL, float: Parameter.Type.DOUBLE,
-    list: Parameter.Type.STRING_ARRAY}
-"""The types of parameters that are used, by the type of their values in Python."""
-
 PUBLISHED_KINDS = {
     kind.label: kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD, Kind.ACTOR)}
 """The kinds of element that can become frames, by their names."""
@@ -98,7 +93,9 @@ class Declaration(Generic[Setting]):
     @property
     def type_(self) -> Parameter.Type:
         """The type of its values."""
-        return TYPES[type(self.default)]
+        # rclpy takes an empty list for one of bytes.
+        return (Parameter.Type.STRING_ARRAY if self.default == []
+                else Parameter.Type.from_parameter_value(self.default))
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name

@@ -288,6 +288,7 @@ def test_parameters_that_change_nothing_publish_nothing(file, listener):
 
 REFUSED = [
     ({'publish_rate': float('nan')}, 'is nan; it must be 0.0 for never, or from 0.001 to 100.0'),
+    ({'publish_rate': 101}, 'is 101.0; it must be 0.0 for never, or from 0.001 to 100.0'),
     ({'publish_rate': 100.5}, 'is 100.5; it must be 0.0 for never, or from 0.001 to 100.0'),
     ({'publish_rate': 1e-12}, 'is 1e-12; it must be 0.0 for never, or from 0.001 to 100.0'),
     ({'kinds': [True]}, 'is [True], which is a list of booleans; it must be a list of strings'),

@@ -43,10 +43,10 @@ def default_settings(make_node):
     ('pose_topics', '[1, 2]', 'is [1, 2], which is a list of integers; it must be a list of '),
     ('resource_paths', '[0.5]', 'is [0.5], which is a list of numbers; it must be a list of '),
     ('publish_rate', 'fast', 'is fast, which is a string; it must be a number'),
-    ('publish_rate', '500.0', 'must be 0.0 for never, or from 0.001 to 100.0'),
-    ('publish_rate', '500', 'must be 0.0 for never, or from 0.001 to 100.0'),
+    ('publish_rate', '500.0', 'is 500.0; it must be 0.0 for never, or from 0.001 to 100.0'),
+    ('publish_rate', '500', 'is 500.0; it must be 0.0 for never, or from 0.001 to 100.0'),
     ('publish_rate', '1e-12', 'is 1e-12; it must be 0.0 for never, or from 0.001 to 100.0'),
-    ('publish_rate', '.nan', 'must be 0.0 for never, or from 0.001 to 100.0'),
+    ('publish_rate', '.nan', 'is nan; it must be 0.0 for never, or from 0.001 to 100.0'),
     ('anchor_models', 'some', 'is "some"; it must be one of auto, all, static, none'),
     ('kinds', '[]', 'is []; it must be at least one of'),
 ])
@@ -102,7 +102,7 @@ def test_the_rate_of_robot_state_publisher_is_understood_with_a_warning(
 
 @pytest.mark.parametrize(('value', 'sentence'), [
     ('fast', 'is fast, which is a string; it must be a number'),
-    ('500.0', 'must be 0.0 for never')])
+    ('500.0', 'is 500.0; it must be 0.0 for never')])
 def test_a_wrong_rate_of_robot_state_publisher_is_refused(make_node, value, sentence):
     node = make_node('bridge', *FILE, '-p', f'publish_frequency:={value}')
     with pytest.raises(SettingsError, match=sentence):
@@ -161,7 +161,7 @@ def test_a_file_and_a_text_together_are_refused(settings):
     ('frame_separator', '', 'is ""; it must be at least one'),
     ('frame_prefix', '/robot/', 'is "/robot/"; it must be without a'),
     ('publish_rate', 1e-12, 'is 1e-12; it must be 0.0 for never, or from 0.001 to 100.0'),
-    ('publish_rate', 101, 'is 101.0; it must be 0.0 for never, or from 0.001 to 100.0'),
+    ('publish_rate', 101.0, 'is 101.0; it must be 0.0 for never, or from 0.001 to 100.0'),
     ('publish_rate', float('inf'), 'is inf; it must be 0.0 for never, or'),
     ('publish_rate', float('nan'), 'is nan; it must be 0.0 for never, or'),
     ('publish_rate', 'fast', 'is fast, which is a string; it must be a number'),
