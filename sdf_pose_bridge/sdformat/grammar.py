@@ -173,17 +173,16 @@ class Definition:
         """The kind of the element; None for an element that is no frame."""
         self.has_frames = has_frames
         self._items = [item for item in map(_ITEM.fullmatch, content.split()) if item]
-        value = next((item for item in self._items if not item['name']), None)
-        self.value_type = None if value is None else _VALUE_TYPES[value['type']]
+        value: dict[str, str] = next(
+            (item.groupdict() for item in self._items if not item['name']), {})
+        self.value_type = _VALUE_TYPES.get(value.get('type', ''))
         """Type of the value; None for an element that holds others."""
-        self.choice = None if value is None else CHOICES.get(value['type'])
+        self.choice = CHOICES.get(value.get('type', ''))
         """What the value can be, of a choice."""
-        self.minimum, self.maximum = (-math.inf, math.inf) if value is None else (
-            float(value['minimum'] or -math.inf), float(value['maximum'] or math.inf))
+        self.minimum = float(value.get('minimum', '') or -math.inf)
+        self.maximum = float(value.get('maximum', '') or math.inf)
         # Python takes longer to look up a member of an Enum than to read an attribute.
         self.is_pose = self.value_type is ValueType.POSE
-        self.is_scope = self.kind in (Kind.WORLD, Kind.MODEL)
-        self.is_text = self.value_type is ValueType.STRING
         self.takes_any_number = (
             self.value_type is ValueType.NUMBER and self.minimum == -math.inf)
 
@@ -200,11 +199,6 @@ class Definition:
                 _VALUE_TYPES[item['type'] or 'string'], bool(item['required']),
                 CHOICES.get(item['type']) if self.has_frames else None)
             for item in self._items if item['attribute']}
-
-    @cached_property
-    def has_required_attributes(self) -> bool:
-        """Whether the element must have attributes."""
-        return any(attribute.is_required for attribute in self.attributes.values())
 
     @cached_property
     def checked_attributes(self) -> tuple[tuple[str, Attribute], ...]:

@@ -64,16 +64,6 @@ from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-PLACEMENT_OF_MERGED_MODEL = '{sdf_pose_bridge}placement_frame'
-"""Attribute of the frame that replaces a merged model's frame: the model's placement frame."""
-
-MISSING_NAME = '{sdf_pose_bridge}missing_name'
-"""Attribute of an ``<include>`` that was not replaced: the name that the included model would
-have; empty if any unknown name may come from it."""
-
-MISSING_URI = '{sdf_pose_bridge}missing_uri'
-"""Attribute of such an ``<include>``: the URI that it names."""
-
 _CHECKS = {'material': check_material, 'submesh': check_submesh}
 """Functions that check elements without a frame, by the identifiers of these."""
 _CHECKS_OF_UNREAD = {
@@ -130,7 +120,7 @@ class _Reader:
         self._file_indices = sources.file_indices
         self._readers_of_details: dict[Kind, tuple[str, Callable[[XmlElement], Any]]] = {
             Kind.MODEL: ('models', _model_details),
-            Kind.FRAME: ('frames', _frame_details),
+            Kind.FRAME: ('frames', partial(_frame_details, sources=sources)),
             Kind.JOINT: ('joints', partial(joint_details_from_element, sources=sources)),
             Kind.SENSOR: ('sensors', _sensor_details),
             Kind.INERTIAL: ('automatic_inertials', partial(collision_masses, sources=sources)),
@@ -179,7 +169,7 @@ class _Reader:
         scope: int = NO_ELEMENT, path: str = '', depth: int = 1,
     ) -> None:
         """Read an element, with all that it holds."""
-        if definition.has_required_attributes or xml.keys():
+        if definition.checked_attributes or xml.keys():
             self._check_attributes(xml, definition)
         if definition.is_pose:
             self._read_pose(xml, definition, parent)
@@ -190,9 +180,9 @@ class _Reader:
             elif doubt:
                 self._sources.warning(xml, doubt)
         elif definition.identifier == 'include':
-            if parent != NO_ELEMENT:
-                self._builder.details['missing_includes'].setdefault(parent, {})[
-                    xml.get(MISSING_NAME, '')] = xml.get(MISSING_URI, '')
+            missing = self._sources.origin(xml).missing
+            if parent != NO_ELEMENT and missing is not None:
+                self._builder.details['missing_includes'].setdefault(parent, {}).update([missing])
         else:
             if definition.kind is not None:
                 definition, parent, scope, path = self._added(
@@ -237,7 +227,7 @@ class _Reader:
             details = details_from_element(xml)
             if details is not None:
                 self._builder.details[field][index] = details
-        return definition, index, index if definition.is_scope else scope, path
+        return definition, index, index if kind in (Kind.WORLD, Kind.MODEL) else scope, path
 
     # Attributes and poses
 
@@ -311,9 +301,9 @@ def _model_details(xml: XmlElement) -> ModelDetails:
         frame_of_attribute(xml, 'canonical_link'), frame_of_attribute(xml, 'placement_frame'))
 
 
-def _frame_details(xml: XmlElement) -> FrameDetails:
+def _frame_details(xml: XmlElement, sources: Sources) -> FrameDetails:
     return FrameDetails(
-        frame_of_attribute(xml, 'attached_to'), xml.get(PLACEMENT_OF_MERGED_MODEL, ''))
+        frame_of_attribute(xml, 'attached_to'), sources.origin(xml).placement_frame)
 
 
 def _sensor_details(xml: XmlElement) -> SensorDetails:

@@ -51,6 +51,11 @@ class Origin(NamedTuple):
     """Whether its name is written in the file that includes it."""
     pose: Place | None = None
     """Where it is placed, if not in its own file."""
+    placement_frame: str = ''
+    """Of the frame that replaces a merged model's frame: the model's placement frame."""
+    missing: tuple[str, str] | None = None
+    """Of an include that was not replaced: the name that the included model would have, empty if
+    any unknown name may come from it, and the URI."""
 
 
 _PARSED = Origin()

@@ -119,7 +119,7 @@ def judged_value(text: str, definition: Definition) -> Judgment:
     stripped = text.strip(WHITE_SPACE)
     if not stripped and definition.is_required:
         return Judgment(f'<{definition.identifier}> is empty; it must have a value')
-    if not stripped or definition.is_text:
+    if not stripped or value_type is ValueType.STRING:
         return _RIGHT
     if definition.choice is not None:
         fault = choice_fault(stripped, definition.choice)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 import copy
+from functools import cache
 import os
 from pathlib import Path
 
@@ -47,8 +48,6 @@ from sdf_pose_bridge.sdformat.limits import STEPS_OF_MERGE
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_MOVED_CHILD
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_NAMED_ELEMENT
 from sdf_pose_bridge.sdformat.reader import check_element
-from sdf_pose_bridge.sdformat.reader import MISSING_NAME
-from sdf_pose_bridge.sdformat.reader import MISSING_URI
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.values import boolean_from_text
@@ -96,7 +95,7 @@ class IncludeExpansion:
         self._canonical_link_of = canonical_link_of
         self._files: dict[str, Document | None] = {}
         self._model_files: dict[str, ModelFile | str] = {}
-        self._steps_of_copies: dict[XmlElement, int] = {}
+        self._steps_of_copy = cache(_steps_of_copy)
         self._missing_uris: set[str] = set()
         self._canonical_links: dict[tuple[XmlElement, str, bytes], str | None] = {}
         self._undefined = UndefinedReporter(sources)
@@ -118,7 +117,7 @@ class IncludeExpansion:
                     self._mark_missing(include)
 
     def _mark_missing(self, include: XmlElement) -> None:
-        """Write into an include that stays which name and which URI are missing without it."""
+        """Keep of an include that stays which name and which URI are missing without it."""
         uri, name = child_value(include, 'uri') or 'no URI', child_value(include, 'name')
         if boolean_from_text(include.get('merge', 'false')) is not False:
             # What is merged has names of its own.
@@ -126,8 +125,7 @@ class IncludeExpansion:
         elif not name and not self._sources.problems.errors:
             # Where the include is an error, nothing is lost by what its file may be called.
             name = _name_from_uri(uri)
-        include.set(MISSING_NAME, name)
-        include.set(MISSING_URI, uri)
+        self._sources.set_origin(include, missing=(name, uri))
 
     def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
         self._sources.count_work(STEPS_OF_INCLUDE + self._steps_of_directories, include)
@@ -148,9 +146,7 @@ class IncludeExpansion:
         chosen = self._top(include, found)
         if chosen is None or is_merge is None:
             return
-        if chosen not in self._steps_of_copies:
-            self._steps_of_copies[chosen] = _steps_of_copy(chosen)
-        self._sources.count_work(self._steps_of_copies[chosen], include)
+        self._sources.count_work(self._steps_of_copy(chosen), include)
         top = self._sources.copy_of(chosen)
         self._sources.set_origin(top, include=place)
         self._override(include, top)

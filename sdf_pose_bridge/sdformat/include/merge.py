@@ -21,7 +21,6 @@ from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.sdformat.grammar import ValueType
-from sdf_pose_bridge.sdformat.reader import PLACEMENT_OF_MERGED_MODEL
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
@@ -89,13 +88,12 @@ def _proxy_frame(
     proxy = etree.Element('frame', {
         'name': name, 'attached_to': attribute_of(model, 'canonical_link') or canonical_link})
     placement = attribute_of(model, 'placement_frame')
-    if placement:
-        proxy.set(PLACEMENT_OF_MERGED_MODEL, name if placement == MODEL_FRAME else placement)
     proxy.append(proxy_pose)
     place = sources.place(model)
     sources.set_origin(
         proxy, file=place.file, line=place.line, include=sources.place(include),
-        is_named_by_include=first_child(include, 'name') is not None)
+        is_named_by_include=first_child(include, 'name') is not None,
+        placement_frame=name if placement == MODEL_FRAME else placement)
     return proxy
 
 

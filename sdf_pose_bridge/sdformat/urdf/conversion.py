@@ -44,7 +44,7 @@ from sdf_pose_bridge.sdformat.urdf.robot import settings_and_extensions_from_rob
 from sdf_pose_bridge.sdformat.urdf.robot import SHAPES
 from sdf_pose_bridge.sdformat.urdf.values import leading_numbers
 from sdf_pose_bridge.sdformat.urdf.values import numbers_of
-from sdf_pose_bridge.sdformat.urdf.values import pose_from_numbers
+from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy
 from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math
 from sdf_pose_bridge.sdformat.urdf.values import rpy_by_urdfdom
 from sdf_pose_bridge.sdformat.urdf.values import text_from_numbers
@@ -127,19 +127,19 @@ class _Conversion:
     def _is_reducible(self, joint: Joint) -> bool:
         return joint.type == 'fixed' and joint.name not in self._settings.kept_joints
 
-    def _is_lumped(self, link: Link) -> bool:
-        joint = self._robot.parent_joints.get(link.name)
-        return joint is not None and joint.parent != WORLD_FRAME and self._is_reducible(joint)
-
     def _find_bases(self) -> None:
         for link in self._links:
-            base = _Base(link, Pose(), [])
-            if self._is_lumped(link):
-                joint = self._robot.parent_joints[link.name]
+            joint = self._robot.parent_joints.get(link.name)
+            if joint is None or joint.parent == WORLD_FRAME or not self._is_reducible(joint):
+                base = _Base(link, Pose(), [])
+            else:
                 base = self._bases[joint.parent]
                 base = base._replace(pose=pose_product(base.pose, joint.origin))
             base.members.append(link)
             self._bases[link.name] = base
+
+    def _is_lumped(self, link: Link) -> bool:
+        return self._bases[link.name].link is not link
 
     def _lump_inertial(self, link: Link) -> None:
         """Add the mass of a link that is lumped to that of its parent."""
@@ -148,7 +148,7 @@ class _Conversion:
             return
         joint = self._robot.parent_joints[link.name]
         old = self._inertials[joint.parent] or Inertial()
-        joint_pose = pose_from_numbers([*joint.origin[:3], *rpy_by_urdfdom(joint.origin)])
+        joint_pose = pose_from_xyz_rpy(joint.origin[:3], rpy_by_urdfdom(joint.origin))
         center = pose_product(joint_pose, inertial.origin)
         mass = old.mass + inertial.mass
         if self._for_ros and not mass:
@@ -355,7 +355,7 @@ class _Conversion:
                 return
             self._sources.count_work(_STEPS_OF_MOVE, xml)
             joint = self._robot.parent_joints[name]
-            moved = pose_product(joint.origin, pose_from_numbers(numbers))
+            moved = pose_product(joint.origin, pose_from_xyz_rpy(numbers[:3], numbers[3:]))
             # libsdformat writes six digits at each step.
             pose.text = text_from_numbers([*moved[:3], *rpy_by_urdfdom(moved)], 6)
             numbers = list(map(float, pose.text.split()))

@@ -26,7 +26,7 @@ from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
 from sdf_pose_bridge.sdformat.urdf.values import is_true
 from sdf_pose_bridge.sdformat.urdf.values import NotFiniteError
 from sdf_pose_bridge.sdformat.urdf.values import numbers_of
-from sdf_pose_bridge.sdformat.urdf.values import pose_from_numbers
+from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
 from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
@@ -200,7 +200,7 @@ class _RobotReader:
         return list(named.items())
 
     def _robot_origin(self) -> Pose:
-        numbers = {'xyz': [0.0] * 3, 'rpy': [0.0] * 3}
+        numbers: dict[str, list[float]] = {}
         origin = first_child(self._root, 'origin')
         if origin is None:
             return Pose()
@@ -211,7 +211,7 @@ class _RobotReader:
                 self._errors.error(ElementInvalidError, origin, str(error))
             except ValueError as error:
                 self._sources.warning(origin, f'{error}; libsdformat takes zeros for it')
-        return pose_from_numbers([*numbers['xyz'], *numbers['rpy']])
+        return pose_from_xyz_rpy(**numbers)
 
     def _link(self, xml: XmlElement) -> Link:
         inertial = None
@@ -282,10 +282,8 @@ def _required_child(xml: XmlElement, tag: str) -> XmlElement:
 
 def _origin(xml: XmlElement) -> Pose:
     origin = first_child(xml, 'origin')
-    if origin is None:
-        return Pose()
-    numbers = {'xyz': [0.0] * 3, 'rpy': [0.0] * 3, **numbers_of(origin, 'xyz:3 rpy:3')}
-    return pose_from_numbers([*numbers['xyz'], *numbers['rpy']])
+    numbers = {} if origin is None else numbers_of(origin, 'xyz:3 rpy:3')
+    return pose_from_xyz_rpy(**numbers)
 
 
 def _shape(xml: XmlElement) -> Shape:

@@ -87,19 +87,22 @@ def _numbers_from_text(text: str, count: int, what: str) -> list[float]:
     return numbers
 
 
-def pose_from_numbers(numbers: Sequence[float]) -> Pose:
+def pose_from_xyz_rpy(
+    xyz: Sequence[float] = (0.0, 0.0, 0.0), rpy: Sequence[float] = (0.0, 0.0, 0.0),
+) -> Pose:
     """
     Convert a pose.
 
-    :param numbers: x y z in metres, roll pitch yaw in radians; finite.
+    :param xyz: x y z in metres; finite.
+    :param rpy: roll pitch yaw in radians; finite.
     :return: the pose. Its quaternion has the sign that libsdformat gives it, because the angles
         that ``rpy_by_urdfdom`` makes of it depend on the sign, and with them how they are rounded.
     """
-    x, y, z, *rpy_rad = numbers
-    halves = [angle / 2.0 for angle in rpy_rad]
+    x, y, z = xyz
+    halves = [angle / 2.0 for angle in rpy]
     sign = math.copysign(
         1.0, math.prod(map(math.cos, halves)) + math.prod(map(math.sin, halves)))
-    qx, qy, qz, qw = quaternion_from_rpy(rpy_rad)
+    qx, qy, qz, qw = quaternion_from_rpy(rpy)
     return Pose(x, y, z, sign * qx, sign * qy, sign * qz, sign * qw)
 
 

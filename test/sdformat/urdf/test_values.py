@@ -15,7 +15,7 @@ from sdf_pose_bridge.geometry.rotations import matrix_from_rpy
 from sdf_pose_bridge.sdformat.urdf.values import is_true
 from sdf_pose_bridge.sdformat.urdf.values import NotFiniteError
 from sdf_pose_bridge.sdformat.urdf.values import numbers_of
-from sdf_pose_bridge.sdformat.urdf.values import pose_from_numbers
+from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy
 from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math
 from sdf_pose_bridge.sdformat.urdf.values import rpy_by_urdfdom
 from sdf_pose_bridge.sdformat.urdf.values import text_from_numbers
@@ -77,29 +77,29 @@ def test_text_of_numbers(digits, expected):
 
 @given(ANGLES, ANGLES, ANGLES)
 def test_angles_by_gz_math_are_the_rotation(roll, pitch, yaw):
-    angles = rpy_by_gz_math(pose_from_numbers([0, 0, 0, roll, pitch, yaw]))
+    angles = rpy_by_gz_math(pose_from_xyz_rpy([0, 0, 0], [roll, pitch, yaw]))
     np.testing.assert_allclose(
         matrix_from_rpy(angles), matrix_from_rpy((roll, pitch, yaw)), atol=1e-7)
 
 
 @given(ANGLES, ANGLES, ANGLES)
 def test_angles_by_urdfdom_are_nearly_the_rotation(roll, pitch, yaw):
-    angles = rpy_by_urdfdom(pose_from_numbers([0, 0, 0, roll, pitch, yaw]))
+    angles = rpy_by_urdfdom(pose_from_xyz_rpy([0, 0, 0], [roll, pitch, yaw]))
     np.testing.assert_allclose(
         matrix_from_rpy(angles), matrix_from_rpy((roll, pitch, yaw)), atol=6e-3)
 
 
 @pytest.mark.parametrize('sign', [1.0, -1.0])
 def test_angles_by_urdfdom_near_gimbal_lock(sign):
-    roll, pitch, yaw = rpy_by_urdfdom(pose_from_numbers([0, 0, 0, 0.3, sign * 1.568, 0.1]))
+    roll, pitch, yaw = rpy_by_urdfdom(pose_from_xyz_rpy([0, 0, 0], [0.3, sign * 1.568, 0.1]))
     assert (roll, pitch) == (0.0, sign * math.pi / 2)
     assert yaw == pytest.approx(0.1 - sign * 0.3, abs=1e-2)
 
 
 def test_quaternion_has_the_sign_of_libsdformat():
-    assert pose_from_numbers([0, 0, 0, 0, 0, 5.0]).qw == pytest.approx(math.cos(2.5))
+    assert pose_from_xyz_rpy([0, 0, 0], [0, 0, 5.0]).qw == pytest.approx(math.cos(2.5))
 
 
-def test_pose_from_numbers():
-    assert pose_from_numbers([1, 2, 3, math.pi, 0, 0]) == pytest.approx(
+def test_pose_from_xyz_rpy():
+    assert pose_from_xyz_rpy([1, 2, 3], [math.pi, 0, 0]) == pytest.approx(
         Pose(1, 2, 3, 1, 0, 0, 0))
