@@ -112,11 +112,7 @@ class Elements:
     """Paths of some elements, which :meth:`place` has made."""
 
     def kind(self, index: int) -> Kind:
-        """
-        Return the kind of an element.
-
-        :return: its kind.
-        """
+        """Return the kind of an element."""
         return Kind(int(self.kinds[index]))
 
     def place(self, index: int, line: int = 0, part: str = '') -> Place:
@@ -150,11 +146,7 @@ class Elements:
         return f'{parent_path}/{path_step(kind.label, name)}'
 
     def place_of_pose(self, index: int) -> Place:
-        """
-        Return the place of the pose of an element.
-
-        :return: file, line and path.
-        """
+        """Return the place of the pose of an element."""
         return self.place(index, int(self.pose_lines[index]), 'pose')
 
 
@@ -179,11 +171,7 @@ class ElementsBuilder:
     def add(
         self, kind: Kind, name: str, parent: int, scope: int, file_index: int, line: int,
     ) -> int:
-        """
-        Add an element.
-
-        :return: its index.
-        """
+        """Add an element; return its index."""
         index = len(self.names)
         self.kinds.append(kind)
         self.names.append(name)
@@ -212,7 +200,6 @@ class ElementsBuilder:
 
         :param problems: takes the poses that are not valid, and therefore the identity, and those
             that may mean another pose.
-        :return: the table.
         """
         table = Elements(
             kinds=np.array(self.kinds, dtype=np.uint8), names=self.names,

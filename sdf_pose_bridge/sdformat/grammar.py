@@ -248,9 +248,8 @@ def definition_of(
     Return the definition of an element.
 
     :param identifier: label of a kind, or a key of :data:`ELEMENTS`.
-    :param has_frames: whether kinds of elements are frames here.
-    :param is_required: whether its value may not be blank.
-    :return: the definition.
+    :param has_frames: as for :class:`Definition`.
+    :param is_required: as for :class:`Definition`.
     """
     kind = _KINDS.get(identifier)
     content = ELEMENTS[identifier] if kind is None else kind.content

@@ -68,7 +68,7 @@ CHARACTERS_OF_STEP = 16
 
 class Usage:
     """
-    What a load has used so far.
+    What a load has used so far. Limits are named by their fields.
 
     :param limits: what it may use.
     """
@@ -81,8 +81,6 @@ class Usage:
         """
         Count what is used.
 
-        :param limit: name of a field of the limits.
-        :param amount: how much of it is used.
         :param place: where it is used, or a function that returns that.
         :raises LimitError: if that is more than the limit allows.
         """
@@ -90,20 +88,13 @@ class Usage:
         self.check(limit, self._used[limit], place)
 
     def left(self, limit: str) -> int:
-        """
-        Return how much may still be used.
-
-        :param limit: name of a field of the limits.
-        :return: how much of it is left.
-        """
+        """Return how much of a limit may still be used."""
         return self._most(limit) - self._used[limit]
 
     def check(self, limit: str, value: int, place: Place | Callable[[], Place]) -> None:
         """
         Compare a value with a limit.
 
-        :param limit: name of a field of the limits.
-        :param value: the value.
         :param place: where it was reached, or a function that returns that.
         :raises LimitError: if it is greater than the limit.
         """

@@ -72,7 +72,6 @@ def pose_format_of(xml: XmlElement) -> PoseFormat:
     """
     Read how the numbers of a ``<pose>`` are to be read.
 
-    :return: the format.
     :raises PoseTextError: if ``rotation_format`` and ``degrees`` do not say it.
     """
     if not xml.keys():
@@ -104,9 +103,7 @@ def poses_from_texts(texts: Sequence[str], pose_format: PoseFormat) -> PosesFrom
     """
     Convert many texts.
 
-    :param texts: n poses as written; a blank text is the identity.
-    :param pose_format: the format of all of them.
-    :return: the poses.
+    :param texts: n poses as written, all in the same format; a blank text is the identity.
     """
     failures: list[tuple[int, str]] = []
     numbers = _numbers_from_texts(texts, len(pose_format.layout.split()))

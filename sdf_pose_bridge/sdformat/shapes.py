@@ -110,12 +110,7 @@ class CollisionMass(NamedTuple):
 
 
 def shape_of(xml: XmlElement) -> Shape | None:
-    """
-    Read the shape of an element.
-
-    :param xml: a ``<visual>`` or ``<collision>``.
-    :return: its shape; None without one.
-    """
+    """Return the shape of a ``<visual>`` or ``<collision>``; None without one."""
     geometry = first_child(xml, 'geometry')
     shapes = [] if geometry is None else [
         shape for tag in _DEFAULT_SIZES for shape in child_elements(geometry, tag)]

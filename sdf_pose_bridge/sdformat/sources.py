@@ -169,28 +169,16 @@ class Sources:
         return self._origins.get(xml, _PARSED)
 
     def path(self, xml: XmlElement) -> str:
-        """
-        Return the file of an element.
-
-        :return: the path of its file.
-        """
+        """Return the path of the file of an element."""
         return next(self.enclosing_paths(xml))
 
     def enclosing_paths(self, xml: XmlElement) -> Iterator[str]:
-        """
-        Iterate over the files that lead to an element, from its own to the outermost.
-
-        :return: the path of its file, of the file that includes that one, and so on.
-        """
+        """Iterate over the files that lead to an element, from its own to the outermost."""
         files = (self.origin(each).file for each in with_ancestors(xml))
         return (file for file in files if file is not None)
 
     def line(self, xml: XmlElement) -> int:
-        """
-        Return the line of an element.
-
-        :return: the line of the beginning of its start tag, from 1; 0 if it is not known.
-        """
+        """Return the line in which an element begins, from 1; 0 if it is not known."""
         origin = self._origins.get(xml, _PARSED)
         if origin.pose is not None:
             return origin.pose.line
@@ -198,9 +186,8 @@ class Sources:
 
     def place(self, xml: XmlElement) -> Place:
         """
-        Return where an element was written.
+        Return the file and the line of an element, and its path in the tree.
 
-        :return: its file, its line and its path in the tree.
         :raises LimitError: if very many places are asked for, each for an error or a warning.
         """
         parent = xml.getparent()
@@ -233,11 +220,7 @@ class Sources:
         return place
 
     def copy_of(self, xml: XmlElement) -> XmlElement:
-        """
-        Copy an element with all that it holds.
-
-        :return: the copy, in a tree of its own, written where the original was.
-        """
+        """Copy an element with all that it holds into a tree of its own, written where it was."""
         result = copy.deepcopy(xml)
         if xml.getroottree().getroot() in self.composed_trees:
             for old, new in zip(xml.iter(), result.iter(), strict=True):

@@ -79,13 +79,7 @@ def frame_of_attribute(xml: XmlElement, attribute: str) -> str:
 
 
 def choice_fault(text: str, choice: Choice) -> str:
-    """
-    Return what is wrong with a value that is one of a few texts.
-
-    :param text: the value, stripped.
-    :param choice: what it can be.
-    :return: which it must be one of; empty if it is right.
-    """
+    """Return which texts a stripped value must be one of; empty if it is one of them."""
     value = text.lower() if choice.ignores_case else text
     return '' if value in choice.texts else f'must be one of {", ".join(choice.texts)}'
 
@@ -109,7 +103,6 @@ def judged_value(text: str, definition: Definition) -> Judgment:
 
     :param text: the value. If the element is not required, the default replaces a blank one.
     :param definition: the definition of the element; not that of a pose.
-    :return: what is wrong with it.
     """
     value_type = definition.value_type
     if value_type is None or (
@@ -175,7 +168,6 @@ def is_of_type(text: str, value_type: ValueType) -> bool:
 
     :param text: the value, stripped and not empty.
     :param value_type: any type but ``POSE``; of a choice any text is one.
-    :return: True if it does.
     """
     return _is_of_type(text, numbers_from_text(text, value_type), value_type)
 
@@ -195,8 +187,6 @@ def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
     """
     Return the numbers of a value.
 
-    :param text: the value of an element.
-    :param value_type: its type.
     :return: as many as the type has, or three of a color; fewer if the text is not of the type.
     """
     if value_type.count == 0:

@@ -75,10 +75,8 @@ def version_numbers(text: str) -> tuple[int, ...]:
 
 def version_from_text(text: str, place: Place) -> Version:
     """
-    Read a version.
+    Read a version such as ``1.10``.
 
-    :param text: such as ``1.10``.
-    :return: the version.
     :raises ConversionError: if it is older than :data:`OLDEST`, or newer than :data:`NEWEST`.
     """
     numbers = version_numbers(text)
@@ -91,20 +89,12 @@ def version_from_text(text: str, place: Place) -> Version:
 
 
 def allows_scoped_names(version: tuple[int, int]) -> bool:
-    """
-    Return whether names in a file may hold ``::``.
-
-    :return: True below 1.8, where old libraries wrote such names.
-    """
+    """Return whether names in a file may hold ``::``, which old libraries wrote below 1.8."""
     return version < (1, 8)
 
 
 def renames_duplicates(version: tuple[int, int]) -> bool:
-    """
-    Return whether an element is renamed that shares its name with one of another kind.
-
-    :return: True below 1.7; in later files it is an error.
-    """
+    """Return whether an element with the name of another kind is renamed, as below 1.7."""
     return version < (1, 7)
 
 

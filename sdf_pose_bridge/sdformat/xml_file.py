@@ -86,10 +86,8 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
     """
     Return the content of a file.
 
-    :param path: path of the file.
     :param usage: counts its bytes.
     :param allows_pipe: whether it may be a pipe, such as that of the shell's ``<(command)``.
-    :return: its bytes.
     :raises FileReadError: if it is missing, unreadable or not a regular file;
         :class:`~sdf_pose_bridge.errors.PassingReadError` if reading it again may help.
     :raises LimitError: if it is too large.
@@ -130,7 +128,6 @@ def xml_from_file(path: str, usage: Usage, text: bytes | str | None = None) -> X
 
     :param usage: counts its bytes and its elements.
     :param text: what to read instead of the file.
-    :return: the tree.
     :raises FileReadError: as :func:`bytes_from_file` and :func:`xml_from_bytes`.
     :raises LimitError: if it is too large.
     """
@@ -149,10 +146,8 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
     """
     Parse XML.
 
-    :param text: the XML.
     :param path: the name to use in errors.
     :param encoding: ``utf-8`` if the text is that, whatever it declares; else None.
-    :return: the tree.
     :raises FileReadError: if it is not well-formed, apart from what libsdformat accepts, or not in
         an encoding that is supported.
     """

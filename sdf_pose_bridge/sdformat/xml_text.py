@@ -70,11 +70,9 @@ class DecodedText(NamedTuple):
 
 def text_from_bytes(content: bytes, path: str) -> DecodedText:
     """
-    Decode XML.
+    Decode XML, which is in the encoding that its first bytes show or that it declares.
 
-    :param content: XML, in the encoding that its first bytes show or that it declares.
     :param path: the name to use in errors.
-    :return: the text.
     :raises FileReadError: for an encoding that is not supported.
     """
     encoding = next((name for mark, name in _MARKS if content.startswith(mark)), '')

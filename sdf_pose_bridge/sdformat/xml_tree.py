@@ -28,21 +28,12 @@ _COMMENT: object = etree.Comment
 
 
 def child_elements(xml: XmlElement, *tags: str) -> Iterator[XmlElement]:
-    """
-    Iterate over the child elements.
-
-    :param tags: the tags to find; all if none is given.
-    :return: the children in file order, without comments.
-    """
+    """Iterate over the child elements with one of some tags, or all, without comments."""
     return xml.iterchildren(*tags) if tags else xml.iterchildren(etree.Element)
 
 
 def first_child(xml: XmlElement, tag: str) -> XmlElement | None:
-    """
-    Return the first child element with a tag.
-
-    :return: the child, or None.
-    """
+    """Return the first child element with a tag, or None."""
     # For the few children that most elements have, this is faster than iterchildren.
     for child in xml:
         if child.tag == tag:
@@ -51,11 +42,7 @@ def first_child(xml: XmlElement, tag: str) -> XmlElement | None:
 
 
 def written_tag(xml: XmlElement) -> str:
-    """
-    Return the tag of an element as it is written.
-
-    :return: the tag, with its prefix where it has one.
-    """
+    """Return the tag of an element as it is written, with its prefix where it has one."""
     tag = str(xml.tag)
     if not tag.startswith('{'):
         return tag
@@ -64,22 +51,14 @@ def written_tag(xml: XmlElement) -> str:
 
 
 def is_foreign(xml: XmlElement) -> bool:
-    """
-    Return whether an element is not SDFormat.
-
-    :return: True in a ``<plugin>`` and in an element with a prefix.
-    """
+    """Return whether an element is not SDFormat: in a ``<plugin>``, or with a prefix."""
     return any(
         element.tag == 'plugin' or ':' in written_tag(element)
         for element in with_ancestors(xml))
 
 
 def with_ancestors(xml: XmlElement) -> Iterator[XmlElement]:
-    """
-    Iterate over an element and all that hold it, from itself to the outermost.
-
-    :return: the elements.
-    """
+    """Iterate over an element and all that hold it, from itself to the outermost."""
     return chain([xml], xml.iterancestors())
 
 
@@ -116,41 +95,23 @@ def value_of(xml: XmlElement) -> str:
 
 
 def child_value(xml: XmlElement, tag: str, default: str = '') -> str:
-    """
-    Return the value of the first child element with a tag.
-
-    :param default: the value if there is no such child.
-    :return: as of :func:`value_of`.
-    """
+    """Return :func:`value_of` the first child element with a tag, or else the default."""
     child = first_child(xml, tag)
     return default if child is None else value_of(child)
 
 
 def attribute_of(xml: XmlElement, name: str) -> str:
-    """
-    Return the value of an attribute.
-
-    :return: its value, stripped; empty if there is none.
-    """
+    """Return the value of an attribute, stripped; empty if there is none."""
     value = xml.get(name)
     return '' if value is None else value.strip(WHITE_SPACE)
 
 
 def described(xml: XmlElement) -> str:
-    """
-    Return an element as one step of a path.
-
-    :return: such as ``link[@name="l"]``, or the tag alone where it has no name.
-    """
+    """Return an element as one step of a path, such as ``link[@name="l"]``."""
     return path_step(written_tag(xml), attribute_of(xml, 'name'))
 
 
 def path_step(tag: str, name: str) -> str:
-    """
-    Return one step of the path of an element.
-
-    :param name: the name; empty for none.
-    :return: such as ``link[@name="l"]``; a long name is shortened.
-    """
+    """Return one step of the path of an element, with its name, shortened, if it has one."""
     tag = shortened(tag)
     return f'{tag}[@name="{shortened(name)}"]' if name else tag

@@ -33,11 +33,9 @@ def element_by_id(
     """
     Find an element.
 
-    :param top: the included element.
-    :param element_id: names from the included element inwards.
+    :param element_id: names from the included element, ``top``, inwards.
     :param tag: its tag, as written; empty for any.
     :param count: is called with the number of children of each element that is searched.
-    :return: the element, or None.
     """
     start = longest = 0
     match: XmlElement | None = top
@@ -67,9 +65,6 @@ def hint_for_id(top: XmlElement, element_id: str, tag: str = '') -> str:
     """
     Return the end of a message about an id that was not found.
 
-    :param top: the included element.
-    :param element_id: the id.
-    :param tag: tag of the element that was looked for; empty for any.
     :return: a likely reason, or the nearest id that exists; else an empty string.
     """
     if len(element_id) > _LONGEST_ID_COMPARED:

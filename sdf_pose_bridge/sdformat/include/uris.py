@@ -56,7 +56,7 @@ class ResourceFinder(NamedTuple):
 
     def path_from_uri(self, uri: str, including_file: str) -> str | None:
         """
-        Find a file or directory.
+        Find a file or directory; return its path, or None.
 
         The order is: the search paths; an absolute path; the share directory of a package for
         ``package://``; the Fuel cache for ``https://``; the directory of the including file for a
@@ -64,7 +64,6 @@ class ResourceFinder(NamedTuple):
 
         :param uri: such as ``model://box``, ``package://pkg/models/box`` or ``box.sdf``.
         :param including_file: path of the file that holds the include.
-        :return: the path, or None.
         """
         # Unlike Path.exists, this returns False for a name that is too long.
         found = (
@@ -73,13 +72,7 @@ class ResourceFinder(NamedTuple):
         return next(found, None)
 
     def file_from_uri(self, uri: str, naming_file: str) -> str | None:
-        """
-        Find a file that is no directory, such as a mesh.
-
-        :param uri: as for :meth:`path_from_uri`.
-        :param naming_file: path of the file that holds the URI.
-        :return: the path, or None.
-        """
+        """Find a file that is no directory, such as a mesh, as by :meth:`path_from_uri`."""
         path = self.path_from_uri(uri, naming_file)
         return path if path is not None and os.path.isfile(path) else None  # noqa: PTH113
 
@@ -126,12 +119,7 @@ class ResourceFinder(NamedTuple):
         raise AddressError(msg)
 
     def reason_not_found(self, uri: str) -> str:
-        """
-        Return why a URI leads to nothing, and what to do about it.
-
-        :param uri: a URI for which :meth:`path_from_uri` has no path.
-        :return: the end of a sentence.
-        """
+        """Return why :meth:`path_from_uri` has no path for a URI, and what to do about it."""
         if uri.lower().startswith(('http://', 'https://')):
             return ('it is not in the cache of Gazebo Fuel; fetch it with: gz fuel download -u '
                     f'"{uri}"')
@@ -207,7 +195,6 @@ def resource_finder(
     :param resource_paths: directories to search first.
     :param environment: such as ``os.environ``: ``GZ_SIM_RESOURCE_PATH``, ``SDF_PATH``,
         ``AMENT_PREFIX_PATH``, ``GZ_FUEL_CACHE_PATH`` and ``HOME``.
-    :return: the finder.
     """
     def paths(variable: str) -> list[str]:
         return [path for path in environment.get(variable, '').split(os.pathsep) if path]
@@ -263,7 +250,6 @@ def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
     """
     Choose the file of the newest version that is supported.
 
-    :param directory: a model directory.
     :param usage: counts the bytes and elements of its manifest.
     :return: the file, which need not exist.
     :raises FileReadError: if there is no manifest, or it is not XML.

@@ -75,12 +75,11 @@ class _Base(NamedTuple):
 
 def sdf_from_urdf(root: XmlElement, sources: Sources, *, is_included: bool) -> XmlElement:
     """
-    Convert a file.
+    Convert a file; return its ``sdf`` element.
 
     :param root: the ``robot`` element; what ``<gazebo>`` elements hold is taken out of it.
     :param sources: has the lines of its elements, and takes those of the new ones.
     :param is_included: whether to convert as libsdformat does, and not to read as ROS does.
-    :return: the ``sdf`` element.
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
     """
     robot = robot_from_tree(root, sources)

@@ -129,10 +129,8 @@ class Settings(NamedTuple):
 
 def robot_from_tree(root: XmlElement, sources: Sources) -> Robot:
     """
-    Read a robot.
+    Read a robot from the ``robot`` element.
 
-    :param root: the ``robot`` element.
-    :return: the robot.
     :raises SdfError: if it is not valid; ``errors`` on it has all errors.
     """
     return _RobotReader(root, sources).robot()
@@ -308,10 +306,7 @@ def robot_with_different_names(robot: Robot, sources: Sources) -> Robot:
     Rename joints that have the name of a link, and a robot that has the name of either.
 
     Links keep their names, which robot_state_publisher gives to frames.
-
-    :param robot: the robot.
-    :param sources: takes a warning for each new name.
-    :return: the robot with the new names.
+    Each new name gives a warning.
     """
     used = {*robot.links, *robot.joint_names}
     names = {name: name for name in robot.joint_names}

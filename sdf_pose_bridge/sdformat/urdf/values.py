@@ -31,22 +31,16 @@ class NotFiniteError(ValueError):
 
 def is_true(xml: XmlElement) -> bool:
     """
-    Read an option in a ``<gazebo>`` element.
+    Return whether an option in a ``<gazebo>`` element is ``true``, ``yes`` or ``1`` in any case.
 
     :param xml: the option; its value is its attribute ``value`` or its text.
-    :return: True for ``true``, ``yes`` and ``1`` in any case.
     """
     value = xml.get('value', text_of(xml))
     return value.strip(WHITE_SPACE).lower() in ('true', 'yes', '1')
 
 
 def leading_numbers(text: str, count: int) -> Sequence[float]:
-    """
-    Return the numbers that the first words of a text begin with.
-
-    :param count: how many words are read.
-    :return: the numbers; none for a word that begins with none.
-    """
+    """Return the numbers that the first words of a text begin with, none for other words."""
     matches = map(_LEADING_NUMBER.match, text.split()[:count])
     return [float(number[0]) for number in matches if number]
 
@@ -107,21 +101,12 @@ def pose_from_xyz_rpy(
 
 
 def text_from_numbers(numbers: Sequence[float], digits: int = 16) -> str:
-    """
-    Write numbers.
-
-    :param digits: how many significant digits they have.
-    :return: the text.
-    """
+    """Write numbers, each with so many significant digits."""
     return ' '.join(f'{number:.{digits}g}' for number in numbers)
 
 
 def rpy_by_gz_math(pose: Pose) -> Sequence[float]:
-    """
-    Return the rotation of a pose as ``gz::math::Quaternion::Euler`` does.
-
-    :return: roll, pitch and yaw in radians.
-    """
+    """Return roll, pitch and yaw in radians as ``gz::math::Quaternion::Euler`` does."""
     _, _, _, x, y, z, w = pose
     sin_pitch = max(-1.0, min(1.0, 2.0 * (w * y - x * z)))
     if 1.0 - abs(sin_pitch) >= _GZ_MATH_GIMBAL_LOCK:
@@ -131,11 +116,7 @@ def rpy_by_gz_math(pose: Pose) -> Sequence[float]:
 
 
 def rpy_by_urdfdom(pose: Pose) -> Sequence[float]:
-    """
-    Return the rotation of a pose as ``urdf::Rotation::getRPY`` does.
-
-    :return: roll, pitch and yaw in radians.
-    """
+    """Return roll, pitch and yaw in radians as ``urdf::Rotation::getRPY`` does."""
     _, _, _, x, y, z, w = pose
     sin_pitch = 2.0 * (w * y - x * z)
     if 1.0 - abs(sin_pitch) > _URDFDOM_GIMBAL_LOCK:
