@@ -15,7 +15,6 @@ of TFMessage, TransformStamped, PoseStamped and JointState.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
 from itertools import pairwise
 import struct
 from typing import NamedTuple
@@ -46,34 +45,17 @@ _START = 4
 """Where the fields begin in a message, and what alignment is counted from."""
 
 
-class StampedMessages:
-    """
-    Serialized messages in one buffer.
+class StampedMessages(NamedTuple):
+    """Serialized messages in one buffer."""
 
-    :param buffer: the buffer, with room for the stamps and poses; its size is a multiple of 8.
-    :param stamps: offset of each stamp in the buffer.
-    :param numbers: offset of the seven numbers behind each stamp.
-    :param bounds: offsets of the first byte of each message, and of the one behind its last.
-    """
-
-    def __init__(
-        self, buffer: NDArray[np.uint8], stamps: NDArray[np.int64],
-        numbers: NDArray[np.int64], bounds: Sequence[tuple[int, int]],
-    ) -> None:
-        self._buffer = buffer
-        self._integers = buffer.view('<i4')
-        self._floats = buffer.view('<f8')
-        self._stamps = stamps
-        self._numbers = numbers
-        self._bounds = bounds
-
-    @cached_property
-    def _places_of_stamps(self) -> NDArray[np.int64]:
-        return _places(self._stamps, 4, 2)
-
-    @cached_property
-    def _places_of_numbers(self) -> NDArray[np.int64]:
-        return _places(self._numbers, 8, 7)
+    buffer: NDArray[np.uint8]
+    """The buffer, with room for the stamps and poses; its size is a multiple of 8."""
+    stamps: NDArray[np.int64]
+    """Indices of the two integers of each stamp, in a buffer of integers; shape (n, 2)."""
+    numbers: NDArray[np.int64]
+    """Indices of the seven numbers behind each stamp, in a buffer of numbers; shape (n, 7)."""
+    bounds: Sequence[tuple[int, int]]
+    """Offsets of the first byte of each message, and of the one behind its last."""
 
     def with_stamp(self, sec: int, nanosec: int) -> list[bytes]:
         """
@@ -81,9 +63,9 @@ class StampedMessages:
 
         :param nanosec: nanoseconds of the stamp, from 0 to 999,999,999.
         """
-        self._integers[self._places_of_stamps] = sec, nanosec
-        data = self._buffer.tobytes()
-        return [data[begin:end] for begin, end in self._bounds]
+        self.buffer.view('<i4')[self.stamps] = sec, nanosec
+        data = self.buffer.tobytes()
+        return [data[begin:end] for begin, end in self.bounds]
 
     def set_poses(self, poses: PoseArray) -> None:
         """
@@ -91,7 +73,7 @@ class StampedMessages:
 
         :param poses: shape (n, 7), in the order of the messages, in metres, quaternion x y z w.
         """
-        self._floats[self._places_of_numbers] = poses
+        self.buffer.view('<f8')[self.numbers] = poses
 
 
 def tf_message(ids: Sequence[Sequence[str]], transforms: PoseArray) -> StampedMessages:
@@ -125,7 +107,7 @@ def stamped_messages(ids: Sequence[Sequence[str]], poses: PoseArray) -> StampedM
     :raises ValueError: if a frame id contains a zero character.
     """
     buffer, stamps, numbers, ends = _records(ids, poses, np.full(len(poses), _HEADER), 0)
-    begins = stamps - 4
+    begins = 4 * stamps[:, 0] - 4
     buffer[begins + 1] = 1
     return StampedMessages(
         buffer, stamps, numbers, list(zip(begins.tolist(), ends.tolist(), strict=True)))
@@ -142,8 +124,9 @@ def _records(
     :param room: bytes to leave free at the beginning of each record.
     :param start: offset of the first record in the buffer, a multiple of 8. All others follow at
         multiples of 8, since each one ends with the numbers.
-    :return: a buffer with the records, which have zeros for stamps; and the offsets of the stamp
-        and the numbers of each record, and that behind its last byte.
+    :return: a buffer with the records, which have zeros for stamps; the indices of the stamp and
+        of the numbers of each record, as :class:`StampedMessages` takes them; and the offset
+        behind its last byte.
     """
     # Offsets in a record at first, one for each record.
     offsets = room + _STAMP
@@ -173,14 +156,10 @@ def _records(
             begin, end = bounds[[first, last]].tolist()
             targets = np.arange(begin, end) + np.repeat(moves[first:last], lengths[first:last])
             buffer[targets] = data[begin:end]
-    numbers = begins + offsets
-    buffer.view('<f8')[_places(numbers, 8, 7)] = poses
-    return buffer, begins + room, numbers, ends
-
-
-def _places(offsets: NDArray[np.int64], size: int, count: int) -> NDArray[np.int64]:
-    """Return where so many values of a size are that follow one another from each offset on."""
-    return (offsets // size)[:, np.newaxis] + np.arange(count)
+    stamps = (begins + room)[:, np.newaxis] // 4 + np.arange(2)
+    numbers = (begins + offsets)[:, np.newaxis] // 8 + np.arange(7)
+    buffer.view('<f8')[numbers] = poses
+    return buffer, stamps, numbers, ends
 
 
 class JointStateBytes(NamedTuple):

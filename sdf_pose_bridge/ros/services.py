@@ -100,9 +100,7 @@ def answer_to_convert_poses(
         response.message = str(error)
         return response
     # The message would check every element of anything but an array.array.
-    values = array.array('d')
-    values.frombytes(np.ascontiguousarray(converted, dtype=np.float64).data.cast('B'))
-    response.values = values
+    response.values = array.array('d', converted.tobytes())
     response.success = True
     return response
 
