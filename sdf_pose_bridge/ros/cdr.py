@@ -167,33 +167,18 @@ class JointStateBytes(NamedTuple):
 
     stamp: tuple[int, int]
     """Seconds and nanoseconds."""
-    names: bytes
-    """The serialized names. The bytes that align them may differ from message to message."""
-    name_count: int
+    names: tuple[str, ...]
     positions: NDArray[np.float64]
-    order: str
-    """The order of bytes, ``<`` or ``>``."""
-
-    def name_list(self) -> list[str]:
-        """Return the names."""
-        found = []
-        place = 4
-        for _ in range(self.name_count):
-            (length,) = struct.unpack_from(f'{self.order}I', self.names, place)
-            # The length counts a zero at the end.
-            name = self.names[place + 4:place + 3 + length]
-            found.append(name.decode(errors='replace'))
-            place = _aligned(place + 4 + length, 4)
-        return found
+    serialized_names: bytes
+    """The bytes that align the names may differ from message to message."""
 
 
-def joint_state_from_bytes(data: bytes, known_names: bytes = b'') -> JointStateBytes:
+def joint_state_from_bytes(data: bytes, before: JointStateBytes | None = None) -> JointStateBytes:
     """
     Read a message.
 
     :param data: the serialized message.
-    :param known_names: ``names`` of a message before; if the names are the same, they need not be
-        walked through.
+    :param before: a message before; if the names are the same, they need not be read again.
     :raises ValueError: if it is not a whole message in plain CDR, or if it is too large.
     """
     if len(data) > MOST_BYTES:
@@ -207,12 +192,18 @@ def joint_state_from_bytes(data: bytes, known_names: bytes = b'') -> JointStateB
         sec, nanosec, length = struct.unpack_from(f'{order}iII', data, _START)
         begin = _aligned(_START + 12 + length, 4)
         (name_count,) = struct.unpack_from(f'{order}I', data, begin)
-        end = begin + len(known_names)
-        if not known_names or not data.startswith(known_names, begin):
+        if before is not None and data.startswith(before.serialized_names, begin):
+            names, end = before.names, begin + len(before.serialized_names)
+        else:
             end = begin + 4
+            read = []
             for _ in range(name_count):
-                (length,) = struct.unpack_from(f'{order}I', data, _aligned(end, 4))
-                end = _aligned(end, 4) + 4 + length
+                place = _aligned(end, 4)
+                (length,) = struct.unpack_from(f'{order}I', data, place)
+                end = place + 4 + length
+                # The length counts a zero at the end.
+                read.append(data[place + 4:end - 1].decode(errors='replace'))
+            names = tuple(read)
         (count,) = struct.unpack_from(f'{order}I', data, _aligned(end, 4))
         # Numbers are aligned to eight bytes, counted from where the fields begin.
         numbers = _aligned(_aligned(end, 4) + 4 - _START, 8) + _START
@@ -220,7 +211,7 @@ def joint_state_from_bytes(data: bytes, known_names: bytes = b'') -> JointStateB
     except (struct.error, ValueError) as error:
         msg = f'it ends too early: {error}'
         raise ValueError(msg) from error
-    return JointStateBytes((sec, nanosec), data[begin:end], name_count, positions, order)
+    return JointStateBytes((sec, nanosec), names, positions, data[begin:end])
 
 
 def _aligned(offset: Offset, size: int) -> Offset:

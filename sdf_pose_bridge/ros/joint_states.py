@@ -51,8 +51,6 @@ _MOST_WAITING = 1000
 class _Plan:
     """What messages with the same names change."""
 
-    names: bytes
-    """The serialized names in the last message."""
     selection: Selection
     """The degrees of freedom that the names mean."""
     rows: NDArray[np.intp]
@@ -79,7 +77,7 @@ class JointStates:
         self._logger = node.get_logger()
         self._frames = frames
         self._plans: dict[tuple[str, ...], _Plan] = {}
-        self._last_plan: _Plan | None = None
+        self._last_message: JointStateBytes | None = None
         self._waiting_rows: set[int] = set()
         self._topics_due = 0.0
         self._are_topics_behind = False
@@ -117,7 +115,6 @@ class JointStates:
         """Move other frames from now on."""
         self._frames = frames
         self._plans.clear()
-        self._last_plan = None
         self._waiting_rows.clear()
 
     def publish_waiting(self) -> None:
@@ -147,18 +144,17 @@ class JointStates:
         :param data: a serialized message.
         """
         try:
-            message = joint_state_from_bytes(
-                data, b'' if self._last_plan is None else self._last_plan.names)
+            message = self._last_message = joint_state_from_bytes(data, self._last_message)
         except ValueError as error:
             self._logger.warning(
                 f'a message on {self._subscription.topic_name} cannot be read: {error}',
                 throttle_duration_sec=_WARNING_PERIOD_S)
             return
         values, stamp = message.positions, message.stamp
-        if len(values) != message.name_count:
+        if len(values) != len(message.names):
             self._logger.warning(
-                f'a message on {self._subscription.topic_name} has {message.name_count} names and '
-                f'{len(values)} positions; it is ignored, as each name must have a position',
+                f'a message on {self._subscription.topic_name} has {len(message.names)} names '
+                f'and {len(values)} positions; it is ignored, as each name must have a position',
                 throttle_duration_sec=_WARNING_PERIOD_S)
             return
         if stamp[0] < 0 or stamp[1] >= _NANOSECONDS:
@@ -167,9 +163,7 @@ class JointStates:
                 f'nanosec={stamp[1]}; it is ignored, as sec must not be negative and nanosec must '
                 f'be less than {_NANOSECONDS}', throttle_duration_sec=_WARNING_PERIOD_S)
             return
-        plan = self._last_plan
-        if plan is None or plan.names != message.names:
-            plan = self._last_plan = self._plan_of_message(message)
+        plan = self._plans.get(message.names) or self._new_plan(message)
         invalid = self._frames.positions.update(plan.selection, values)
         if invalid:
             self._logger.warning(
@@ -191,13 +185,9 @@ class JointStates:
             self._frames.publish_tf(plan.rows, plan.message, stamp)
         self._publish_topics_if_due()
 
-    def _plan_of_message(self, message: JointStateBytes) -> _Plan:
-        names = tuple(message.name_list())
-        if names in self._plans:
-            self._plans[names].names = message.names
-            return self._plans[names]
+    def _new_plan(self, message: JointStateBytes) -> _Plan:
         positions = self._frames.positions
-        selection = positions.selection(names)
+        selection = positions.selection(message.names)
         if selection.unknown:
             self._logger.warning(
                 f'{self._subscription.topic_name} has {names_in_line(selection.unknown)}, not the '
@@ -212,8 +202,8 @@ class JointStates:
         if len(selection.rows):
             unknown = np.flatnonzero(~positions.is_known).tolist()
             rows = self._frames.frames.rows_moved_by([*selection.changed, *unknown])
-        plan = self._plans[names] = _Plan(
-            message.names, selection, rows, self._frames.tf_message(rows))
+        plan = _Plan(selection, rows, self._frames.tf_message(rows))
+        self._plans[message.names] = plan
         return plan
 
     def _publish_initially(self) -> None:
