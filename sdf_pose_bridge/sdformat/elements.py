@@ -67,7 +67,7 @@ class SensorDetails(NamedTuple):
     """The id of the optical frame, where the file sets it; else empty."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Elements:
     """
     All elements with a pose, each after its parent element, in the order of the file.
