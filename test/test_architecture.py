@@ -15,7 +15,6 @@ MODULES = sorted(
 PAGES = [ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').glob('*.md'))]
 
 TESTED_AS_A_WHOLE = {
-    'cli/viewer/server.py': ['integration/test_view_page.py'],
     'ros/process.py': ['integration/test_bridge_process.py'],
 }
 """Modules that run only in a whole program, and the test modules that run it."""

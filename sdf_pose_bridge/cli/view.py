@@ -5,17 +5,22 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 from functools import partial
 import importlib
 import os
+from pathlib import Path
+import shutil
 import signal
+import subprocess
 import sys
+import tempfile
 import time
 from typing import Any
 
 from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import add_frame_arguments
-from sdf_pose_bridge.cli.loading import load_file
+from sdf_pose_bridge.cli.loading import scene_from_file
 from sdf_pose_bridge.cli.loading import scene_of
 from sdf_pose_bridge.cli.loading import tf_options_from_arguments
 from sdf_pose_bridge.cli.printing import add_output_argument
@@ -31,8 +36,18 @@ from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 _FORMATS = ('.html', '.png')
 _PORT = 8080
 _PERIOD_S = 0.05
-_ROOM = 'sdf_pose_bridge.cli.viewer'
 _NEEDS_VISER = "this needs viser, trimesh and pycollada: pip install 'sdf_pose_bridge[view]'"
+
+_BROWSERS = ('chromium', 'chromium-browser', 'google-chrome', 'chrome')
+# WebGL in software where there is no graphics card; no requests but those of the page.
+_BROWSER_OPTIONS = (
+    '--headless', '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader', '--no-first-run', '--disable-background-networking',
+    '--disable-component-update', '--disable-sync', '--disable-quic',
+    # The picture is drawn when the page has had nothing to do for this long, in milliseconds.
+    '--window-size=1600,1000', '--hide-scrollbars', '--virtual-time-budget=10000')
+_ONLY_THE_SCENE = '<style>body :not(canvas, :has(canvas)) {visibility: hidden}</style>'
+_MOST_SECONDS = 300.0
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -66,35 +81,34 @@ def run(options: argparse.Namespace) -> int:
     """
     try:
         # Other commands need none of this.
-        servers, pages, meshes = (
-            importlib.import_module(f'{_ROOM}.{name}') for name in ('server', 'page', 'meshes'))
+        viewer = importlib.import_module('sdf_pose_bridge.cli.viewer.page')
     except ImportError:
         raise CommandError(_NEEDS_VISER) from None
     # Else a browser that draws a picture would outlive this process.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    path = options.files[0]
-    watcher, read_since_ns = FileWatcher(), time.time_ns()
+    path, read_since_ns = options.files[0], time.time_ns()
     scene = scene_of(path, options, shapes=True)
-    watcher.watch(scene.files, read_since_ns)
-    reader = meshes.MeshReader(resource_finder(options.resource_paths, os.environ))
-    server = servers.server_for_this_machine(0 if options.output else options.port)
-    page = pages.Page(
-        server, tf_options_from_arguments(options), units_from_arguments(options), reader,
+    page = viewer.Page(
+        0 if options.output else options.port, tf_options_from_arguments(options),
+        units_from_arguments(options), resource_finder(options.resource_paths, os.environ),
         partial(set_pose, options=options) if options.edit else None)
     try:
         for line in page.show(scene):
             print(f'sdf_pose view: {line}', file=sys.stderr)
         if options.output is None:
-            _open(f'http://{servers.ADDRESS}:{server.get_port()}')
+            _open(page.address)
+            watcher = FileWatcher()
+            watcher.watch(scene.files, read_since_ns)
             _follow(page, watcher, options)
         else:
-            servers.write_page(server, path, options.output)
+            html = page.html(path)
+            options.output.write_bytes(
+                _picture(html) if options.output.suffix.lower() == '.png' else html.encode())
     except OSError as error:
         msg = f'cannot write {options.output}: {error}'
         raise CommandError(msg) from error
     finally:
-        reader.close()
-        server.stop()
+        page.close()
     return 0
 
 
@@ -111,16 +125,36 @@ def _follow(page: Any, watcher: FileWatcher, options: argparse.Namespace) -> Non
     """Show the file again whenever it, or a file that it includes, changes; never returns."""
     while True:
         page.act(_PERIOD_S)
-        if not watcher.has_changed():
-            continue
-        read_since_ns = time.time_ns()
-        loaded = load_file(options.files[0], options, shapes=True)
-        errors = loaded.errors
-        if loaded.scene is not None:
-            watcher.watch(loaded.scene.files, read_since_ns)
+        if watcher.has_changed():
+            read_since_ns = time.time_ns()
             try:
-                page.show(loaded.scene)
+                scene = scene_from_file(options.files[0], options, shapes=True)
+                watcher.watch(scene.files, read_since_ns)
+                page.show(scene)
             except SdfError as error:
-                errors = error.errors
-        if errors:
-            page.show_errors(list(map(str, errors)))
+                page.show_errors(map(str, error.errors))
+
+
+def _picture(page: str) -> bytes:
+    """
+    Draw a page by a browser.
+
+    :raises OSError: if there is none, or it does not draw the page.
+    """
+    browser = next(filter(None, map(shutil.which, _BROWSERS)), None)
+    if browser is None:
+        msg = 'a picture needs Chrome or Chromium; a file that ends with .html does not'
+        raise FileNotFoundError(msg)
+    # The last processes of the browser may still write while the first has ended.
+    with tempfile.TemporaryDirectory(
+            prefix='sdf_pose_view_', ignore_cleanup_errors=True) as folder:
+        source, picture = Path(folder, 'page.html'), Path(folder, 'picture.png')
+        source.write_text(page + _ONLY_THE_SCENE, encoding='utf-8')
+        command = [browser, *_BROWSER_OPTIONS, f'--user-data-dir={folder}',
+                   f'--screenshot={picture}', source.as_uri()]
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            subprocess.run(command, capture_output=True, check=False, timeout=_MOST_SECONDS)
+        if picture.exists():
+            return picture.read_bytes()
+    msg = f'{browser} did not draw the page'
+    raise ChildProcessError(msg)

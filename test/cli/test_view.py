@@ -22,7 +22,7 @@ def viser():
 
 
 def test_missing_library_is_an_error_of_one_line(run_main, monkeypatch):
-    monkeypatch.delitem(sys.modules, 'sdf_pose_bridge.cli.viewer.server', raising=False)
+    monkeypatch.delitem(sys.modules, 'sdf_pose_bridge.cli.viewer.page', raising=False)
     monkeypatch.setitem(sys.modules, 'viser', None)
     done = run_main('view', 'good.sdf', '-o', 'page.html')
     assert (done.returncode, done.stdout) == (1, '')

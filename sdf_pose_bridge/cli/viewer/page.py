@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The controls of the page, and what its sliders, buttons and clicks do."""
+"""The page: its server, its controls, and what its sliders, buttons and clicks do."""
 
 from __future__ import annotations
 
@@ -10,13 +10,17 @@ from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
 from itertools import islice
+import logging
 import math
 from queue import Empty
 from queue import SimpleQueue
 from typing import Any
+from urllib.parse import urlsplit
 
 import numpy as np
+import rich
 import viser
+from viser.infra import WebsockClientConnection
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
 from sdf_pose_bridge.cli.printing import Units
@@ -32,6 +36,7 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.joint_positions import JointPositions
@@ -45,6 +50,7 @@ from sdf_pose_bridge.tf.tree import TfOptions
 MOST_ROWS = 300
 """How many rows of the tree of frames are in the page at once; a search finds the others."""
 
+_ADDRESS = '127.0.0.1'
 _LARGEST_RANGE = 1000.0
 """A joint with a wider range counts as one without limits, which the page moves by half a turn or
 half a metre to either side."""
@@ -57,34 +63,78 @@ _HOW_TO_SELECT = '<div style="margin:0 1em;font-size:0.8em">Click one above or i
 _ERROR_STYLE = 'color:#c92a2a;white-space:pre-wrap;overflow-wrap:anywhere;margin:0 1em;'
 
 
+def server_for_this_machine(port: int) -> viser.ViserServer:
+    """
+    Start a server that other machines, and the pages of other servers, cannot reach.
+
+    :param port: its port, or the next one that is free; 0 for any.
+    """
+    rich.get_console().quiet = True
+    # Else each connection that a browser opens in advance, and closes, is an error with a trace.
+    logging.getLogger('websockets').setLevel(logging.CRITICAL)
+    server = viser.ViserServer(_ADDRESS, port, verbose=False)
+    sockets = server._websock_server  # noqa: SLF001  # viser itself accepts every page
+
+    async def refuse_other_pages(connection: WebsockClientConnection) -> None:
+        socket = sockets._live_connections[connection.client_id]  # noqa: SLF001
+        origin = None if socket.request is None else socket.request.headers.get('Origin')
+        if origin is not None and urlsplit(origin).hostname not in (_ADDRESS, 'localhost'):
+            await socket.close(1008, 'only pages of this server may connect')
+
+    sockets.on_client_connect(refuse_other_pages)
+    sockets.disconnect_all_clients()
+    server.gui.configure_theme(show_logo=False, show_share_button=False)
+    # The picture of surroundings that viser lights a scene with makes every color pale.
+    server.scene.configure_environment_map(None)
+    server.scene.configure_default_lights(cast_shadow=False)
+    return server
+
+
 class Page:
     """
     The page of a file; one thread does what browsers ask for.
 
-    :param server: the server that shows it.
+    :param port: its port, or the next one that is free; 0 for any.
     :param options: which elements are frames, and how they are named.
     :param units: the units of poses and sliders.
-    :param meshes: reads the meshes.
+    :param finder: finds the meshes.
     :param set_pose: puts a pose into the file, as ``sdf_pose_bridge.cli.set.set_pose`` does, of
         which it has the arguments but for the options; None if frames cannot be dragged.
     """
 
     def __init__(
-        self, server: viser.ViserServer, options: TfOptions, units: Units, meshes: MeshReader,
+        self, port: int, options: TfOptions, units: Units, finder: ResourceFinder,
         set_pose: Callable[..., object] | None = None,
     ) -> None:
-        self._server, self._options, self._units = server, options, units
-        self._set_pose = set_pose
+        self._server = server_for_this_machine(port)
+        self._options, self._units, self._set_pose = options, units, set_pose
+        self._meshes = MeshReader(finder)
         self._actions: SimpleQueue[Callable[[], object]] = SimpleQueue()
         self._drawing = Drawing(
-            server, meshes, lambda frame: self._actions.put(partial(self._select, frame)))
+            self._server, self._meshes,
+            lambda frame: self._actions.put(partial(self._select, frame)))
         self._positions: dict[str, float] = {}
         self._selected = ''
         self._dragged: Pose | None = None
         self._hidden = {'collisions'}
         self._listed: object = None
-        server.on_client_connect(
+        self._server.on_client_connect(
             lambda client: self._when(client.camera.on_update, self._drawing.look_from))
+
+    @property
+    def address(self) -> str:
+        """The address of the page on this machine."""
+        return f'http://{_ADDRESS}:{self._server.get_port()}'
+
+    def html(self, title: str) -> str:
+        """Return the scene, without controls, as a page that needs no network."""
+        page: str = self._server.get_scene_serializer().as_html()
+        return page.replace('<title>Viser</title>', f'<title>{escaped(title)}</title>')
+
+    def close(self) -> None:
+        """End the server, and the process that reads meshes."""
+        self._meshes.close()
+        self._server.stop()
 
     def show(self, scene: Scene) -> list[str]:
         """

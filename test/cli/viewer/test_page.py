@@ -7,23 +7,13 @@ import pytest
 pytest.importorskip('viser', reason='needs viser')
 from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.cli.viewer.page import Page
-from sdf_pose_bridge.cli.viewer.server import server_for_this_machine
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf.tree import TfOptions
 
 TEXT = """<sdf version="1.11"><model name="m"><link name="l"/>
   <frame name="free"><pose>0 0 1 0 0 0</pose></frame><frame name="fixed"/></model></sdf>"""
-
-
-@pytest.fixture
-def server():
-    """A server on a free port."""
-    of_page = server_for_this_machine(0)
-    yield of_page
-    of_page.stop()
 
 
 def put(scene, element, pose, measured, *, dry_run):
@@ -33,9 +23,11 @@ def put(scene, element, pose, measured, *, dry_run):
 
 
 @pytest.fixture
-def page(server):
+def page():
     """A page, the frames of which can be dragged."""
-    return Page(server, TfOptions(), Units(False, False), MeshReader(resource_finder([], {})), put)
+    shown = Page(0, TfOptions(), Units(False, False), resource_finder([], {}), put)
+    yield shown
+    shown.close()
 
 
 def test_page_says_what_it_does_not_draw(page, tmp_path):
@@ -46,29 +38,29 @@ def test_page_says_what_it_does_not_draw(page, tmp_path):
     assert '&lt;b&gt;&quot;: it is not found' in page._reasons.content
 
 
-def test_gizmo_is_there_for_frames_that_can_be_placed_only(page, server, tmp_path):
+def test_gizmo_is_there_for_frames_that_can_be_placed_only(page, tmp_path):
     (tmp_path / 'm.sdf').write_text(TEXT)
     assert page.show(load(tmp_path / 'm.sdf', shapes=True)) == []
     frames = page._tree.frame_ids
     for name, has_gizmo in (('free', True), ('fixed', False), ('free', True)):
         page._select(frames.index(name))
-        assert server.scene.get_handle_by_name('/gizmo').visible is has_gizmo
+        assert page._server.scene.get_handle_by_name('/gizmo').visible is has_gizmo
 
 
-def test_what_is_switched_off_is_not_drawn(page, server, tmp_path):
+def test_what_is_switched_off_is_not_drawn(page, tmp_path):
     box = '<visual name="v"><geometry><box/></geometry></visual>'
     (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{box}</link>'))
     page.show(load(tmp_path / 'm.sdf', shapes=True))
-    name = server.scene.get_handle_by_name('/names/0')
+    name = page._server.scene.get_handle_by_name('/names/0')
     assert name.visible
-    assert server.scene.get_handle_by_name('/visuals/0') is not None
+    assert page._server.scene.get_handle_by_name('/visuals/0') is not None
     for switch in page._server.gui._gui_input_handle_from_uuid.values():
         if switch.value is True:
             switch.value = False
     while not page._actions.empty() or {'visuals', 'names'} - page._hidden:
         page.act(0.1)
     assert not name.visible
-    assert server.scene.get_handle_by_name('/visuals/0') is None
+    assert page._server.scene.get_handle_by_name('/visuals/0') is None
 
 
 def test_page_says_so_when_collisions_are_switched_on(page, tmp_path):
