@@ -14,9 +14,14 @@ from collections.abc import Mapping
 import math
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import LinkInertiaError
+from sdf_pose_bridge.geometry.rotations import Floats
+from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import boolean_from_text
@@ -45,6 +50,8 @@ _DEFAULT_SIZES: Mapping[str, Mapping[str, tuple[float, ...]]] = {
 
 DEFAULT_DENSITY_KG_M3 = 1000.0
 """Density of a collision where neither it nor the inertial has one: that of water."""
+
+_SEGMENTS_OF_CONE = 24
 
 
 class Shape(NamedTuple):
@@ -233,3 +240,40 @@ def _volume(shape: Shape) -> tuple[float, float]:
     if shape.type == 'cone':
         return disc * length / 3.0, -0.25 * length
     return disc * length, 0.0
+
+
+def triangles_from_shape(shape: Shape) -> tuple[Floats, NDArray[np.int64]]:
+    """
+    Make the surface of a cone or a plane; libraries for drawing do not have them as SDFormat does.
+
+    :param shape: the shape, which has an extent.
+    :return: points in the frame of the shape, shape (n, 3), x y z in metres; and for each triangle
+        the indices of its corners, shape (m, 3), counterclockwise from outside.
+    """
+    first_m, second_m = shape.sizes_m
+    if shape.type == 'cone':
+        return _cone(first_m, second_m)
+    return _plane(first_m, second_m, shape.normal)
+
+
+def _cone(radius: float, length: float) -> tuple[Floats, NDArray[np.int64]]:
+    angles = np.linspace(0.0, 2.0 * np.pi, _SEGMENTS_OF_CONE, endpoint=False)
+    ends = np.array([(0.0, 0.0, 0.5 * length), (0.0, 0.0, -0.5 * length)])
+    circle = ends[1] + radius * np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
+    first = np.arange(len(circle))
+    second, top, middle = np.roll(first, -1), 0 * first + len(circle), 0 * first + len(circle) + 1
+    return np.concatenate([circle, ends]), np.concatenate([
+        np.stack([first, second, top], axis=1), np.stack([second, first, middle], axis=1)])
+
+
+def _plane(
+    x: float, y: float, normal: tuple[float, ...],
+) -> tuple[Floats, NDArray[np.int64]]:
+    """Make a rectangle whose z is rotated to a normal by the shortest way, as libsdformat does."""
+    corners = 0.5 * np.array([(-x, -y, 0.0), (x, -y, 0.0), (x, y, 0.0), (-x, y, 0.0)])
+    nx, ny, nz = np.array(normal) / np.linalg.norm(normal)
+    # Half a turn has no shortest way.
+    rotation = (1.0, 0.0, 0.0, 0.0) if nz < -1.0 + 1e-9 else (-ny, nx, 0.0, 1.0 + nz)
+    quat_xyzw = np.array(rotation) / np.linalg.norm(rotation)
+    points = corners @ np.array(matrix_from_quaternion(quat_xyzw)).T
+    return points, np.array([(0, 1, 2), (0, 2, 3)])

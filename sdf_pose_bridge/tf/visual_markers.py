@@ -12,14 +12,14 @@ import numpy as np
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_product
+from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.scene.triangles import Points
-from sdf_pose_bridge.scene.triangles import triangles_from_shape
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.sdformat.shapes import Shape
+from sdf_pose_bridge.sdformat.shapes import triangles_from_shape
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import elements_in_model
 from sdf_pose_bridge.tf.tree import TfTree
@@ -44,7 +44,7 @@ class Form(NamedTuple):
     """Along x, y and z: metres, but factors for a mesh and triangles."""
     z_m: float = 0.0
     """Where its center is on the z axis of the visual."""
-    points: Points = _NO_POINTS
+    points: Floats = _NO_POINTS
     """Shape (3 n, 3): the corners of n triangles, one after the other; empty for others."""
     mesh_resource: str = ''
     """The URI of a mesh; empty for others."""
@@ -131,8 +131,8 @@ def _forms_from_shape(
     if shape.type == 'ellipsoid':
         return (Form('SPHERE', tuple(2.0 * radius_m for radius_m in sizes_m)),)
     if shape.type in ('cone', 'plane'):
-        triangles = triangles_from_shape(shape)
-        return (Form('TRIANGLE_LIST', points=triangles.points[triangles.faces.reshape(-1)]),)
+        points, faces = triangles_from_shape(shape)
+        return (Form('TRIANGLE_LIST', points=points[faces.reshape(-1)]),)
     # The other shapes are round. A capsule that is not longer than its ends is a sphere.
     diameter_m, length_m = 2.0 * sizes_m[0], max((*sizes_m, 0.0)[1], 0.0)
     sphere = Form('SPHERE', (diameter_m, diameter_m, diameter_m))

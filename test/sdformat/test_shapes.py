@@ -1,9 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Shapes of visuals and collisions, and the centers of mass of automatic inertials."""
+"""Shapes of visuals and collisions, surfaces, and the centers of mass of automatic inertials."""
 
 import math
 
+import numpy as np
 import pytest
 from sdf_texts import codes_of
 from sdf_texts import link_with
@@ -11,6 +12,7 @@ from sdf_texts import model_file
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.shapes import Shape
+from sdf_pose_bridge.sdformat.shapes import triangles_from_shape
 
 BOX = '<geometry><box><size>1 2 3</size></box></geometry>'
 
@@ -280,3 +282,36 @@ def test_inertial_that_is_not_automatic_has_its_pose():
     assert center_of(
         '<inertial auto="false"><pose>3 0 0 0 0 0</pose></inertial>'
         + collision('c', 1, UNIT_BOX)).x == 3.0
+
+
+# Surfaces of cones and planes
+
+def surface(kind, *sizes_m, normal=(0.0, 0.0, 1.0)):
+    shape = Shape(kind, sizes_m, normal, '', '', (1.0, 1.0, 1.0), None)
+    return triangles_from_shape(shape)
+
+
+def volume_of(points, faces):
+    """Return the volume inside; it is positive if all triangles look outwards."""
+    first, second, third = np.moveaxis(points[faces], 1, 0)
+    return np.einsum('ij,ij->', first, np.cross(second, third)) / 6.0
+
+
+def test_surface_encloses_a_cone():
+    points, faces = surface('cone', 1.0, 4.0)
+    assert points.min(axis=0) == pytest.approx((-1, -1, -2))
+    assert points.max(axis=0) == pytest.approx((1, 1, 2))
+    assert volume_of(points, faces) == pytest.approx(4 / 3 * math.pi, rel=0.04)
+
+
+def test_cone_ends_above():
+    points, _ = surface('cone', 1.0, 4.0)
+    assert points[points[:, 2] > 1.0, :2] == pytest.approx(0.0)
+
+
+@pytest.mark.parametrize('normal', [(0, 0, 1), (0, 0, -2), (1, 0, 0), (1, -2, 3)])
+def test_plane_has_its_normal(normal):
+    points, faces = surface('plane', 2.0, 4.0, normal=normal)
+    first, second, third = np.moveaxis(points[faces], 1, 0)
+    areas = 0.5 * np.cross(second - first, third - first)
+    assert areas.sum(axis=0) == pytest.approx(8.0 * np.array(normal) / np.linalg.norm(normal))

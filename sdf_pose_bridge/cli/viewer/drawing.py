@@ -21,11 +21,11 @@ from sdf_pose_bridge.cli.viewer.meshes import MeshPart
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.scene.triangles import Points
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.tf.parents import NO_PARENT
@@ -63,7 +63,7 @@ class Surface(NamedTuple):
     part: MeshPart
     elements: list[int]
     """The visual or collision of each copy."""
-    scales: Points
+    scales: Floats
     """Shape (n, 3): the factors of each copy along x, y and z."""
     rgba: NDArray[np.float64]
     """Shape (n, 4): the color of each copy, components from 0 to 1."""
@@ -172,7 +172,7 @@ class Drawing:
             if label.visible:
                 label.text, label.position = labels[number]
 
-    def _look_at(self, middle: Points, view_m: float, size_m: float) -> None:
+    def _look_at(self, middle: Floats, view_m: float, size_m: float) -> None:
         """Choose what a browser sees at first."""
         self._camera = camera = self._server.initial_camera
         camera.look_at, camera.fov = middle, _FIELD_OF_VIEW_RAD
@@ -199,7 +199,7 @@ def _places(poses: PoseArray) -> tuple[NDArray[np.float32], NDArray[np.float32]]
     return poses[:, _WXYZ].astype(np.float32), poses[:, :3].astype(np.float32)
 
 
-def _lines(tree: TfTree, shown: NDArray[np.intp]) -> Points:
+def _lines(tree: TfTree, shown: NDArray[np.intp]) -> Floats:
     """Return lines from the parents of frames to the frames, shape (n, 2, 3)."""
     frames = shown[tree.parents[shown] != NO_PARENT]
     # The last entry is the root frame, which the index of the root as a parent means.
@@ -261,7 +261,7 @@ def surfaces_from_scene(
     return surfaces, reasons
 
 
-def bounds_of_scene(scene: Scene, origins: Points, surfaces: Sequence[Surface]) -> Points:
+def bounds_of_scene(scene: Scene, origins: Floats, surfaces: Sequence[Surface]) -> Floats:
     """
     Find what a view of everything has to contain.
 
@@ -284,7 +284,7 @@ class _Label(NamedTuple):
 
     top: float
     left: float
-    point: Points
+    point: Floats
     names: list[str]
 
     @property
@@ -302,8 +302,8 @@ class _Label(NamedTuple):
 
 
 def labels_from_names(
-    names: Sequence[str], points: Points, eye: Points, look_at: Points,
-) -> Iterator[tuple[str, Points]]:
+    names: Sequence[str], points: Floats, eye: Floats, look_at: Floats,
+) -> Iterator[tuple[str, Floats]]:
     """
     Join names that would lie on one another in the picture, as lines of one text.
 

@@ -27,11 +27,11 @@ from trimesh.resolvers import FilePathResolver
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
-from sdf_pose_bridge.scene.triangles import triangles_from_shape
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.shapes import Shape
+from sdf_pose_bridge.sdformat.shapes import triangles_from_shape
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 
