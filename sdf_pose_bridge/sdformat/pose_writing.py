@@ -127,9 +127,9 @@ class PoseText:
         :return: the pose as written.
         :raises PoseNotSetError: if it is not a ``<pose>``, or not written in plain numbers.
         """
-        pose_format, words = self._format(element), self._words(element)
-        text = ' '.join(word[0].decode() for word in words)
         try:
+            pose_format = self._format(element)
+            text = ' '.join(word[0].decode() for word in self._words(element))
             return Pose(*pose_from_text(text, pose_format))
         except PoseTextError as error:
             raise PoseNotSetError(str(error), self._place(element)) from error
@@ -144,13 +144,12 @@ class PoseText:
         :return: the text of the file with other numbers in this pose.
         :raises PoseNotSetError: as :meth:`pose`.
         """
-        words = self._words(element)
-        old_words = [word[0].decode() for word in words]
-        pose_format = self._format(element)
         turn = relative_pose(self.pose(element), pose)
         keeps_rotation = max(map(abs, turn[3:6])) < _SAME_ROTATION
+        words = self._words(element)
         new_words = _words_from_pose(
-            pose, pose_format, tolerance, old_words, keeps_rotation=keeps_rotation)
+            pose, self._format(element), tolerance, [word[0].decode() for word in words],
+            keeps_rotation=keeps_rotation)
         if words:
             text = bytearray(self._text)
             for word, new in reversed(list(zip(words, new_words, strict=True))):
@@ -189,10 +188,7 @@ class PoseText:
         if written_tag(xml) != 'pose':
             msg = f'the pose is not written as <pose>, but in <{written_tag(xml)}>'
             raise PoseNotSetError(msg, self._place(element))
-        try:
-            return pose_format_of(xml)
-        except PoseTextError as error:
-            raise PoseNotSetError(str(error), self._place(element)) from error
+        return pose_format_of(xml)
 
     def _words(self, element: int) -> Sequence[re.Match[bytes]]:
         """Find the numbers of a pose; none if it is blank."""

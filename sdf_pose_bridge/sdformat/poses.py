@@ -14,7 +14,6 @@ from collections.abc import Sequence
 from itertools import chain
 import math
 import re
-import sys
 from typing import NamedTuple
 
 import numpy as np
@@ -44,7 +43,7 @@ _LARGEST_ANGLE_RAD = 6.3
 _IDENTITY_TEXTS = {6: '0 0 0 0 0 0', 7: '0 0 0 0 0 0 1'}
 _DECIMAL_NUMBER = re.compile(rf'[+-]?{DECIMAL}')
 _NUMBER_CHARACTERS = b'0123456789+-.eE \t\n\r'
-_THREE_DIGIT_EXPONENT = re.compile(r'[eE]-0*[1-9][0-9][0-9]')
+_THREE_DIGIT_EXPONENT = re.compile(r'[eE][+-]?0*[1-9][0-9][0-9]')
 
 
 class PoseFormat(NamedTuple):
@@ -212,10 +211,9 @@ def _numbers_from_texts(texts: Sequence[str], count: int) -> NDArray[np.float64]
     except ValueError:
         return None
     numbers = numbers.reshape(-1, count)
-    is_quaternion = count == 7
-    if np.abs(numbers).max(initial=0.0) > (_LARGEST_NORM if is_quaternion else sys.float_info.max):
-        return None
-    if is_quaternion and (np.linalg.norm(numbers[:, 3:], axis=1) < _SHORTEST_QUATERNION).any():
+    if count == 7 and (
+            np.abs(numbers).max(initial=0.0) > _LARGEST_NORM
+            or (np.linalg.norm(numbers[:, 3:], axis=1) < _SHORTEST_QUATERNION).any()):
         return None
     return numbers
 

@@ -45,9 +45,6 @@ _TOKEN = re.compile(
     rf'|<(?P<end>/?)(?P<tag>{_NAME})(?![\w:.\-])', re.DOTALL)
 """A token, or the beginning of a tag, which attributes and ``_REST_OF_TAG`` follow."""
 _REST_OF_TAG = re.compile(r'\s*(?P<empty>/?)>')
-_BARE_AMPERSAND = re.compile(r'&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)')
-_ESCAPED_BYTE = re.compile('[\udc80-\udcff]')
-"""What the error handler ``surrogateescape`` makes of a byte that is not UTF-8."""
 _REFERENCE = re.compile(r'&#(?:([0-9]+)|x([0-9a-fA-F]+));')
 _NOT_XML = re.compile('[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]')
 """A character that XML does not have."""
@@ -55,6 +52,26 @@ _REPLACEMENT = '\ufffd'
 _LONGEST_REFERENCE = 9
 """How many digits of a character reference are read; as many, not beginning with zero, are more
 than any character has."""
+
+
+class _Replacement(NamedTuple):
+    """What is replaced wherever it stands."""
+
+    pattern: re.Pattern[str]
+    new: str | Callable[[re.Match[str]], str]
+    fault: str
+    """A sentence, which can have the number of the first character in it."""
+
+
+_CHARACTERS = _Replacement(
+    _NOT_XML, _REPLACEMENT, 'U+{:04X} is no character of XML; it is replaced')
+_AMPERSANDS = _Replacement(
+    re.compile(r'&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)'), '&amp;',
+    '"&" is not the beginning of a known entity')
+_ESCAPED_BYTES = _Replacement(
+    re.compile('[\udc80-\udcff]'), lambda byte: chr(ord(byte[0]) - 0xdc00),
+    'bytes that are not UTF-8, which are read as Latin-1')
+"""What the error handler ``surrogateescape`` makes of bytes that are not UTF-8."""
 
 
 class DecodedText(NamedTuple):
@@ -133,7 +150,8 @@ class _Repairer:
         self._may_declare = True
 
     def repaired(self, text: bytes) -> Repair | None:
-        decoded = self._decoded(text).partition('\0')[0]
+        escaped = text.decode('utf-8', errors='surrogateescape')
+        decoded = self._replaced(escaped, _ESCAPED_BYTES).partition('\0')[0]
         parts = []
         position = 0
         while position < len(decoded):
@@ -162,7 +180,7 @@ class _Repairer:
         whole = token[0]
         is_outside = not self._depth
         if token['comment']:
-            whole = self._with_xml_characters(whole)
+            whole = self._replaced(whole, _CHARACTERS)
             inside = whole[4:-3]
             if '--' not in inside and not inside.endswith('-'):
                 return whole
@@ -181,7 +199,7 @@ class _Repairer:
                 self._note('the declared XML version is not 1.0')
             return _blank(whole)
         if token['verbatim']:
-            whole = self._with_xml_characters(whole)
+            whole = self._replaced(whole, _CHARACTERS)
         if (token['verbatim'] and is_outside) or (token['other'] and self._is_after_root()):
             return _blank(whole)
         return whole
@@ -202,15 +220,15 @@ class _Repairer:
                 self._note('no white space before an attribute')
             if '<' in value:
                 self._note('"<" in the value of an attribute')
-            value = self._repaired_ampersands(value).replace('<', '&lt;')
+            value = self._replaced(value, _AMPERSANDS).replace('<', '&lt;')
             parts.append(f'{space or " "}{name}{value}')
         return ''.join([*parts, rest[0]])
 
     def _repaired_text(self, text: str) -> str:
         if ']]>' in text:
             self._note('"]]>" in text')
-        text = _REFERENCE.sub(self._repaired_reference, self._with_xml_characters(text))
-        return self._repaired_ampersands(text).replace(']]>', ']]&gt;')
+        text = _REFERENCE.sub(self._repaired_reference, self._replaced(text, _CHARACTERS))
+        return self._replaced(text, _AMPERSANDS).replace(']]>', ']]&gt;')
 
     def _repaired_reference(self, reference: re.Match[str]) -> str:
         digits = (reference[1] or reference[2]).lstrip('0') or '0'
@@ -220,25 +238,8 @@ class _Repairer:
         self._note(f'{reference[0][:20]} is no character of XML; it is replaced')
         return _REPLACEMENT
 
-    def _with_xml_characters(self, text: str) -> str:
-        return self._replaced(
-            _NOT_XML, _REPLACEMENT, text, 'U+{:04X} is no character of XML; it is replaced')
-
-    def _repaired_ampersands(self, text: str) -> str:
-        return self._replaced(
-            _BARE_AMPERSAND, '&amp;', text, '"&" is not the beginning of a known entity')
-
-    def _decoded(self, text: bytes) -> str:
-        return self._replaced(
-            _ESCAPED_BYTE, lambda byte: chr(ord(byte[0]) - 0xdc00),
-            text.decode('utf-8', errors='surrogateescape'),
-            'bytes that are not UTF-8, which are read as Latin-1')
-
-    def _replaced(
-        self, pattern: re.Pattern[str], new: str | Callable[[re.Match[str]], str], text: str,
-        fault: str,
-    ) -> str:
-        """Replace characters; ``fault`` can have the number of the first one in it."""
+    def _replaced(self, text: str, replacement: _Replacement) -> str:
+        pattern, new, fault = replacement
         found = pattern.search(text)
         if found is not None:
             line = self._line + text.count('\n', 0, found.start())
