@@ -61,11 +61,6 @@ _BREAK_IN_TAG = re.compile(rb'<[^/!?<>][^<>\t\n]*[\t\n]')
 _NAME = re.compile(rb'(?<=\s)name\s*=\s*("[^"]*"|\'[^\']*\')')
 _BREAKS = {'\n': 'a line break', '\t': 'a tab'}
 
-_BEFORE_DOCUMENT_TYPE = re.compile(rb'[ \t\r\n]+|<!--.*?-->|<\?.*?\?>', re.DOTALL)
-"""One thing that can stand before the document type."""
-
-_QUOTED_OR_BRACKET = re.compile(rb'"[^"]*"|\'[^\']*\'|[\[>]')
-
 
 class XmlFile(NamedTuple):
     """A parsed file."""
@@ -163,10 +158,9 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
         text = repair.text
         faults += repair.faults
         root, is_complete = _parsed(text, path)
-    _check_document_type(root, text, path)
-    _check_instructions(root, path)
-    if not is_complete:
+    if root.getroottree().docinfo.internalDTD is not None or not is_complete:
         _check_with_expat(text, path)
+    _check_instructions(root, path)
     if b'xmlns' in text:
         _remove_default_namespaces(root)
     lines, warnings = _lines_and_warnings(root, text, path)
@@ -199,19 +193,6 @@ def _parsed(text: bytes, path: str) -> tuple[XmlElement, bool]:
     return root, len(parser.error_log) < _MOST_ERRORS
 
 
-def _check_document_type(root: XmlElement, text: bytes, path: str) -> None:
-    if root.getroottree().docinfo.internalDTD is None:
-        return
-    start = 0
-    while (before := _BEFORE_DOCUMENT_TYPE.match(text, start)) is not None:
-        start = before.end()
-    # Declarations are in square brackets before the ">" that ends the document type.
-    brackets = (part[0] for part in _QUOTED_OR_BRACKET.finditer(text, start) if len(part[0]) == 1)
-    if next(brackets, b'') != b'>':
-        msg = 'the document type has declarations of its own, which SDFormat does not have'
-        raise FileReadError(msg, Place(path, 1 + text.count(b'\n', 0, start)))
-
-
 def _check_instructions(root: XmlElement, path: str) -> None:
     """Refuse processing instructions in and after the outermost element, as TinyXML-2 does."""
     for instruction in chain(root.iter(etree.PI), root.itersiblings(etree.PI)):
@@ -221,15 +202,26 @@ def _check_instructions(root: XmlElement, path: str) -> None:
 
 def _check_with_expat(text: bytes, path: str) -> None:
     """
-    Refuse what libxml2 did not report after its first errors.
+    Refuse declarations in the document type, and what libxml2 did not report.
 
-    :raises FileReadError: if the text is not well-formed, apart from what follows the outermost
-        element.
+    :raises FileReadError: for these, and if the text is not well-formed, apart from what follows
+        the outermost element.
     """
     stripped = text.lstrip(WHITE_SPACE.encode())
     skipped = text.count(b'\n', 0, len(text) - len(stripped))
+    parser = expat.ParserCreate('utf-8')
+
+    def check_document_type(
+        _name: str, _system: str | None, _public: str | None, has_declarations: int,
+    ) -> None:
+        if has_declarations:
+            begin = stripped.rfind(b'<!DOCTYPE', 0, parser.CurrentByteIndex)
+            msg = 'the document type has declarations of its own, which SDFormat does not have'
+            raise FileReadError(msg, Place(path, 1 + skipped + stripped.count(b'\n', 0, begin)))
+
+    parser.StartDoctypeDeclHandler = check_document_type
     try:
-        expat.ParserCreate('utf-8').Parse(stripped, True)
+        parser.Parse(stripped, True)
     except expat.ExpatError as error:
         message = expat.ErrorString(error.code)
         if message != expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
