@@ -13,7 +13,6 @@ from collections.abc import Sequence
 import math
 import re
 import sys
-from typing import NamedTuple
 
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.sdformat.grammar import Definition
@@ -84,52 +83,41 @@ def choice_fault(text: str, choice: Choice) -> str:
     return '' if value in choice.texts else f'must be one of {", ".join(choice.texts)}'
 
 
-class Judgment(NamedTuple):
-    """What libsdformat makes of the value of an element."""
-
-    fault: str = ''
-    """The value and the rule that it breaks; empty if it is right."""
-    doubt: str = ''
-    """How a value is read that probably means something else; empty if it is plain."""
-
-
-_RIGHT = Judgment()
-"""The one judgment of all values that are right and plain."""
-
-
-def judged_value(text: str, definition: Definition) -> Judgment:
+def judged_value(text: str, definition: Definition) -> tuple[str, str]:
     """
-    Judge the value of an element.
+    Return what libsdformat makes of the value of an element.
 
     :param text: the value. If the element is not required, the default replaces a blank one.
     :param definition: the definition of the element; not that of a pose.
+    :return: the value and the rule that it breaks, empty if it is right; and how a value is read
+        that probably means something else, empty if it is plain.
     """
     value_type = definition.value_type
     if value_type is None or (
             definition.takes_any_number and len(text) < LONGEST_PLAIN
             and _PLAIN_NUMBER.fullmatch(text)):
-        return _RIGHT
+        return '', ''
     stripped = text.strip(WHITE_SPACE)
     if not stripped and definition.is_required:
-        return Judgment(f'<{definition.identifier}> is empty; it must have a value')
+        return f'<{definition.identifier}> is empty; it must have a value', ''
     if not stripped or value_type is ValueType.STRING:
-        return _RIGHT
+        return '', ''
     if definition.choice is not None:
         fault = choice_fault(stripped, definition.choice)
-        return Judgment(f'"{stripped}" of <{definition.identifier}> {fault}' if fault else '')
+        return f'"{stripped}" of <{definition.identifier}> {fault}' if fault else '', ''
     plain_numbers = _plain_numbers(stripped, value_type)
     numbers = plain_numbers or numbers_from_text(stripped, value_type)
     if not plain_numbers and not _is_of_type(stripped, numbers, value_type):
-        return Judgment(f'"{stripped[:80]}" is not {value_type.description}')
+        return f'"{stripped[:80]}" is not {value_type.description}', ''
     if value_type is ValueType.AXIS and math.hypot(*numbers) <= _SHORTEST_AXIS:
-        return Judgment(f'"{stripped}" is not a valid axis: its length is zero')
+        return f'"{stripped}" is not a valid axis: its length is zero', ''
     minimum, maximum = definition.minimum, definition.maximum
     # Like libsdformat, this accepts NaN.
     if numbers and (numbers[0] < minimum or numbers[0] > maximum):
         rule = (f'at least {minimum:g}' if maximum == math.inf
                 else f'from {minimum:g} to {maximum:g}')
-        return Judgment(f'"{stripped}" must be {rule}')
-    return _RIGHT if plain_numbers else Judgment(doubt=_doubt(stripped, numbers))
+        return f'"{stripped}" must be {rule}', ''
+    return '', '' if plain_numbers else _doubt(stripped, numbers)
 
 
 def _doubt(text: str, numbers: Sequence[float]) -> str:
