@@ -76,10 +76,10 @@ def pose_inverse(a: Pose) -> Pose:
     uy = 2.0 * (qz * x - qx * z)
     uz = 2.0 * (qx * y - qy * x)
     return Pose(
-        0.0 - x + qw * ux - qy * uz + qz * uy,
-        0.0 - y + qw * uy - qz * ux + qx * uz,
-        0.0 - z + qw * uz - qx * uy + qy * ux,
-        0.0 - qx, 0.0 - qy, 0.0 - qz, qw)
+        -x + qw * ux - qy * uz + qz * uy,
+        -y + qw * uy - qz * ux + qx * uz,
+        -z + qw * uz - qx * uy + qy * ux,
+        -qx, -qy, -qz, qw)
 
 
 def relative_pose(reference: Pose, pose: Pose) -> Pose:

@@ -118,7 +118,7 @@ def test_all_clashes_are_reported():
 def test_an_id_is_that_of_the_root(text, root):
     error = only_tree_error(text, root_frame=root)
     assert error.code == 'DUPLICATE_NAME'
-    assert f'"{root}"' in error.message
+    assert f'the frame id "{root}", which is that of the root frame' in error.message
 
 
 def test_a_prefix_tells_a_frame_from_the_root():
