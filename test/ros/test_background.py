@@ -113,10 +113,21 @@ def test_a_thread_calls_once_until_it_is_resumed(calls):
     is_due.set()
     assert calls.acquire(timeout=20)
     assert not calls.acquire(timeout=0.05)
-    thread.resume()
-    assert calls.acquire(timeout=20)
+    for _ in range(2):
+        thread.resume()
+        assert calls.acquire(timeout=20)
+        assert not calls.acquire(timeout=0.05)
     is_due.clear()
     thread.resume()
+
+
+def test_a_look_that_takes_too_much_of_the_processor_is_not_soon_followed_by_another(
+        calls, monkeypatch):
+    monkeypatch.setattr(background, 'LARGEST_SHARE', 1e-12)
+    looks = threading.Semaphore(0)
+    PollingThread(lambda: bool(looks.release()), calls.release)
+    assert looks.acquire(timeout=20)
+    assert not looks.acquire(timeout=0.1)
 
 
 def test_a_look_that_has_to_wait_is_soon_followed_by_another(calls):

@@ -281,6 +281,11 @@ def test_names_of_another_message_do_not_mislead(known, names, positions):
     np.testing.assert_array_equal(found.positions, positions)
 
 
+def test_a_name_that_is_not_utf_8_is_read_as_far_as_it_is():
+    data = joint_state(['elbow'], [2.5]).replace(b'elbow', b'elb\xffw')
+    assert joint_state_from_bytes(data).names == ('elb\ufffdw',)
+
+
 def test_big_endian_is_read():
     header_and_names = struct.pack('>iII4xII2s2x', 7, 8, 1, 1, 2, b'j\0')
     data = b'\0\0\0\0' + header_and_names + struct.pack('>Id', 1, 2.5)

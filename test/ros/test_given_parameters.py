@@ -241,6 +241,15 @@ def test_only_the_permission_to_write_files_cannot_be_changed(make_node):
     assert [each.name for each in descriptors if each.read_only] == ['allow_set_pose']
 
 
+def test_only_the_rate_has_a_range(make_node):
+    node = make_node('bridge', *FILE)
+    settings_from_node(node)
+    assert {
+        (each.name, number.from_value, number.to_value)
+        for each in node.describe_parameters(list(DECLARATIONS))
+        for number in each.floating_point_range} == {('publish_rate', 0.0, 100.0)}
+
+
 @pytest.mark.parametrize('name', DECLARATIONS)
 def test_every_parameter_explains_itself(make_node, name):
     node = make_node('bridge', *FILE)

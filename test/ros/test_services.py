@@ -152,7 +152,8 @@ def test_a_defect_is_answered_and_logged(capfd):
 # Setting a pose
 
 ARM = model_file(
-    '<link name="base"/>' + posed('link', 'tool', '1 0 0 0 0 0')
+    '<link name="base"><sensor name="camera" type="camera"/></link>'
+    + posed('link', 'tool', '1 0 0 0 0 0')
     + '<frame name="tip" attached_to="tool"><pose>0 0 1 0 0 0</pose></frame>'
     + posed('frame', 'mark', '2 0 0 0 0 0') + posed('frame', 'on_mark', '0 0 1 0 0 0', 'mark')
     + joint('<pose relative_to="base"/><parent>base</parent><child>tool</child>'
@@ -216,6 +217,13 @@ def test_a_frame_that_a_joint_moves_away_is_refused(ask, path):
 def test_a_dry_run_writes_nothing(ask, path):
     assert ask('mark', (3.0, 0.0, 0.0), dry_run=True).diff
     assert path.read_text(encoding='utf-8') == ARM
+
+
+def test_an_optical_frame_is_set_by_the_pose_of_its_camera(ask, path):
+    ask('base/camera_optical', (3.0, 0.0, 0.0))
+    # The frame has z forward, the camera x.
+    np.testing.assert_allclose(
+        load(path).pose('m::base::camera'), (3.0, 0.0, 0.0, 0.5, -0.5, 0.5, 0.5), atol=1e-9)
 
 
 @pytest.mark.parametrize(('frame', 'xyz', 'quat_xyzw', 'frame_id', 'reason'), [
