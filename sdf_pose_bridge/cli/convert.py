@@ -13,6 +13,7 @@ from itertools import islice
 import re
 import sys
 from typing import NamedTuple
+from typing import TypeAlias
 
 import numpy as np
 
@@ -30,14 +31,16 @@ LINES_AT_A_TIME = 10_000
 
 NEGATIVE_NUMBER = re.compile(r'^-(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$|^-(inf|nan)', re.IGNORECASE)
 
+_Result: TypeAlias = tuple[list[float], ...]
+"""The numbers of a pose or a rotation in several formats."""
 
-class Line(NamedTuple):
-    """A pose or a rotation as read."""
 
+class _Line(NamedTuple):
     number: int
-    """Number of the line in standard input; 0 for the arguments."""
+    """Number of the line in standard input."""
     values: list[float]
-    error: str
+    error: str = ''
+    """Why it has no values."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -73,11 +76,7 @@ def run(options: argparse.Namespace) -> int:
     :return: exit code: 0, 1 if anything was not converted, 2 for a pose and a rotation format.
     """
     formats = POSE_FORMATS if options.from_format in POSE_FORMATS else ROTATION_FORMATS
-    if options.to_format is None:
-        targets = list(formats.values())
-    elif options.to_format in formats:
-        targets = [formats[options.to_format]]
-    else:
+    if options.to_format not in (None, *formats):
         kind, other = ('pose', 'rotation') if formats is POSE_FORMATS else ('rotation', 'pose')
         print(
             f'sdf_pose convert: --from {options.from_format} is a {kind} and'
@@ -85,18 +84,20 @@ def run(options: argparse.Namespace) -> int:
             file=sys.stderr)
         return 2
     source = formats[options.from_format]
-    has_labels = options.to_format is None
+    targets = [formats[options.to_format]] if options.to_format else list(formats.values())
     if options.numbers:
-        line = line_from_text(0, ' '.join(options.numbers), source)
-        return _print_converted([line], source, targets, has_labels=has_labels)
-    exit_code = 0
+        numbers = numbers_from_text(' '.join(options.numbers), source)
+        (result,) = _converted([numbers], source, targets)
+        print(*_texts(result, targets), sep='\n')
+        return 0
     if isinstance(sys.stdin, io.TextIOWrapper):
         # Bytes that are not text are an error of their line only.
         sys.stdin.reconfigure(errors='backslashreplace')
+    exit_code = 0
     lines = _lines_from_texts(sys.stdin, source)
     at_a_time = 1 if sys.stdin.isatty() else LINES_AT_A_TIME
     while batch := list(islice(lines, at_a_time)):
-        exit_code |= _print_converted(batch, source, targets, has_labels=has_labels)
+        exit_code |= _print_lines(batch, source, targets)
     return exit_code
 
 
@@ -109,20 +110,12 @@ def _formats_help() -> str:
     return '\n'.join(lines)
 
 
-def _lines_from_texts(texts: Iterable[str], source: Format) -> Iterator[Line]:
-    for number, text in enumerate(texts, start=1):
-        stripped = text.strip()
-        if stripped and not stripped.startswith('#'):
-            yield line_from_text(number, stripped, source)
-
-
-def line_from_text(number: int, text: str, source: Format) -> Line:
+def numbers_from_text(text: str, source: Format) -> list[float]:
     """
     Read the numbers of a pose or a rotation.
 
-    :param number: the number of the line; 0 for the arguments.
     :param source: the format of the numbers.
-    :return: the numbers, or what is wrong.
+    :raises PoseFormatError: if they are not numbers, or not as many as in the format.
     """
     values = []
     for word in text.split():
@@ -132,57 +125,75 @@ def line_from_text(number: int, text: str, source: Format) -> Line:
                 raise ValueError
             values.append(float(word))
         except ValueError:
-            return Line(number, [], f'{shortened(word)!r} is not a number')
+            msg = f'{shortened(word)!r} is not a number'
+            raise PoseFormatError(msg) from None
     if len(values) != source.row_length:
-        error = (
+        msg = (
             f'{source.name} has {source.row_length} numbers ({source.meaning}), but {len(values)}'
             f' {"is" if len(values) == 1 else "are"} given')
-        return Line(number, [], error)
-    return Line(number, values, '')
+        raise PoseFormatError(msg)
+    return values
 
 
-def _print_converted(
-    lines: Sequence[Line], source: Format, targets: Sequence[Format], *, has_labels: bool,
-) -> int:
+def _lines_from_texts(texts: Iterable[str], source: Format) -> Iterator[_Line]:
+    for number, text in enumerate(texts, start=1):
+        if text.strip() and not text.lstrip().startswith('#'):
+            try:
+                yield _Line(number, numbers_from_text(text, source))
+            except PoseFormatError as error:
+                yield _Line(number, [], str(error))
+
+
+def _print_lines(lines: Sequence[_Line], source: Format, targets: Sequence[Format]) -> int:
     """Print the result or the error of each line and return the exit code."""
-    results = iter(_converted([line for line in lines if not line.error], source, targets))
-    width = max(len(target.name) for target in targets)
+    results = iter(_converted_or_errors(
+        [line.values for line in lines if not line.error], source, targets))
     exit_code = 0
     output = []
     for line in lines:
         result = line.error or next(results)
         if isinstance(result, str):
             exit_code = 1
-            place = f'line {line.number}: ' if line.number else ''
-            print(f'sdf_pose convert: {place}{printable(result)}', file=sys.stderr)
-            if line.number:
-                # A comment keeps the lines of output beside those of input.
-                output.append(f'# line {line.number} is not converted')
+            print(f'sdf_pose convert: line {line.number}: {printable(result)}', file=sys.stderr)
+            # A comment keeps the lines of output beside those of input.
+            output.append(f'# line {line.number} is not converted')
         else:
-            for target, numbers in zip(targets, result, strict=True):
-                label = f'{target.name:{width}}  ' if has_labels else ''
-                output.append(label + ' '.join(map(repr, numbers)))
-        if has_labels and line.number:
+            output += _texts(result, targets)
+        if len(targets) > 1:
             output.append('')
     sys.stdout.write(''.join(f'{text}\n' for text in output))
     return exit_code
 
 
+def _texts(result: _Result, targets: Sequence[Format]) -> list[str]:
+    """Return a line for each format, which begins with its name if there are several."""
+    width = max(len(target.name) for target in targets)
+    return [
+        (f'{target.name:{width}}  ' if len(targets) > 1 else '') + ' '.join(map(repr, numbers))
+        for target, numbers in zip(targets, result, strict=True)]
+
+
 def _converted(
-    lines: Sequence[Line], source: Format, targets: Sequence[Format],
-) -> list[Sequence[list[float]] | str]:
-    """Return the numbers of each line in other formats, or the error."""
-    if not lines:
-        return []
+    rows: Sequence[list[float]], source: Format, targets: Sequence[Format],
+) -> list[_Result]:
+    """Return the numbers of each row in other formats."""
     convert = converted_poses if source.name in POSE_FORMATS else converted_rotations
-    values = np.array([line.values for line in lines])
+    values = np.array(rows)
+    return list(zip(*(
+        convert(values, source.name, target.name).tolist() for target in targets), strict=True))
+
+
+def _converted_or_errors(
+    rows: Sequence[list[float]], source: Format, targets: Sequence[Format],
+) -> list[_Result | str]:
+    """Return the numbers of each row in other formats, or its error."""
+    if not rows:
+        return []
     try:
-        return list(zip(*(
-            convert(values, source.name, target.name).tolist() for target in targets),
-            strict=True))
+        return [*_converted(rows, source, targets)]
     except PoseFormatError as error:
-        if len(lines) == 1:
+        if len(rows) == 1:
             return [str(error)]
-        half = len(lines) // 2
-        return [
-            *_converted(lines[:half], source, targets), *_converted(lines[half:], source, targets)]
+        half = len(rows) // 2
+        return [*_converted_or_errors(rows[:half], source, targets),
+                *_converted_or_errors(rows[half:], source, targets)]

@@ -11,7 +11,6 @@ import sys
 from sdf_pose_bridge.cli.loading import add_kinds_argument
 from sdf_pose_bridge.cli.loading import add_loading_arguments
 from sdf_pose_bridge.cli.loading import load_file
-from sdf_pose_bridge.cli.loading import SHOWN_KINDS
 from sdf_pose_bridge.cli.printing import print_problems
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import printable
@@ -38,7 +37,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         '--tolerance', metavar='T', type=_tolerance_from_text, default=TOLERANCE,
         help='a frame has not moved if it is as near as this, in metres and radians; by default '
              f'{TOLERANCE:g}')
-    add_kinds_argument(parser, SHOWN_KINDS, 'compare only')
+    add_kinds_argument(parser, 'compare only')
     parser.set_defaults(run=run)
 
 

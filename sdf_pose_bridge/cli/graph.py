@@ -65,8 +65,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_file_arguments(parser, takes_many=False)
     add_output_argument(
         parser, _FORMATS, f'the graph; the ending says the format: {", ".join(_FORMATS)}')
-    add_kinds_argument(
-        parser, _KINDS, f'instead of {",".join(kind.label for kind in _KINDS)} draw')
+    add_kinds_argument(parser, 'draw', _KINDS)
     add_model_argument(parser)
     parser.set_defaults(run=run)
 

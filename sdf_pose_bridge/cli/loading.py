@@ -20,6 +20,7 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.tf.frame_ids import FrameNames
+from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 from sdf_pose_bridge.tf.tree import TfOptions
 
 SHOWN_KINDS = tuple(kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD))
@@ -101,35 +102,36 @@ def scene_of(path: str, options: argparse.Namespace, *, shapes: bool = False) ->
 
 
 def add_kinds_argument(
-    parser: argparse.ArgumentParser, default: Collection[Kind], what: str = 'show only',
+    parser: argparse.ArgumentParser, what: str, default: Collection[Kind] = SHOWN_KINDS,
 ) -> None:
     """
     Add the argument ``--kinds``, a list of kinds.
 
-    :param default: the kinds without the argument.
     :param what: what the command does with the kinds.
+    :param default: the kinds without the argument.
     """
+    labels = ','.join(kind.label for kind in SHOWN_KINDS if kind in default)
+    instead = '' if default is SHOWN_KINDS else f'instead of {labels} '
     parser.add_argument(
         '--kinds', metavar='KIND[,KIND...]', type=_kinds_from_text, default=tuple(default),
-        help=f'{what} these kinds: {_KIND_NAMES}')
+        help=f'{instead}{what} these kinds: {_KIND_NAMES}')
 
 
-def add_frame_arguments(
-    parser: argparse.ArgumentParser, default_kinds: Collection[Kind],
-) -> None:
+def add_frame_arguments(parser: argparse.ArgumentParser) -> None:
     """
-    Add the arguments of :func:`tf_options_from_arguments`, named like parameters of the node.
+    Add the arguments of :func:`tf_options_from_arguments`, and the units of poses.
 
-    :param default_kinds: the kinds of element that become frames without ``--kinds``.
+    The first are named like parameters of the node.
     """
-    names = ','.join(kind.label for kind in SHOWN_KINDS if kind in default_kinds)
-    add_kinds_argument(parser, default_kinds, f'instead of {names} show frames of')
+    add_kinds_argument(parser, 'show frames of', DEFAULT_KINDS)
     add_model_argument(parser)
     parser.add_argument(
         '--frame-names', choices=[names.value for names in FrameNames],
         default=FrameNames.AUTO.value,
         help='scoped: the names of all models around an element are in its frame id; relative: '
              'all but that of the top-level model; auto: relative for a model file')
+    parser.add_argument('--degrees', action='store_true', help='angles in degrees, not radians')
+    parser.add_argument('--mm', action='store_true', help='lengths in millimetres, not metres')
 
 
 def add_model_argument(parser: argparse.ArgumentParser) -> None:
@@ -146,10 +148,9 @@ def tf_options_from_arguments(options: argparse.Namespace) -> TfOptions:
 
 
 def _kinds_from_text(text: str) -> tuple[Kind, ...]:
-    kinds = []
-    for name in text.split(','):
+    names = text.split(',')
+    for name in names:
         if name not in _SHOWN_BY_NAME:
             msg = f'"{name}" is not a kind of element; known are {_KIND_NAMES}'
             raise argparse.ArgumentTypeError(msg)
-        kinds.append(_SHOWN_BY_NAME[name])
-    return tuple(kinds)
+    return tuple(map(_SHOWN_BY_NAME.__getitem__, names))

@@ -11,17 +11,15 @@ import json
 import sys
 from typing import Any
 
+import numpy as np
+
 from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import add_kinds_argument
 from sdf_pose_bridge.cli.loading import load_file
 from sdf_pose_bridge.cli.loading import LoadedFile
-from sdf_pose_bridge.cli.loading import SHOWN_KINDS
 from sdf_pose_bridge.cli.printing import print_problems
-from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.errors import UnknownFrameError
-from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -47,7 +45,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         dest='positions',
         help='put a joint there, in radians or metres; all others stay at zero. May be repeated. '
              'Names are those of joint_states: elbow, arm/elbow, wrist_axis2, ball_roll')
-    add_kinds_argument(parser, SHOWN_KINDS, 'print only')
+    add_kinds_argument(parser, 'print only')
     parser.set_defaults(run=run)
 
 
@@ -67,7 +65,7 @@ def run(options: argparse.Namespace) -> int:
                     options.positions) else loaded.scene
                 loaded = LoadedFile(scene, (), scene.warnings)
                 elements = _elements(scene, options)
-            except (JointPositionError, UnknownFrameError) as error:
+            except SdfError as error:
                 loaded = LoadedFile(None, error.errors, loaded.warnings)
         are_valid = are_valid and loaded.scene is not None
         options.print_file(path, loaded, elements, len(options.files))
@@ -85,24 +83,14 @@ def _position_from_text(text: str) -> tuple[str, float]:
 
 def _elements(scene: Scene, options: argparse.Namespace) -> list[dict[str, Any]]:
     elements = []
-    for index, name in enumerate(scene.names):
-        kind = Kind(scene.kinds[index])
-        if kind in options.kinds:
-            root = int(scene.roots[index])
-            elements.append({
-                'kind': kind.label,
-                'name': name,
-                'world': scene.world_names.get(root, ''),
-                'pose': list(_pose(scene, index, options.relative_to)),
-            })
+    for index in np.flatnonzero(np.isin(scene.kinds, options.kinds)).tolist():
+        world = scene.world_of(index)
+        pose = scene.pose_of(index) if not options.relative_to else scene.relative_pose_of(
+            index, scene.index(options.relative_to, world=world))
+        elements.append({
+            'kind': Kind(scene.kinds[index]).label, 'name': scene.names[index], 'world': world,
+            'pose': list(pose)})
     return elements
-
-
-def _pose(scene: Scene, index: int, relative_to: str) -> Pose:
-    if not relative_to:
-        return scene.pose_of(index)
-    reference = scene.index(relative_to, world=scene.world_of(index))
-    return scene.relative_pose_of(index, reference)
 
 
 # Formats

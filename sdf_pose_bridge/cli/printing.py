@@ -89,21 +89,6 @@ class Units(NamedTuple):
             for value, (factor, digits) in zip(values, 3 * [length] + 3 * [angle], strict=True)]
 
 
-def add_unit_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of :func:`units_from_arguments`."""
-    parser.add_argument('--degrees', action='store_true', help='angles in degrees, not radians')
-    parser.add_argument('--mm', action='store_true', help='lengths in millimetres, not metres')
-
-
-def units_from_arguments(options: argparse.Namespace) -> Units:
-    """
-    Return the units to show poses in.
-
-    :return: the units.
-    """
-    return Units(options.mm, options.degrees)
-
-
 def add_output_argument(
     parser: argparse.ArgumentParser, formats: Sequence[str], what: str,
 ) -> None:

@@ -8,12 +8,11 @@ import argparse
 from collections.abc import Mapping
 import sys
 
-from sdf_pose_bridge.cli.convert import line_from_text
 from sdf_pose_bridge.cli.convert import NEGATIVE_NUMBER
+from sdf_pose_bridge.cli.convert import numbers_from_text
 from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import scene_from_file
 from sdf_pose_bridge.cli.loading import scene_of
-from sdf_pose_bridge.cli.printing import CommandError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.formats import converted_rotations
@@ -70,14 +69,35 @@ def run(options: argparse.Namespace) -> int:
     Set a pose.
 
     :return: exit code: 0.
-    :raises CommandError: if the numbers are wrong.
+    :raises PoseFormatError: if the numbers are wrong.
     :raises SdfError: if the file cannot say this, or cannot be written.
     """
-    source = {**POSE_FORMATS, **ROTATION_FORMATS}[options.format]
-    line = line_from_text(0, ' '.join(options.numbers), source)
-    if line.error:
-        raise CommandError(line.error)
-    return _set(scene_of(options.files[0], options), line.values, options)
+    numbers = numbers_from_text(
+        ' '.join(options.numbers), {**POSE_FORMATS, **ROTATION_FORMATS}[options.format])
+    scene = scene_of(options.files[0], options)
+
+    def measured(scene: Scene, element: int) -> Pose:
+        return _lookup(scene).pose_of_element(element, options.relative_to)
+
+    lookup = _lookup(scene)
+    element, in_element = lookup.element(options.frame)
+    if options.format in POSE_FORMATS:
+        asked = Pose(*converted_poses(numbers, options.format, 'sdf_quat_xyzw').tolist())
+    else:
+        quat_xyzw = converted_rotations(numbers, options.format, 'quaternion').tolist()
+        position = lookup.pose(options.frame, options.relative_to).pose[:3]
+        asked = Pose(*position, *quat_xyzw)
+    change = set_pose(
+        scene, element, pose_product(asked, pose_inverse(in_element)), measured, options,
+        all_instances=options.all_instances, dry_run=options.dry_run)
+    sys.stdout.write(change.diff)
+    moved = [
+        printable(difference.name) for difference in differences_of_scenes(scene, change.scene)
+        if difference.change is Change.MOVED and difference.name != scene.names[element]]
+    if moved:
+        # A visual and a collision may have the same name.
+        print(f'moved with it: {", ".join(dict.fromkeys(moved))}')
+    return 0
 
 
 def set_pose(
@@ -101,31 +121,6 @@ def set_pose(
     if not dry_run:
         replace_file(change.path, change.old_text, change.new_text)
     return change
-
-
-def _set(scene: Scene, numbers: list[float], options: argparse.Namespace) -> int:
-    def measured(scene: Scene, element: int) -> Pose:
-        return _lookup(scene).pose_of_element(element, options.relative_to)
-
-    lookup = _lookup(scene)
-    element, in_element = lookup.element(options.frame)
-    if options.format in POSE_FORMATS:
-        asked = Pose(*converted_poses(numbers, options.format, 'sdf_quat_xyzw').tolist())
-    else:
-        quat_xyzw = converted_rotations(numbers, options.format, 'quaternion').tolist()
-        position = lookup.pose(options.frame, options.relative_to).pose[:3]
-        asked = Pose(*position, *quat_xyzw)
-    change = set_pose(
-        scene, element, pose_product(asked, pose_inverse(in_element)), measured, options,
-        all_instances=options.all_instances, dry_run=options.dry_run)
-    sys.stdout.write(change.diff)
-    moved = [
-        printable(difference.name) for difference in differences_of_scenes(scene, change.scene)
-        if difference.change is Change.MOVED and difference.name != scene.names[element]]
-    if moved:
-        # A visual and a collision may have the same name.
-        print(f'moved with it: {", ".join(dict.fromkeys(moved))}')
-    return 0
 
 
 def _lookup(scene: Scene) -> PoseLookup:

@@ -16,12 +16,10 @@ from sdf_pose_bridge.cli.loading import add_frame_arguments
 from sdf_pose_bridge.cli.loading import scene_of
 from sdf_pose_bridge.cli.loading import SHOWN_KINDS
 from sdf_pose_bridge.cli.loading import tf_options_from_arguments
-from sdf_pose_bridge.cli.printing import add_unit_arguments
 from sdf_pose_bridge.cli.printing import is_colored
 from sdf_pose_bridge.cli.printing import kind_labels_of
 from sdf_pose_bridge.cli.printing import print_problems
 from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.printing import units_from_arguments
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
@@ -76,8 +74,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='print elements below those that hold them in the file, all kinds unless --kinds '
              'is given; poses are in the frame that they are relative to, which is named where '
              'it is not the default')
-    add_frame_arguments(parser, DEFAULT_KINDS)
-    add_unit_arguments(parser)
+    add_frame_arguments(parser)
     parser.add_argument(
         '--depth', metavar='N', type=_depth_from_text, default=math.inf,
         help='print N levels below the root, and how many frames are below them')
@@ -104,7 +101,7 @@ def run(options: argparse.Namespace) -> int:
             continue
         if len(options.files) > 1:
             print(printable(path))
-        _print_lines(_lines(rows, options), units_from_arguments(options))
+        _print_lines(_lines(rows, options), Units(options.mm, options.degrees))
     return exit_code
 
 

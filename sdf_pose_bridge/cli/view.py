@@ -24,14 +24,12 @@ from sdf_pose_bridge.cli.loading import scene_from_file
 from sdf_pose_bridge.cli.loading import scene_of
 from sdf_pose_bridge.cli.loading import tf_options_from_arguments
 from sdf_pose_bridge.cli.printing import add_output_argument
-from sdf_pose_bridge.cli.printing import add_unit_arguments
 from sdf_pose_bridge.cli.printing import CommandError
-from sdf_pose_bridge.cli.printing import units_from_arguments
+from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.set import set_pose
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
-from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 
 _FORMATS = ('.html', '.png')
 _PORT = 8080
@@ -60,8 +58,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
                     'With -o it is written instead, without sliders.')
     add_file_arguments(parser, takes_many=False)
     add_output_argument(parser, _FORMATS, 'a page for .html, or a picture for .png')
-    add_frame_arguments(parser, DEFAULT_KINDS)
-    add_unit_arguments(parser)
+    add_frame_arguments(parser)
     parser.add_argument(
         '--port', type=int, default=_PORT, metavar='N',
         help=f'the port of the page, or the next free one; by default {_PORT}')
@@ -90,7 +87,7 @@ def run(options: argparse.Namespace) -> int:
     scene = scene_of(path, options, shapes=True)
     page = viewer.Page(
         0 if options.output else options.port, tf_options_from_arguments(options),
-        units_from_arguments(options), resource_finder(options.resource_paths, os.environ),
+        Units(options.mm, options.degrees), resource_finder(options.resource_paths, os.environ),
         partial(set_pose, options=options) if options.edit else None)
     try:
         for line in page.show(scene):

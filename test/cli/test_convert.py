@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """``sdf_pose convert``: invalid input, output, and lines from standard input."""
 
-import argparse
 import io
 import math
 import sys
@@ -10,6 +9,7 @@ import sys
 import pytest
 
 from sdf_pose_bridge.cli import convert as convert_command
+from sdf_pose_bridge.cli.main import main
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS
 from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
@@ -19,12 +19,9 @@ from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
 def convert(capsys, monkeypatch):
     """Run the command with arguments and lines; return exit code, output and errors."""
     def run(*arguments, lines='', stdin=None):
-        parser = argparse.ArgumentParser(prog='sdf_pose')
-        convert_command.add_parser(parser.add_subparsers(required=True))
         monkeypatch.setattr('sys.stdin', stdin or io.StringIO(lines))
         try:
-            args = parser.parse_args(['convert', *arguments])
-            code = args.run(args)
+            code = main(['convert', *arguments])
         except SystemExit as stop:
             code = stop.code
         out, err = capsys.readouterr()

@@ -23,7 +23,7 @@ def make_options(files, monkeypatch):
     def parsed(*arguments):
         parser = argparse.ArgumentParser()
         add_file_arguments(parser)
-        add_frame_arguments(parser, [Kind.LINK])
+        add_frame_arguments(parser)
         return parser.parse_args(arguments)
     return parsed
 
