@@ -134,7 +134,7 @@ class Kind(enum.IntEnum):
 
 _ITEM = re.compile(
     r'(?P<attribute>@?)(?P<name>[\w*]*)(?P<required>[!+]?)(?:=(?P<identifier>\w+(?:/\w+)?))?'
-    r'(?::(?P<type>\w+))?(?:\[(?P<minimum>[^,]*),(?P<maximum>.*)\])?')
+    r'(?P<value>:(?P<type>\w+)(?:\[(?P<minimum>[^,]*),(?P<maximum>.*)\])?)?')
 _KINDS = {kind.label: kind for kind in Kind}
 _UNREAD = frozenset({'population', 'road', 'state', *_KINDS})
 """Elements that hold no frames; kinds are among them where the content of another one names them,
@@ -172,72 +172,56 @@ class Definition:
         self.kind = _KINDS.get(identifier) if has_frames else None
         """The kind of the element; None for an element that is no frame."""
         self.has_frames = has_frames
-        self._items = [item for item in map(_ITEM.fullmatch, content.split()) if item]
-        value: dict[str, str] = next(
-            (item.groupdict() for item in self._items if not item['name']), {})
+        items = [item.groupdict('') for item in map(_ITEM.fullmatch, content.split()) if item]
+        value = next((item for item in items if not item['name']), {})
         self.value_type = _VALUE_TYPES.get(value.get('type', ''))
         """Type of the value; None for an element that holds others."""
         self.choice = CHOICES.get(value.get('type', ''))
         """What the value can be, of a choice."""
-        self.minimum = float(value.get('minimum', '') or -math.inf)
-        self.maximum = float(value.get('maximum', '') or math.inf)
+        self.minimum = float(value.get('minimum') or -math.inf)
+        self.maximum = float(value.get('maximum') or math.inf)
         # Python takes longer to look up a member of an Enum than to read an attribute.
         self.is_pose = self.value_type is ValueType.POSE
         self.takes_any_number = (
             self.value_type is ValueType.NUMBER and self.minimum == -math.inf)
-
-    @cached_property
-    def takes_any_children(self) -> bool:
+        self.takes_any_children = any(item['name'] == '*' for item in items)
         """Whether the element may hold elements that are not defined."""
-        return any(item['name'] == '*' for item in self._items)
-
-    @cached_property
-    def attributes(self) -> Mapping[str, Attribute]:
-        """The attributes by name."""
-        return {
+        self.attributes: Mapping[str, Attribute] = {
             item['name']: Attribute(
                 _VALUE_TYPES[item['type'] or 'string'], bool(item['required']),
-                CHOICES.get(item['type']) if self.has_frames else None)
-            for item in self._items if item['attribute']}
-
-    @cached_property
-    def checked_attributes(self) -> tuple[tuple[str, Attribute], ...]:
-        """The attributes that are required or are no strings, without the names of frames."""
-        return tuple(
+                CHOICES.get(item['type']) if has_frames else None)
+            for item in items if item['attribute']}
+        """The attributes by name."""
+        self.checked_attributes = [
             (name, attribute) for name, attribute in self.attributes.items()
             if (attribute.is_required or attribute.value_type is not ValueType.STRING)
-            and (name != 'name' or self.kind is None))
+            and (name != 'name' or self.kind is None)]
+        """The attributes that are required or are no strings, without the names of frames."""
+        self._child_items = [
+            item for item in items if item['name'] not in ('', '*') and not item['attribute']]
+        self.required_children = {item['name'] for item in self._child_items if item['required']}
+        """Tags of the child elements that libsdformat adds where they are missing."""
 
     @cached_property
     def children(self) -> Mapping[object, Definition]:
         """The child elements by tag."""
         children: dict[object, Definition] = {
-            item['name']: self._child(item) for item in self._child_items()}
+            item['name']: self._child(item) for item in self._child_items}
         for kind in Kind:
             if self.identifier in kind.parents:
                 children[kind.label] = definition_of(kind.label, has_frames=self.has_frames)
         return children
 
-    @cached_property
-    def required_children(self) -> frozenset[str]:
-        """Tags of the child elements that libsdformat adds where they are missing."""
-        return frozenset(item['name'] for item in self._child_items() if item['required'])
-
-    def _child_items(self) -> list[re.Match[str]]:
-        return [
-            item for item in self._items
-            if item['name'] not in ('', '*') and not item['attribute']]
-
-    def _child(self, item: re.Match[str]) -> Definition:
+    def _child(self, item: Mapping[str, str]) -> Definition:
         tag, is_required = item['name'], item['required'] == '!'
-        if not item['type']:
-            for identifier in (item['identifier'], f'{self.identifier}/{tag}', tag):
-                if identifier in ELEMENTS or (identifier and item['identifier']):
-                    return definition_of(
-                        identifier, is_required=is_required,
-                        has_frames=self.has_frames and identifier not in _UNREAD)
-        value = ':string' if not item['type'] else item[0][item.start('type') - 1:]
-        return Definition(tag, value, is_required=is_required)
+        if item['type']:
+            return Definition(tag, item['value'], is_required=is_required)
+        for identifier in (item['identifier'], f'{self.identifier}/{tag}', tag):
+            if identifier in ELEMENTS or (identifier and item['identifier']):
+                return definition_of(
+                    identifier, is_required=is_required,
+                    has_frames=self.has_frames and identifier not in _UNREAD)
+        return Definition(tag, ':string', is_required=is_required)
 
 
 @cache
