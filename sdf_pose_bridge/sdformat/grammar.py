@@ -192,6 +192,8 @@ class Definition:
                 CHOICES.get(item['type']) if has_frames else None)
             for item in items if item['attribute']}
         """The attributes by name."""
+        self.has_required_attributes = any(
+            attribute.is_required for attribute in self.attributes.values())
         self.checked_attributes = [
             (name, attribute) for name, attribute in self.attributes.items()
             if (attribute.is_required or attribute.value_type is not ValueType.STRING)

@@ -169,7 +169,7 @@ class _Reader:
         scope: int = NO_ELEMENT, path: str = '', depth: int = 1,
     ) -> None:
         """Read an element, with all that it holds."""
-        if definition.checked_attributes or xml.keys():
+        if definition.has_required_attributes or xml.keys():
             self._check_attributes(xml, definition)
         if definition.is_pose:
             self._read_pose(xml, definition, parent)

@@ -34,13 +34,13 @@ from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
 from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
+from sdf_pose_bridge.sdformat.urdf.robot import gazebo_elements_of
 from sdf_pose_bridge.sdformat.urdf.robot import Inertial
 from sdf_pose_bridge.sdformat.urdf.robot import Joint
 from sdf_pose_bridge.sdformat.urdf.robot import Link
 from sdf_pose_bridge.sdformat.urdf.robot import Robot
 from sdf_pose_bridge.sdformat.urdf.robot import robot_from_tree
 from sdf_pose_bridge.sdformat.urdf.robot import robot_with_different_names
-from sdf_pose_bridge.sdformat.urdf.robot import settings_and_extensions_from_robot
 from sdf_pose_bridge.sdformat.urdf.robot import SHAPES
 from sdf_pose_bridge.sdformat.urdf.values import leading_numbers
 from sdf_pose_bridge.sdformat.urdf.values import numbers_of
@@ -102,7 +102,7 @@ class _Conversion:
         self._sdf = etree.Element('sdf', version='1.11')
         sources.set_parsed_line(self._sdf, root)
         self._model = self._element(self._sdf, 'model', root, name=robot.name)
-        self._settings, self._extensions = settings_and_extensions_from_robot(root)
+        self._gazebo = gazebo_elements_of(root)
         self._links = robot.links_in_order
         self._bases: dict[str, _Base] = {}
         self._find_bases()
@@ -113,8 +113,8 @@ class _Conversion:
     def result(self) -> XmlElement:
         self._replace_lumped_ends_of_joints()
         self._add_links()
-        if self._settings.static is not None:
-            self._element(self._model, 'static', self._root, text=self._settings.static)
+        if self._gazebo.static is not None:
+            self._element(self._model, 'static', self._root, text=self._gazebo.static)
         self._add_extensions(self._model, '')
         self._add_frames()
         self._add_robot_origin()
@@ -124,7 +124,7 @@ class _Conversion:
     # Reading
 
     def _is_reducible(self, joint: Joint) -> bool:
-        return joint.type == 'fixed' and joint.name not in self._settings.kept_joints
+        return joint.type == 'fixed' and joint.name not in self._gazebo.kept_joints
 
     def _find_bases(self) -> None:
         for link in self._links:
@@ -208,7 +208,7 @@ class _Conversion:
         for tag in ('collision', 'visual'):
             self._add_shapes(xml, tag, link, members)
         for member in members:
-            for child in self._extensions.get(member.name, ()):
+            for child in self._gazebo.extensions.get(member.name, ()):
                 self._move_extension(child, member)
             self._add_extensions(xml, member.name)
 
@@ -245,7 +245,7 @@ class _Conversion:
                 return False
             self._sources.warning(joint.xml, f'{msg}; it is fixed here')
             joint_type = 'fixed'
-        elif (joint.type == 'fixed' and joint.name in self._settings.revolute_joints
+        elif (joint.type == 'fixed' and joint.name in self._gazebo.revolute_joints
                 and not self._for_ros):
             joint_type = 'revolute'
         base = self._bases[joint.parent]
@@ -330,7 +330,7 @@ class _Conversion:
     # What <gazebo> elements hold
 
     def _add_extensions(self, xml: XmlElement, reference: str) -> None:
-        for child in self._extensions.pop(reference, ()):
+        for child in self._gazebo.extensions.pop(reference, ()):
             child.tail = None
             xml.append(child)
 
@@ -361,14 +361,14 @@ class _Conversion:
             name = joint.parent
 
     def _replace_lumped_ends_of_joints(self) -> None:
-        for joint in chain.from_iterable(self._extensions.values()):
+        for joint in chain.from_iterable(self._gazebo.extensions.values()):
             for end in child_elements(joint, 'parent', 'child') if joint.tag == 'joint' else ():
                 base = self._bases.get(text_of(end).strip(WHITE_SPACE))
                 if base is not None:
                     end.text = self._counted(base.link.name, end)
 
     def _report_unused_extensions(self) -> None:
-        for reference, children in self._extensions.items():
+        for reference, children in self._gazebo.extensions.items():
             self._sources.warning(
                 children[0], f'what <gazebo reference="{reference}"> holds is left out: the '
                 'converted model has no link or joint of that name')

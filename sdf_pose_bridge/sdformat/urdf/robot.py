@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from collections.abc import Sequence
+from collections.abc import Set
 from itertools import count
 from typing import NamedTuple
 
@@ -116,15 +117,18 @@ class Robot(NamedTuple):
     """The name of each joint by its name in the file."""
 
 
-class Settings(NamedTuple):
-    """What ``<gazebo>`` elements say about the conversion."""
+class GazeboElements(NamedTuple):
+    """What the ``<gazebo>`` elements of a robot hold."""
 
     static: str | None
     """The text of ``<static>`` of the model; None if there is none."""
-    kept_joints: frozenset[str]
+    kept_joints: Set[str]
     """Names of fixed joints that remain joints."""
-    revolute_joints: frozenset[str]
+    revolute_joints: Set[str]
     """Those of them that become revolute joints."""
+    extensions: dict[str, list[XmlElement]]
+    """Elements of SDFormat by the name of the link or joint that they are for, which is empty for
+    the model."""
 
 
 def robot_from_tree(root: XmlElement, sources: Sources) -> Robot:
@@ -332,16 +336,8 @@ def _unused_name(name: str, used: set[str]) -> str:
     return new_name
 
 
-def settings_and_extensions_from_robot(
-    root: XmlElement,
-) -> tuple[Settings, dict[str, list[XmlElement]]]:
-    """
-    Read all ``<gazebo>`` elements.
-
-    :param root: the ``robot`` element.
-    :return: the settings; and the elements of SDFormat by the name of the link or joint that they
-        are for, which is empty for the model.
-    """
+def gazebo_elements_of(root: XmlElement) -> GazeboElements:
+    """Read all ``<gazebo>`` elements of a ``robot`` element."""
     static: str | None = None
     preserved: set[str] = set()
     revolute: set[str] = set()
@@ -357,6 +353,4 @@ def settings_and_extensions_from_robot(
                 preserved.add(reference)
             elif child.tag == 'disableFixedJointLumping' and is_true(child):
                 revolute.add(reference)
-    settings = Settings(
-        static, frozenset(preserved | revolute), frozenset(revolute - preserved))
-    return settings, extensions
+    return GazeboElements(static, preserved | revolute, revolute - preserved, extensions)

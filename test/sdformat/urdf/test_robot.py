@@ -19,8 +19,8 @@ from urdf_texts import shape
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge import scene_at_positions
 from sdf_pose_bridge.problems import MOST_PROBLEMS
-from sdf_pose_bridge.sdformat.urdf.robot import Settings
-from sdf_pose_bridge.sdformat.urdf.robot import settings_and_extensions_from_robot
+from sdf_pose_bridge.sdformat.urdf.robot import gazebo_elements_of
+from sdf_pose_bridge.sdformat.urdf.robot import GazeboElements
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 TWO = link('a') + link('b')
@@ -173,29 +173,30 @@ def test_robot_of_the_name_of_its_link_has_a_frame_beside_that_of_the_link():
 
 
 def read(content):
-    return settings_and_extensions_from_robot(etree.fromstring(robot(content)))
+    return gazebo_elements_of(etree.fromstring(robot(content)))
 
 
 def test_without_any_there_are_no_settings():
-    assert read('') == (Settings(None, frozenset(), frozenset()), {})
+    assert read('') == GazeboElements(None, set(), set(), {})
 
 
 def test_what_is_not_a_setting_is_an_extension_of_what_it_refers_to():
-    _, extensions = read(
-        gazebo('<sensor/><mu1>1</mu1>', 'a') + gazebo('<plugin/>') + gazebo('<light/>', 'a'))
+    extensions = read(
+        gazebo('<sensor/><mu1>1</mu1>', 'a') + gazebo('<plugin/>')
+        + gazebo('<light/>', 'a')).extensions
     assert {name: [each.tag for each in found] for name, found in extensions.items()} == {
         'a': ['sensor', 'light'], '': ['plugin']}
 
 
 def test_a_joint_that_is_preserved_does_not_become_revolute():
-    settings, _ = read(
+    elements = read(
         gazebo('<preserveFixedJoint>true</preserveFixedJoint>', 'j')
         + gazebo('<disableFixedJointLumping>true</disableFixedJointLumping>', 'j')
         + gazebo('<disableFixedJointLumping>true</disableFixedJointLumping>', 'k')
         + gazebo('<preserveFixedJoint>false</preserveFixedJoint>', 'l'))
-    assert settings == Settings(None, frozenset('jk'), frozenset('k'))
+    assert elements == GazeboElements(None, {'j', 'k'}, {'k'}, {})
 
 
 def test_only_the_model_is_static():
-    assert read(gazebo('<static>yes</static>'))[0].static == 'true'
-    assert read(gazebo('<static>yes</static>', 'a'))[0].static is None
+    assert read(gazebo('<static>yes</static>')).static == 'true'
+    assert read(gazebo('<static>yes</static>', 'a')).static is None
