@@ -17,6 +17,7 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.versions import convert
+from sdf_pose_bridge.sdformat.versions import Version
 from sdf_pose_bridge.sdformat.versions import version_from_text
 from sdf_pose_bridge.sdformat.xml_file import xml_from_file
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
@@ -77,7 +78,7 @@ def document_from_file(
         root = sdf_from_urdf(root, sources, is_included=is_included)
         sources.add_tree(path, root, file.lines)
     place = Place(path, sources.line(root))
-    version = version_from_text(_declared_version(root, place), place)
+    version = _declared_version(root, place)
     sources.versions[path] = version
     # A colon may be written as a character reference. Python finds one byte much faster than two.
     sources.may_hold_scoped_names |= b'&' in file.text or (
@@ -87,16 +88,16 @@ def document_from_file(
     return Document(path, root, has_gazebo_elements)
 
 
-def _declared_version(root: XmlElement, place: Place) -> str:
-    place = place._replace(element=f'/{written_tag(root)}')
+def _declared_version(root: XmlElement, place: Place) -> Version:
+    place_of_root = place._replace(element=f'/{written_tag(root)}')
     if root.tag != 'sdf':
         msg = f'the outermost element is <{written_tag(root)}>, it must be <sdf> or <robot>'
-        raise ParsingError(msg, place)
-    version = root.get('version')
-    if version is None:
+        raise ParsingError(msg, place_of_root)
+    text = root.get('version')
+    if text is None:
         msg = '<sdf> declares no version, such as version="1.10"'
-        raise FileReadError(msg, place)
-    return version
+        raise FileReadError(msg, place_of_root)
+    return version_from_text(text, place)
 
 
 def _check_top_model(root: XmlElement, sources: Sources) -> None:

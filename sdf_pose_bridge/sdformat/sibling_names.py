@@ -26,8 +26,6 @@ from sdf_pose_bridge.sdformat.versions import renames_duplicates
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-_ARTICLES = {Kind.ACTOR: 'an', Kind.INERTIAL: 'an'}
-
 
 class SiblingNames:
     """
@@ -69,8 +67,9 @@ class SiblingNames:
             self._renamed.add((parent, kind, name))
             return self._new_name(kind, xml, parent, name)
         path = self._sources.paths[self._builder.file_indices[index]]
-        msg = (f'the name "{name}" belongs to {_ARTICLES.get(other, "a")} {other.label} of this '
-               f'scope already, see {Place(path, self._builder.lines[index])}')
+        article = 'an' if other is Kind.ACTOR else 'a'
+        msg = (f'the name "{name}" belongs to {article} {other.label} of this scope already, '
+               f'see {Place(path, self._builder.lines[index])}')
         self._sources.error_in_name(DuplicateNameError, xml, msg)
         return None
 

@@ -271,8 +271,7 @@ def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
     file = xml_from_file(manifest, usage)
     root = file.root
     warnings += file.warnings
-    best: tuple[int, ...] = ()
-    chosen = None
+    versions = {}
     for entry in child_elements(root, 'sdf'):
         version = version_numbers(entry.get('version', '').strip(WHITE_SPACE))
         if version > NEWEST:
@@ -280,10 +279,9 @@ def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
             msg = f'version {written} of the model is newer than {NEWEST} and skipped'
             place = Place(manifest, entry.sourceline or 0, '/model/sdf')
             warnings.append(SdfWarning('WARNING', msg, place))
-        elif chosen is None or version > best:
-            best, chosen = version, entry
-    if chosen is None:
-        chosen = first_child(root, 'sdf')
+        else:
+            versions[entry] = version
+    chosen = max(versions, key=versions.__getitem__, default=first_child(root, 'sdf'))
     name = '' if chosen is None else text_of(chosen).strip(WHITE_SPACE)
     if root.tag != 'model' or chosen is None or not name:
         msg = 'the manifest names no file: it has no <sdf> in a <model>'
