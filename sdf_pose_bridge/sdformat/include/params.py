@@ -100,12 +100,8 @@ class _Changer:
                 self._change_child(child, tag, target)
 
     def _act(self, action: str, xml: XmlElement, target: XmlElement) -> None:
-        if action == 'modify':
-            self._modify(xml, target)
-        elif action == 'remove':
-            self._remove(xml, target)
-        else:
-            self._replace(xml, target)
+        acts = {'modify': self._modify, 'remove': self._remove, 'replace': self._replace}
+        acts[action](xml, target)
 
     def _add(self, xml: XmlElement, tag: str, element_id: str) -> None:
         name = xml.get('name')
