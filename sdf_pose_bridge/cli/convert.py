@@ -5,14 +5,11 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable
-from collections.abc import Iterator
 from collections.abc import Sequence
 import io
 from itertools import islice
 import re
 import sys
-from typing import NamedTuple
 from typing import TypeAlias
 
 import numpy as np
@@ -33,14 +30,6 @@ NEGATIVE_NUMBER = re.compile(r'^-(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$|^-(inf|nan)',
 
 _Result: TypeAlias = tuple[list[float], ...]
 """The numbers of a pose or a rotation in several formats."""
-
-
-class _Line(NamedTuple):
-    number: int
-    """Number of the line in standard input."""
-    values: list[float]
-    error: str = ''
-    """Why it has no values."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -86,15 +75,16 @@ def run(options: argparse.Namespace) -> int:
     source = formats[options.from_format]
     targets = [formats[options.to_format]] if options.to_format else list(formats.values())
     if options.numbers:
-        numbers = numbers_from_text(' '.join(options.numbers), source)
-        (result,) = _converted([numbers], source, targets)
+        (result,) = _converted([' '.join(options.numbers)], source, targets)
         print(*_texts(result, targets), sep='\n')
         return 0
     if isinstance(sys.stdin, io.TextIOWrapper):
         # Bytes that are not text are an error of their line only.
         sys.stdin.reconfigure(errors='backslashreplace')
     exit_code = 0
-    lines = _lines_from_texts(sys.stdin, source)
+    lines = (
+        (number, text) for number, text in enumerate(sys.stdin, start=1)
+        if text.strip() and not text.lstrip().startswith('#'))
     at_a_time = 1 if sys.stdin.isatty() else LINES_AT_A_TIME
     while batch := list(islice(lines, at_a_time)):
         exit_code |= _print_lines(batch, source, targets)
@@ -135,28 +125,19 @@ def numbers_from_text(text: str, source: Format) -> list[float]:
     return values
 
 
-def _lines_from_texts(texts: Iterable[str], source: Format) -> Iterator[_Line]:
-    for number, text in enumerate(texts, start=1):
-        if text.strip() and not text.lstrip().startswith('#'):
-            try:
-                yield _Line(number, numbers_from_text(text, source))
-            except PoseFormatError as error:
-                yield _Line(number, [], str(error))
-
-
-def _print_lines(lines: Sequence[_Line], source: Format, targets: Sequence[Format]) -> int:
-    """Print the result or the error of each line and return the exit code."""
-    results = iter(_converted_or_errors(
-        [line.values for line in lines if not line.error], source, targets))
+def _print_lines(
+    lines: Sequence[tuple[int, str]], source: Format, targets: Sequence[Format],
+) -> int:
+    """Print the result or the error of each line, by its number, and return the exit code."""
     exit_code = 0
     output = []
-    for line in lines:
-        result = line.error or next(results)
+    results = _converted_or_errors([text for _, text in lines], source, targets)
+    for (number, _), result in zip(lines, results, strict=True):
         if isinstance(result, str):
             exit_code = 1
-            print(f'sdf_pose convert: line {line.number}: {printable(result)}', file=sys.stderr)
+            print(f'sdf_pose convert: line {number}: {printable(result)}', file=sys.stderr)
             # A comment keeps the lines of output beside those of input.
-            output.append(f'# line {line.number} is not converted')
+            output.append(f'# line {number} is not converted')
         else:
             output += _texts(result, targets)
         if len(targets) > 1:
@@ -174,26 +155,22 @@ def _texts(result: _Result, targets: Sequence[Format]) -> list[str]:
 
 
 def _converted(
-    rows: Sequence[list[float]], source: Format, targets: Sequence[Format],
+    texts: Sequence[str], source: Format, targets: Sequence[Format],
 ) -> list[_Result]:
-    """Return the numbers of each row in other formats."""
     convert = converted_poses if source.name in POSE_FORMATS else converted_rotations
-    values = np.array(rows)
+    values = np.array([numbers_from_text(text, source) for text in texts])
     return list(zip(*(
         convert(values, source.name, target.name).tolist() for target in targets), strict=True))
 
 
 def _converted_or_errors(
-    rows: Sequence[list[float]], source: Format, targets: Sequence[Format],
-) -> list[_Result | str]:
-    """Return the numbers of each row in other formats, or its error."""
-    if not rows:
-        return []
+    texts: Sequence[str], source: Format, targets: Sequence[Format],
+) -> Sequence[_Result | str]:
     try:
-        return [*_converted(rows, source, targets)]
+        return _converted(texts, source, targets)
     except PoseFormatError as error:
-        if len(rows) == 1:
+        if len(texts) == 1:
             return [str(error)]
-        half = len(rows) // 2
-        return [*_converted_or_errors(rows[:half], source, targets),
-                *_converted_or_errors(rows[half:], source, targets)]
+        half = len(texts) // 2
+        return [*_converted_or_errors(texts[:half], source, targets),
+                *_converted_or_errors(texts[half:], source, targets)]
