@@ -11,46 +11,24 @@ from collections.abc import Sequence
 import contextlib
 import enum
 import gc
-from itertools import compress
 import os
-from types import MappingProxyType
-from typing import TypeVar
-
-import numpy as np
 
 from sdf_pose_bridge.errors import LimitError
 from sdf_pose_bridge.errors import LoadError
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.frame_graph import frame_graph_from_elements
-from sdf_pose_bridge.scene.frame_graph import FrameGraph
-from sdf_pose_bridge.scene.joints import AxisReferences
-from sdf_pose_bridge.scene.joints import JointEnds
-from sdf_pose_bridge.scene.resolution import axis_in_joint
-from sdf_pose_bridge.scene.resolution import root_poses_from_graph
-from sdf_pose_bridge.scene.resolution import set_automatic_inertials
-from sdf_pose_bridge.scene.scene import Joint
-from sdf_pose_bridge.scene.scene import JointAxis
-from sdf_pose_bridge.scene.scene import Mimic
+from sdf_pose_bridge.scene.resolution import scene_from_graph
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.documents import Document
 from sdf_pose_bridge.sdformat.documents import document_from_file
-from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
-from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
-from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
-from sdf_pose_bridge.sdformat.joints import AxisDetails
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
 from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.reader import elements_from_tree
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
-
-_Details = TypeVar('_Details')
 
 
 class MissingInclude(enum.Enum):
@@ -158,7 +136,7 @@ def _scene(
     elements = elements_from_tree(document.root, sources, shapes=shapes)
     graph = frame_graph_from_elements(elements, sources.usage, sources.problems)
     sources.problems.raise_errors()
-    return _scene_from_graph(document.path, elements, graph, sources.problems)
+    return scene_from_graph(document.path, elements, graph, sources.problems)
 
 
 def _canonical_link(root: XmlElement, sources: Sources) -> str | None:
@@ -180,84 +158,3 @@ def _canonical_link(root: XmlElement, sources: Sources) -> str | None:
     if link == NO_ELEMENT:
         return ''
     return graph.names[link].removeprefix(f'{graph.names[model]}{SEPARATOR}')
-
-
-def _scene_from_graph(
-    path: str, elements: Elements, graph: FrameGraph, problems: Problems,
-) -> Scene:
-    """Resolve the poses, and leave out unresolved elements."""
-    poses = root_poses_from_graph(elements.poses, graph)
-    set_automatic_inertials(poses, elements)
-    count = len(elements.names)
-    is_kept = np.ones(count, dtype=bool)
-    is_kept[list(graph.unresolved)] = False
-    # The last entry is that of index -1.
-    new_index = np.append(np.where(is_kept, np.cumsum(is_kept) - 1, NO_ELEMENT), NO_ELEMENT)
-    new_index_of: list[int] = new_index.tolist()
-
-    def reindexed(old: Sequence[int] | Indices) -> Indices:
-        return new_index[np.asarray(old, dtype=np.intp)[is_kept]].astype(np.int32)
-
-    def kept(details: Mapping[int, _Details]) -> Mapping[int, _Details]:
-        return MappingProxyType({
-            new_index_of[index]: each for index, each in details.items() if is_kept[index]})
-
-    return Scene(
-        path=path,
-        files=tuple(elements.paths),
-        names=tuple(compress(graph.names, is_kept.tolist())),
-        kinds=elements.kinds[is_kept],
-        parents=reindexed(elements.parents),
-        roots=reindexed(graph.roots),
-        poses=poses[is_kept],
-        references=reindexed(graph.references),
-        placements=kept({
-            model: new_index_of[frame] for model, frame in graph.placements.items()
-            if is_kept[frame]}),
-        attachments=reindexed(graph.attachments),
-        bodies=reindexed(graph.bodies),
-        canonical_links=reindexed(graph.canonical_links),
-        static_models=frozenset(
-            model for model, details in kept(elements.models).items() if details.is_static),
-        joints=tuple(
-            _joint(ends, elements, poses, new_index_of)
-            for ends in graph.joints if is_kept[ends.joint]),
-        sensors=kept(elements.sensors),
-        shapes=kept(elements.shapes),
-        lines=elements.lines[is_kept],
-        pose_lines=elements.pose_lines[is_kept],
-        includes=kept(elements.includes),
-        automatic_inertials=frozenset(kept(elements.automatic_inertials)),
-        file_indices=elements.file_indices[is_kept],
-        world_names=kept({
-            index: elements.names[index]
-            for index in np.flatnonzero(elements.kinds == Kind.WORLD).tolist()}),
-        warnings=problems.warnings,
-    )
-
-
-def _joint(
-    ends: JointEnds, elements: Elements, poses: PoseArray, new_index_of: Sequence[int],
-) -> Joint:
-    details = elements.joints[ends.joint]
-    axis, axis2 = (
-        _joint_axis(axis, references, ends.joint, poses, new_index_of)
-        for axis, references in zip(details.axes, ends.axes, strict=True))
-    return Joint(
-        new_index_of[ends.joint], details.type, new_index_of[ends.parent],
-        new_index_of[ends.child], (axis, axis2), details.screw_pitch_m)
-
-
-def _joint_axis(
-    axis: AxisDetails | None, references: AxisReferences, joint: int, poses: PoseArray,
-    new_index_of: Sequence[int],
-) -> JointAxis:
-    if axis is None:
-        return JointAxis((0.0, 0.0, 1.0))
-    mimic = axis.mimic
-    leader = new_index_of[references.leader]
-    return JointAxis(
-        axis_in_joint(axis.xyz, references.expressed_in, joint, poses), axis.lower, axis.upper,
-        None if mimic is None or leader == NO_ELEMENT else Mimic(
-            leader, AXIS_TAGS.index(mimic.axis), mimic.multiplier, mimic.offset,
-            mimic.reference))

@@ -1,13 +1,19 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Resolve poses: from each in the frame that it is relative to, to all in the root."""
+"""Resolve poses and axes, each in the frame that it is relative to, and make the scene."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from collections.abc import Sequence
+from itertools import compress
 import math
+from types import MappingProxyType
+from typing import TypeVar
 
 import numpy as np
 
+from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.chains import poses_along_chains
 from sdf_pose_bridge.geometry.poses import canonical_poses
 from sdf_pose_bridge.geometry.poses import Pose
@@ -17,19 +23,107 @@ from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.geometry.poses import transformed_points
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.frame_graph import FrameGraph
+from sdf_pose_bridge.scene.joints import JointEnds
+from sdf_pose_bridge.scene.scene import Joint
+from sdf_pose_bridge.scene.scene import JointAxis
+from sdf_pose_bridge.scene.scene import Mimic
+from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.elements import Elements
+from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
+
+_Details = TypeVar('_Details')
 
 
-def root_poses_from_graph(poses: PoseArray, graph: FrameGraph) -> PoseArray:
+def scene_from_graph(
+    path: str, elements: Elements, graph: FrameGraph, problems: Problems,
+) -> Scene:
     """
-    Resolve all poses.
+    Resolve all poses, and leave out unresolved elements.
+
+    :param path: path of the file, as it was opened.
+    :param graph: the references of the elements, which are valid.
+    :param problems: has the warnings of the load.
+    """
+    poses = _root_poses(elements.poses, graph)
+    _set_automatic_inertials(poses, elements)
+    count = len(elements.names)
+    is_kept = np.ones(count, dtype=bool)
+    is_kept[list(graph.unresolved)] = False
+    # The last entry is that of index -1.
+    new_index = np.append(np.where(is_kept, np.cumsum(is_kept) - 1, NO_ELEMENT), NO_ELEMENT)
+    new_index_of: list[int] = new_index.tolist()
+
+    def reindexed(old: Sequence[int] | Indices) -> Indices:
+        return new_index[np.asarray(old, dtype=np.intp)[is_kept]].astype(np.int32)
+
+    def kept(details: Mapping[int, _Details]) -> Mapping[int, _Details]:
+        return MappingProxyType({
+            new_index_of[index]: each for index, each in details.items() if is_kept[index]})
+
+    return Scene(
+        path=path,
+        files=tuple(elements.paths),
+        names=tuple(compress(graph.names, is_kept.tolist())),
+        kinds=elements.kinds[is_kept],
+        parents=reindexed(elements.parents),
+        roots=reindexed(graph.roots),
+        poses=poses[is_kept],
+        references=reindexed(graph.references),
+        placements=kept({
+            model: new_index_of[frame] for model, frame in graph.placements.items()
+            if is_kept[frame]}),
+        attachments=reindexed(graph.attachments),
+        bodies=reindexed(graph.bodies),
+        canonical_links=reindexed(graph.canonical_links),
+        static_models=frozenset(
+            model for model, details in kept(elements.models).items() if details.is_static),
+        joints=tuple(
+            _joint(ends, elements, poses, new_index_of)
+            for ends in graph.joints if is_kept[ends.joint]),
+        sensors=kept(elements.sensors),
+        shapes=kept(elements.shapes),
+        lines=elements.lines[is_kept],
+        pose_lines=elements.pose_lines[is_kept],
+        includes=kept(elements.includes),
+        automatic_inertials=frozenset(kept(elements.automatic_inertials)),
+        file_indices=elements.file_indices[is_kept],
+        world_names=kept({
+            index: elements.names[index]
+            for index in np.flatnonzero(elements.kinds == Kind.WORLD).tolist()}),
+        warnings=problems.warnings,
+    )
+
+
+def _joint(
+    ends: JointEnds, elements: Elements, poses: PoseArray, new_index_of: Sequence[int],
+) -> Joint:
+    details = elements.joints[ends.joint]
+    axes = []
+    for axis, (expressed_in, leader) in zip(details.axes, ends.axes, strict=True):
+        if axis is None:
+            axes.append(JointAxis((0.0, 0.0, 1.0)))
+            continue
+        mimic, leader = axis.mimic, new_index_of[leader]
+        axes.append(JointAxis(
+            _axis_in_joint(axis.xyz, expressed_in, ends.joint, poses), axis.lower, axis.upper,
+            None if mimic is None or leader == NO_ELEMENT else Mimic(
+                leader, AXIS_TAGS.index(mimic.axis), mimic.multiplier, mimic.offset,
+                mimic.reference)))
+    return Joint(
+        new_index_of[ends.joint], details.type, new_index_of[ends.parent],
+        new_index_of[ends.child], (axes[0], axes[1]), details.screw_pitch_m)
+
+
+def _root_poses(poses: PoseArray, graph: FrameGraph) -> PoseArray:
+    """
+    Return the pose of each element in its world or implicit root, canonical.
 
     :param poses: shape (n, 7), pose of each element, or of its placement frame, in the frame that
         it is relative to.
-    :return: shape (n, 7), pose of each element in its world or implicit root; unit quaternions
-        with w >= 0.
     """
     edges = _edges_of_model_frames(poses, graph)
     references = graph.references
@@ -41,12 +135,8 @@ def root_poses_from_graph(poses: PoseArray, graph: FrameGraph) -> PoseArray:
     return canonical_poses(resolved)
 
 
-def set_automatic_inertials(root_poses: PoseArray, elements: Elements) -> None:
-    """
-    Move automatic inertials to the centers of mass of their links' collisions.
-
-    :param root_poses: shape (n, 7), pose of each element in its root; changed in place.
-    """
+def _set_automatic_inertials(root_poses: PoseArray, elements: Elements) -> None:
+    """Move automatic inertials to the centers of mass of their links' collisions, in place."""
     collisions: dict[int, list[int]] = {}
     if elements.automatic_inertials:
         for index in np.flatnonzero(elements.kinds == Kind.COLLISION).tolist():
@@ -61,17 +151,10 @@ def set_automatic_inertials(root_poses: PoseArray, elements: Elements) -> None:
         root_poses[index, 3:] = root_poses[link, 3:]
 
 
-def axis_in_joint(
+def _axis_in_joint(
     xyz: tuple[float, float, float], expressed_in: int, joint: int, root_poses: PoseArray,
 ) -> tuple[float, float, float]:
-    """
-    Return the direction of an axis of a joint (``JointAxis::ResolveXyz``).
-
-    :param xyz: the axis as written; not zero.
-    :param expressed_in: the frame that it is expressed in.
-    :param root_poses: shape (n, 7), pose of each element in its root.
-    :return: unit vector in the frame of the joint.
-    """
+    """Return a unit vector in the frame of a joint (``JointAxis::ResolveXyz``)."""
     length = math.hypot(*xyz)
     x, y, z = (component / length for component in xyz)
     if expressed_in == joint:
