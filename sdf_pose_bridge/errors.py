@@ -57,6 +57,8 @@ class SdfError(Exception):
         super().__init__(message, place)
         self.message = message
         self.place = place
+        self._errors: tuple[SdfError, ...] = ()
+        self._warnings: tuple[SdfWarning, ...] = ()
 
     @property
     def file(self) -> str:
@@ -76,12 +78,12 @@ class SdfError(Exception):
     @property
     def errors(self) -> tuple[SdfError, ...]:
         """All errors of the load that this error ended, in file order."""
-        return (self,)
+        return self._errors or (self,)
 
     @property
     def warnings(self) -> tuple[SdfWarning, ...]:
         """All warnings of the load that this error ended, in file order."""
-        return ()
+        return self._warnings
 
     def __str__(self) -> str:
         return f'{self.place}: {self.code}: {self.message}'
@@ -101,16 +103,6 @@ class LoadError(SdfError):
         self.code = errors[0].code
         self._errors = tuple(errors)
         self._warnings = tuple(warnings)
-
-    @property
-    def errors(self) -> tuple[SdfError, ...]:
-        """All errors of the file, in file order."""
-        return self._errors
-
-    @property
-    def warnings(self) -> tuple[SdfWarning, ...]:
-        """All warnings about the file, in file order."""
-        return self._warnings
 
     def __str__(self) -> str:
         return '\n'.join(str(error) for error in self._errors)

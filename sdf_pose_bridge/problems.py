@@ -4,12 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from collections.abc import Hashable
 from collections.abc import Iterable
 from collections.abc import Mapping
 from collections.abc import Sequence
-from typing import Generic
 from typing import TypeVar
 
 from sdf_pose_bridge.errors import LoadError
@@ -78,7 +76,7 @@ class Problems:
     def extend_parent(self) -> None:
         """Add these errors and warnings to those of the whole load."""
         assert self._parent is not None
-        self._parent.extend([*self._errors.problems, *self._warnings.problems])
+        self._parent.extend([*self._errors.values(), *self._warnings.values()])
         self._parent.count_more(self._errors.more, self._warnings.more)
 
     def count_more(self, errors: int, warnings: int) -> None:
@@ -88,7 +86,7 @@ class Problems:
 
     def keeps_warnings(self) -> bool:
         """Return whether another warning would be kept, so that it has to be made."""
-        return len(self._warnings.problems) < MOST_PROBLEMS
+        return len(self._warnings) < MOST_PROBLEMS
 
     def allows_hint(self) -> bool:
         """Return whether a message may end in a hint that takes long to find, and count it."""
@@ -104,7 +102,7 @@ class Problems:
 
         The first error of an included file says which includes led there.
         """
-        errors = self._in_order(self._errors.problems)
+        errors = self._in_order(self._errors.values())
         seen = set()
         for index, error in enumerate(errors):
             if error.file not in seen and error.file in self._includes:
@@ -119,7 +117,7 @@ class Problems:
     @property
     def warnings(self) -> tuple[SdfWarning, ...]:
         """The warnings by file and line; a last one says how many more there are."""
-        warnings = self._in_order(self._warnings.problems)
+        warnings = self._in_order(self._warnings.values())
         if self._warnings.more:
             warnings.append(SdfWarning(
                 'WARNING', f'and {self._warnings.more} more warnings', Place(self._paths[0])))
@@ -131,7 +129,7 @@ class Problems:
 
         :raises LoadError: with the errors and warnings.
         """
-        if self._errors.problems:
+        if self._errors:
             raise LoadError(self.errors, self.warnings)
 
     def _key(self, problem: SdfError | SdfWarning) -> Hashable:
@@ -154,19 +152,13 @@ class Problems:
         return f' ({", ".join(steps)})'
 
 
-class _First(Generic[_Problem]):
-    """The first problems of a kind, each once, and the number of the others."""
+class _First(dict[Hashable, _Problem]):
+    """The first problems of a kind by their keys; ``more`` is the number of the others."""
 
-    def __init__(self) -> None:
-        self.more = 0
-        self._problems: dict[Hashable, _Problem] = {}
-
-    @property
-    def problems(self) -> Collection[_Problem]:
-        return self._problems.values()
+    more = 0
 
     def add(self, problem: _Problem, key: Hashable) -> None:
-        if len(self._problems) < MOST_PROBLEMS:
-            self._problems.setdefault(key, problem)
-        elif key not in self._problems:
+        if len(self) < MOST_PROBLEMS:
+            self.setdefault(key, problem)
+        elif key not in self:
             self.more += 1

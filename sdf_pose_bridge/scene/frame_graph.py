@@ -32,7 +32,6 @@ from sdf_pose_bridge.scene.joints import valid_joints
 from sdf_pose_bridge.scene.name_scopes import IS_FRAME_KIND
 from sdf_pose_bridge.scene.name_scopes import NameScopes
 from sdf_pose_bridge.sdformat.elements import Elements
-from sdf_pose_bridge.sdformat.elements import FrameDetails
 from sdf_pose_bridge.sdformat.elements import ModelDetails
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -165,16 +164,10 @@ class _Builder:
             if not details.is_static:
                 attachments[model] = canonical[model]
         for frame, frame_details in elements.frames.items():
-            attachments[frame] = self._attached_to(frame, frame_details)
+            scope = self._scope_of[frame]
+            attachments[frame] = self._frame(
+                AttachedToError, frame, 'attached_to', frame_details.attached_to, scope, scope)
         return attachments
-
-    def _attached_to(self, frame: int, details: FrameDetails) -> int:
-        scope, name = self._scope_of[frame], details.attached_to
-        found = self._scopes.frame(scope, name) if name else scope
-        if found is None:
-            self._report_unknown(AttachedToError, frame, 'attached_to', name, scope)
-            return scope
-        return found
 
     def _canonical_pointers(self) -> dict[int, int]:
         """Find the canonical link of each model, or the frame that leads to it."""
@@ -200,18 +193,14 @@ class _Builder:
 
     def _canonical_pointer(self, model: int, details: ModelDetails, default: int) -> int:
         name = details.canonical_link
-        if name:
-            found = self._scopes.frame(model, name)
-            if found is not None:
-                return found
-            if not details.is_static:
-                self._report_unknown(CanonicalLinkError, model, 'canonical_link', name, model)
-        elif default == NO_ELEMENT and not details.is_static and (
-                model not in self._elements.missing_includes):
+        if details.is_static:
+            found = self._scopes.frame(model, name) if name else None
+            return default if found is None else found
+        if not name and default == NO_ELEMENT and model not in self._elements.missing_includes:
             msg = (f'model "{self._scopes.names[model]}" has no link and no nested model; only a '
                    'static model may have none')
             self._problems.error(ModelWithoutLinkError(msg, self._elements.place(model)))
-        return default
+        return self._frame(CanonicalLinkError, model, 'canonical_link', name, model, default)
 
     def _canonical_links(self, canonical: Mapping[int, int], bodies: Indices) -> Indices:
         kinds: list[int] = self._elements.kinds.tolist()
@@ -242,9 +231,7 @@ class _Builder:
         if IS_FRAME_KIND[elements.kinds[index]] or (
                 elements.kinds[index] == Kind.COLLISION
                 and int(elements.parents[index]) in self._links_with_automatic_inertial):
-            self._report_unknown(
-                RelativeToError, index, 'relative_to', name, scope,
-                int(elements.pose_lines[index]), 'pose')
+            self._report_unknown(RelativeToError, index, 'relative_to', name, scope)
             return int(elements.parents[index])
         self._unresolved[index] = self._scopes.missing_uri(scope, name)
         if not self._unresolved[index]:
@@ -284,16 +271,28 @@ class _Builder:
 
     # Reports
 
+    def _frame(
+        self, error_class: type[SdfError], index: int, attribute: str, name: str, scope: int,
+        default: int,
+    ) -> int:
+        """Return the frame that an attribute names, and the default if it is empty or wrong."""
+        found = self._scopes.frame(scope, name) if name else default
+        if found is None:
+            self._report_unknown(error_class, index, attribute, name, scope)
+            return default
+        return found
+
     def _report_unknown(
         self, error_class: type[SdfError], index: int, attribute: str, name: str, scope: int,
-        line: int = 0, part: str = '',
     ) -> None:
         uri = self._scopes.missing_uri(scope, name)
         if uri:
             self._unresolved[index] = uri
             return
+        elements = self._elements
         reason = self._scopes.reason_without_frame(scope, name)
-        place = self._elements.place(index, line, part)
+        is_of_pose = attribute == 'relative_to'
+        place = elements.place_of_pose(index) if is_of_pose else elements.place(index)
         self._problems.error(error_class(f'{attribute}="{name}" {reason}', place))
 
     def _add_dependents(
