@@ -32,7 +32,8 @@ _C_NUMBER = re.compile(
 _C_INTEGER = re.compile(r'0x[0-9a-f]+|[+-]?[0-9]+', re.IGNORECASE)
 _STREAM_NUMBER = re.compile(rf'[{WHITE_SPACE}]*([+-]?{DECIMAL})')
 """What a C++ stream takes; it leaves the rest for the next number."""
-_STREAM_INTEGER = re.compile(rf'[{WHITE_SPACE}]*([+-]?[0-9]+)')
+_STREAM_INTEGERS = re.compile(r'([+-]?[0-9]+)(\s+[+-]?[0-9]+|[+-][0-9]+)', re.ASCII)
+"""Two integers, as a C++ stream takes them."""
 _PLAIN_NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,2})?')
 """A number that everybody reads alike."""
 _NOT_IN_DECIMALS = re.compile(rf'[^-+.0-9{WHITE_SPACE}]')
@@ -195,7 +196,11 @@ def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
     if value_type in _INTEGER_RANGES:
         return _integer(stripped, *_INTEGER_RANGES[value_type])
     if value_type is ValueType.TIME:
-        return _streamed_integers(stripped, value_type.count)
+        match = _STREAM_INTEGERS.match(stripped)
+        integers = match.groups() if match else ()
+        return [
+            number for text in integers
+            for number in _integer(text.strip(), *_INTEGER_RANGES[ValueType.INTEGER])]
     return _streamed_numbers(stripped, value_type.count)
 
 
@@ -245,18 +250,6 @@ def _streamed_numbers(text: str, count: int) -> Sequence[float]:
         if text[position:position + 1] in ('e', 'E') and 'e' not in match[1].lower():
             break  # an exponent without digits
         numbers.append(float(match[1]))
-    return numbers
-
-
-def _streamed_integers(text: str, count: int) -> Sequence[float]:
-    numbers: list[float] = []
-    position = 0
-    while len(numbers) < count:
-        match = _STREAM_INTEGER.match(text, position)
-        if match is None or not _integer(match[1], *_INTEGER_RANGES[ValueType.INTEGER]):
-            break
-        numbers.append(int(match[1]))
-        position = match.end()
     return numbers
 
 
