@@ -115,19 +115,18 @@ def _edges(scene: Scene, chosen: Container[int]) -> dict[tuple[int, int], list[s
         if joint.element in chosen:
             edges[joint.parent, joint.element] = [_JOINT]
             edges[joint.element, joint.child] = [_JOINT]
-    defaults = scene.default_references.tolist()
     for element, (reference, default, parent) in enumerate(zip(
-            scene.references.tolist(), defaults, scene.parents.tolist(), strict=True)):
+            scene.references.tolist(), scene.default_references.tolist(), scene.parents.tolist(),
+            strict=True)):
         if element not in chosen or reference < 0:
             continue
-        if scene.kinds[element] == Kind.FRAME and default != parent:
+        is_attached = scene.kinds[element] == Kind.FRAME and default != parent
+        if is_attached:
             edges.setdefault((default, element), []).append(_ATTACHED_TO)
-            if reference == default:
-                continue
-        elif reference == default and element in joints:
-            continue
-        color = _DEFAULT if reference == default else _RELATIVE_TO
-        edges.setdefault((reference, element), []).append(color)
+        if reference != default:
+            edges.setdefault((reference, element), []).append(_RELATIVE_TO)
+        elif not is_attached and element not in joints:
+            edges.setdefault((reference, element), []).append(_DEFAULT)
     return edges
 
 

@@ -7,9 +7,12 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
+from itertools import compress
 import math
 import sys
 from typing import NamedTuple
+
+import numpy as np
 
 from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import add_frame_arguments
@@ -23,13 +26,13 @@ from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.scene.scene import Joint
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 from sdf_pose_bridge.tf.tree import elements_in_model
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfTree
 
 _BOLD, _DIM, _PLAIN = '\x1b[1m', '\x1b[2m', '\x1b[0m'
 _COLORS = {
@@ -94,7 +97,8 @@ def run(options: argparse.Namespace) -> int:
     options.kinds = options.kinds or (SHOWN_KINDS if options.scope else DEFAULT_KINDS)
     for path in options.files:
         try:
-            rows = _rows(scene_of(path, options), options)
+            scene = scene_of(path, options)
+            rows = (_rows_by_scope if options.scope else _rows_of_frames)(scene, options)
         except SdfError as error:
             print_problems(error.errors, error.warnings, sys.stderr)
             exit_code = 1
@@ -112,15 +116,9 @@ def _depth_from_text(text: str) -> int:
     return int(text)
 
 
-def _rows(scene: Scene, options: argparse.Namespace) -> list[_Row]:
-    if options.scope:
-        return _rows_by_scope(scene, options)
+def _rows_of_frames(scene: Scene, options: argparse.Namespace) -> list[_Row]:
     tree = tf_tree_from_scene(scene, tf_options_from_arguments(options))
     print_problems((), tree.warnings, sys.stderr)
-    return _rows_of_frames(scene, tree)
-
-
-def _rows_of_frames(scene: Scene, tree: TfTree) -> list[_Row]:
     root = _Row(tree.root_frame, tree.root_frame, 'root', -1, None)
     # The root frame is row 0, so that the index of a row is that of its frame plus one.
     return [root, *(
@@ -133,16 +131,13 @@ def _rows_of_frames(scene: Scene, tree: TfTree) -> list[_Row]:
 
 def _rows_by_scope(scene: Scene, options: argparse.Namespace) -> list[_Row]:
     """Return the elements of all worlds below those that hold them."""
-    notes = _notes(scene)
-    is_inside = elements_in_model(scene, options.model).tolist()
-    is_shown = [
-        parent < 0 or (kind in options.kinds and is_inside[element])
-        for element, (kind, parent) in enumerate(zip(
-            scene.kinds.tolist(), scene.parents.tolist(), strict=True))]
+    joints = {joint.element: joint for joint in scene.joints}
+    is_shown = (scene.parents < 0) | (
+        elements_in_model(scene, options.model) & np.isin(scene.kinds, options.kinds))
     rows: list[_Row] = []
     # The elements in a hidden one are shown below the next one around it. The last entry is for
     # the parent -1.
-    indices = [-1] * (len(is_shown) + 1)
+    indices = [-1] * (len(scene.names) + 1)
     for element, parent in enumerate(scene.parents.tolist()):
         indices[element] = indices[parent]
         if is_shown[element]:
@@ -151,35 +146,29 @@ def _rows_by_scope(scene: Scene, options: argparse.Namespace) -> list[_Row]:
                 scene.own_name(element), scene.names[element], Kind(scene.kinds[element]).label,
                 indices[parent],
                 None if reference < 0 else scene.relative_pose_of(element, reference),
-                notes[element]))
+                _note(scene, element, joints.get(element))))
             indices[element] = len(rows) - 1
     return rows
 
 
-def _notes(scene: Scene) -> list[str]:
-    """Return what else the file says about the place of each element."""
-    names, joints = scene.names, {joint.element: joint for joint in scene.joints}
-    notes = []
-    for element, (reference, default) in enumerate(zip(
-            scene.references.tolist(), scene.default_references.tolist(), strict=True)):
-        parts = []
-        if element in joints:
-            joint = joints[element]
-            parts.append(f'{joint.type}: {names[joint.parent]} -> {names[joint.child]}')
-        elif scene.kinds[element] == Kind.FRAME and default != scene.parents[element]:
-            parts.append(f'attached to {names[default]}')
-        if reference != default:
-            parts.append(f'relative to {names[reference]}')
-        notes.append(', '.join(parts))
-    return notes
+def _note(scene: Scene, element: int, joint: Joint | None) -> str:
+    """Return what else the file says about the place of an element."""
+    names, default = scene.names, scene.default_references[element]
+    parts = []
+    if joint is not None:
+        parts.append(f'{joint.type}: {names[joint.parent]} -> {names[joint.child]}')
+    elif scene.kinds[element] == Kind.FRAME and default != scene.parents[element]:
+        parts.append(f'attached to {names[default]}')
+    if scene.references[element] != default:
+        parts.append(f'relative to {names[scene.references[element]]}')
+    return ', '.join(parts)
 
 
 def _lines(rows: Sequence[_Row], options: argparse.Namespace) -> list[_Line]:
     """Walk the rows from parents to children, in the order of the file, without recursion."""
-    is_match = [
-        bool(options.match) and fnmatchcase(row.full_name, options.match) for row in rows]
+    is_match = [fnmatchcase(row.full_name, options.match) for row in rows]
     is_shown = [not options.match] * len(rows)
-    for index in (index for index, matches in enumerate(is_match) if matches):
+    for index in compress(range(len(rows)), is_match):
         while index >= 0 and not is_shown[index]:
             is_shown[index] = True
             index = rows[index].parent

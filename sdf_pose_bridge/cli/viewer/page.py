@@ -119,7 +119,8 @@ class Page:
         self._hidden = {'collisions'}
         self._listed: object = None
         self._server.on_client_connect(
-            lambda client: self._when(client.camera.on_update, self._drawing.look_from))
+            lambda client: self._when(
+                client.camera.on_update, partial(self._drawing.look_from, client.camera)))
 
     @property
     def address(self) -> str:
@@ -190,17 +191,17 @@ class Page:
                 self._show_frame()
             self._drawing.place(self._scene, self._tree)
 
-    def _when(self, happens: Callable[..., object], action: Callable[[Any], object]) -> None:
-        """Let :meth:`act` call a function with each event."""
-        async def put(event: object) -> None:
-            self._actions.put(partial(action, event))
+    def _when(self, happens: Callable[..., object], action: Callable[[], object]) -> None:
+        """Let :meth:`act` call a function for each event."""
+        async def put(_: object) -> None:
+            self._actions.put(action)
         happens(put)
 
     def _draw(self) -> list[str]:
         hidden = [element for name, element in self._models.items() if name in self._hidden]
         is_shown = self._is_in_model & ~np.isin(self._tops, hidden)
         reasons = self._drawing.draw(self._scene, self._tree, is_shown, self._hidden)
-        self._when(self._drawing.gizmo.on_update, lambda _: self._drag())
+        self._when(self._drawing.gizmo.on_update, self._drag)
         self._show_frame()
         lines = [
             f'{"1 shape is" if count == 1 else f"{count} shapes are"} not drawn as the file means '
@@ -234,7 +235,7 @@ class Page:
         slider = self._server.gui.add_slider(
             f'{printable(name)} [{units.angle if turns else units.length}]', lower * factor,
             upper * factor, max((upper - lower) * factor / 1000.0, 1e-9), value * factor)
-        self._when(slider.on_update, lambda _: self._positions.update(
+        self._when(slider.on_update, lambda: self._positions.update(
             {name: slider.value / factor}))
         return slider
 
@@ -262,25 +263,25 @@ class Page:
                     self._add_slider(name, turns=turns, lower=lower, upper=upper)
                     for name, (turns, lower, upper) in ranges.items()]
                 zero = gui.add_button('all at zero')
-            self._when(zero.on_click, lambda _: _set_to_zero(sliders))
+            self._when(zero.on_click, partial(_set_to_zero, sliders))
         self._folder_of_frames = gui.add_folder('Frames')
         with self._folder_of_frames:
             self._search = gui.add_text('search', '')
             self._rows = gui.add_html('')
-        self._when(self._search.on_update, lambda _: self._show_rows())
+        self._when(self._search.on_update, self._show_rows)
         # The rows are labels of these buttons, which are not shown: HTML cannot do more.
         self._buttons: list[Any] = []
         with gui.add_folder('Selected frame'):
             self._choice = gui.add_dropdown('in', (self._tree.root_frame,))
             self._description = gui.add_html('')
             self._write = gui.add_button('write to file', visible=False)
-        self._when(self._choice.on_update, lambda _: self._show_frame())
-        self._when(self._write.on_click, lambda _: self._write_pose())
+        self._when(self._choice.on_update, self._show_frame)
+        self._when(self._write.on_click, self._write_pose)
 
     def _add_switch(self, name: str) -> None:
         switch = self._server.gui.add_checkbox(printable(name), name not in self._hidden)
 
-        def change(_: object) -> None:
+        def change() -> None:
             (self._hidden.discard if switch.value else self._hidden.add)(name)
             self._draw()
         self._when(switch.on_update, change)
@@ -309,7 +310,7 @@ class Page:
             content += f'{len(ids) - len(rows)} more, to be found by the search'
         self._rows.content = f'{_ROWS_STYLE}<div class="rows">{content}</div>'
 
-    def _select_row(self, number: int, _: object) -> None:
+    def _select_row(self, number: int) -> None:
         # What was clicked may be gone by now.
         if number < len(self._row_frames):
             self._select(self._row_frames[number])
