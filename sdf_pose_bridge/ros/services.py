@@ -31,9 +31,7 @@ from sdf_pose_bridge.ros.loaded_scene import LoadedScene
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.scene.comparison import Change
 from sdf_pose_bridge.scene.comparison import differences_of_scenes
-from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.pose_writing import replace_file
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge_interfaces.srv import ConvertPoses
@@ -137,6 +135,9 @@ def set_pose(
     :raises SdfError: if the request is no pose, no pose in a file can say it, or the file cannot
         be written.
     """
+    # Imported here because it takes 7 ms, and few nodes write files.
+    from sdf_pose_bridge.scene.pose_setting import pose_change
+    from sdf_pose_bridge.sdformat.pose_writing import replace_file
     if not settings.sdf_file:
         msg = 'the pose stands in the parameter robot_description, not in a file'
         raise PoseNotSetError(msg, Place(str(loaded.path)))
