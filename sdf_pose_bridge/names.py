@@ -76,6 +76,12 @@ def shortened_message(message: str) -> str:
         lambda match: f'"{shortened(match[1])}"', shortened(message, _LONGEST_MESSAGE))
 
 
+def quoted_names(names: Sequence[str], most: int) -> str:
+    """Return the first names for a message, in double quotes, and how many more there are."""
+    shown = ', '.join(f'"{shortened(name)}"' for name in names[:most])
+    return f'{shown} and {len(names) - most} more' if len(names) > most else shown
+
+
 def printable(text: str) -> str:
     r"""
     Return text for one line of a log or a terminal.

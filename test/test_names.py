@@ -10,6 +10,7 @@ from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import is_reserved
 from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.names import shortened
 
@@ -24,6 +25,12 @@ def test_name_is_reserved(name):
 ])
 def test_name_is_not_reserved(name):
     assert not is_reserved(name)
+
+
+@pytest.mark.parametrize(('most', 'text'), [
+    (3, '"a", "b", "c"'), (4, '"a", "b", "c"'), (1, '"a" and 2 more')])
+def test_names_in_a_message(most, text):
+    assert quoted_names(['a', 'b', 'c'], most) == text
 
 
 def test_name_in_a_scope():

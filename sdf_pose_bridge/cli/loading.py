@@ -10,7 +10,11 @@ from collections.abc import Mapping
 import sys
 from typing import NamedTuple
 
+from sdf_pose_bridge.cli.printing import DEGREES
+from sdf_pose_bridge.cli.printing import METRES
+from sdf_pose_bridge.cli.printing import MILLIMETRES
 from sdf_pose_bridge.cli.printing import print_problems
+from sdf_pose_bridge.cli.printing import RADIANS
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.scene.loading import load_text
@@ -130,8 +134,12 @@ def add_frame_arguments(parser: argparse.ArgumentParser) -> None:
         default=FrameNames.AUTO.value,
         help='scoped: the names of all models around an element are in its frame id; relative: '
              'all but that of the top-level model; auto: relative for a model file')
-    parser.add_argument('--degrees', action='store_true', help='angles in degrees, not radians')
-    parser.add_argument('--mm', action='store_true', help='lengths in millimetres, not metres')
+    parser.add_argument(
+        '--degrees', dest='angle_unit', action='store_const', const=DEGREES, default=RADIANS,
+        help='angles in degrees, not radians')
+    parser.add_argument(
+        '--mm', dest='length_unit', action='store_const', const=MILLIMETRES, default=METRES,
+        help='lengths in millimetres, not metres')
 
 
 def add_model_argument(parser: argparse.ArgumentParser) -> None:

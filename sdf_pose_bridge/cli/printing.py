@@ -22,7 +22,6 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.tree import TfTree
 
 _RED, _YELLOW, _BOLD, _PLAIN = '\x1b[31m', '\x1b[33m', '\x1b[1m', '\x1b[0m'
-_DEGREES_PER_RADIAN = 57.29577951308232
 
 
 def is_colored(stream: TextIO) -> bool:
@@ -56,23 +55,24 @@ class CommandError(Exception):
     """The reason, in a sentence, why a command fails."""
 
 
+class Unit(NamedTuple):
+    """A unit of lengths or angles, and how many digits of it are shown."""
+
+    name: str
+    factor: float
+    """How many of it a metre or a radian is."""
+    digits: int
+
+
+METRES, MILLIMETRES = Unit('m', 1.0, 4), Unit('mm', 1000.0, 1)
+RADIANS, DEGREES = Unit('rad', 1.0, 4), Unit('deg', 57.29577951308232, 2)
+
+
 class Units(NamedTuple):
     """Units of the poses that a command shows."""
 
-    is_mm: bool
-    """Whether lengths are in millimetres, not metres."""
-    is_degrees: bool
-    """Whether angles are in degrees, not radians."""
-
-    @property
-    def length(self) -> str:
-        """Name of the unit of lengths."""
-        return 'mm' if self.is_mm else 'm'
-
-    @property
-    def angle(self) -> str:
-        """Name of the unit of angles."""
-        return 'deg' if self.is_degrees else 'rad'
+    length: Unit = METRES
+    angle: Unit = RADIANS
 
     def texts(self, pose: Pose) -> list[str]:
         """
@@ -80,13 +80,11 @@ class Units(NamedTuple):
 
         :return: x, y, z, roll, pitch and yaw, rounded.
         """
-        length = (1000.0, 1) if self.is_mm else (1.0, 4)
-        angle = (_DEGREES_PER_RADIAN, 2) if self.is_degrees else (1.0, 4)
         values = (*pose[:3], *rpy_from_quaternion(pose[3:]))
         # To add zero leaves no negative zeros.
         return [
-            f'{round(value * factor, digits) + 0.0:.{digits}f}'
-            for value, (factor, digits) in zip(values, 3 * [length] + 3 * [angle], strict=True)]
+            f'{round(value * unit.factor, unit.digits) + 0.0:.{unit.digits}f}'
+            for value, unit in zip(values, 3 * [self.length] + 3 * [self.angle], strict=True)]
 
 
 def add_output_argument(

@@ -105,7 +105,7 @@ def run(options: argparse.Namespace) -> int:
             continue
         if len(options.files) > 1:
             print(printable(path))
-        _print_lines(_lines(rows, options), Units(options.mm, options.degrees))
+        _print_lines(_lines(rows, options), Units(options.length_unit, options.angle_unit))
     return exit_code
 
 
@@ -209,8 +209,7 @@ def _print_lines(lines: Sequence[_Line], units: Units) -> None:
     kind_width = max((len(line.row.kind) for line in lines), default=0)
     colors = _COLORS if is_colored(sys.stdout) else {}
     bold, dim, plain = (_BOLD, _DIM, _PLAIN) if is_colored(sys.stdout) else ('', '', '')
-    length, angle = units.length, units.angle
-    labels = (f'x {length}', 'y', 'z', f'roll {angle}', 'pitch', 'yaw')
+    labels = (f'x {units.length.name}', 'y', 'z', f'roll {units.angle.name}', 'pitch', 'yaw')
     heads = ' '.join(f'{label:>10}' for label in labels)
     print(f'{"frame":{width}}  {"kind":{kind_width}}  {heads}')
     for branches, row, hidden, is_match in lines:

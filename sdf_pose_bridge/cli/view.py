@@ -87,7 +87,8 @@ def run(options: argparse.Namespace) -> int:
     scene = scene_of(path, options, shapes=True)
     page = viewer.Page(
         0 if options.output else options.port, tf_options_from_arguments(options),
-        Units(options.mm, options.degrees), resource_finder(options.resource_paths, os.environ),
+        Units(options.length_unit, options.angle_unit),
+        resource_finder(options.resource_paths, os.environ),
         partial(set_pose, options=options) if options.edit else None)
     try:
         for line in page.show(scene):

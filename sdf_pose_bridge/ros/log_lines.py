@@ -9,7 +9,7 @@ from itertools import compress
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.scene import Scene
@@ -50,9 +50,7 @@ def names_in_line(names: Sequence[str]) -> str:
 
     :return: at most ``MOST_LINES`` names, and how many more there are.
     """
-    shown = ', '.join(f'"{shortened(name)}"' for name in names[:MOST_LINES])
-    rest = len(names) - MOST_LINES
-    return printable(f'{shown} and {rest} more' if rest > 0 else shown)
+    return printable(quoted_names(names, MOST_LINES))
 
 
 def lines_about_lost_frames(before: TfTree, after: TfTree) -> list[str]:

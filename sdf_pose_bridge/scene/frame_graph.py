@@ -25,6 +25,7 @@ from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.chains import cycles_from_pointers
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
 from sdf_pose_bridge.geometry.chains import Indices
+from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.joints import JointEnds
@@ -316,11 +317,9 @@ class _Builder:
             return
         for uri in sorted(set(self._unresolved.values()) - {''}):
             indices = sorted(index for index, cause in self._unresolved.items() if cause == uri)
-            names = ', '.join(
-                f'"{self._scopes.names[index]}"' for index in indices[:_MOST_NAMES_SHOWN])
-            rest = len(indices) - _MOST_NAMES_SHOWN
+            names = [self._scopes.names[index] for index in indices]
             msg = (f'because "{uri}" is missing, {len(indices)} more elements are left out, which '
-                   f'refer to it: {names}{f" and {rest} more" if rest > 0 else ""}')
+                   f'refer to it: {quoted_names(names, _MOST_NAMES_SHOWN)}')
             self._problems.warning(msg, self._elements.place(indices[0]))
 
     def _break_cycles(

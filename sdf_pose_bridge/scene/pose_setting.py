@@ -29,6 +29,7 @@ from sdf_pose_bridge.geometry.poses import pose_inverse
 from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
+from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.scene.comparison import TOLERANCE
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -184,10 +185,8 @@ def _check_instances(
         if other != element and scene.parents[other] >= 0
         and _place_of_pose(scene, other) == place]
     if others:
-        shown = ', '.join(f'"{name}"' for name in others[:_MOST_NAMES_SHOWN])
-        rest = len(others) - _MOST_NAMES_SHOWN
-        msg = (f'the same pose in the file also places {shown}'
-               f'{f" and {rest} more" if rest > 0 else ""}, which would move too')
+        msg = (f'the same pose in the file also places {quoted_names(others, _MOST_NAMES_SHOWN)}, '
+               'which would move too')
         raise PoseNotSetError(msg, at)
 
 

@@ -4,13 +4,15 @@
 
 import math
 
+from sdf_pose_bridge.cli.printing import DEGREES
+from sdf_pose_bridge.cli.printing import MILLIMETRES
 from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.geometry.poses import Pose
 
 
 def test_pose_is_written_in_units():
     pose = Pose(1.25, -0.00001, 3.0, 0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5))
-    assert Units(is_mm=False, is_degrees=False).texts(pose) == [
+    assert Units().texts(pose) == [
         '1.2500', '0.0000', '3.0000', '0.0000', '0.0000', '1.5708']
-    assert Units(is_mm=True, is_degrees=True).texts(pose) == [
+    assert Units(MILLIMETRES, DEGREES).texts(pose) == [
         '1250.0', '0.0', '3000.0', '0.00', '0.00', '90.00']

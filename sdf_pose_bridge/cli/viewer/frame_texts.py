@@ -56,8 +56,8 @@ def html_of_frame(scene: Scene, tree: TfTree, frame: int, reference: int, units:
         if other not in (NO_PARENT, frame):
             texts = units.texts(relative_pose(poses[other], poses[frame]))
             lines.append(
-                f'in <b>{escaped(ids[other])}</b><br>xyz {" ".join(texts[:3])} {units.length}'
-                f'<br>rpy {" ".join(texts[3:])} {units.angle}')
+                f'in <b>{escaped(ids[other])}</b><br>xyz {" ".join(texts[:3])} {units.length.name}'
+                f'<br>rpy {" ".join(texts[3:])} {units.angle.name}')
     pose = relative_pose(poses[reference], poses[frame])
     # What differs less than this comes from the computation. To add zero leaves no negative zeros.
     rpy, quat, franka = (

@@ -8,7 +8,6 @@ Readers of mesh formats trust their files.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 import io
 import multiprocessing
 from multiprocessing.connection import Connection
@@ -182,7 +181,7 @@ def mesh_from_file(path: str, submesh: str) -> Mesh:
     :return: its surfaces, or why there are none.
     """
     try:
-        return Mesh(_checked(list(_parts(_scene_from_file(path, submesh), submesh))))
+        return Mesh(_parts(_scene_from_file(path, submesh), submesh))
     except SdfError as error:
         return Mesh(reason=error.message)
     except MemoryError:
@@ -219,9 +218,9 @@ def _scene_from_file(path: str, submesh: str) -> trimesh.Scene:
         io.BytesIO(text), file_type=suffix[1:], resolver=_NamedFiles(path, usage), **options)
 
 
-def _parts(scene: trimesh.Scene, submesh: str) -> Iterator[MeshPart]:
+def _parts(scene: trimesh.Scene, submesh: str) -> tuple[MeshPart, ...]:
     """Find the surfaces of a mesh."""
-    is_found = False
+    parts = []
     for node in scene.graph.nodes_geometry:
         matrix, name = scene.graph[node]
         mesh = scene.geometry[name]
@@ -229,26 +228,22 @@ def _parts(scene: trimesh.Scene, submesh: str) -> Iterator[MeshPart]:
         names = (node, name, node.partition('-mesh')[0], name.partition('-mesh')[0])
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces) and (
                 not submesh or submesh in names):
-            is_found = True
             unit_m = trimesh.units.unit_conversion(mesh.units or 'meters', 'meters')
             points = unit_m * trimesh.transform_points(mesh.vertices, matrix)
-            yield MeshPart(
-                np.asarray(points, np.float32), np.asarray(mesh.faces, np.uint32), _rgba(mesh))
-    if not is_found:
+            parts.append(MeshPart(
+                np.asarray(points, np.float32), np.asarray(mesh.faces, np.uint32), _rgba(mesh)))
+    triangle_count = sum(len(part.faces) for part in parts)
+    msg = ''
+    if not parts:
         names_of_parts = ', '.join(map(printable, sorted(scene.geometry))) or 'no surface'
         msg = (f'it has no part "{submesh}", but {names_of_parts}' if submesh
                else 'it has no surface')
-        raise ValueError(msg)
-
-
-def _checked(parts: list[MeshPart]) -> tuple[MeshPart, ...]:
     # A coordinate that is not a number is too large, too.
-    if not all(np.abs(part.points).max() <= _LARGEST_M for part in parts):
+    elif not all(np.abs(part.points).max() <= _LARGEST_M for part in parts):
         msg = f'a coordinate is larger than {_LARGEST_M:g} m'
-        raise ValueError(msg)
-    triangle_count = sum(len(part.faces) for part in parts)
-    if triangle_count > MOST_TRIANGLES:
+    elif triangle_count > MOST_TRIANGLES:
         msg = f'it has {triangle_count} triangles, more than {MOST_TRIANGLES}'
+    if msg:
         raise ValueError(msg)
     return tuple(parts)
 

@@ -229,12 +229,11 @@ class Page:
         self._tree = tf_tree_from_scene(self._scene, self._options)
 
     def _add_slider(self, name: str, *, turns: bool, lower: float, upper: float) -> Any:
-        units = self._units
-        factor = (math.degrees(units.is_degrees) if turns else 1000.0 * units.is_mm) or 1.0
+        unit, factor, _ = self._units.angle if turns else self._units.length
         value = min(max(self._positions.get(name, 0.0), lower), upper)
         slider = self._server.gui.add_slider(
-            f'{printable(name)} [{units.angle if turns else units.length}]', lower * factor,
-            upper * factor, max((upper - lower) * factor / 1000.0, 1e-9), value * factor)
+            f'{printable(name)} [{unit}]', lower * factor, upper * factor,
+            max((upper - lower) * factor / 1000.0, 1e-9), value * factor)
         self._when(slider.on_update, lambda: self._positions.update(
             {name: slider.value / factor}))
         return slider

@@ -36,7 +36,7 @@ def described(scene):
         text = html_of_frame(
             scene, tree, tree.frame_ids.index(frame),
             ROOT_IS_PARENT if reference is None else tree.frame_ids.index(reference),
-            Units(False, False))
+            Units())
         return html.unescape(re.sub('<[^>]*>', '\n', text))
     return describe
 
@@ -75,7 +75,7 @@ def test_optical_frame_has_no_name_in_the_file(described):
 def test_name_is_text(scene):
     tree = tf_tree_from_scene(scene)
     text = html_of_frame(
-        scene, tree, tree.frame_ids.index(HOSTILE), ROOT_IS_PARENT, Units(False, False))
+        scene, tree, tree.frame_ids.index(HOSTILE), ROOT_IS_PARENT, Units())
     assert '<img' not in text
     assert html.escape(HOSTILE) in text
 

@@ -25,7 +25,7 @@ def put(scene, element, pose, measured, *, dry_run):
 @pytest.fixture
 def page():
     """A page, the frames of which can be dragged."""
-    shown = Page(0, TfOptions(), Units(False, False), resource_finder([], {}), put)
+    shown = Page(0, TfOptions(), Units(), resource_finder([], {}), put)
     yield shown
     shown.close()
 
