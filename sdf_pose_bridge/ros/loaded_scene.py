@@ -35,6 +35,8 @@ from sdf_pose_bridge.tf.tree import TfTree
 class LoadedScene(NamedTuple):
     """A file, or a text, that was read."""
 
+    settings: Settings
+    """The settings that it was read with; later ones may differ where that needs no load."""
     path: Path
     """The path of the file; of a text, the name of its parameter."""
     text: str | bytes
@@ -74,6 +76,7 @@ def loaded_scene_from_settings(
     joint_positions = None if tree.moving is None else JointPositions(
         scene, tree.moving.dofs, settings.frame_names, settings.model)
     return LoadedScene(
+        settings=settings,
         path=path,
         text=text,
         description='' if tree.world else unicode_text(text),
@@ -89,19 +92,18 @@ def loaded_scene_from_settings(
     )
 
 
-def scene_with_shapes(loaded: LoadedScene, settings: Settings) -> Scene | None:
+def scene_with_shapes(loaded: LoadedScene) -> Scene | None:
     """
     Resolve the text of a loaded scene again, with its shapes.
 
     Shapes are not read with the rest because that would make each load a quarter longer, or more,
     and few nodes need them.
 
-    :param settings: the settings that it was loaded with.
     :return: the scene with shapes; None if a file that it includes has changed, so that it is not
         valid or has other elements or poses.
     """
     try:
-        scene = _scene_from_text(loaded.text, loaded.path, settings, shapes=True)
+        scene = _scene_from_text(loaded.text, loaded.path, loaded.settings, shapes=True)
     except SdfError:
         return None
     is_same = scene.names == loaded.scene.names and np.array_equal(

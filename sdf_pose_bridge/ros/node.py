@@ -68,13 +68,11 @@ class SdfPoseBridge:
     :param frames: the frames of the scene, which are published.
     """
 
-    def __init__(
-        self, node: Node, frames: PublishedFrames, settings: Settings, loaded: LoadedScene,
-    ) -> None:
+    def __init__(self, node: Node, frames: PublishedFrames, loaded: LoadedScene) -> None:
         self._node = node
         self._logger = node.get_logger()
         self._frames = frames
-        self._settings = settings
+        settings = self._settings = loaded.settings
         self._loaded = loaded
         self._failure: list[str] = []
         # A failure that was not reported yet, because the file may still be being written.
@@ -115,7 +113,7 @@ class SdfPoseBridge:
         # With the quality of service that it has in robot_state_publisher.
         self._robot_description = TextPublisher(node, 'robot_description')
         self._publish_robot_description()
-        self._visuals = VisualPublisher(node, loaded, settings)
+        self._visuals = VisualPublisher(node, loaded)
 
     # Loading
 
@@ -124,7 +122,8 @@ class SdfPoseBridge:
 
     async def _show(self, loaded: LoadedScene) -> None:
         """Publish a scene, with the topics that the settings ask for."""
-        frames = await _frames_of_scene(self._node, self._settings, loaded, self._frames)
+        frames = await _frames_of_scene(
+            self._node, loaded, self._settings.pose_topics, self._frames)
         before, self._loaded, self._frames = self._loaded, loaded, frames
         self._follow_joints()
         if loaded is not before:
@@ -135,7 +134,7 @@ class SdfPoseBridge:
                 self._logger.warning(line)
             self._report_success()
             self._publish_robot_description()
-            self._visuals.replace(loaded, self._settings)
+            self._visuals.replace(loaded)
 
     def _follow_joints(self) -> None:
         """Let ``joint_states`` move the frames, if joints follow it."""
@@ -217,12 +216,12 @@ class SdfPoseBridge:
         self, request: SetPose.Request, response: SetPose.Response,
     ) -> SetPose.Response:
         """Write a measured pose, and answer when it is published."""
-        loaded, settings = self._loaded, self._settings
+        loaded = self._loaded
         try:
             answer: SetPose.Response = await run_in_thread(
-                self._node, lambda: set_pose(request, loaded, settings))
+                self._node, lambda: set_pose(request, loaded))
             if not request.dry_run:
-                await self._show(await self._load(settings))
+                await self._show(await self._load(self._settings))
         except Exception as error:  # noqa: BLE001 - the client must be answered
             response.message = '; '.join(self._lines_from_error(error))
             return response
@@ -307,26 +306,24 @@ class SdfPoseBridge:
                 f'everything takes {1e3 * seconds:.0f} ms', throttle_duration_sec=60.0)
 
 
-async def start_bridge(
-    node: Node, frames: PublishedFrames, settings: Settings, loaded: LoadedScene,
-) -> None:
+async def start_bridge(node: Node, frames: PublishedFrames, loaded: LoadedScene) -> None:
     """
     Publish a scene on all topics that it does not have yet, and serve it.
 
     :param node: the node, with declared parameters and an executor.
     :param frames: the frames of the scene, which are published on ``/tf_static``.
     """
-    frames = await _frames_of_scene(node, settings, loaded, frames)
+    frames = await _frames_of_scene(node, loaded, loaded.settings.pose_topics, frames)
     await frames.publish_topics()
-    SdfPoseBridge(node, frames, settings, loaded)
+    SdfPoseBridge(node, frames, loaded)
 
 
 async def _frames_of_scene(
-    node: Node, settings: Settings, loaded: LoadedScene, before: PublishedFrames,
+    node: Node, loaded: LoadedScene, patterns: Sequence[str], before: PublishedFrames,
 ) -> PublishedFrames:
     """Return the frames of a scene, with their topics, which are not published yet."""
     topics: PoseTopics = await run_in_thread(node, lambda: pose_topics_from_patterns(
-        loaded.tree.frame_ids, settings.pose_topics, node.get_fully_qualified_name()))
+        loaded.tree.frame_ids, patterns, node.get_fully_qualified_name()))
     if topics.warning:
         node.get_logger().warning(topics.warning)
     if node.get_logger().is_enabled_for(LoggingSeverity.DEBUG):

@@ -116,7 +116,7 @@ def _exit_code_from_node(node: Node) -> int:
     gc.enable()
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    start = executor.create_task(start_bridge, node, frames, settings, loaded)
+    start = executor.create_task(start_bridge, node, frames, loaded)
     _spin_until_signal(executor, node, start)
     executor.shutdown()
     return 0

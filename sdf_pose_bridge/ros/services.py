@@ -28,7 +28,6 @@ from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.rotations import RotationError
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.loaded_scene import LoadedScene
-from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.scene.comparison import Change
 from sdf_pose_bridge.scene.comparison import differences_of_scenes
 from sdf_pose_bridge.scene.scene import Scene
@@ -123,14 +122,11 @@ def answer_to_lookup_pose(
     return response
 
 
-def set_pose(
-    request: SetPose.Request, loaded: LoadedScene, settings: Settings,
-) -> SetPose.Response:
+def set_pose(request: SetPose.Request, loaded: LoadedScene) -> SetPose.Response:
     """
     Write into a file that a frame is where it was measured, unless it is a dry run.
 
     :param loaded: the scene that is published.
-    :param settings: the settings that it was loaded with.
     :return: the answer: what changes. With it the file is valid and can be published.
     :raises SdfError: if the request is no pose, no pose in a file can say it, or the file cannot
         be written.
@@ -138,7 +134,7 @@ def set_pose(
     # Imported here because it takes 7 ms, and few nodes write files.
     from sdf_pose_bridge.scene.pose_setting import pose_change
     from sdf_pose_bridge.sdformat.pose_writing import replace_file
-    if not settings.sdf_file:
+    if not loaded.settings.sdf_file:
         msg = 'the pose stands in the parameter robot_description, not in a file'
         raise PoseNotSetError(msg, Place(str(loaded.path)))
     asked, reference = _pose_from_request(request, loaded), request.pose.header.frame_id
@@ -146,10 +142,10 @@ def set_pose(
     positions = None if loaded.joint_positions is None else loaded.joint_positions.values.copy()
 
     def scene_with(texts: Mapping[str, bytes]) -> Scene:
-        return loaded_scene_from_settings(settings, texts).scene
+        return loaded_scene_from_settings(loaded.settings, texts).scene
 
     def measured(scene: Scene, element: int) -> Pose:
-        tree = tf_tree_from_scene(scene, settings.tf_options)
+        tree = tf_tree_from_scene(scene, loaded.settings.tf_options)
         return PoseLookup(scene, tree, positions).pose_of_element(element, reference)
 
     scene = loaded.scene

@@ -21,7 +21,6 @@ from sdf_pose_bridge.ros.background import run_in_thread
 from sdf_pose_bridge.ros.loaded_scene import LoadedScene
 from sdf_pose_bridge.ros.loaded_scene import scene_with_shapes
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
-from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.publishers import new_publisher
 from sdf_pose_bridge.ros.publishers import Topic
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
@@ -37,27 +36,26 @@ class VisualPublisher:
     scene that replaces another one while somebody listens.
     """
 
-    def __init__(self, node: Node, loaded: LoadedScene, settings: Settings) -> None:
+    def __init__(self, node: Node, loaded: LoadedScene) -> None:
         self._node = node
-        self._loaded, self._settings = loaded, settings
+        self._loaded = loaded
         self._is_up_to_date = False
         self._publisher = new_publisher(
             node, Topic('~/visuals', MarkerArray), lambda _: self._publish_to_listeners())
 
-    def replace(self, loaded: LoadedScene, settings: Settings) -> None:
+    def replace(self, loaded: LoadedScene) -> None:
         """Show another scene from now on."""
-        self._loaded, self._settings = loaded, settings
+        self._loaded = loaded
         self._is_up_to_date = False
         self._publish_to_listeners()
 
     def _publish_to_listeners(self) -> None:
         if not self._is_up_to_date and self._publisher.get_subscription_count() > 0:
             self._is_up_to_date = True
-            self._node.executor.create_task(self._publish, self._loaded, self._settings)
+            self._node.executor.create_task(self._publish, self._loaded)
 
-    async def _publish(self, loaded: LoadedScene, settings: Settings) -> None:
-        message, lines = await run_in_thread(
-            self._node, lambda: _message_and_warnings(loaded, settings))
+    async def _publish(self, loaded: LoadedScene) -> None:
+        message, lines = await run_in_thread(self._node, lambda: _message_and_warnings(loaded))
         if loaded is not self._loaded:
             return
         for line in lines:
@@ -66,10 +64,9 @@ class VisualPublisher:
             self._publisher.publish(message)
 
 
-def _message_and_warnings(
-    loaded: LoadedScene, settings: Settings,
-) -> tuple[MarkerArray | None, list[str]]:
-    scene = scene_with_shapes(loaded, settings)
+def _message_and_warnings(loaded: LoadedScene) -> tuple[MarkerArray | None, list[str]]:
+    settings = loaded.settings
+    scene = scene_with_shapes(loaded)
     if scene is None:
         return None, [
             f'~/visuals stays as it is: what {loaded.path} includes has changed since it was read']

@@ -72,7 +72,7 @@ def make_reread(make_node, tmp_path):
 
     def reread(text):
         included.write_text(text, encoding='utf-8')
-        return scene_with_shapes(loaded, settings)
+        return scene_with_shapes(loaded)
 
     return reread
 
@@ -93,7 +93,7 @@ def test_shapes_are_those_of_the_text_that_was_read(make_node, tmp_path):
     settings = settings_from_node(make_node('bridge', '-p', f'sdf_file:={path}'))
     loaded = loaded_scene_from_settings(settings)
     path.write_text('something else', encoding='utf-8')
-    (shape,) = scene_with_shapes(loaded, settings).shapes.values()
+    (shape,) = scene_with_shapes(loaded).shapes.values()
     assert shape.type == 'box'
 
 

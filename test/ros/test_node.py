@@ -33,7 +33,7 @@ def make_check_files(make_node, make_executor, finish, file):
     settings = settings_from_node(node)
     loaded = loaded_scene_from_settings(settings)
     frames = PublishedFrames(Publishers(node), loaded.tree, loaded.joint_positions, {})
-    bridge = SdfPoseBridge(node, frames, settings, loaded)
+    bridge = SdfPoseBridge(node, frames, loaded)
     return lambda: finish(executor, bridge._check_files)
 
 

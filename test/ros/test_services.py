@@ -182,7 +182,7 @@ def make_ask(make_node, path):
         position.x, position.y, position.z = xyz
         rotation.x, rotation.y, rotation.z, rotation.w = quat_xyzw
         return set_pose(
-            SetPose.Request(frame=frame, pose=pose, dry_run=dry_run), loaded, settings)
+            SetPose.Request(frame=frame, pose=pose, dry_run=dry_run), loaded)
 
     return ask
 
@@ -243,4 +243,4 @@ def test_a_text_that_is_no_file_is_refused(make_node):
     settings = settings_from_node(make_node('text', '-p', f'robot_description:={ARM}'))
     with pytest.raises(SdfError, match='in the parameter robot_description, not in a file'):
         set_pose(
-            SetPose.Request(frame='mark'), loaded_scene_from_settings(settings), settings)
+            SetPose.Request(frame='mark'), loaded_scene_from_settings(settings))

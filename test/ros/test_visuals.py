@@ -98,17 +98,17 @@ def test_mesh_without_a_color_keeps_its_own():
 def test_shapes_that_were_read_too_late_are_not_shown(
         make_node, make_executor, finish, tmp_path):
     node, listener = make_node('bridge'), make_node('listener')
-    settings = {}
+    scenes = []
     for shape in ('box', 'sphere'):
         path = tmp_path / f'{shape}.sdf'
         path.write_text(SDF.format(shape=shape), encoding='utf-8')
-        settings[shape] = settings_from_values({'sdf_file': str(path)})
-    old, new = (loaded_scene_from_settings(each) for each in settings.values())
+        scenes.append(loaded_scene_from_settings(settings_from_values({'sdf_file': str(path)})))
+    old, new = scenes
     executor = make_executor(node)
-    visuals = VisualPublisher(node, old, settings['box'])
-    visuals.replace(new, settings['sphere'])
-    for loaded, setting in ((new, settings['sphere']), (old, settings['box'])):
-        finish(executor, visuals._publish, loaded, setting)
+    visuals = VisualPublisher(node, old)
+    visuals.replace(new)
+    for loaded in (new, old):
+        finish(executor, visuals._publish, loaded)
     # The node has no part in it, so that nothing is read again for the listener.
     executor = make_executor(listener)
     found = []
