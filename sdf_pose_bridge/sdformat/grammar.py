@@ -182,6 +182,7 @@ class Definition:
         self.maximum = float(value.get('maximum') or math.inf)
         # Python takes longer to look up a member of an Enum than to read an attribute.
         self.is_pose = self.value_type is ValueType.POSE
+        self.is_scope = self.kind in (Kind.WORLD, Kind.MODEL)
         self.takes_any_number = (
             self.value_type is ValueType.NUMBER and self.minimum == -math.inf)
         self.takes_any_children = any(item['name'] == '*' for item in items)

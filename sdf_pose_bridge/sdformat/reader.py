@@ -227,7 +227,7 @@ class _Reader:
             details = details_from_element(xml)
             if details is not None:
                 self._builder.details[field][index] = details
-        return definition, index, index if kind in (Kind.WORLD, Kind.MODEL) else scope, path
+        return definition, index, index if definition.is_scope else scope, path
 
     # Attributes and poses
 

@@ -43,6 +43,8 @@ class Version(NamedTuple):
 OLDEST = Version(1, 2)
 NEWEST = Version(1, 12)
 
+_SUPPORTED = {f'1.{minor}': Version(1, minor) for minor in range(OLDEST.minor, NEWEST.minor + 1)}
+
 _MOVED_ELEMENTS = (
     (Version(1, 4), 'world/physics', 'update_rate', 'real_time_update_rate'),
     (Version(1, 4), 'world/physics', 'ode/solver/dt', 'max_step_size'),
@@ -79,11 +81,8 @@ def version_from_text(text: str, place: Place) -> Version:
 
     :raises ConversionError: if it is older than :data:`OLDEST`, or newer than :data:`NEWEST`.
     """
-    numbers = version_numbers(text)
-    if len(numbers) == len(Version._fields):
-        version = Version(*numbers)
-        if OLDEST <= version <= NEWEST and text == str(version):
-            return version
+    if text in _SUPPORTED:
+        return _SUPPORTED[text]
     msg = f'version="{text}" is not supported; versions {OLDEST} to {NEWEST} are'
     raise ConversionError(msg, place)
 

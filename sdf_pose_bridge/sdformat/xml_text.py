@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import codecs
 from collections.abc import Callable
+import contextlib
 import re
 import sys
 from typing import NamedTuple
@@ -96,26 +97,17 @@ def text_from_bytes(content: bytes, path: str) -> DecodedText:
     declared = None if encoding else _DECLARATION.match(content)
     if declared is not None:
         encoding = declared[1].decode()
-        if encoding.lower().startswith(('utf-16', 'utf-32', 'utf16', 'utf32')):
-            # It could not have been read in one of these.
-            return _undecoded(content, encoding)
-    try:
-        name = codecs.lookup(encoding or 'utf-8').name
-    except LookupError:
-        return _undecoded(content, encoding)
-    if name == 'utf-8':
-        return DecodedText(content.removeprefix(codecs.BOM_UTF8), name)
-    if _ALLOWED.fullmatch(name) is None:
-        msg = (f'the encoding "{encoding}" is not supported; UTF-8, UTF-16, UTF-32, ASCII, '
-               'ISO-8859 and windows-125x are')
-        raise FileReadError(msg, Place(path, 1))
-    try:
-        return DecodedText(content.decode(name).removeprefix('\ufeff').encode(), name)
-    except UnicodeDecodeError:
-        return _undecoded(content, encoding)
-
-
-def _undecoded(content: bytes, encoding: str) -> DecodedText:
+    # In an encoding of two or four bytes, its declaration could not have been read.
+    if declared is None or not encoding.lower().startswith(('utf-16', 'utf-32', 'utf16', 'utf32')):
+        with contextlib.suppress(LookupError, UnicodeDecodeError):
+            name = codecs.lookup(encoding or 'utf-8').name
+            if name == 'utf-8':
+                return DecodedText(content.removeprefix(codecs.BOM_UTF8), name)
+            if _ALLOWED.fullmatch(name) is not None:
+                return DecodedText(content.decode(name).removeprefix('\ufeff').encode(), name)
+            msg = (f'the encoding "{encoding}" is not supported; UTF-8, UTF-16, UTF-32, ASCII, '
+                   'ISO-8859 and windows-125x are')
+            raise FileReadError(msg, Place(path, 1))
     fault = f'the text is not in the encoding "{encoding}"; UTF-8 is used'
     return DecodedText(content, 'utf-8', fault)
 
