@@ -33,6 +33,10 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 _MOST_PLACES_REMEMBERED = 1000
 
 
+PARAMS_TAG = 'experimental:params'
+"""The tag of what holds parameters of an include."""
+
+
 class Origin(NamedTuple):
     """
     Where an element was written, as far as that does not follow from its tree.
@@ -235,5 +239,6 @@ class Sources:
 def _step(xml: XmlElement) -> str:
     """Return one step of a path; a parameter of an include has an id instead of a name."""
     element_id = xml.get('element_id')
-    return described(xml) if element_id is None else (
-        f'{written_tag(xml)}[@element_id="{shortened(element_id)}"]')
+    if element_id is None or PARAMS_TAG not in map(written_tag, xml.iterancestors()):
+        return described(xml)
+    return f'{written_tag(xml)}[@element_id="{shortened(element_id)}"]'

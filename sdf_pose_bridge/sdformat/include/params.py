@@ -26,6 +26,7 @@ from sdf_pose_bridge.sdformat.include.element_ids import element_by_id
 from sdf_pose_bridge.sdformat.include.element_ids import hint_for_id
 from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_LOOK
 from sdf_pose_bridge.sdformat.reader import check_element
+from sdf_pose_bridge.sdformat.sources import PARAMS_TAG
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import DEFINED_ALONE
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
@@ -33,7 +34,6 @@ from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-_PARAMS = 'experimental:params'
 _OWN_ATTRIBUTES = ('element_id', 'action')
 _ACTIONS = ('add', 'modify', 'remove', 'replace')
 _POSE_FORMAT_ATTRIBUTES = frozenset({'degrees', 'rotation_format'})
@@ -56,7 +56,7 @@ def apply_params(include: XmlElement, top: XmlElement, sources: Sources) -> list
     :param sources: takes what is wrong with the parameters. What has an error is not applied.
     :return: the elements that were added.
     """
-    params = next((xml for xml in child_elements(include) if written_tag(xml) == _PARAMS), None)
+    params = next((xml for xml in child_elements(include) if written_tag(xml) == PARAMS_TAG), None)
     if params is None:
         return []
     looks = int(params.xpath('count(.//*)'))

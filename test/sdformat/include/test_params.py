@@ -7,7 +7,9 @@ import tracemalloc
 import pytest
 from sdf_texts import assert_at
 from sdf_texts import errors_of_file
+from sdf_texts import model_file
 from sdf_texts import names_of
+from sdf_texts import only_error
 from sdf_texts import write_files
 
 import sdf_pose_bridge
@@ -113,6 +115,13 @@ def test_error_has_the_element_of_the_parameters(errors):
     (error,) = errors('<link element_id="none" action="remove"/>')
     assert error.element == (
         '/sdf/world[@name="w"]/include/experimental:params/link[@element_id="none"]')
+
+
+def test_error_elsewhere_has_the_name_of_its_element():
+    error = only_error(model_file('<link name="l" element_id="x"><pose>1</pose></link>'))
+    assert error.element == '/sdf/model[@name="m"]/link[@name="l"]/pose'
+    error = only_error(model_file('<link name="l"><gravity element_id="x">1 2</gravity></link>'))
+    assert error.element == '/sdf/model[@name="m"]/link[@name="l"]/gravity'
 
 
 def test_all_errors_are_reported(errors):
