@@ -66,12 +66,11 @@ def document_from_file(
     sources.problems.extend(file.warnings)
     if b'$' in file.text or b'xacro' in file.text:
         _check_is_expanded(root, path, sources)
-    has_gazebo_elements = False
+    gazebo_elements: list[XmlElement] = []
     if root.tag == 'robot':
         # Most files are not URDF and need not wait for this import.
         from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
         gazebo_elements = root.findall('gazebo')
-        has_gazebo_elements = bool(gazebo_elements)
         if not reads_gazebo_elements:
             for element in gazebo_elements:
                 root.remove(element)
@@ -85,7 +84,7 @@ def document_from_file(
         b':' in file.text and SEPARATOR.encode() in file.text)
     convert(root, version, sources)
     _check_top_model(root, sources)
-    return Document(path, root, has_gazebo_elements)
+    return Document(path, root, bool(gazebo_elements))
 
 
 def _declared_version(root: XmlElement, place: Place) -> Version:

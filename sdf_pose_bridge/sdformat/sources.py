@@ -140,15 +140,12 @@ class Sources:
             self.file_indices[path] = len(self.paths)
             self.paths.append(path)
 
-    def add_tree(
-        self, path: str, root: XmlElement, lines: Mapping[XmlElement, int],
-    ) -> None:
+    def add_tree(self, path: str, root: XmlElement, lines: Mapping[XmlElement, int]) -> None:
         """
-        Add a file that was read.
+        Add the tree of a file.
 
         :param lines: the lines of those of its elements whose lines lxml does not know.
         """
-        self.add_path(path)
         self.set_origin(root, file=path)
         self._parsed_lines.update(lines)
         if lines:
