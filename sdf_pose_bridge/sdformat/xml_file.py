@@ -186,7 +186,9 @@ def _parsed(text: bytes, path: str) -> tuple[XmlElement, bool]:
     errors = [entry for entry in parser.error_log if entry.type_name not in _IGNORED_ERRORS]
     if errors:
         msg = f'this is not well-formed XML: {errors[0].message.strip()}'
-        raise FileReadError(msg, Place(path, errors[0].line))
+        # What is missing at the end is missed behind the last line break.
+        last_line = text.count(b'\n') + (not text.endswith(b'\n'))
+        raise FileReadError(msg, Place(path, min(errors[0].line, last_line)))
     if root is None:
         msg = 'this is not XML: it has no element'
         raise FileReadError(msg, Place(path))

@@ -118,6 +118,13 @@ def test_file_that_is_not_xml_is_refused_in_its_first_line(content):
     assert error_of(content).line == 1
 
 
+@pytest.mark.parametrize(('content', 'line'), [
+    (b'<sdf version="1.9">\n<model name="m">\n', 2), (b'<sdf version="1.9">\n<!-- ', 2),
+    (b'{\n  "sdf": "<sdf>"\n}\n', 3), (b' \n', 1), (b'', 1)], ids=repr)
+def test_what_is_missing_at_the_end_of_a_file_is_missed_in_its_last_line(content, line):
+    assert error_of(content).line == line
+
+
 def test_error_has_the_line_of_broken_xml():
     error = error_of(b'<sdf version="1.9">\n<model name="m">\n</sdf>')
     assert (error.file, error.line) == ('file.sdf', 3)
