@@ -18,7 +18,6 @@ from sdf_pose_bridge.cli.printing import RADIANS
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.scene.loading import load_text
-from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.limits import Usage
@@ -78,7 +77,7 @@ def scene_from_file(
     return load_text(
         bytes_from_file(path, Usage(), allows_pipe=True), path,
         resource_paths=options.resource_paths, shapes=shapes, texts=texts,
-        on_missing_include=MissingInclude.SKIP if options.skip_missing else MissingInclude.ERROR)
+        on_missing_include='skip' if options.skip_missing else 'error')
 
 
 def load_file(path: str, options: argparse.Namespace, *, shapes: bool = False) -> LoadedFile:

@@ -109,13 +109,7 @@ def _print_json(
 
 
 def _problem(problem: SdfError | SdfWarning) -> dict[str, Any]:
-    return {
-        'code': problem.code,
-        'message': problem.message,
-        'file': problem.place.file,
-        'line': problem.place.line,
-        'element': problem.place.element,
-    }
+    return {'code': problem.code, 'message': problem.message, **problem.place._asdict()}
 
 
 def _print_table(

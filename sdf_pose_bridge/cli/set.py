@@ -22,13 +22,11 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_inverse
 from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.scene.comparison import Change
-from sdf_pose_bridge.scene.comparison import differences_of_scenes
+from sdf_pose_bridge.scene.comparison import names_of_moved
 from sdf_pose_bridge.scene.pose_setting import Measure
 from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.pose_writing import replace_file
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
@@ -92,11 +90,10 @@ def run(options: argparse.Namespace) -> int:
         all_instances=options.all_instances, dry_run=options.dry_run)
     sys.stdout.write(change.diff)
     moved = [
-        printable(difference.name) for difference in differences_of_scenes(scene, change.scene)
-        if difference.change is Change.MOVED and difference.name != scene.names[element]]
+        printable(name) for name in names_of_moved(scene, change.scene)
+        if name != scene.names[element]]
     if moved:
-        # A visual and a collision may have the same name.
-        print(f'moved with it: {", ".join(dict.fromkeys(moved))}')
+        print(f'moved with it: {", ".join(moved)}')
     return 0
 
 
@@ -119,7 +116,7 @@ def set_pose(
 
     change = pose_change(scene, element, asked, measure, loaded, all_instances=all_instances)
     if not dry_run:
-        replace_file(change.path, change.old_text, change.new_text)
+        change.write()
     return change
 
 

@@ -28,8 +28,7 @@ from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.rotations import RotationError
 from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.loaded_scene import LoadedScene
-from sdf_pose_bridge.scene.comparison import Change
-from sdf_pose_bridge.scene.comparison import differences_of_scenes
+from sdf_pose_bridge.scene.comparison import names_of_moved
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
@@ -133,7 +132,6 @@ def set_pose(request: SetPose.Request, loaded: LoadedScene) -> SetPose.Response:
     """
     # Imported here because it takes 7 ms, and few nodes write files.
     from sdf_pose_bridge.scene.pose_setting import pose_change
-    from sdf_pose_bridge.sdformat.pose_writing import replace_file
     if not loaded.settings.sdf_file:
         msg = 'the pose stands in the parameter robot_description, not in a file'
         raise PoseNotSetError(msg, Place(str(loaded.path)))
@@ -153,10 +151,8 @@ def set_pose(request: SetPose.Request, loaded: LoadedScene) -> SetPose.Response:
     asked = pose_product(asked, pose_inverse(in_element))
     change = pose_change(scene, element, asked, measured, scene_with)
     if not request.dry_run:
-        replace_file(change.path, change.old_text, change.new_text)
-    moved = {
-        difference.name for difference in differences_of_scenes(scene, change.scene)
-        if difference.change is Change.MOVED}
+        change.write()
+    moved = set(names_of_moved(scene, change.scene))
     elements = loaded.tree.elements.tolist()
     return SetPose.Response(
         success=True, file=change.path, line=change.line, diff=change.diff, moved_frames=[

@@ -40,15 +40,6 @@ class Difference(NamedTuple):
     angle_rad: float = 0.0
 
 
-class _Place(NamedTuple):
-    """What an element keeps that only gets another name."""
-
-    world: str
-    scope: str
-    kind: int
-    pose: bytes
-
-
 def differences_of_scenes(
     old: Scene, new: Scene, *, relative_to: str = '', tolerance: float = TOLERANCE,
 ) -> list[Difference]:
@@ -93,6 +84,13 @@ def differences_of_scenes(
     return differences
 
 
+def names_of_moved(old: Scene, new: Scene) -> list[str]:
+    """Return the names in the new scene of what has moved in its root, in its order, each once."""
+    return list(dict.fromkeys(
+        difference.name for difference in differences_of_scenes(old, new)
+        if difference.change is Change.MOVED))
+
+
 def _indices(scene: Scene) -> dict[tuple[str, int, str], int]:
     """Return the elements, without worlds and implicit roots, by what identifies them."""
     return {
@@ -112,19 +110,22 @@ def _renamed(old: Scene, new: Scene, gone: list[int], come: list[int]) -> dict[i
     new_names: dict[str, str] = {}
     places = _indices_by_place(new, come)
     # An element stands after the one that holds it.
-    for place, indices in _indices_by_place(old, gone).items():
-        found = places.get(place._replace(scope=new_names.get(place.scope, place.scope)), [])
+    for (scope, world, kind, pose), indices in _indices_by_place(old, gone).items():
+        found = places.get((new_names.get(scope, scope), world, kind, pose), [])
         if len(indices) == len(found) == 1:
             renamed[found[0]] = indices[0]
             new_names[old.names[indices[0]]] = new.names[found[0]]
     return renamed
 
 
-def _indices_by_place(scene: Scene, indices: list[int]) -> dict[_Place, list[int]]:
-    places: dict[_Place, list[int]] = {}
+def _indices_by_place(
+    scene: Scene, indices: list[int],
+) -> dict[tuple[str, str, int, bytes], list[int]]:
+    """Return elements by scope, world, kind and pose, which stay where only names change."""
+    places: dict[tuple[str, str, int, bytes], list[int]] = {}
     for index in indices:
-        place = _Place(
-            scene.world_of(index), scene.names[scene.parents[index]], int(scene.kinds[index]),
+        place = (
+            scene.names[scene.parents[index]], scene.world_of(index), int(scene.kinds[index]),
             scene.poses[index].tobytes())
         places.setdefault(place, []).append(index)
     return places

@@ -28,8 +28,8 @@ from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.scene.joints import JointChecks
 from sdf_pose_bridge.scene.joints import JointEnds
-from sdf_pose_bridge.scene.joints import valid_joints
 from sdf_pose_bridge.scene.name_scopes import IS_FRAME_KIND
 from sdf_pose_bridge.scene.name_scopes import NameScopes
 from sdf_pose_bridge.sdformat.elements import Elements
@@ -121,10 +121,10 @@ class _Builder:
         self._break_cycles(attachments, AttachedToCycleError, 'attached to')
         bodies = ends_from_pointers(attachments)
         bodies[(elements.parents >= 0) & ~IS_FRAME_KIND[elements.kinds]] = NO_ELEMENT
-        joints_of_bodies = valid_joints(
-            elements, self._scopes,
-            [ends for ends in joints.values() if ends.joint not in self._unresolved],
-            bodies, self._problems)
+        checks = JointChecks(elements, self._scopes, bodies, self._problems)
+        joints_of_bodies = [
+            checked for ends in joints.values() if ends.joint not in self._unresolved
+            and (checked := checks.checked(ends)) is not None]
         self._set_references(references)
         placements = self._placements(references)
         self._add_dependents(references, attachments, joints)

@@ -10,7 +10,6 @@ unknown children and one name at both ends; here the rest are warnings.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import AttachedToError
@@ -53,32 +52,24 @@ class JointEnds(NamedTuple):
     """Those of both axes, also where they are not given; empty before the joint is checked."""
 
 
-def valid_joints(
-    elements: Elements, scopes: NameScopes, joints: Iterable[JointEnds], bodies: Indices,
-    problems: Problems,
-) -> list[JointEnds]:
+class JointChecks:
     """
-    Check the ends and the axes of joints.
+    Checks the ends and the axes of joints.
 
     :param bodies: for each frame the link, static model or root that it is attached to.
-    :return: the joints that join two bodies, with the references of their axes.
     """
-    checks = _JointChecks(elements, scopes, bodies.tolist(), problems)
-    return [checked for ends in joints if (checked := checks.checked(ends)) is not None]
-
-
-class _JointChecks:
 
     def __init__(
-        self, elements: Elements, scopes: NameScopes, bodies: list[int], problems: Problems,
+        self, elements: Elements, scopes: NameScopes, bodies: Indices, problems: Problems,
     ) -> None:
         self._elements = elements
         self._scopes = scopes
         self._scope_of: list[int] = elements.scopes.tolist()
-        self._bodies = bodies
+        self._bodies: list[int] = bodies.tolist()
         self._problems = problems
 
     def checked(self, ends: JointEnds) -> JointEnds | None:
+        """Return a joint with the references of its axes; None if it does not join two bodies."""
         axes = tuple(
             AxisReferences(
                 self._expressed_in(ends.joint, axis), self._leader(ends.joint, index, axis.mimic))

@@ -36,6 +36,7 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.pose_writing import PoseText
+from sdf_pose_bridge.sdformat.pose_writing import replace_file
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 
 _MOST_ATTEMPTS = 4
@@ -59,6 +60,14 @@ class PoseChange(NamedTuple):
     new_text: bytes
     scene: Scene
     """The scene with the new text."""
+
+    def write(self) -> None:
+        """
+        Put the new text into the file.
+
+        :raises FileWriteError: if it cannot be written, or has changed since it was read.
+        """
+        replace_file(self.path, self.old_text, self.new_text)
 
     @property
     def diff(self) -> str:

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from collections.abc import Iterator
 from collections.abc import Sequence
 import math
 from typing import Any
@@ -162,8 +161,8 @@ class Drawing:
         frames = [] if 'names' in self._hidden else self._frames[:MOST_NAMES].tolist()
         names = [
             printable(shortened(tree.frame_ids[frame].rpartition('/')[2])) for frame in frames]
-        labels = list(labels_from_names(
-            names, tree.poses[frames, :3], self._camera.position, self._camera.look_at))
+        labels = labels_from_names(
+            names, tree.poses[frames, :3], self._camera.position, self._camera.look_at)
         # A browser leaves a label that is removed and added again at once where it was.
         while len(self._labels) < len(labels):
             self._labels.append(self._server.scene.add_label(f'/names/{len(self._labels)}', ''))
@@ -303,7 +302,7 @@ class _Label(NamedTuple):
 
 def labels_from_names(
     names: Sequence[str], points: Floats, eye: Floats, look_at: Floats,
-) -> Iterator[tuple[str, Floats]]:
+) -> list[tuple[str, Floats]]:
     """
     Join names that would lie on one another in the picture, as lines of one text.
 
@@ -329,5 +328,4 @@ def labels_from_names(
             higher, lower = sorted((other, label), key=lambda each: each.top)
             label = higher._replace(names=higher.names + lower.names)
         labels.append(label)
-    for label in labels:
-        yield '\n'.join(label.lines), label.point
+    return [('\n'.join(label.lines), label.point) for label in labels]

@@ -262,7 +262,8 @@ class Page:
                     self._add_slider(name, turns=turns, lower=lower, upper=upper)
                     for name, (turns, lower, upper) in ranges.items()]
                 zero = gui.add_button('all at zero')
-            self._when(zero.on_click, partial(_set_to_zero, sliders))
+            for slider in sliders:
+                self._when(zero.on_click, partial(setattr, slider, 'value', 0.0))
         self._folder_of_frames = gui.add_folder('Frames')
         with self._folder_of_frames:
             self._search = gui.add_text('search', '')
@@ -383,8 +384,3 @@ def _range_of_dof(dof: DegreeOfFreedom) -> tuple[bool, float, float]:
         return (True, -math.pi, math.pi) if turns else (False, -0.5, 0.5)
     # Where the file puts the joint need not be within its limits.
     return turns, min(axis.lower, 0.0), max(axis.upper, 0.0)
-
-
-def _set_to_zero(sliders: list[Any]) -> None:
-    for slider in sliders:
-        slider.value = 0.0
