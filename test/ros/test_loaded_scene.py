@@ -97,6 +97,18 @@ def test_shapes_are_those_of_the_text_that_was_read(make_node, tmp_path):
     assert shape.type == 'box'
 
 
+def test_shapes_are_found_where_the_scene_was(make_node, tmp_path):
+    models = tmp_path / 'models'
+    models.mkdir()
+    models.joinpath('included.sdf').write_text(WITH_SHAPE, encoding='utf-8')
+    path = tmp_path / 'cell.sdf'
+    path.write_text(
+        world_file('<include><uri>included.sdf</uri></include>'), encoding='utf-8')
+    loaded = loaded_scene_from_settings(settings_from_node(make_node(
+        'bridge', '-p', f'sdf_file:={path}', '-p', f'resource_paths:=[{models}]')))
+    assert scene_with_shapes(loaded).shapes
+
+
 def test_a_text_has_the_name_of_its_parameter_and_no_file(make_node):
     settings = settings_from_node(make_node('bridge', '-p', f'robot_description:={WITH_SHAPE}'))
     loaded = loaded_scene_from_settings(settings)
