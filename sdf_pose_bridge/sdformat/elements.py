@@ -20,11 +20,11 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.sdformat.automatic_inertials import CollisionMass
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.joints import JointDetails
 from sdf_pose_bridge.sdformat.poses import PoseFormat
 from sdf_pose_bridge.sdformat.poses import poses_from_texts
-from sdf_pose_bridge.sdformat.shapes import CollisionMass
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.sdformat.xml_tree import path_step
 

@@ -23,6 +23,7 @@ from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.sdformat.automatic_inertials import collision_masses
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.elements import FrameDetails
@@ -40,7 +41,6 @@ from sdf_pose_bridge.sdformat.poses import PoseFormat
 from sdf_pose_bridge.sdformat.poses import PoseTextError
 from sdf_pose_bridge.sdformat.shapes import check_material
 from sdf_pose_bridge.sdformat.shapes import check_submesh
-from sdf_pose_bridge.sdformat.shapes import collision_masses
 from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sibling_names import SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources

@@ -1,11 +1,9 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Read the shapes of visuals and collisions: what they look like, and where their mass is.
+Read the shapes of visuals and collisions, and make the surfaces of some.
 
-An automatic inertial is at the center of mass of the collisions of its link. Source:
-``Geometry::Load``, the classes of shapes, ``Material::Load``, ``Link::ResolveAutoInertials``,
-``Collision::CalculateInertial`` and ``Geometry::CalculateInertial`` of libsdformat 14.
+Source: ``Geometry::Load``, the classes of shapes and ``Material::Load`` of libsdformat 14.
 """
 
 from __future__ import annotations
@@ -19,12 +17,10 @@ from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ElementMissingError
-from sdf_pose_bridge.errors import LinkInertiaError
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.values import numbers_from_text
 from sdf_pose_bridge.sdformat.values import numbers_of_child
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
@@ -47,9 +43,6 @@ _DEFAULT_SIZES: Mapping[str, Mapping[str, tuple[float, ...]]] = {
     'polyline': {},
 }
 """The shapes in the order in which the first one counts, and the defaults of their sizes."""
-
-DEFAULT_DENSITY_KG_M3 = 1000.0
-"""Density of a collision where neither it nor the inertial has one: that of water."""
 
 _SEGMENTS_OF_CONE = 24
 
@@ -108,14 +101,6 @@ class Shape(NamedTuple):
         return '' if self.has_extent else 'its sizes are not positive'
 
 
-class CollisionMass(NamedTuple):
-    """The mass of a collision that an automatic inertial is computed from."""
-
-    mass_kg: float
-    center_z_m: float
-    """The z of the center of mass in the frame of the collision; its x and y are 0."""
-
-
 def shape_of(xml: XmlElement) -> Shape | None:
     """Return the shape of a ``<visual>`` or ``<collision>``; None without one."""
     geometry = first_child(xml, 'geometry')
@@ -171,75 +156,6 @@ def check_material(xml: XmlElement, sources: Sources) -> None:
         if shader_type.startswith('normal_map'):
             msg = f'a shader of type="{shader_type}" needs a <normal_map>'
             sources.error(ElementMissingError, shader, msg)
-
-
-def collision_masses(inertial: XmlElement, sources: Sources) -> tuple[CollisionMass, ...] | None:
-    """
-    Return the masses of the collisions of a link, if its inertial is automatic.
-
-    :param inertial: an ``<inertial>`` in its link.
-    :return: the mass of each collision in file order; None if the inertial is not automatic, or
-        if no mass, or not each, can be computed.
-    """
-    if not boolean_from_text(inertial.get('auto', '')):
-        return None
-    link = inertial.getparent()
-    collisions = [] if link is None else list(child_elements(link, 'collision'))
-    if not collisions:
-        msg = 'the inertial is automatic, but its link has no <collision>'
-        sources.error(ElementMissingError, inertial, msg)
-    pose = first_child(inertial, 'pose')
-    if pose is not None:
-        msg = 'the pose of an automatic inertial is ignored; the collisions give it'
-        sources.warning(pose, msg)
-    (default_density,) = numbers_of_child(inertial, 'density', (DEFAULT_DENSITY_KG_M3,))
-    masses = []
-    for collision in collisions:
-        shape = shape_of(collision)
-        if shape is not None and shape.type == 'mesh':
-            name = '' if link is None else attribute_of(link, 'name')
-            msg = (f'the automatic inertial of link "{name}" has its pose as written, as the mass '
-                   'of a mesh is not computed')
-            sources.warning(collision, msg)
-            return None
-        # An empty density is the default of the element, and not that of the inertial.
-        has_density = first_child(collision, 'density') is not None
-        (density,) = numbers_of_child(collision, 'density', (DEFAULT_DENSITY_KG_M3,))
-        mass = None if shape is None else _mass(
-            shape, density if has_density else default_density)
-        if mass is None:
-            msg = ('an automatic inertial needs collisions that are boxes, capsules, cones, '
-                   'cylinders, ellipsoids or spheres, with positive dimensions and density')
-            sources.error(LinkInertiaError, collision, msg)
-        else:
-            masses.append(mass)
-    return tuple(masses) or None
-
-
-def _mass(shape: Shape, density_kg_m3: float) -> CollisionMass | None:
-    """Return the mass of a shape and its center; None if a number is not positive."""
-    if shape.type == 'plane' or not shape.sizes_m or (
-            min(density_kg_m3, *shape.required_sizes_m) <= 0.0):
-        return None
-    volume_m3, center_z_m = _volume(shape)
-    return CollisionMass(density_kg_m3 * volume_m3, center_z_m)
-
-
-def _volume(shape: Shape) -> tuple[float, float]:
-    """Return the volume of a shape, and the z of its center of mass in the shape's frame."""
-    if shape.type == 'box':
-        return math.prod(shape.sizes_m), 0.0
-    if shape.type == 'ellipsoid':
-        return 4.0 / 3.0 * math.pi * math.prod(shape.sizes_m), 0.0
-    radius, length = (*shape.sizes_m, 0.0)[:2]
-    disc = math.pi * radius ** 2
-    if shape.type == 'sphere':
-        return 4.0 / 3.0 * disc * radius, 0.0
-    if shape.type == 'capsule':
-        return disc * (max(length, 0.0) + 4.0 / 3.0 * radius), 0.0
-    if shape.type == 'cone':
-        return disc * length / 3.0, -0.25 * length
-    return disc * length, 0.0
 
 
 def triangles_from_shape(shape: Shape) -> tuple[Floats, NDArray[np.int64]]:

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Shapes of visuals and collisions, surfaces, and the centers of mass of automatic inertials."""
+"""Shapes of visuals and collisions, as a load on request gives them, and surfaces."""
 
 import math
 
@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from sdf_texts import codes_of
 from sdf_texts import link_with
-from sdf_texts import model_file
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.shapes import Shape
@@ -166,122 +165,6 @@ def test_material_that_libsdformat_does_not_read_is_not_checked(place):
 ])
 def test_material_is_accepted(content):
     load_text(link_with(f'<visual name="v"><material>{content}</material></visual>'))
-
-
-AUTO = '<inertial auto="true"/>'
-UNIT_BOX = '<box><size>1 1 1</size></box>'
-
-
-def collision(name, x, shape, density=''):
-    density = f'<density>{density}</density>' if density else ''
-    return (f'<collision name="{name}"><pose>{x} 0 0 0 0 0</pose>{density}'
-            f'<geometry>{shape}</geometry></collision>')
-
-
-def center_of(content):
-    return load_text(link_with(content)).pose('m::l::inertial')
-
-
-# What cannot be computed
-
-@pytest.mark.parametrize('shape', [
-    '<plane/>', '<empty/>', '', '<heightmap><uri>a</uri></heightmap>',
-    '<box><size>1 0 1</size></box>', '<sphere><radius>-1</radius></sphere>',
-    '<cylinder><radius>1</radius><length>-1</length></cylinder>',
-    '<capsule><radius>0</radius><length>1</length></capsule>',
-])
-def test_collision_without_a_volume_is_refused(shape):
-    assert codes_of(link_with(AUTO + collision('c', 1, shape))) == ['LINK_INERTIA_INVALID']
-
-
-def test_collision_without_a_density_above_zero_is_refused():
-    text = link_with(AUTO + collision('c', 1, UNIT_BOX, '0'))
-    assert codes_of(text) == ['LINK_INERTIA_INVALID']
-
-
-def test_collision_that_is_relative_to_no_frame_is_refused():
-    text = link_with(
-        f'{AUTO}<collision name="c"><pose relative_to="none"/><geometry>{UNIT_BOX}</geometry>'
-        '</collision>')
-    assert codes_of(text) == ['POSE_RELATIVE_TO_INVALID']
-
-
-def test_link_without_collisions_is_refused():
-    assert codes_of(link_with(AUTO)) == ['ELEMENT_MISSING']
-
-
-def test_mesh_leaves_the_pose_as_written_with_a_warning():
-    scene = load_text(link_with(
-        '<inertial auto="true"><pose>3 0 0 0 0 0</pose></inertial>'
-        + collision('c', 1, '<mesh><uri>a</uri></mesh>')))
-    assert scene.pose('m::l::inertial').x == 3.0
-    assert 'automatic inertial of link "l" has its pose as written' in scene.warnings[-1].message
-
-
-def test_written_pose_is_ignored_with_a_warning():
-    scene = load_text(link_with(
-        '<inertial auto="true"><pose>3 0 0 0 0 0</pose></inertial>' + collision('c', 1, UNIT_BOX)))
-    assert scene.pose('m::l::inertial').x == 1.0
-    assert 'pose of an automatic inertial is ignored' in scene.warnings[0].message
-
-
-# Centers of mass
-
-@pytest.mark.parametrize(('shape', 'volume'), [
-    ('<box><size>1 2 3</size></box>', 6.0),
-    ('<box/>', 1.0),
-    ('<capsule><radius>1</radius><length>3</length></capsule>', math.pi * (3.0 + 4.0 / 3.0)),
-    ('<capsule><radius>1</radius><length>0</length></capsule>', math.pi * 4.0 / 3.0),
-    ('<cylinder><radius>2</radius><length>3</length></cylinder>', 12.0 * math.pi),
-    ('<ellipsoid><radii>1 2 3</radii></ellipsoid>', 8.0 * math.pi),
-    ('<sphere><radius>2</radius></sphere>', 32.0 / 3.0 * math.pi),
-    ('<cone><radius>2</radius><length>3</length></cone>', 4.0 * math.pi),
-])
-def test_mass_is_in_proportion_to_the_volume(shape, volume):
-    x = center_of(AUTO + collision('a', 0, UNIT_BOX) + collision('b', 1, shape)).x
-    assert x == pytest.approx(volume / (1.0 + volume), rel=1e-14)
-
-
-def test_center_of_a_cone_is_a_quarter_below_its_middle():
-    cone = '<cone><radius>1</radius><length>2</length></cone>'
-    assert center_of(AUTO + collision('c', 0, cone)).z == -0.5
-
-
-@pytest.mark.parametrize(('inertial', 'densities', 'x'), [
-    (AUTO, ('', ''), 0.5),
-    (AUTO, ('', '3000'), 0.75),
-    ('<inertial auto="true"><density>3</density></inertial>', ('1', ''), 0.75),
-    ('<inertial auto="true"><density>3000</density></inertial>', ('', ' '), 0.25),
-    ('<inertial auto="true"><mass>7</mass></inertial>', ('', '3000'), 0.75),
-])
-def test_density_is_that_of_collision_inertial_or_water(inertial, densities, x):
-    first, second = densities
-    assert center_of(
-        inertial + collision('a', 0, UNIT_BOX, first) + collision('b', 1, UNIT_BOX, second)
-    ).x == pytest.approx(x)
-
-
-def test_inertial_has_the_axes_of_its_link():
-    scene = load_text(model_file(
-        f'<link name="l"><pose degrees="true">0 0 0 0 0 90</pose>{AUTO}'
-        '<collision name="c"><pose degrees="true">1 0 0 90 0 0</pose>'
-        f'<geometry>{UNIT_BOX}</geometry></collision></link>'))
-    pose = scene.pose('m::l::inertial', relative_to='m::l')
-    assert pose == pytest.approx((1, 0, 0, 0, 0, 0, 1), abs=1e-15)
-
-
-def test_collision_may_be_relative_to_another_frame():
-    scene = load_text(model_file(
-        '<frame name="f"><pose>0 5 0 0 0 0</pose></frame>'
-        f'<link name="l">{AUTO}<collision name="c"><pose relative_to="f">1 0 0 0 0 0</pose>'
-        f'<geometry>{UNIT_BOX}</geometry></collision></link>'))
-    assert scene.pose('m::l::inertial')[:3] == (1, 5, 0)
-
-
-def test_inertial_that_is_not_automatic_has_its_pose():
-    assert center_of(
-        '<inertial auto="false"><pose>3 0 0 0 0 0</pose></inertial>'
-        + collision('c', 1, UNIT_BOX)).x == 3.0
 
 
 # Surfaces of cones and planes
