@@ -30,10 +30,10 @@ def run(options: argparse.Namespace) -> int:
 
     :return: exit code: 0 if all files are valid, else 1; if strict, 1 for warnings too.
     """
-    are_valid = True
+    exit_code = 0
     for path in options.files:
         loaded = load_file(path, options)
         print_problems(loaded.errors, loaded.warnings, sys.stdout)
-        are_valid = are_valid and loaded.scene is not None and not (
-            options.strict and loaded.warnings)
-    return 0 if are_valid else 1
+        if loaded.errors or (options.strict and loaded.warnings):
+            exit_code = 1
+    return exit_code

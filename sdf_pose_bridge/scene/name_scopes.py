@@ -10,7 +10,6 @@ Source: ``ScopedGraph.hh`` of libsdformat. A reference in a scope is the absolut
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
 from itertools import islice
 
 import numpy as np
@@ -134,16 +133,11 @@ class NameScopes:
         scoped = reference.replace('/', SEPARATOR)
         if scoped != reference and self.frame(scope, scoped) is not None:
             return f'; did you mean "{scoped}"?'
-        return hint_from_names(
-            reference, islice(self._visible_names(scope), _MOST_NAMES_COMPARED))
-
-    def _visible_names(self, scope: int) -> Iterator[str]:
-        is_model = self._is_model[scope]
-        yield MODEL_FRAME if is_model else WORLD_FRAME
-        prefix = self.names[scope] + SEPARATOR if is_model else ''
-        for name in self._frames[self.roots[scope]]:
-            if name.startswith(prefix):
-                yield name[len(prefix):]
+        own, prefix = (MODEL_FRAME, self.names[scope] + SEPARATOR) if self._is_model[scope] else (
+            WORLD_FRAME, '')
+        visible = (name[len(prefix):] for name in self._frames[self.roots[scope]]
+                   if name.startswith(prefix))
+        return hint_from_names(reference, [own, *islice(visible, _MOST_NAMES_COMPARED - 1)])
 
 
 def _absolute_names(elements: Elements, usage: Usage) -> list[str]:

@@ -23,6 +23,7 @@ import viser
 from viser.infra import WebsockClientConnection
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
+from sdf_pose_bridge.cli.printing import Unit
 from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.viewer.drawing import Drawing
 from sdf_pose_bridge.cli.viewer.drawing import GROUPS
@@ -211,28 +212,38 @@ class Page:
 
     # Joints
 
-    def _ranges_of_joints(self) -> dict[str, tuple[bool, float, float]]:
+    def _ranges_of_joints(self) -> dict[str, tuple[Unit, float, float]]:
         """
         Find the degrees of freedom that do not follow another.
 
-        :return: by their names whether they turn, and their lowest and highest position.
+        :return: by their names their units, and their lowest and highest position in radians or
+            metres.
         """
         dofs = JointMotion(self._loaded, tf_parents_from_scene(self._loaded)).dofs
         names = JointPositions(self._loaded, dofs).names
         return {
-            name: _range_of_dof(dof) for name, dof in zip(names, dofs, strict=True)
+            name: self._range_of_dof(dof) for name, dof in zip(names, dofs, strict=True)
             if self._is_in_model[dof.joint.element] and dof.axis.mimic is None}
+
+    def _range_of_dof(self, dof: DegreeOfFreedom) -> tuple[Unit, float, float]:
+        unit, most, axis = self._units.length, 0.5, dof.axis
+        if dof.rad_per_unit:
+            unit, most = self._units.angle, math.pi
+        if axis.upper - axis.lower >= _LARGEST_RANGE:
+            return unit, -most, most
+        # Where the file puts the joint need not be within its limits.
+        return unit, min(axis.lower, 0.0), max(axis.upper, 0.0)
 
     def _move(self) -> None:
         self._drawn_positions = dict(self._positions)
         self._scene = scene_at_positions(self._loaded, self._drawn_positions)
         self._tree = tf_tree_from_scene(self._scene, self._options)
 
-    def _add_slider(self, name: str, *, turns: bool, lower: float, upper: float) -> Any:
-        unit, factor, _ = self._units.angle if turns else self._units.length
+    def _add_slider(self, name: str, unit: Unit, lower: float, upper: float) -> Any:
+        factor = unit.factor
         value = min(max(self._positions.get(name, 0.0), lower), upper)
         slider = self._server.gui.add_slider(
-            f'{printable(name)} [{unit}]', lower * factor, upper * factor,
+            f'{printable(name)} [{unit.name}]', lower * factor, upper * factor,
             max((upper - lower) * factor / 1000.0, 1e-9), value * factor)
         self._when(slider.on_update, lambda: self._positions.update(
             {name: slider.value / factor}))
@@ -241,7 +252,7 @@ class Page:
     # Controls
 
     def _add_controls(
-        self, switches: tuple[str, ...], ranges: dict[str, tuple[bool, float, float]],
+        self, switches: tuple[str, ...], ranges: dict[str, tuple[Unit, float, float]],
     ) -> None:
         gui = self._server.gui
         gui.reset()
@@ -258,9 +269,7 @@ class Page:
                     self._add_switch(name)
         if ranges:
             with gui.add_folder('Joints'):
-                sliders = [
-                    self._add_slider(name, turns=turns, lower=lower, upper=upper)
-                    for name, (turns, lower, upper) in ranges.items()]
+                sliders = [self._add_slider(name, *limits) for name, limits in ranges.items()]
                 zero = gui.add_button('all at zero')
             for slider in sliders:
                 self._when(zero.on_click, partial(setattr, slider, 'value', 0.0))
@@ -376,11 +385,3 @@ class Page:
 def _html_of_lines(name: str, lines: Iterable[str]) -> str:
     text = '\n'.join(map(escaped, lines))
     return text and f'<pre class="{name}" style="{_ERROR_STYLE}">{text}</pre>'
-
-
-def _range_of_dof(dof: DegreeOfFreedom) -> tuple[bool, float, float]:
-    turns, axis = dof.rad_per_unit != 0.0, dof.axis
-    if axis.upper - axis.lower >= _LARGEST_RANGE:
-        return (True, -math.pi, math.pi) if turns else (False, -0.5, 0.5)
-    # Where the file puts the joint need not be within its limits.
-    return turns, min(axis.lower, 0.0), max(axis.upper, 0.0)
