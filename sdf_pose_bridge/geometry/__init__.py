@@ -8,4 +8,5 @@ Rotations, poses and the formats that they are written in; independent of SDForm
 - :mod:`~sdf_pose_bridge.geometry.chains`: follow chains of pointers, multiply poses along them
 - :mod:`~sdf_pose_bridge.geometry.formats`: the formats of poses, and conversions between them
 - :mod:`~sdf_pose_bridge.geometry.formulas`: the formulas of rotations, for floats and for arrays
+- :mod:`~sdf_pose_bridge.geometry.floats`: functions of numpy for floats, which the formulas call
 """

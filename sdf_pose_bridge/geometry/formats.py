@@ -25,8 +25,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sdf_pose_bridge.geometry import floats
 from sdf_pose_bridge.geometry.formulas import degrees_from_radians
-from sdf_pose_bridge.geometry.formulas import floats
 from sdf_pose_bridge.geometry.formulas import radians_from_degrees
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.geometry.rotations import Floats

@@ -4,9 +4,9 @@
 Formulas of rotations, each written once for one rotation and for many.
 
 The formulas are elementwise: a component is a float, or an array with an element for each
-rotation. Their argument ``xp`` has the functions that they call: numpy for arrays, and
-:data:`floats`, which is much faster for single numbers, for floats. Where only a few rotations
-need another formula, ``if xp.any(...)`` skips it when there are none.
+rotation. Their argument ``xp`` is the module whose functions they call: numpy for arrays, and
+:mod:`sdf_pose_bridge.geometry.floats` for floats. Where only a few rotations need another formula,
+``if xp.any(...)`` skips it when there are none.
 
 Conventions, ranges and accuracy are described in :mod:`sdf_pose_bridge.geometry.rotations`.
 """
@@ -16,7 +16,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 import functools
 import math
-from types import SimpleNamespace
 from typing import Any
 from typing import TypeAlias
 
@@ -55,16 +54,6 @@ MATRIX_TOLERANCE = 1e-5
 
 NEAREST_STEPS = 3
 """Steps of the power iteration that reduce an error of 1e-5 to less than rounding."""
-
-
-floats = SimpleNamespace(
-    # A float has one condition where an array has many.
-    all=bool, any=bool,
-    where=lambda condition, if_true, if_false: if_true if condition else if_false,
-    maximum=max, minimum=min, isfinite=math.isfinite, copysign=math.copysign, fmod=math.fmod,
-    frexp=math.frexp, ldexp=math.ldexp, sqrt=math.sqrt, sin=math.sin, cos=math.cos,
-    arctan2=math.atan2)
-"""Functions for floats under the names that numpy has for them."""
 
 
 class InvalidRotationError(ValueError):

@@ -40,6 +40,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from sdf_pose_bridge.geometry import floats
 from sdf_pose_bridge.geometry import formulas
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -203,7 +204,7 @@ def _matrix_message(*matrix: Any) -> str:
     rows = tuple(map(tuple, matrix))
     if not np.isfinite(matrix).all():
         return f'rotation matrix {rows} is not finite'
-    for value, expected, name in formulas.orthonormality(formulas.floats, *matrix):
+    for value, expected, name in formulas.orthonormality(floats, *matrix):
         if not abs(value - expected) <= formulas.MATRIX_TOLERANCE:
             return (
                 f'rotation matrix {rows} is not orthonormal: {name} {value!r}, which differs from'
@@ -241,7 +242,7 @@ def _converted(
     """
     if not isinstance(values, np.ndarray):
         try:
-            return formula(formulas.floats, *values)
+            return formula(floats, *values)
         except (TypeError, ValueError, OverflowError):
             pass  # not one valid rotation
     array = _array(values, given)
