@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+import math
 import os
 from pathlib import Path
 import sys
@@ -65,7 +66,7 @@ class Unit(NamedTuple):
 
 
 METRES, MILLIMETRES = Unit('m', 1.0, 4), Unit('mm', 1000.0, 1)
-RADIANS, DEGREES = Unit('rad', 1.0, 4), Unit('deg', 57.29577951308232, 2)
+RADIANS, DEGREES = Unit('rad', 1.0, 4), Unit('deg', math.degrees(1.0), 2)
 
 
 class Units(NamedTuple):
