@@ -69,6 +69,13 @@ class Mesh(NamedTuple):
     """Why these are not its surfaces; empty if they are."""
 
 
+class _ReadingProcess(NamedTuple):
+    """A process that reads meshes, and the end of its pipe."""
+
+    process: SpawnProcess
+    pipe: Connection
+
+
 class MeshReader:
     """
     Reads meshes, and remembers them until their files change.
@@ -78,7 +85,7 @@ class MeshReader:
 
     def __init__(self, finder: ResourceFinder) -> None:
         self._finder = finder
-        self._process: SpawnProcess | None = None
+        self._reading: _ReadingProcess | None = None
         self._meshes: dict[object, Mesh] = {}
 
     def mesh(self, shape: Shape, file: str, size_m: float) -> Mesh:
@@ -100,10 +107,10 @@ class MeshReader:
 
     def close(self) -> None:
         """End the process."""
-        if self._process is not None:
-            self._process.kill()
-            self._process.join()
-            self._process = None
+        if self._reading is not None:
+            self._reading.process.kill()
+            self._reading.process.join()
+            self._reading = None
 
     def _mesh_of_file(self, shape: Shape, file: str) -> Mesh:
         path = self._finder.file_from_uri(shape.mesh_uri, file)
@@ -116,12 +123,13 @@ class MeshReader:
         return self._meshes[key]
 
     def _read(self, path: str, submesh: str) -> Mesh:
-        if self._process is None or not self._process.is_alive():
-            self._start_process()
+        if self._reading is None or not self._reading.process.is_alive():
+            self._reading = _started_process()
+        pipe = self._reading.pipe
         try:
-            self._pipe.send((path, submesh))
-            if self._pipe.poll(MOST_SECONDS):
-                mesh: Mesh = self._pipe.recv()
+            pipe.send((path, submesh))
+            if pipe.poll(MOST_SECONDS):
+                mesh: Mesh = pipe.recv()
                 return mesh
             reason = f'to read it takes more than {MOST_SECONDS:g} s'
         except (EOFError, OSError):
@@ -129,15 +137,17 @@ class MeshReader:
         self.close()
         return Mesh(reason=reason)
 
-    def _start_process(self) -> None:
-        # Each thread of this library would take its share of the memory.
-        os.environ['OPENBLAS_NUM_THREADS'] = '1'
-        context = multiprocessing.get_context('spawn')
-        self._pipe, other_end = context.Pipe()
-        self._process = context.Process(target=_read_meshes, args=(other_end,), daemon=True)
-        self._process.start()
-        # That the process ends is seen only where nobody else holds this end open.
-        other_end.close()
+
+def _started_process() -> _ReadingProcess:
+    # Each thread of this library would take its share of the memory.
+    os.environ['OPENBLAS_NUM_THREADS'] = '1'
+    context = multiprocessing.get_context('spawn')
+    pipe, other_end = context.Pipe()
+    process = context.Process(target=_read_meshes, args=(other_end,), daemon=True)
+    process.start()
+    # That the process ends is seen only where nobody else holds this end open.
+    other_end.close()
+    return _ReadingProcess(process, pipe)
 
 
 def _mesh_of_shape(shape: Shape, largest_m: float) -> Mesh:

@@ -177,7 +177,7 @@ def test_mesh_that_takes_too_long(named, monkeypatch):
 
 def test_process_that_ends_while_it_reads(named, reader, monkeypatch):
     assert not named('a.stl', mesh_texts.STL.format(y=1)).reason
-    process, pipe = reader._process, reader._pipe
+    process, pipe = reader._reading
     # It has no time to answer.
     os.kill(process.pid, signal.SIGSTOP)
 
@@ -185,8 +185,8 @@ def test_process_that_ends_while_it_reads(named, reader, monkeypatch):
         pipe.send(asked)
         process.kill()
 
-    monkeypatch.setattr(reader, '_pipe', SimpleNamespace(
-        send=send, poll=pipe.poll, recv=pipe.recv))
+    reader._reading = reader._reading._replace(
+        pipe=SimpleNamespace(send=send, poll=pipe.poll, recv=pipe.recv))
     monkeypatch.setattr(meshes, 'MOST_SECONDS', DEADLINE_S)
     reason = 'the mesh "b.stl": to read it ends the process that does so'
     assert named('b.stl', mesh_texts.STL.format(y=1)).reason == reason
@@ -195,8 +195,8 @@ def test_process_that_ends_while_it_reads(named, reader, monkeypatch):
 
 def test_process_that_has_ended_before(named, reader):
     assert not named('a.stl', mesh_texts.STL.format(y=1)).reason
-    reader._process.kill()
-    reader._process.join()
+    reader._reading.process.kill()
+    reader._reading.process.join()
     assert not named('b.stl', mesh_texts.STL.format(y=1)).reason
 
 
