@@ -69,6 +69,35 @@ async def run_other_callbacks(node: Node) -> None:
     await node.executor.create_task(node.executor.wake)
 
 
+class CoroutineLock:
+    """
+    A lock for coroutines on the executor of a node, each of which holds it by ``async with``.
+
+    :param node: a node with an executor.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._released: Future | None = None
+
+    @property
+    def is_held(self) -> bool:
+        """Whether a coroutine holds it."""
+        return self._released is not None
+
+    async def __aenter__(self) -> None:
+        while self._released is not None:
+            await self._released
+        self._released = Future()
+
+    async def __aexit__(self, *_exception: object) -> None:
+        assert self._released is not None
+        released, self._released = self._released, None
+        released.set_result(None)
+        # Some releases of rclpy do not wake up by themselves for those that wait.
+        self._node.executor.wake()
+
+
 class PollingThread:
     """
     A thread that calls a function whenever a condition is true.

@@ -24,6 +24,7 @@ from rclpy.timer import Timer
 from std_srvs.srv import Trigger
 
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.ros.background import CoroutineLock
 from sdf_pose_bridge.ros.background import PollingThread
 from sdf_pose_bridge.ros.background import run_in_thread
 from sdf_pose_bridge.ros.diagnostics import Diagnostics
@@ -83,6 +84,10 @@ class SdfPoseBridge:
         self._watcher = FileWatcher()
         # All callbacks that change what is published: one runs after the other.
         self._changes = MutuallyExclusiveCallbackGroup()
+        # Held while anything is published on all topics. A timer that is always due would keep
+        # the callbacks of its group from ever running, so that it has a group of its own.
+        self._publishing = CoroutineLock(node)
+        self._again_group = MutuallyExclusiveCallbackGroup()
         # Simulated time may stand still.
         self._steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._joint_states: JointStates | None = None
@@ -124,11 +129,12 @@ class SdfPoseBridge:
         """Publish a scene, with the topics that the settings ask for."""
         frames = await _frames_of_scene(
             self._node, loaded, self._settings.pose_topics, self._frames)
-        before, self._loaded, self._frames = self._loaded, loaded, frames
-        self._follow_joints()
-        if loaded is not before:
-            frames.publish_tf()
-        await frames.publish_topics()
+        async with self._publishing:
+            before, self._loaded, self._frames = self._loaded, loaded, frames
+            self._follow_joints()
+            if loaded is not before:
+                frames.publish_tf()
+            await frames.publish_topics()
         if loaded is not before:
             for line in lines_about_lost_frames(before.tree, loaded.tree):
                 self._logger.warning(line)
@@ -290,17 +296,23 @@ class SdfPoseBridge:
             self._again_timer = None
         if rate:
             self._again_timer = self._node.create_timer(
-                1.0 / rate, self._publish_again, callback_group=self._changes,
+                1.0 / rate, self._publish_again, callback_group=self._again_group,
                 clock=self._steady_clock)
         self._follow_joints()
 
     async def _publish_again(self) -> None:
+        if self._publishing.is_held:
+            return
         begin = time.perf_counter()
-        await self._frames.publish_fixed_again()
+        async with self._publishing:
+            await self._frames.publish_fixed_again()
         if self._joint_states is not None:
             self._joint_states.publish_waiting()
         seconds = time.perf_counter() - begin
         if seconds * self._settings.publish_rate > 1.0:
+            if self._again_timer is not None:
+                # What was due meanwhile is left out.
+                self._again_timer.reset()
             self._logger.warning(
                 f'publish_rate {self._settings.publish_rate} Hz is not reached: to publish '
                 f'everything takes {1e3 * seconds:.0f} ms', throttle_duration_sec=60.0)

@@ -273,6 +273,21 @@ def test_a_rate_that_is_not_reached_is_reported(start_bridge, file):
     bridge.wait_for_line('publish_rate 100.0 Hz is not reached: to publish everything takes ')
 
 
+def test_a_rate_that_is_not_reached_keeps_nobody_from_changing_anything(
+        start_bridge, start_listener, file):
+    frames = ''.join(f'<frame name="f{number}"/>' for number in range(5000))
+    replace(file, world(1, extra=frames))
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={file}', '-p', 'publish_rate:=100.0')
+    bridge.wait_for_line('publish_rate 100.0 Hz is not reached')
+    listener = start_listener()
+    listen_to_tf(listener)
+    assert reload(listener).success
+    replace(file, world(2, extra=frames))
+    wait_for_x(listener, 2.0)
+    result, = set_parameters(listener, publish_rate=0.0)
+    assert result.successful, result.reason
+
+
 def test_two_bridges_share_a_domain_by_prefixes(start_bridge, start_listener, file):
     for name in ('left', 'right'):
         start_bridge('--ros-args', '-r', f'__ns:=/{name}', '-p', f'sdf_file:={file}',

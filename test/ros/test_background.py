@@ -10,6 +10,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from sdf_pose_bridge.ros import background
+from sdf_pose_bridge.ros.background import CoroutineLock
 from sdf_pose_bridge.ros.background import PollingThread
 from sdf_pose_bridge.ros.background import run_in_thread
 from sdf_pose_bridge.ros.background import run_other_callbacks
@@ -87,6 +88,34 @@ def test_two_coroutines_alternate(node):
 
     finished(node, count, count)
     assert seen == [0, 0, 1, 1, 2, 2]
+
+
+def test_one_coroutine_holds_a_lock_at_a_time(node):
+    lock = CoroutineLock(node)
+    seen = []
+
+    async def count():
+        async with lock:
+            for number in range(3):
+                assert lock.is_held
+                seen.append(number)
+                await run_other_callbacks(node)
+
+    finished(node, count, count, count)
+    assert seen == [0, 1, 2] * 3
+    assert not lock.is_held
+
+
+def test_a_lock_is_released_by_an_exception(node):
+    lock = CoroutineLock(node)
+
+    async def fail():
+        with pytest.raises(ZeroDivisionError):
+            async with lock:
+                raise ZeroDivisionError
+
+    finished(node, fail)
+    assert not lock.is_held
 
 
 def test_a_thread_may_end_after_the_executor_was_shut_down(node):
