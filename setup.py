@@ -5,6 +5,7 @@
 import configparser
 import os
 from pathlib import Path
+import sys
 from typing import Any
 
 from setuptools import find_packages
@@ -14,6 +15,12 @@ from setuptools.command.install_scripts import install_scripts
 PACKAGE = 'sdf_pose_bridge'
 SHARE = f'share/{PACKAGE}'
 NOT_INSTALLED = ('__pycache__', '.pytest_cache', '.mypy_cache', '.ruff_cache')
+COMMAND_LINE = 'sdf_pose = sdf_pose_bridge.cli.main:main'
+# For `ros2 run`, which finds executables by the name of their package.
+ROS_EXECUTABLES = [COMMAND_LINE, 'bridge = sdf_pose_bridge.ros.bridge:main']
+# In the PATH, where `bridge` is a program of iproute2.
+COMMANDS = [COMMAND_LINE, 'sdf_pose_bridge = sdf_pose_bridge.ros.bridge:main']
+MAKES_A_WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
 BLOCK_SIGNALS = (
     'import signal',
     'signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM])')
@@ -44,11 +51,12 @@ def data_files_of(folder: str) -> list[tuple[str, list[str]]]:
 
 class InstallScripts(install_scripts):
     """
-    Writes executables that import what they call.
+    Writes the executables of a ROS workspace, which import what they call.
 
     Those of setuptools look their entry point up first, which takes longer than to read a file and
     publish it. In that of the node signals wait, before anything is imported, until the function
-    that it calls handles them.
+    that it calls handles them. A process that the program starts by multiprocessing imports the
+    executable, which does nothing then.
     """
 
     def write_script(self, script_name: str, contents: str, *args: Any, **kwargs: Any) -> None:
@@ -58,10 +66,11 @@ class InstallScripts(install_scripts):
             if text.split(' = ')[0] == script_name)
         module, function = entry.split(' = ')[1].split(':')
         first_line = contents.partition('\n')[0]
-        lines = [
-            first_line, *(BLOCK_SIGNALS if script_name == 'bridge' else ()), 'import sys',
-            f'from {module} import {function}', f'sys.exit({function}())', '']
-        super().write_script(script_name, '\n'.join(lines), *args, **kwargs)
+        program = (
+            *(BLOCK_SIGNALS if module.startswith(f'{PACKAGE}.ros.') else ()), 'import sys',
+            f'from {module} import {function}', f'sys.exit({function}())')
+        lines = [first_line, "if __name__ == '__main__':", *(f'    {line}' for line in program)]
+        super().write_script(script_name, '\n'.join([*lines, '']), *args, **kwargs)
 
 
 setup(
@@ -92,11 +101,6 @@ setup(
         *(pair for folder in shared_folders() for pair in data_files_of(folder)),
     ],
     cmdclass={'install_scripts': InstallScripts},
-    entry_points={
-        'console_scripts': [
-            'bridge = sdf_pose_bridge.ros.bridge:main',
-            'sdf_pose = sdf_pose_bridge.cli.main:main',
-        ],
-    },
+    entry_points={'console_scripts': COMMANDS if MAKES_A_WHEEL else ROS_EXECUTABLES},
     zip_safe=True,
 )

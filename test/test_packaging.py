@@ -129,8 +129,9 @@ def test_scripts_go_where_ros2_run_looks():
 @pytest.mark.parametrize('name', ['bridge', 'sdf_pose'])
 def test_scripts_import_what_they_call(name, tmp_path):
     run_setup('egg_info', '--egg-base', tmp_path, 'install_scripts', '--install-dir', tmp_path)
-    first, *lines = (tmp_path / name).read_text().splitlines()
+    first, guard, *lines = map(str.strip, (tmp_path / name).read_text().splitlines())
     assert first.startswith('#!')
+    assert guard == "if __name__ == '__main__':"
     if name == 'bridge':  # signals come first
         import_signal, block, *lines = lines
         assert import_signal == 'import signal'

@@ -2,16 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fixtures of tests that run the command line as a process."""
 
-from pathlib import Path
 import subprocess
-import sys
 from types import SimpleNamespace
 
+from command_line import COMMAND
+from command_line import ENVIRONMENT
 import pytest
 
 from sdf_pose_bridge.cli.main import main
 
-ROOT = Path(__file__).resolve().parents[2]
 GOOD = """<sdf version="1.10">
   <world name="w">
     <frame name="f"><pose>1 2 3 0 0 0</pose></frame>
@@ -35,11 +34,11 @@ def folder_of_files(tmp_path):
 
 @pytest.fixture
 def sdf_pose(files):
-    """Runs the command line in that folder: ``sdf_pose(*arguments)``."""
+    """Runs the installed command line in that folder: ``sdf_pose(*arguments)``."""
     def run(*arguments):
         return subprocess.run(
-            [sys.executable, '-m', 'sdf_pose_bridge', *arguments], cwd=files,
-            env={'PYTHONPATH': str(ROOT)}, capture_output=True, text=True, timeout=60, check=False)
+            [*COMMAND, *arguments], cwd=files, env=ENVIRONMENT, capture_output=True, text=True,
+            timeout=60, check=False)
     return run
 
 

@@ -3,11 +3,10 @@
 """``sdf_pose check``: errors, warnings and the exit code."""
 
 import os
-from pathlib import Path
 import subprocess
-import sys
 
-ROOT = Path(__file__).resolve().parents[2]
+from command_line import COMMAND
+from command_line import ENVIRONMENT
 
 
 def test_check_prints_errors_in_the_order_of_the_file(sdf_pose):
@@ -58,8 +57,8 @@ def test_process_substitution_is_read(sdf_pose, files):
     os.write(writer, (files / 'good.sdf').read_bytes())
     os.close(writer)
     done = subprocess.run(
-        [sys.executable, '-m', 'sdf_pose_bridge', 'check', f'/dev/fd/{reader}'], cwd=files,
-        env={'PYTHONPATH': str(ROOT)}, capture_output=True, check=False, pass_fds=[reader])
+        [*COMMAND, 'check', f'/dev/fd/{reader}'], cwd=files, env=ENVIRONMENT,
+        capture_output=True, check=False, pass_fds=[reader])
     os.close(reader)
     assert (done.returncode, done.stdout) == (0, b'')
 

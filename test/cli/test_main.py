@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command line as a process: wrong arguments, exit codes and closed pipes."""
 
-from pathlib import Path
+import shlex
 import subprocess
-import sys
 
-ROOT = Path(__file__).resolve().parents[2]
+from command_line import COMMAND
+from command_line import ENVIRONMENT
 
 
 def test_a_command_is_required(sdf_pose):
@@ -22,10 +22,10 @@ def test_an_unknown_command_is_an_error_that_lists_the_known_ones(sdf_pose):
 
 
 def test_errors_of_a_file_are_printed_behind_what_was_printed_before(files):
-    command = f'{sys.executable} -m sdf_pose_bridge tree good.sdf bad.sdf 2>&1'
+    command = f'{shlex.join(COMMAND)} tree good.sdf bad.sdf 2>&1'
     done = subprocess.run(
-        ['bash', '-c', command], cwd=files, env={'PYTHONPATH': str(ROOT), 'PATH': '/usr/bin:/bin'},
-        capture_output=True, text=True, timeout=60, check=False)
+        ['bash', '-c', command], cwd=files, env=ENVIRONMENT, capture_output=True, text=True,
+        timeout=60, check=False)
     assert done.returncode == 1
     first, *_, before_last, last = done.stdout.splitlines()
     assert first == 'good.sdf'
@@ -34,8 +34,8 @@ def test_errors_of_a_file_are_printed_behind_what_was_printed_before(files):
 
 
 def test_a_closed_pipe_prints_no_error(files):
-    command = f'{sys.executable} -m sdf_pose_bridge poses {"good.sdf " * 2000}| head -1'
+    command = f'{shlex.join(COMMAND)} poses {"good.sdf " * 2000}| head -1'
     done = subprocess.run(
-        ['bash', '-c', command], cwd=files, env={'PYTHONPATH': str(ROOT), 'PATH': '/usr/bin:/bin'},
-        capture_output=True, text=True, timeout=60, check=False)
+        ['bash', '-c', command], cwd=files, env=ENVIRONMENT, capture_output=True, text=True,
+        timeout=60, check=False)
     assert done.stderr == ''

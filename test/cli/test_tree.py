@@ -3,14 +3,13 @@
 """``sdf_pose tree``: the TF tree and the tree of scopes."""
 
 import os
-from pathlib import Path
 import pty
 import subprocess
-import sys
 
+from command_line import COMMAND
+from command_line import ENVIRONMENT
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
 ARM = """<sdf version="1.10">
   <model name="arm">
     <frame name="tip" attached_to="hand"><pose relative_to="base">0 0 1 0 0 0</pose></frame>
@@ -122,9 +121,8 @@ def test_match_of_nothing_prints_no_frame(tree):
 def test_terminal_without_the_characters_has_others(files):
     (files / 'arm.sdf').write_text(ARM)
     done = subprocess.run(
-        [sys.executable, '-m', 'sdf_pose_bridge', 'tree', 'arm.sdf'], cwd=files,
-        env={'PYTHONPATH': str(ROOT), 'PYTHONIOENCODING': 'ascii'}, capture_output=True,
-        text=True, check=True)
+        [*COMMAND, 'tree', 'arm.sdf'], cwd=files, env={**ENVIRONMENT, 'PYTHONIOENCODING': 'ascii'},
+        capture_output=True, text=True, check=True)
     assert '\n`- hand' in done.stdout
 
 
@@ -132,8 +130,8 @@ def test_terminal_without_the_characters_has_others(files):
 def test_terminal_has_colors_unless_the_user_wants_none(files, environment):
     reader, writer = pty.openpty()
     subprocess.run(
-        [sys.executable, '-m', 'sdf_pose_bridge', 'tree', 'good.sdf'], cwd=files,
-        env={'PYTHONPATH': str(ROOT), **environment}, stdout=writer, check=True)
+        [*COMMAND, 'tree', 'good.sdf'], cwd=files, env={**ENVIRONMENT, **environment},
+        stdout=writer, check=True)
     os.close(writer)
     assert (b'\x1b' in os.read(reader, 10_000)) is not bool(environment)
     os.close(reader)

@@ -124,9 +124,8 @@ class BridgeProcess(LoggedProcess):
     """
 
     def __init__(self, *arguments):
-        from ament_index_python.packages import get_package_prefix
-        executable = Path(get_package_prefix('sdf_pose_bridge'), 'lib/sdf_pose_bridge/bridge')
-        super().__init__([executable, *arguments])
+        from command_line import executable_of_workspace
+        super().__init__([executable_of_workspace('bridge'), *arguments])
 
     def wait_until_started(self):
         self.wait_for_line(STARTED)

@@ -4,14 +4,14 @@
 
 import html
 import os
-from pathlib import Path
 import re
 import subprocess
-import sys
 from types import SimpleNamespace
 
 from browser import browser
 from browser import DEADLINE_S
+from command_line import COMMAND
+from command_line import ENVIRONMENT
 import numpy as np
 import pytest
 
@@ -19,7 +19,6 @@ from sdf_pose_bridge import load
 
 pytest.importorskip('viser', reason='needs viser')
 
-ROOT = Path(__file__).resolve().parents[2]
 HOSTILE = '<img src=x onerror="window.wasRun=true">'
 TEXT = f"""<sdf version="1.11"><world name="w">
   <model name="arm">
@@ -41,8 +40,8 @@ ROWS = "[...document.querySelectorAll('.rows label')]"
 
 def run_view(folder, *arguments, **options):
     return subprocess.Popen(
-        [sys.executable, '-m', 'sdf_pose_bridge', 'view', *arguments], cwd=folder, text=True,
-        env={**os.environ, 'PYTHONPATH': str(ROOT), 'BROWSER': 'true'},
+        [*COMMAND, 'view', *arguments], cwd=folder, text=True,
+        env={**os.environ, **ENVIRONMENT, 'PATH': os.environ['PATH'], 'BROWSER': 'true'},
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
 
 

@@ -1,0 +1,33 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The command line as its users start it."""
+
+import os
+from pathlib import Path
+import sys
+
+ROOT = Path(__file__).resolve().parents[1]
+AS_MODULE = [sys.executable, '-m', 'sdf_pose_bridge']
+
+
+def executable_of_workspace(name):
+    """Return the executable that ``ros2 run`` starts, or None where there is none."""
+    try:
+        from ament_index_python.packages import get_package_prefix
+        prefix = get_package_prefix('sdf_pose_bridge')
+    except (ImportError, LookupError):
+        return None
+    return Path(prefix, 'lib/sdf_pose_bridge', name)
+
+
+def installed_command():
+    """Return the command of the installed program; that of the source where none is installed."""
+    programs = executable_of_workspace('sdf_pose'), Path(sys.executable).with_name('sdf_pose')
+    return next(([str(path)] for path in programs if path and path.exists()), AS_MODULE)
+
+
+COMMAND = installed_command()
+ENVIRONMENT = {
+    'PATH': os.defpath,
+    'PYTHONPATH': str(ROOT) if COMMAND is AS_MODULE else os.environ.get('PYTHONPATH', '')}
+"""Without what the user's shell may have set for the program."""

@@ -1,0 +1,88 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The programs as their users install and start them."""
+
+import os
+from pathlib import Path
+import shutil
+import subprocess
+import sys
+import sysconfig
+
+from command_line import AS_MODULE
+from command_line import executable_of_workspace
+import mesh_texts
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+MESH = """<sdf version="1.9"><model name="m"><link name="l"><visual name="v"><geometry>
+  <mesh><uri>a.stl</uri></mesh></geometry></visual></link></model></sdf>"""
+NOT_COPIED = shutil.ignore_patterns(
+    '.*', 'build*', 'install*', 'log*', 'docs', 'test', 'underlay', '*.egg-info', '__pycache__')
+
+
+@pytest.fixture(scope='session')
+def prefix_of_wheel(tmp_path_factory):
+    """A folder in which pip has installed the wheel."""
+    pytest.importorskip('setuptools', reason='needs setuptools')
+    folder = tmp_path_factory.mktemp('wheel')
+    shutil.copytree(ROOT, folder / 'source', ignore=NOT_COPIED)
+    pip = [sys.executable, '-m', 'pip', '--quiet', '--disable-pip-version-check']
+    build = ['wheel', '--no-deps', '--no-build-isolation', '-w', folder, folder / 'source']
+    subprocess.run([*pip, *build], check=True, timeout=120)
+    install = ['install', '--no-deps', '--no-index', '--ignore-installed']
+    subprocess.run(
+        [*pip, *install, '--prefix', folder / 'prefix', *folder.glob('*.whl')], check=True,
+        timeout=120)
+    return folder / 'prefix'
+
+
+def program_of_workspace(name):
+    executable = executable_of_workspace(name)
+    if executable is None:
+        pytest.skip('needs a ROS workspace')
+    return [str(executable)], os.environ['PYTHONPATH']
+
+
+@pytest.fixture(params=['executable', 'environment', 'wheel', 'module'])
+def started(request):
+    """A way to start the command line, and the folder that it is imported from."""
+    if request.param == 'executable':
+        return program_of_workspace('sdf_pose')
+    if request.param == 'environment':
+        program = shutil.which('sdf_pose')
+        if program is None:
+            pytest.skip('needs the environment of underlay/setup.bash')
+        return [program], os.environ['PYTHONPATH']
+    if request.param == 'module':
+        return AS_MODULE, str(ROOT)
+    prefix = request.getfixturevalue('prefix_of_wheel')
+    library = sysconfig.get_path('purelib', vars={'base': str(prefix)})
+    return [str(prefix / 'bin/sdf_pose')], library
+
+
+def test_meshes_are_read_however_the_program_is_started(started, tmp_path):
+    for name in ('viser', 'trimesh'):
+        pytest.importorskip(name, reason=f'needs {name}')
+    (tmp_path / 'mesh.sdf').write_text(MESH)
+    (tmp_path / 'a.stl').write_text(mesh_texts.STL.format(y=2))
+    command, path = started
+    done = subprocess.run(
+        [*command, 'view', 'mesh.sdf', '-o', 'page.html'], cwd=tmp_path, text=True,
+        env={**os.environ, 'PYTHONPATH': path}, capture_output=True, timeout=120, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, '', '')
+
+
+@pytest.mark.parametrize('name', ['bridge', 'sdf_pose'])
+def test_executables_can_be_imported(name, tmp_path):
+    (executable,), path = program_of_workspace(name)
+    done = subprocess.run(
+        [sys.executable, '-c', f'import runpy; runpy.run_path({executable!r}, run_name="other")'],
+        env={**os.environ, 'PYTHONPATH': path}, cwd=tmp_path, text=True, capture_output=True,
+        timeout=60, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, '', '')
+
+
+def test_the_node_of_the_wheel_has_a_name_of_its_own(prefix_of_wheel):
+    assert sorted(path.name for path in (prefix_of_wheel / 'bin').iterdir()) == [
+        'sdf_pose', 'sdf_pose_bridge']
