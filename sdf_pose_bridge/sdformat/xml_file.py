@@ -150,15 +150,15 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
     text = decoded.utf8
     faults = [(1, decoded.fault)] if decoded.fault else []
     try:
-        root, is_complete = _parsed(text, path)
+        root = _parsed(text, path)
     except FileReadError:
         repair = repaired(text)
         if repair is None:
             raise
         text = repair.text
         faults += repair.faults
-        root, is_complete = _parsed(text, path)
-    if root.getroottree().docinfo.internalDTD is not None or not is_complete:
+        root = _parsed(text, path)
+    if root.getroottree().docinfo.internalDTD is not None:
         _check_with_expat(text, path)
     _check_instructions(root, path)
     if b'xmlns' in text:
@@ -170,11 +170,11 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
     return XmlFile(root, tuple(warnings), lines, text, decoded.encoding)
 
 
-def _parsed(text: bytes, path: str) -> tuple[XmlElement, bool]:
+def _parsed(text: bytes, path: str) -> XmlElement:
     """
     Parse text.
 
-    :return: the outermost element, and whether there can be no other errors.
+    :return: the outermost element.
     :raises FileReadError: for the first error that is not ignored.
     """
     parser = etree.XMLParser(
@@ -192,7 +192,9 @@ def _parsed(text: bytes, path: str) -> tuple[XmlElement, bool]:
     if root is None:
         msg = 'this is not XML: it has no element'
         raise FileReadError(msg, Place(path))
-    return root, len(parser.error_log) < _MOST_ERRORS
+    if len(parser.error_log) >= _MOST_ERRORS:
+        _check_with_expat(text, path)
+    return root
 
 
 def _check_instructions(root: XmlElement, path: str) -> None:
