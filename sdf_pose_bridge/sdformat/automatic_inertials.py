@@ -10,12 +10,11 @@ Such an inertial is at the center of mass of the collisions of its link. Source:
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import LinkInertiaError
-from sdf_pose_bridge.sdformat.shapes import Shape
+from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import boolean_from_text
@@ -69,38 +68,13 @@ def collision_masses(inertial: XmlElement, sources: Sources) -> tuple[CollisionM
         # An empty density is the default of the element, and not that of the inertial.
         has_density = first_child(collision, 'density') is not None
         (density,) = numbers_of_child(collision, 'density', (DEFAULT_DENSITY_KG_M3,))
-        mass = None if shape is None else _mass(
-            shape, density if has_density else default_density)
-        if mass is None:
-            msg = ('an automatic inertial needs collisions that are boxes, capsules, cones, '
-                   'cylinders, ellipsoids or spheres, with positive dimensions and density')
+        solid = None if shape is None else shape.solid
+        density_kg_m3 = density if has_density else default_density
+        if solid is None or density_kg_m3 <= 0.0:
+            types = [name for name, each in SHAPE_TYPES.items() if each.solid is not None]
+            msg = (f'an automatic inertial needs collisions of the types {", ".join(types)}, with '
+                   'positive dimensions and density')
             sources.error(LinkInertiaError, collision, msg)
         else:
-            masses.append(mass)
+            masses.append(CollisionMass(density_kg_m3 * solid.volume_m3, solid.center_z_m))
     return tuple(masses) or None
-
-
-def _mass(shape: Shape, density_kg_m3: float) -> CollisionMass | None:
-    """Return the mass of a shape and its center; None if a number is not positive."""
-    if shape.type == 'plane' or not shape.sizes_m or (
-            min(density_kg_m3, *shape.required_sizes_m) <= 0.0):
-        return None
-    volume_m3, center_z_m = _volume(shape)
-    return CollisionMass(density_kg_m3 * volume_m3, center_z_m)
-
-
-def _volume(shape: Shape) -> tuple[float, float]:
-    """Return the volume of a shape, and the z of its center of mass in the shape's frame."""
-    if shape.type == 'box':
-        return math.prod(shape.sizes_m), 0.0
-    if shape.type == 'ellipsoid':
-        return 4.0 / 3.0 * math.pi * math.prod(shape.sizes_m), 0.0
-    radius, length = (*shape.sizes_m, 0.0)[:2]
-    disc = math.pi * radius ** 2
-    if shape.type == 'sphere':
-        return 4.0 / 3.0 * disc * radius, 0.0
-    if shape.type == 'capsule':
-        return disc * (max(length, 0.0) + 4.0 / 3.0 * radius), 0.0
-    if shape.type == 'cone':
-        return disc * length / 3.0, -0.25 * length
-    return disc * length, 0.0

@@ -1,25 +1,27 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Read the shapes of visuals and collisions, and make the surfaces of some.
+Read the shapes of visuals and collisions.
 
 Source: ``Geometry::Load``, the classes of shapes and ``Material::Load`` of libsdformat 14.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
 from sdf_pose_bridge.sdformat.grammar import ValueType
+from sdf_pose_bridge.sdformat.shape_types import Part
+from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
+from sdf_pose_bridge.sdformat.shape_types import Solid
+from sdf_pose_bridge.sdformat.shape_types import Surface
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import numbers_from_text
 from sdf_pose_bridge.sdformat.values import numbers_of_child
@@ -29,30 +31,14 @@ from sdf_pose_bridge.sdformat.xml_tree import child_value
 from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
-_DEFAULT_SIZES: Mapping[str, Mapping[str, tuple[float, ...]]] = {
-    'box': {'size': (1.0, 1.0, 1.0)},
-    'capsule': {'radius': (0.5,), 'length': (1.0,)},
-    'cone': {'radius': (1.0,), 'length': (1.0,)},
-    'cylinder': {'radius': (1.0,), 'length': (1.0,)},
-    'ellipsoid': {'radii': (1.0, 1.0, 1.0)},
-    'plane': {'size': (1.0, 1.0)},
-    'sphere': {'radius': (1.0,)},
-    'mesh': {},
-    'heightmap': {},
-    'image': {},
-    'polyline': {},
-}
-"""The shapes in the order in which the first one counts, and the defaults of their sizes."""
-
-_SEGMENTS_OF_CONE = 24
+_UP = (0.0, 0.0, 1.0)
 
 
 class Shape(NamedTuple):
     """What a visual or a collision looks like, in its own frame."""
 
     type: str
-    """``box``, ``capsule``, ``cone``, ``cylinder``, ``ellipsoid``, ``plane``, ``sphere``,
-    ``mesh``, ``heightmap``, ``image`` or ``polyline``."""
+    """Its tag, a key of :data:`SHAPE_TYPES`."""
     sizes_m: tuple[float, ...]
     """Of a box x y z; of a plane x y; of an ellipsoid its three radii; of a sphere its radius; of
     a capsule, a cone and a cylinder radius and length, along z. Empty for others. As written:
@@ -82,41 +68,63 @@ class Shape(NamedTuple):
         return red, green, blue, alpha * self.opacity
 
     @property
-    def required_sizes_m(self) -> tuple[float, ...]:
-        """The sizes that have to be positive: a capsule without a length is a sphere."""
-        return self.sizes_m[:1] if self.type == 'capsule' else self.sizes_m
-
-    @property
     def has_extent(self) -> bool:
         """Whether the sizes are positive, and they, the normal and the scale finite."""
         return (
             all(map(math.isfinite, (*self.sizes_m, *self.normal, *self.mesh_scale)))
-            and all(size_m > 0.0 for size_m in self.required_sizes_m) and any(self.normal))
+            and self._has_positive_sizes and any(self.normal))
+
+    @property
+    def _has_positive_sizes(self) -> bool:
+        required_sizes_m = self.sizes_m[:SHAPE_TYPES[self.type].required_count]
+        return all(size_m > 0.0 for size_m in required_sizes_m)
 
     @property
     def reason_without_surface(self) -> str:
         """Why no surface can be made from the sizes alone; empty if one can."""
-        if not self.sizes_m:
+        if SHAPE_TYPES[self.type].surface is None:
             return f'a {self.type} is not supported'
         return '' if self.has_extent else 'its sizes are not positive'
+
+    @property
+    def surface(self) -> Surface:
+        """Its surface, if there is no reason why not."""
+        make = SHAPE_TYPES[self.type].surface
+        if make is None:
+            raise ValueError(self.reason_without_surface)
+        points_m, faces = make(*self.sizes_m)
+        return Surface(_rotated_to_normal(points_m, self.normal), faces)
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """The bodies of which it consists; none where it cannot be said in them."""
+        parts = SHAPE_TYPES[self.type].parts
+        return () if parts is None else parts(*self.sizes_m)
+
+    @property
+    def solid(self) -> Solid | None:
+        """What it would weigh; None where this is not computed, or a size is not positive."""
+        solid = SHAPE_TYPES[self.type].solid
+        return None if solid is None or not self._has_positive_sizes else solid(*self.sizes_m)
 
 
 def shape_of(xml: XmlElement) -> Shape | None:
     """Return the shape of a ``<visual>`` or ``<collision>``; None without one."""
     geometry = first_child(xml, 'geometry')
     shapes = [] if geometry is None else [
-        shape for tag in _DEFAULT_SIZES for shape in child_elements(geometry, tag)]
+        shape for tag in SHAPE_TYPES for shape in child_elements(geometry, tag)]
     if not shapes:
         return None
     shape = shapes[0]
     tag = str(shape.tag)
-    sizes_m = (numbers_of_child(shape, name, size) for name, size in _DEFAULT_SIZES[tag].items())
+    sizes_m = (
+        numbers_of_child(shape, name, size) for name, size in SHAPE_TYPES[tag].sizes_m.items())
     submesh = first_child(shape, 'submesh')
     (transparency,) = numbers_of_child(xml, 'transparency', (0.0,))
     return Shape(
         type=tag,
         sizes_m=tuple(size_m for each in sizes_m for size_m in each),
-        normal=numbers_of_child(shape, 'normal', (0.0, 0.0, 1.0)),
+        normal=numbers_of_child(shape, 'normal', _UP) if tag == 'plane' else _UP,
         mesh_uri=child_value(shape, 'uri') if tag == 'mesh' else '',
         submesh='' if submesh is None else child_value(submesh, 'name'),
         mesh_scale=numbers_of_child(shape, 'scale', (1.0, 1.0, 1.0)),
@@ -158,38 +166,13 @@ def check_material(xml: XmlElement, sources: Sources) -> None:
             sources.error(ElementMissingError, shader, msg)
 
 
-def triangles_from_shape(shape: Shape) -> tuple[Floats, NDArray[np.int64]]:
-    """
-    Make the surface of a cone or a plane; libraries for drawing do not have them as SDFormat does.
-
-    :param shape: the shape, which has an extent.
-    :return: points in the frame of the shape, shape (n, 3), x y z in metres; and for each triangle
-        the indices of its corners, shape (m, 3), counterclockwise from outside.
-    """
-    first_m, second_m = shape.sizes_m
-    if shape.type == 'cone':
-        return _cone(first_m, second_m)
-    return _plane(first_m, second_m, shape.normal)
-
-
-def _cone(radius: float, length: float) -> tuple[Floats, NDArray[np.int64]]:
-    angles = np.linspace(0.0, 2.0 * np.pi, _SEGMENTS_OF_CONE, endpoint=False)
-    ends = np.array([(0.0, 0.0, 0.5 * length), (0.0, 0.0, -0.5 * length)])
-    circle = ends[1] + radius * np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
-    first = np.arange(len(circle))
-    second, top, middle = np.roll(first, -1), 0 * first + len(circle), 0 * first + len(circle) + 1
-    return np.concatenate([circle, ends]), np.concatenate([
-        np.stack([first, second, top], axis=1), np.stack([second, first, middle], axis=1)])
-
-
-def _plane(
-    x: float, y: float, normal: tuple[float, ...],
-) -> tuple[Floats, NDArray[np.int64]]:
-    """Make a rectangle whose z is rotated to a normal by the shortest way, as libsdformat does."""
-    corners = 0.5 * np.array([(-x, -y, 0.0), (x, -y, 0.0), (x, y, 0.0), (-x, y, 0.0)])
+def _rotated_to_normal(points_m: Floats, normal: tuple[float, ...]) -> Floats:
+    """Rotate z to a normal by the shortest way, as libsdformat does."""
     nx, ny, nz = np.array(normal) / np.linalg.norm(normal)
+    if nz == 1.0:
+        return points_m
     # Half a turn has no shortest way.
     rotation = (1.0, 0.0, 0.0, 0.0) if nz < -1.0 + 1e-9 else (-ny, nx, 0.0, 1.0 + nz)
     quat_xyzw = np.array(rotation) / np.linalg.norm(rotation)
-    points = corners @ np.array(matrix_from_quaternion(quat_xyzw)).T
-    return points, np.array([(0, 1, 2), (0, 2, 3)])
+    rotated: Floats = points_m @ np.array(matrix_from_quaternion(quat_xyzw)).T
+    return rotated

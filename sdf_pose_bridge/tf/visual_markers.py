@@ -18,8 +18,8 @@ from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
+from sdf_pose_bridge.sdformat.shape_types import Primitive
 from sdf_pose_bridge.sdformat.shapes import Shape
-from sdf_pose_bridge.sdformat.shapes import triangles_from_shape
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import elements_in_model
 from sdf_pose_bridge.tf.tree import TfTree
@@ -32,6 +32,8 @@ MOST_POINTS = 150_000
 
 _GRAY = (0.7, 0.7, 0.7, 1.0)
 _NO_POINTS = np.zeros((0, 3))
+_MARKER_TYPES = {
+    Primitive.BOX: 'CUBE', Primitive.CYLINDER: 'CYLINDER', Primitive.ELLIPSOID: 'SPHERE'}
 
 
 class Form(NamedTuple):
@@ -125,24 +127,12 @@ def _forms_from_shape(
         return _form_of_mesh(shape, file, finder)
     if shape.reason_without_surface:
         return shape.reason_without_surface
-    sizes_m = shape.sizes_m
-    if shape.type == 'box':
-        return (Form('CUBE', sizes_m),)
-    if shape.type == 'ellipsoid':
-        return (Form('SPHERE', tuple(2.0 * radius_m for radius_m in sizes_m)),)
-    if shape.type in ('cone', 'plane'):
-        points, faces = triangles_from_shape(shape)
-        return (Form('TRIANGLE_LIST', points=points[faces.reshape(-1)]),)
-    # The other shapes are round. A capsule that is not longer than its ends is a sphere.
-    diameter_m, length_m = 2.0 * sizes_m[0], max((*sizes_m, 0.0)[1], 0.0)
-    sphere = Form('SPHERE', (diameter_m, diameter_m, diameter_m))
-    if not length_m:
-        return (sphere,)
-    cylinder = Form('CYLINDER', (diameter_m, diameter_m, length_m))
-    if shape.type == 'cylinder':
-        return (cylinder,)
-    return (
-        cylinder, sphere._replace(z_m=-0.5 * length_m), sphere._replace(z_m=0.5 * length_m))
+    parts = shape.parts
+    if not parts:
+        points_m, faces = shape.surface
+        return (Form('TRIANGLE_LIST', points=points_m[faces.reshape(-1)]),)
+    return tuple(
+        Form(_MARKER_TYPES[part.primitive], part.extent_m, part.z_m) for part in parts)
 
 
 def _has_materials_that_rviz_shows(shape: Shape) -> bool:

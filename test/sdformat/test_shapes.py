@@ -11,7 +11,6 @@ from sdf_texts import link_with
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.shapes import Shape
-from sdf_pose_bridge.sdformat.shapes import triangles_from_shape
 
 BOX = '<geometry><box><size>1 2 3</size></box></geometry>'
 
@@ -167,34 +166,21 @@ def test_material_is_accepted(content):
     load_text(link_with(f'<visual name="v"><material>{content}</material></visual>'))
 
 
-# Surfaces of cones and planes
-
-def surface(kind, *sizes_m, normal=(0.0, 0.0, 1.0)):
-    shape = Shape(kind, sizes_m, normal, '', '', (1.0, 1.0, 1.0), None)
-    return triangles_from_shape(shape)
-
-
-def volume_of(points, faces):
-    """Return the volume inside; it is positive if all triangles look outwards."""
-    first, second, third = np.moveaxis(points[faces], 1, 0)
-    return np.einsum('ij,ij->', first, np.cross(second, third)) / 6.0
-
-
-def test_surface_encloses_a_cone():
-    points, faces = surface('cone', 1.0, 4.0)
-    assert points.min(axis=0) == pytest.approx((-1, -1, -2))
-    assert points.max(axis=0) == pytest.approx((1, 1, 2))
-    assert volume_of(points, faces) == pytest.approx(4 / 3 * math.pi, rel=0.04)
-
-
-def test_cone_ends_above():
-    points, _ = surface('cone', 1.0, 4.0)
-    assert points[points[:, 2] > 1.0, :2] == pytest.approx(0.0)
-
+# Surfaces
 
 @pytest.mark.parametrize('normal', [(0, 0, 1), (0, 0, -2), (1, 0, 0), (1, -2, 3)])
 def test_plane_has_its_normal(normal):
-    points, faces = surface('plane', 2.0, 4.0, normal=normal)
+    shape = Shape('plane', (2.0, 4.0), normal, '', '', (1.0, 1.0, 1.0), None)
+    points, faces = shape.surface
     first, second, third = np.moveaxis(points[faces], 1, 0)
     areas = 0.5 * np.cross(second - first, third - first)
     assert areas.sum(axis=0) == pytest.approx(8.0 * np.array(normal) / np.linalg.norm(normal))
+
+
+def test_normal_of_a_box_means_nothing():
+    assert shape_in('<box><normal>1 0 0</normal></box>').normal == (0, 0, 1)
+
+
+def test_mesh_has_no_surface_here():
+    with pytest.raises(ValueError, match='a mesh is not supported'):
+        shape_in('<mesh><uri>u</uri></mesh>').surface  # noqa: B018

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Make the surfaces of shapes, and read meshes in a process that has little memory and little time.
+Read meshes in a process that has little memory and little time.
 
 Readers of mesh formats trust their files.
 """
@@ -30,7 +30,6 @@ from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.shapes import Shape
-from sdf_pose_bridge.sdformat.shapes import triangles_from_shape
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 
@@ -153,21 +152,10 @@ def _started_process() -> _ReadingProcess:
 def _mesh_of_shape(shape: Shape, largest_m: float) -> Mesh:
     if shape.reason_without_surface:
         return Mesh(reason=shape.reason_without_surface)
-    sizes_m, creation = shape.sizes_m, trimesh.creation
     if shape.type == 'plane':
         # Planes are often much larger than what stands on them.
-        sizes_m = tuple(min(size_m, largest_m) for size_m in sizes_m)
-    if shape.type in ('cone', 'plane'):
-        return Mesh((MeshPart(*triangles_from_shape(shape._replace(sizes_m=sizes_m))),))
-    if shape.type == 'box':
-        surface = creation.box(sizes_m)
-    elif shape.type == 'cylinder':
-        surface = creation.cylinder(*sizes_m)
-    elif shape.type == 'capsule':
-        surface = creation.capsule(max(sizes_m[1], 0.0), sizes_m[0], count=(12, 24))
-    else:  # A sphere has one radius, an ellipsoid three.
-        surface = creation.icosphere().apply_scale(sizes_m if len(sizes_m) == 3 else sizes_m[0])
-    return Mesh((MeshPart(np.asarray(surface.vertices), np.asarray(surface.faces)),))
+        shape = shape._replace(sizes_m=tuple(min(size_m, largest_m) for size_m in shape.sizes_m))
+    return Mesh((MeshPart(*shape.surface),))
 
 
 def _read_meshes(pipe: Connection) -> None:

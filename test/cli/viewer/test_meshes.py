@@ -16,6 +16,7 @@ from sdf_pose_bridge.cli.viewer import meshes
 from sdf_pose_bridge.cli.viewer.meshes import mesh_from_file
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
+from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 from sdf_pose_bridge.sdformat.shapes import Shape
 
 DEADLINE_S = 120.0
@@ -204,3 +205,25 @@ def test_mesh_is_remembered_until_its_file_changes(named):
     first = named('a.stl', mesh_texts.STL.format(y=1))
     assert named('a.stl') is first
     assert named('a.stl', mesh_texts.STL.format(y=10)) is not first
+
+
+# Shapes without a file
+
+@pytest.mark.parametrize('name', sorted(SHAPE_TYPES.keys() - {'mesh'}))
+def test_shape_is_drawn_if_its_type_has_a_surface(name, reader):
+    shape_type = SHAPE_TYPES[name]
+    sizes_m = (0.5, 0.7, 1.1)[:sum(map(len, shape_type.sizes_m.values()))]
+    shape = Shape(name, sizes_m, (0.0, 0.0, 1.0), '', '', (1.0, 1.0, 1.0), None)
+    mesh = reader.mesh(shape, 'model.sdf', 1.0)
+    if shape_type.surface is None:
+        assert f'a {name} is not supported' in mesh.reason
+    else:
+        ((points, faces, _),) = mesh.parts
+        np.testing.assert_array_equal(points, shape_type.surface(*sizes_m).points_m)
+        np.testing.assert_array_equal(faces, shape_type.surface(*sizes_m).faces)
+
+
+def test_large_plane_is_drawn_in_part(reader):
+    shape = Shape('plane', (900.0, 2.0), (0.0, 0.0, 1.0), '', '', (1.0, 1.0, 1.0), None)
+    (points, _, _), = reader.mesh(shape, 'model.sdf', 5.0).parts
+    np.testing.assert_allclose(points.max(axis=0), (5.0, 1.0, 0.0))
