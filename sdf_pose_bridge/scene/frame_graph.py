@@ -55,7 +55,8 @@ class FrameGraph(NamedTuple):
     references: Indices
     """The frame that each pose is relative to; -1 for roots and unresolved elements."""
     placements: Mapping[int, int]
-    """The frames that poses place, where these are not the elements themselves."""
+    """The frames that poses place, where these are not the elements themselves: models, and the
+    frames that replace those of merged models."""
     attachments: Indices
     """The frame that each frame is attached to; -1 for links, static models and roots."""
     bodies: Indices
@@ -127,7 +128,7 @@ class _Builder:
             and (checked := checks.checked(ends)) is not None]
         self._set_references(references)
         placements = self._placements(references)
-        self._add_dependents(references, attachments, joints)
+        self._add_dependents(references, attachments, joints, placements)
         return FrameGraph(
             self._scopes.names, self._scopes.roots, references, placements, attachments, bodies,
             self._canonical_links(canonical, bodies), joints_of_bodies,
@@ -242,33 +243,33 @@ class _Builder:
         return NO_ELEMENT
 
     def _placements(self, references: Indices) -> dict[int, int]:
-        elements = self._elements
-        names = [(model, model, details.placement_frame)
-                 for model, details in elements.models.items() if details.placement_frame]
-        names += [(frame, self._scope_of[frame], details.placement_frame)
-                  for frame, details in elements.frames.items() if details.placement_frame]
         placements: dict[int, int] = {}
-        for index, scope, name in names:
-            found = self._scopes.frame(scope, name)
+        for model, details in self._elements.models.items():
+            name = details.placement_frame
+            found = self._scopes.frame(model, name) if name else model
             if found is None:
-                self._report_unknown(RelativeToError, index, 'placement_frame', name, scope)
-            elif self._is_placed_with(found, index, references):
-                placements[index] = found
-            else:
-                msg = (f'placement_frame="{name}" cannot place the model that is merged here: it '
-                       'names a frame outside that model')
-                self._problems.error(RelativeToError(msg, elements.place(index)))
+                self._report_unknown(RelativeToError, model, 'placement_frame', name, model)
+            elif found != model:
+                self._count_references(found, model, references)
+                placements[model] = found
+        for frame, frame_details in self._elements.frames.items():
+            name, scope = frame_details.placement_frame, self._scope_of[frame]
+            found = self._scopes.frame(scope, name) if name else frame
+            if found is None:
+                # The frame was placed when its model was merged. The name may be gone since.
+                uri = self._scopes.missing_uri(scope, name)
+                self._unresolved.update({frame: uri} if uri else {})
+            elif found != frame:
+                placements[frame] = found
         return placements
 
-    def _is_placed_with(self, frame: int, model: int, references: Indices) -> bool:
-        """Return whether references lead from a placement frame to its model frame."""
+    def _count_references(self, frame: int, model: int, references: Indices) -> None:
+        """Count the references from a placement frame to its model frame, or a broken cycle."""
         steps = 0
         while frame not in (model, NO_ELEMENT):
             steps += 1
-            last, frame = frame, int(references[frame])
+            frame = int(references[frame])
         self._usage.add('work', _STEPS_OF_REFERENCE * steps, lambda: self._elements.place(model))
-        # A cycle, which is reported already, ends at the element at which it was broken.
-        return frame == model or self._elements.parents[last] != NO_ELEMENT
 
     # Reports
 
@@ -298,6 +299,7 @@ class _Builder:
 
     def _add_dependents(
         self, references: Indices, attachments: Indices, joints: Mapping[int, JointEnds],
+        placements: Mapping[int, int],
     ) -> None:
         """Add the elements that depend on an unresolved one, and report how many there are."""
         if not self._unresolved:
@@ -305,7 +307,9 @@ class _Builder:
         columns = self._elements.parents.tolist(), references.tolist(), attachments.tolist()
         dependents: dict[int, list[int]] = {}
         for index, pointers in enumerate(zip(*columns, strict=True)):
-            needed = [*pointers, joints[index].parent] if index in joints else pointers
+            needed = {*pointers, placements.get(index, NO_ELEMENT)}
+            if index in joints:
+                needed.add(joints[index].parent)
             for other in needed:
                 dependents.setdefault(other, []).append(index)
         found = list(self._unresolved)

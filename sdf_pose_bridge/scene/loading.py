@@ -16,13 +16,16 @@ import os
 from sdf_pose_bridge.errors import LimitError
 from sdf_pose_bridge.errors import LoadError
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene.frame_graph import frame_graph_from_elements
+from sdf_pose_bridge.scene.resolution import poses_in_references
 from sdf_pose_bridge.scene.resolution import scene_from_graph
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.documents import Document
 from sdf_pose_bridge.sdformat.documents import document_from_file
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
+from sdf_pose_bridge.sdformat.include.merge import ModelByItself
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
 from sdf_pose_bridge.sdformat.limits import Limits
@@ -131,7 +134,7 @@ def _scene(
         expansion = IncludeExpansion(
             resource_finder(resource_paths, os.environ), sources,
             skips_missing=on_missing_include is MissingInclude.SKIP,
-            canonical_link_of=lambda root: _canonical_link(root, sources))
+            model_by_itself=lambda root: _model_by_itself(root, sources))
         expansion.expand(document)
     elements = elements_from_tree(document.root, sources, shapes=shapes)
     graph = frame_graph_from_elements(elements, sources.usage, sources.problems)
@@ -139,13 +142,12 @@ def _scene(
     return scene_from_graph(document.path, elements, graph, sources.problems)
 
 
-def _canonical_link(root: XmlElement, sources: Sources) -> str | None:
+def _model_by_itself(root: XmlElement, sources: Sources) -> ModelByItself | None:
     """
     Check a model file by itself.
 
     :param sources: where its elements were written; takes the errors of the file.
-    :return: name of the canonical link in the model; empty if it has none; None if there are
-        errors.
+    :return: what is known of the model; None if there are errors.
     """
     part = sources.with_own_problems()
     elements = elements_from_tree(root, part)
@@ -154,7 +156,10 @@ def _canonical_link(root: XmlElement, sources: Sources) -> str | None:
         part.problems.extend_parent()
         return None
     model = 1  # element 0 is the implicit root
+    place = elements.place_of_pose(model)
+    sources.problems.extend(each for each in part.problems.warnings if each.place == place)
     link = int(graph.canonical_links[model])
-    if link == NO_ELEMENT:
-        return ''
-    return graph.names[link].removeprefix(f'{graph.names[model]}{SEPARATOR}')
+    canonical_link = '' if link == NO_ELEMENT else (
+        graph.names[link].removeprefix(f'{graph.names[model]}{SEPARATOR}'))
+    pose = Pose(*poses_in_references(elements, graph)[model].tolist())
+    return ModelByItself(canonical_link, pose)

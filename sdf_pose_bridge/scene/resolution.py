@@ -48,7 +48,7 @@ def scene_from_graph(
     :param graph: the references of the elements, which are valid.
     :param problems: has the warnings of the load.
     """
-    poses = _root_poses(elements.poses, graph)
+    poses = _root_poses(elements, graph)
     _set_automatic_inertials(poses, elements)
     count = len(elements.names)
     is_kept = np.ones(count, dtype=bool)
@@ -118,14 +118,9 @@ def _joint(
         new_index_of[ends.child], (axes[0], axes[1]), details.screw_pitch_m)
 
 
-def _root_poses(poses: PoseArray, graph: FrameGraph) -> PoseArray:
-    """
-    Return the pose of each element in its world or implicit root, canonical.
-
-    :param poses: shape (n, 7), pose of each element, or of its placement frame, in the frame that
-        it is relative to.
-    """
-    edges = _edges_of_model_frames(poses, graph)
+def _root_poses(elements: Elements, graph: FrameGraph) -> PoseArray:
+    """Return the pose of each element in its world or implicit root, canonical."""
+    edges = poses_in_references(elements, graph)
     references = graph.references
     is_reference = np.zeros(len(references), dtype=bool)
     is_reference[references[references >= 0]] = True
@@ -165,17 +160,19 @@ def _axis_in_joint(
     return direction.x, direction.y, direction.z
 
 
-def _edges_of_model_frames(poses: PoseArray, graph: FrameGraph) -> PoseArray:
+def poses_in_references(elements: Elements, graph: FrameGraph) -> PoseArray:
     """
-    Replace the pose of each placement frame by that of its model frame.
+    Return the pose of each element in the frame that it is relative to.
 
-    With the reference R, the placement frame P and the model frame M,
-    ``X_RM = X_RP inverse(X_MP)``. Inner models, which come last, are solved first.
+    That of a placement frame is replaced by that of its model frame. With the reference R, the
+    placement frame P and the model frame M, ``X_RM = X_RP inverse(X_MP)``. Inner models, which
+    come last, are solved first.
     """
-    if not graph.placements:
-        return poses
-    edges: PoseArray = poses.copy()
-    for model in sorted(graph.placements, reverse=True):
+    models = sorted(graph.placements.keys() & elements.models.keys(), reverse=True)
+    if not models:
+        return elements.poses
+    edges: PoseArray = elements.poses.copy()
+    for model in models:
         frame = graph.placements[model]
         in_model = Pose()
         while frame != model:

@@ -50,8 +50,8 @@ class FrameDetails(NamedTuple):
     attached_to: str
     """Value of the attribute; empty for the frame of its scope."""
     placement_frame: str = ''
-    """The frame that the pose places; empty for this one. Only proxies of merged models have
-    one."""
+    """The frame that the include of a merged model places, if this is the model's proxy; empty for
+    this one."""
 
 
 class SensorDetails(NamedTuple):
@@ -162,6 +162,8 @@ class ElementsBuilder:
         self.pose_lines = array('i')
         self.details: defaultdict[str, dict[int, Any]] = defaultdict(dict)
         """What only some elements have, by the fields of :class:`Elements`."""
+        self.has_pose = bytearray()
+        """For each element whether it has a pose, whichever line that is in."""
         self._scopes = array('i')
         self._paths = paths
         self._poses: defaultdict[PoseFormat, tuple[array[int], list[str]]] = defaultdict(
@@ -180,6 +182,7 @@ class ElementsBuilder:
         self.file_indices.append(file_index)
         self.lines.append(line)
         self.pose_lines.append(0)
+        self.has_pose.append(False)
         return index
 
     def set_pose(self, index: int, text: str, pose_format: PoseFormat, line: int) -> None:
@@ -188,8 +191,10 @@ class ElementsBuilder:
 
         :param text: the pose as written.
         :param pose_format: how it is to be read.
+        :param line: its line; 0 for a pose that no file has.
         """
         self.pose_lines[index] = line
+        self.has_pose[index] = True
         indices, texts = self._poses[pose_format]
         indices.append(index)
         texts.append(text)

@@ -19,7 +19,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
+from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.values import DECIMAL
 from sdf_pose_bridge.sdformat.values import is_representable
@@ -130,6 +132,17 @@ def pose_from_text(text: str, pose_format: PoseFormat) -> Sequence[float]:
     numbers = np.array([pose_numbers_from_text(text, pose_format)])
     pose: list[float] = _poses_from_numbers(numbers, pose_format)[0].tolist()
     return pose
+
+
+def text_from_pose(pose: Pose) -> str:
+    """
+    Write a pose in the plain format, x y z roll pitch yaw, with all digits.
+
+    :param pose: a pose whose numbers are in the range of a double.
+    """
+    numbers = (*pose[:3], *rpy_from_quaternion(pose[3:]))
+    return ' '.join(
+        repr(number if is_representable('1', number) else 0.0) for number in numbers)
 
 
 def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> list[float]:

@@ -255,7 +255,7 @@ class _Reader:
 
     def _read_pose(self, xml: XmlElement, definition: Definition, parent: int) -> None:
         """Keep the pose of an element, or check another pose."""
-        is_first = parent != NO_ELEMENT and not self._builder.pose_lines[parent]
+        is_first = parent != NO_ELEMENT and not self._builder.has_pose[parent]
         if is_first and xml.keys():
             self._read_relative_to(xml, definition, parent)
         try:

@@ -56,7 +56,7 @@ class Origin(NamedTuple):
     pose: Place | None = None
     """Where it is placed, if not in its own file."""
     placement_frame: str = ''
-    """Of the frame that replaces a merged model's frame: the model's placement frame."""
+    """Of the frame that replaces a merged model's frame: the frame that the include places."""
     missing: tuple[str, str] | None = None
     """Of an include that was not replaced: the name that the included model would have, empty if
     any unknown name may come from it, and the URI."""

@@ -36,6 +36,7 @@ from sdf_pose_bridge.sdformat.documents import Document
 from sdf_pose_bridge.sdformat.documents import document_from_file
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.merge import merge
+from sdf_pose_bridge.sdformat.include.merge import ModelByItself
 from sdf_pose_bridge.sdformat.include.params import apply_params
 from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
 from sdf_pose_bridge.sdformat.include.uris import ModelFile
@@ -78,26 +79,27 @@ class IncludeExpansion:
     :param finder: finds the files that URIs name.
     :param sources: takes the files, where elements were written, and what is wrong.
     :param skips_missing: whether includes that are not found are warnings.
-    :param canonical_link_of: checks a model file by itself, given its ``sdf`` element; returns
-        the name of the model's canonical link, empty if it has none, or None if the file is not
-        valid, which is then reported. Files that are merged have to be valid by themselves.
+    :param model_by_itself: checks a model file by itself, given its ``sdf`` element; returns None
+        if the file is not valid, which is then reported. Files that are merged have to be valid
+        by themselves.
     """
 
     def __init__(
         self, finder: ResourceFinder, sources: Sources, *,
-        skips_missing: bool, canonical_link_of: Callable[[XmlElement], str | None],
+        skips_missing: bool,
+        model_by_itself: Callable[[XmlElement], ModelByItself | None],
     ) -> None:
         self._finder = finder
         self._steps_of_directories = STEPS_OF_DIRECTORY * (
             len(finder.search_paths) + len(finder.environment_paths))
         self._sources = sources
         self._skips_missing = skips_missing
-        self._canonical_link_of = canonical_link_of
+        self._model_by_itself = model_by_itself
         self._files: dict[str, Document | None] = {}
         self._model_files: dict[str, ModelFile | str] = {}
         self._steps_of_copy = cache(_steps_of_copy)
         self._missing_uris: set[str] = set()
-        self._canonical_links: dict[tuple[XmlElement, str, bytes], str | None] = {}
+        self._merged_models: dict[tuple[XmlElement, str, bytes], ModelByItself | None] = {}
         self._undefined = UndefinedReporter(sources)
 
     def expand(self, document: Document) -> None:
@@ -326,18 +328,18 @@ class IncludeExpansion:
         return value
 
     def _merge(self, include: XmlElement, top: XmlElement, chosen: XmlElement) -> None:
-        """Merge a copy of a model; includes with the same text have the same canonical link."""
+        """Merge a copy of a model; includes with the same text have the same one by itself."""
         text = etree.tostring(include, with_tail=False)
         key = chosen, self._sources.path(include), text
         self._sources.count_work(STEPS_OF_INCLUDE + STEPS_OF_MOVED_CHILD * len(top), include)
 
-        def canonical_link_of(root: XmlElement) -> str | None:
-            if key not in self._canonical_links:
+        def model_by_itself(root: XmlElement) -> ModelByItself | None:
+            if key not in self._merged_models:
                 self._sources.count_work(STEPS_OF_MERGE + _steps_of_copy(root), include)
-                self._canonical_links[key] = self._canonical_link_of(root)
-            return self._canonical_links[key]
+                self._merged_models[key] = self._model_by_itself(root)
+            return self._merged_models[key]
 
-        merge(include, top, self._sources, canonical_link_of)
+        merge(include, top, self._sources, model_by_itself)
 
     def _insert(self, include: XmlElement, top: XmlElement) -> None:
         parent = include.getparent()

@@ -4,23 +4,27 @@
 Merge an included model into the model or world that includes it.
 
 The content of the model moves into the scope of its new parent. A proxy frame named
-``_merged__NAME__model__`` takes the place of its model frame. Source: ``insertIncludedElement`` in
-libsdformat's ``parser.cc``.
+``_merged__NAME__model__`` takes the place of its model frame. Where a placement frame puts that is
+decided here: parameters of an outer include, which change the placement frame later, do not move
+the proxy frame. Source: ``insertIncludedElement`` in libsdformat's ``parser.cc``.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 import copy
+from typing import NamedTuple
 
 from lxml import etree
 
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import MergeIncludeError
+from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.sdformat.grammar import ValueType
+from sdf_pose_bridge.sdformat.poses import text_from_pose
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
@@ -32,18 +36,28 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _MOVED_TAGS = frozenset({'frame', 'gripper', 'include', 'joint', 'link', 'model', 'plugin'})
 _NOT_IN_WORLDS = ('gripper', 'link')
+_FORMAT_ATTRIBUTES = ('degrees', 'rotation_format')
+
+
+class ModelByItself(NamedTuple):
+    """What is known of the model of a file that is valid by itself."""
+
+    canonical_link: str
+    """The name of its canonical link in it; empty if it has none."""
+    pose: Pose
+    """Its model frame, in the frame that its ``<pose>`` is relative to."""
 
 
 def merge(
     include: XmlElement, model: XmlElement, sources: Sources,
-    canonical_link_of: Callable[[XmlElement], str | None],
+    model_by_itself: Callable[[XmlElement], ModelByItself | None],
 ) -> None:
     """
     Replace an include by the content of the model that it merges, if that is valid.
 
     :param include: the ``<include merge="true">``.
     :param model: the included element, with what the include overrides.
-    :param canonical_link_of: as for
+    :param model_by_itself: as for
         :class:`~sdf_pose_bridge.sdformat.include.expansion.IncludeExpansion`.
     """
     parent = include.getparent()
@@ -53,7 +67,7 @@ def merge(
                'into a model or a world')
         sources.error(MergeIncludeError, include, msg)
         return
-    proxy = _proxy_frame(include, model, parent, sources, canonical_link_of)
+    proxy = _proxy_frame(include, model, parent, sources, model_by_itself)
     if proxy is not None and _fits_in(parent, model, sources):
         include.addprevious(proxy)
         _move_children(include, model, attribute_of(proxy, 'name'), sources)
@@ -62,7 +76,7 @@ def merge(
 
 def _proxy_frame(
     include: XmlElement, model: XmlElement, parent: XmlElement, sources: Sources,
-    canonical_link_of: Callable[[XmlElement], str | None],
+    model_by_itself: Callable[[XmlElement], ModelByItself | None],
 ) -> XmlElement | None:
     """Return the frame that takes the place of the model frame; None for an invalid model."""
     pose = first_child(model, 'pose')
@@ -81,12 +95,15 @@ def _proxy_frame(
     root = etree.Element('sdf')
     root.append(model)
     sources.set_source(root, include)
-    canonical_link = canonical_link_of(root)
-    if canonical_link is None:
+    known = model_by_itself(root)
+    if known is None:
         return None
+    proxy_pose.text = text_from_pose(known.pose)
+    for attribute in set(_FORMAT_ATTRIBUTES) & set(proxy_pose.keys()):
+        del proxy_pose.attrib[attribute]
     name = f'_merged__{attribute_of(model, "name")}__model__'
-    proxy = etree.Element('frame', {
-        'name': name, 'attached_to': attribute_of(model, 'canonical_link') or canonical_link})
+    canonical_link = attribute_of(model, 'canonical_link') or known.canonical_link
+    proxy = etree.Element('frame', {'name': name, 'attached_to': canonical_link})
     placement = attribute_of(model, 'placement_frame')
     proxy.append(proxy_pose)
     place = sources.place(model)

@@ -231,6 +231,16 @@ def test_missing_include_is_skipped_with_what_refers_to_it(write):
         scene.warnings[1].message)
 
 
+@pytest.mark.parametrize('frame', ['near', 'robot::l'])
+def test_model_that_a_frame_of_a_missing_include_places_is_left_out(write, frame):
+    scene = load(
+        write(f'<model name="m" placement_frame="{frame}"><link name="l"/>'
+              + include('model://nothing', '<name>robot</name>')
+              + '<frame name="near"><pose relative_to="robot::l"/></frame></model>'),
+        on_missing_include='skip')
+    assert scene.names == ('world',)
+
+
 def test_uri_that_is_missing_twice_gives_one_warning(write):
     scene = load(
         write(''.join(include('model://a', f'<name>{name}</name>') for name in 'xy')),

@@ -225,14 +225,50 @@ def test_first_merged_link_can_be_the_canonical_link_of_the_parent(scene_of):
     assert scene.names[scene.canonical_links[scene.index('m')]] == 'm::upper'
 
 
-def test_placement_frame_that_is_renamed_by_the_merge_is_refused(tmp_path):
-    write_files(
-        tmp_path, arm=ARM.replace('1.9', '1.6'),
-        main=in_model('<link name="f"/>' + include('<pose/><placement_frame>f</placement_frame>')
-                      + '<link name="last"/>').replace('1.9', '1.6'))
-    (error,) = errors_of_file(tmp_path / 'main.sdf')
-    assert (error.code, error.line) == ('POSE_RELATIVE_TO_INVALID', 2)
-    assert '"f"' in error.message
+def test_placement_frame_that_is_renamed_by_the_merge_places_its_model(scene_of):
+    scene = scene_of(
+        in_model('<link name="f"/>' + include('<pose/><placement_frame>f</placement_frame>')
+                 + '<link name="last"/>').replace('1.9', '1.6'),
+        arm=ARM.replace('1.9', '1.6'))
+    assert_at(scene, 'm::f_frame', (0, 0, 0))
+    assert_at(scene, f'm::{PROXY}', (0, -1, 0))
+
+
+@pytest.mark.parametrize('params', [
+    '<link element_id="upper"><pose action="modify">0 5 0 0 0 0</pose></link>',
+    '<link element_id="upper" action="replace" name="upper"><pose>3 0 0 0 0 0</pose></link>',
+])
+def test_parameters_of_an_outer_include_do_not_place_the_merged_model_anew(scene_of, params):
+    middle = in_model(include('<pose>7 0 0 0 0 0</pose><placement_frame>upper</placement_frame>'))
+    scene = scene_of(
+        in_world('<include><uri>middle.sdf</uri><experimental:params>' + params
+                 + '</experimental:params></include>'), middle=middle)
+    assert_at(scene, f'm::{PROXY}', (6, 0, 0))
+    assert_at(scene, 'm::f', (6, 1, 0))
+
+
+def test_parameters_of_an_outer_include_place_the_proxy_frame_in_the_plain_format(scene_of):
+    middle = in_model(include('<pose degrees="true">7 0 0 0 0 90</pose>'))
+    scene = scene_of(
+        in_world('<include><uri>middle.sdf</uri><experimental:params>'
+                 f'<frame element_id="{PROXY}"><pose action="modify">0 5 0 0 0 '
+                 '1.5707963267948966</pose></frame></experimental:params></include>'),
+        middle=middle)
+    assert_at(scene, 'm::upper', (0, 6, 0))
+
+
+def test_pose_that_is_added_to_a_merged_link_without_one_has_no_effect(scene_of):
+    scene = scene_of(
+        in_world('<include><uri>middle.sdf</uri><experimental:params><link element_id="lower">'
+                 '<pose action="add">1 2 3 0 0 0</pose></link></experimental:params></include>'),
+        middle=in_model(include('<pose>7 0 0 0 0 0</pose>')), arm=arm('<link name="lower"/>'))
+    assert_at(scene, 'm::lower', (7, 0, 0))
+
+
+def test_doubtful_pose_of_a_merge_is_warned_of_once(scene_of):
+    scene = scene_of(in_model(include('<pose>0 0 0 0 0 90</pose>')))
+    assert [('radians' in warning.message, warning.place.line) for warning in scene.warnings] == [
+        (True, 2)]
 
 
 def test_placement_frame_in_a_cycle_is_reported_as_the_cycle_alone(tmp_path):
