@@ -19,6 +19,7 @@ from sdf_pose_bridge.cli import set as set_command
 from sdf_pose_bridge.cli import tree
 from sdf_pose_bridge.cli import view
 from sdf_pose_bridge.cli.printing import CommandError
+from sdf_pose_bridge.cli.printing import discard_output
 from sdf_pose_bridge.cli.printing import print_problems
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import PoseFormatError
@@ -41,6 +42,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for command in (check, poses, tree, graph, view, convert, diff, set_command):
         command.add_parser(subparsers)
     options = parser.parse_args(arguments)
+    if sys.stdout is None:
+        # The caller has closed it. What is printed must fail, as it does where a disk is full.
+        sys.stdout = os.fdopen(os.open(os.devnull, os.O_RDONLY), 'w')
     if isinstance(sys.stdout, io.TextIOWrapper):
         # A name that the encoding of the terminal does not have must not end the command.
         sys.stdout.reconfigure(errors='backslashreplace')
@@ -48,8 +52,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code: int = options.run(options)
         sys.stdout.flush()
     except BrokenPipeError:
-        # The reader, such as head, has closed the pipe; closing stdout must not raise again.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        # The reader, such as head, has closed the pipe.
+        discard_output()
+        return 1
+    except OSError as error:
+        if error.filename is not None:
+            raise
+        discard_output()
+        reason = (error.strerror or str(error)).lower()
+        print(f'sdf_pose {options.command}: the output cannot be written: {reason}',
+              file=sys.stderr)
         return 1
     except (CommandError, PoseFormatError) as error:
         print(f'sdf_pose {options.command}: {printable(str(error))}', file=sys.stderr)

@@ -52,6 +52,11 @@ def print_problems(
         print(f'{bold}{place}:{plain} {color}{kind}{problem.code}:{plain} {message}', file=stream)
 
 
+def discard_output() -> None:
+    """Discard what is still to be printed, so that the end of the process does not fail again."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 class CommandError(Exception):
     """The reason, in a sentence, why a command fails."""
 

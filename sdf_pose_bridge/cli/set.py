@@ -13,6 +13,7 @@ from sdf_pose_bridge.cli.convert import numbers_from_text
 from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import scene_from_file
 from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.printing import discard_output
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.formats import converted_rotations
@@ -88,12 +89,22 @@ def run(options: argparse.Namespace) -> int:
     change = set_pose(
         scene, element, pose_product(asked, pose_inverse(in_element)), measured, options,
         all_instances=options.all_instances, dry_run=options.dry_run)
-    sys.stdout.write(change.diff)
     moved = [
         printable(name) for name in names_of_moved(scene, change.scene)
         if name != scene.names[element]]
-    if moved:
-        print(f'moved with it: {", ".join(moved)}')
+    try:
+        if change.file.path != scene.files[0]:
+            print(f'the pose stands in {printable(change.file.path)}')
+        print(change.file.diff, end='')
+        if moved:
+            print(f'moved with it: {", ".join(moved)}')
+        sys.stdout.flush()
+    except OSError as error:
+        if options.dry_run:
+            raise
+        discard_output()
+        print(f'sdf_pose set: {printable(change.file.path)} says this pose now, but the change '
+              f'cannot be printed: {(error.strerror or str(error)).lower()}', file=sys.stderr)
     return 0
 
 
@@ -116,7 +127,7 @@ def set_pose(
 
     change = pose_change(scene, element, asked, measure, loaded, all_instances=all_instances)
     if not dry_run:
-        change.write()
+        change.file.write()
     return change
 
 

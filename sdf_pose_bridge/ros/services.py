@@ -151,11 +151,12 @@ def set_pose(request: SetPose.Request, loaded: LoadedScene) -> SetPose.Response:
     asked = pose_product(asked, pose_inverse(in_element))
     change = pose_change(scene, element, asked, measured, scene_with)
     if not request.dry_run:
-        change.write()
+        change.file.write()
     moved = set(names_of_moved(scene, change.scene))
     elements = loaded.tree.elements.tolist()
     return SetPose.Response(
-        success=True, file=change.path, line=change.line, diff=change.diff, moved_frames=[
+        success=True, file=change.file.path, line=change.line, diff=change.file.diff,
+        moved_frames=[
             frame_id for frame_id, other in zip(loaded.tree.frame_ids, elements, strict=True)
             if other not in (-1, element) and scene.names[other] in moved])
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from collections.abc import Mapping
-import difflib
 import math
 import os
 from pathlib import Path
@@ -32,11 +31,11 @@ from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.scene.comparison import TOLERANCE
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.pose_writing import PoseText
-from sdf_pose_bridge.sdformat.pose_writing import replace_file
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 
 _MOST_ATTEMPTS = 4
@@ -52,32 +51,11 @@ Measure: TypeAlias = Callable[[Scene, int], Pose]
 class PoseChange(NamedTuple):
     """What a file must say."""
 
-    path: str
-    """The file."""
+    file: FileChange
     line: int
     """The line of the pose, or of the element in which it is inserted."""
-    old_text: bytes
-    new_text: bytes
     scene: Scene
     """The scene with the new text."""
-
-    def write(self) -> None:
-        """
-        Put the new text into the file.
-
-        :raises FileWriteError: if it cannot be written, or has changed since it was read.
-        """
-        replace_file(self.path, self.old_text, self.new_text)
-
-    @property
-    def diff(self) -> str:
-        """The change as a unified diff; empty if there is none."""
-        old, new = (
-            [line.decode(errors='backslashreplace') for line in text.splitlines(keepends=True)]
-            for text in (self.old_text, self.new_text))
-        return ''.join(
-            line if line.endswith('\n') else f'{line}\n\\ No newline at end of file\n'
-            for line in difflib.unified_diff(old, new, self.path, self.path))
 
 
 def pose_change(
@@ -122,8 +100,7 @@ def _change_of_own_pose(
     if Path(os.path.realpath(cache)) in Path(os.path.realpath(path)).parents:
         msg = 'the file is in the cache of Gazebo Fuel; copy the model and include the copy'
         raise PoseNotSetError(msg, Place(path))
-    content = bytes_from_file(path, Usage())
-    text = PoseText(content, path)
+    text = PoseText(bytes_from_file(path, Usage()), path)
     marked = load({path: text.with_a_line_for_each_tag()})
     if marked.names != scene.names or not np.array_equal(marked.poses, scene.poses):
         msg = 'the file has changed since it was read'
@@ -145,16 +122,16 @@ def _change_of_own_pose(
         there = pose_product(pose_product(asked, pose_inverse(current)), in_asked)
         written = pose_product(relative_pose(in_asked, there), written)
         written = Pose(*written[:3], *canonical_quaternion(written[3:]))
-        new_text = text.with_pose(target, written, tolerance) if is_written else (
+        change = text.with_pose(target, written, tolerance) if is_written else (
             text.with_new_pose(target, written, tolerance))
         try:
-            new = load({path: new_text})
+            new = load({path: change.new_text})
         except SdfError as error:
             msg = f'with this pose the file would not be valid: {error.errors[0].message}'
             raise PoseNotSetError(msg, at) from error
         current, in_asked = measure(new, element), measure(new, reference)
         if _distance(current, asked) <= TOLERANCE:
-            return PoseChange(path, at.line, content, new_text, new)
+            return PoseChange(change, at.line, new)
         tolerance /= 10.0
     msg = (f'no pose of "{scene.names[element]}" in the file puts it there: the frame that the '
            'pose is measured in moves with it, or parameters of an include decide where it is')

@@ -1,39 +1,28 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Write a pose into a file: change it in the text, and no other byte, and replace the file by that.
+Change a pose in the text of a file, and no other byte.
 
 The reader says where a pose stands by the line in which its start tag begins. Several tags can
 begin in one line. So the place is read from the same text with a line for each tag.
-
-The new text is written to a file without a name, which vanishes with the process. It gets a name
-beside the old file only when it is on the disk, and takes the place of the old one at once, by a
-process of its own, so that a writer that is killed leaves nothing behind.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-import errno
-import fcntl
 from itertools import count
-import os
-from pathlib import Path
 import re
-import stat
-import subprocess
-import sys
 
 from lxml import etree
 import numpy as np
 
-from sdf_pose_bridge.errors import FileWriteError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import PoseNotSetError
 from sdf_pose_bridge.geometry.formulas import degrees_from_radians
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
+from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.sdformat.poses import pose_format_of
 from sdf_pose_bridge.sdformat.poses import pose_from_text
 from sdf_pose_bridge.sdformat.poses import PoseFormat
@@ -65,7 +54,7 @@ class PoseText:
     """
 
     def __init__(self, content: bytes, path: str) -> None:
-        self._path = path
+        self._path, self._content = path, content
         file = xml_from_bytes(content, path)
         root = file.root
         for warning in file.warnings:
@@ -134,14 +123,14 @@ class PoseText:
         except PoseTextError as error:
             raise PoseNotSetError(str(error), self._place(element)) from error
 
-    def with_pose(self, element: int, pose: Pose, tolerance: float) -> bytes:
+    def with_pose(self, element: int, pose: Pose, tolerance: float) -> FileChange:
         """
         Change a pose.
 
         :param element: the number of a ``<pose>``.
         :param pose: the new pose, in the frame that this pose is relative to.
         :param tolerance: how much the written pose may differ from it, in metres and radians.
-        :return: the text of the file with other numbers in this pose.
+        :return: the change of the file: other numbers in this pose.
         :raises PoseNotSetError: as :meth:`pose`.
         """
         turn = relative_pose(self.pose(element), pose)
@@ -150,21 +139,26 @@ class PoseText:
         new_words = _words_from_pose(
             pose, self._format(element), tolerance, [word[0].decode() for word in words],
             keeps_rotation=keeps_rotation)
-        if words:
-            text = bytearray(self._text)
-            for word, new in reversed(list(zip(words, new_words, strict=True))):
-                text[slice(*word.span())] = new.encode()
-            return self._encoded(bytes(text))
-        return self._with_content(element, ' '.join(new_words).encode())
+        if not words:
+            return self._with_content(element, ' '.join(new_words).encode())
+        changed = [
+            index for index, new in enumerate(new_words) if words[index][0] != new.encode()] or [0]
+        begin, end = words[changed[0]].start(), words[changed[-1]].end()
+        text, position = b'', begin
+        for word, new in zip(words, new_words, strict=True):
+            if begin <= word.start() < end:
+                text += self._text[position:word.start()] + new.encode()
+                position = word.end()
+        return self._change(begin, end, text)
 
-    def with_new_pose(self, element: int, pose: Pose, tolerance: float) -> bytes:
+    def with_new_pose(self, element: int, pose: Pose, tolerance: float) -> FileChange:
         """
         Insert a pose, indented like what follows it.
 
         :param element: the number of the element that it places.
         :param pose: as for :meth:`with_pose`.
         :param tolerance: as for :meth:`with_pose`.
-        :return: the text of the file with a ``<pose>`` more.
+        :return: the change of the file: a ``<pose>`` more.
         """
         words = _words_from_pose(pose, PoseFormat(), tolerance)
         new = b'<pose>%s</pose>' % ' '.join(words).encode()
@@ -174,14 +168,21 @@ class PoseText:
             new = (indentation[1] or b'') + new
         return self._with_content(element, new)
 
-    def _with_content(self, element: int, content: bytes) -> bytes:
-        """Return the text of the file with content behind the start tag of an element."""
+    def _with_content(self, element: int, content: bytes) -> FileChange:
+        """Return a change that puts content behind the start tag of an element."""
         end = self._tags[element][1]
-        is_closed = self._is_closed(end)
-        end_tag = f'</{written_tag(self._elements[element])}>' if is_closed else ''
-        return self._encoded(
-            self._text[:end - is_closed] + b'>' + content + end_tag.encode()
-            + self._text[end + 1:])
+        if not self._is_closed(end):
+            return self._change(end + 1, end + 1, content)
+        end_tag = f'</{written_tag(self._elements[element])}>'.encode()
+        return self._change(end - 1, end + 1, b'>' + content + end_tag)
+
+    def _change(self, begin: int, end: int, new: bytes) -> FileChange:
+        """Return a change of the file, by its range in the text in UTF-8."""
+        begin_in_file = len(self._encoded(self._text[:begin]))
+        end_in_file = begin_in_file + len(self._encoded(self._text[begin:end]))
+        return FileChange(
+            self._path, self._content, self._encoding, begin_in_file, end_in_file,
+            self._encoded(new))
 
     def _format(self, element: int) -> PoseFormat:
         xml = self._elements[element]
@@ -243,80 +244,3 @@ def _shortest(number: float, tolerance: float) -> str:
         text for digits in count()
         if abs(float(text := f'{number:.{digits}f}') - number) <= tolerance)
     return '0' if float(text) == 0.0 else text
-
-
-def replace_file(path: str, old: bytes, new: bytes) -> None:
-    """
-    Replace the content of a file, which keeps its mode and owner; links to it stay links.
-
-    :param path: path of the file.
-    :param old: what it holds, as far as the caller knows.
-    :param new: what it shall hold.
-    :raises FileWriteError: if it cannot be written, or does not hold ``old``, or another process
-        replaces it now; it is as before then.
-    """
-    try:
-        real_path = Path(path).resolve(strict=True)
-        with real_path.open('rb') as file:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            if not os.access(real_path, os.W_OK):
-                raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
-            status = os.fstat(file.fileno())
-            descriptor = os.open(real_path.parent, os.O_TMPFILE | os.O_WRONLY, 0o600)
-            with os.fdopen(descriptor, 'wb') as target:
-                target.write(new)
-                os.fchown(target.fileno(), status.st_uid, status.st_gid)
-                os.fchmod(target.fileno(), stat.S_IMODE(status.st_mode))
-                target.flush()
-                os.fsync(target.fileno())
-                if file.read() != old:
-                    raise FileWriteError(_CHANGED, Place(path))
-                _put_in_place(target.fileno(), real_path, file.fileno())
-    except BlockingIOError as error:
-        msg = 'another process is writing the file'
-        raise FileWriteError(msg, Place(path)) from error
-    except OSError as error:
-        msg = f'the file cannot be written: {(error.strerror or str(error)).lower()}'
-        raise FileWriteError(msg, Place(path)) from error
-
-
-def _put_in_place(descriptor: int, path: Path, locked: int) -> None:
-    """
-    Let another process do the last step, which is done even if this one is killed meanwhile.
-
-    :param descriptor: the new file.
-    :param locked: the old file, which stays locked until that process has ended.
-    """
-    status = os.fstat(locked)
-    # Linux has no call that gives a file a name that is in use, so it gets another one first. If
-    # all processes are killed just then, the next one that writes the file removes the rest.
-    temporary = path.with_name(f'.{path.name}.sdf_pose')
-    arguments = [descriptor, temporary, path, status.st_ino, status.st_mtime_ns]
-    done = subprocess.run(
-        [sys.executable, '-I', '-S', '-c', _LAST_STEP, *map(str, arguments)],
-        pass_fds=[descriptor, locked], start_new_session=True, check=False)
-    if done.returncode == _HAS_CHANGED:
-        raise FileWriteError(_CHANGED, Place(str(path)))
-    if done.returncode:
-        raise OSError(done.returncode, os.strerror(done.returncode))
-
-
-_CHANGED = 'the file has changed since it was read, so it is not overwritten'
-_HAS_CHANGED = 255
-_LAST_STEP = f"""
-import contextlib, os, sys
-descriptor, temporary, path, *expected = sys.argv[1:]
-try:
-    folder = os.open(os.path.dirname(path), os.O_RDONLY)
-    with contextlib.suppress(FileNotFoundError):
-        os.unlink(temporary)
-    status = os.stat(path)
-    if expected != [str(status.st_ino), str(status.st_mtime_ns)]:
-        sys.exit({_HAS_CHANGED})
-    # With a descriptor of a directory os.link follows the link in /proc.
-    os.link(f'/proc/self/fd/{{descriptor}}', temporary, src_dir_fd=folder)
-    os.replace(temporary, path)
-    os.fsync(folder)
-except OSError as error:
-    sys.exit(error.errno)
-"""

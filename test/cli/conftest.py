@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fixtures of tests that run the command line as a process."""
 
+import shlex
 import subprocess
 from types import SimpleNamespace
 
@@ -39,6 +40,16 @@ def sdf_pose(files):
         return subprocess.run(
             [*COMMAND, *arguments], cwd=files, env=ENVIRONMENT, capture_output=True, text=True,
             timeout=60, check=False)
+    return run
+
+
+@pytest.fixture
+def sdf_pose_in_shell(files):
+    """Runs it there from a shell: ``sdf_pose_in_shell('arguments > output')``."""
+    def run(command):
+        return subprocess.run(
+            f'{shlex.join(map(str, COMMAND))} {command}', shell=True, cwd=files, env=ENVIRONMENT,
+            capture_output=True, text=True, timeout=60, check=False)
     return run
 
 

@@ -93,3 +93,32 @@ def test_an_invalid_file_is_not_written(run_main, files):
     text = (files / 'bad.sdf').read_text()
     assert run_main('set', 'bad.sdf', 'f', *'000000').returncode == 1
     assert (files / 'bad.sdf').read_text() == text
+
+
+def test_another_file_than_the_one_named_is_printed_first(run_main, path):
+    path.with_name('cell.sdf').write_text(
+        '<sdf version="1.9"><world name="w"><include><uri>model.sdf</uri></include></world></sdf>')
+    path.with_name('model.sdf').write_text(
+        '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>')
+    done = run_main('set', 'cell.sdf', 'm::l', *'100000')
+    assert done.stdout.startswith('the pose stands in model.sdf\n--- model.sdf\n')
+
+
+@pytest.mark.parametrize(('redirection', 'reason'), [
+    ('> /dev/full', 'no space left on device'), ('>&-', 'bad file descriptor')])
+def test_an_output_that_fails_does_not_hide_that_the_file_is_written(
+        sdf_pose_in_shell, path, redirection, reason):
+    done = sdf_pose_in_shell(f'set good.sdf f 9 0 0 0 0 0 {redirection}')
+    assert '<pose>9 0 0 0 0 0</pose>' in path.read_text()
+    assert (done.returncode, done.stderr) == (0, (
+        'sdf_pose set: good.sdf says this pose now, but the change cannot be printed: '
+        f'{reason}\n'))
+
+
+@pytest.mark.parametrize('redirection', ['> /dev/full', '>&-'])
+def test_an_output_that_fails_is_an_error_where_nothing_is_written(
+        sdf_pose_in_shell, redirection):
+    done = sdf_pose_in_shell(f'set --dry-run good.sdf f 9 0 0 0 0 0 {redirection}')
+    assert done.returncode == 1
+    assert done.stderr.startswith('sdf_pose set: the output cannot be written: ')
+    assert len(done.stderr.splitlines()) == 1

@@ -66,8 +66,8 @@ def assert_at(pose, expected):
 def test_the_pose_is_what_was_asked_for(change, tmp_path, text, name, relative_to):
     write_files(tmp_path, m=text)
     made = change(name, relative_to)
-    assert made.path == str(tmp_path / 'm.sdf')
-    assert made.old_text == text.encode()
+    assert made.file.path == str(tmp_path / 'm.sdf')
+    assert made.file.old_text == text.encode()
 
 
 def test_what_does_not_depend_on_it_stays_to_the_last_bit(change, tmp_path):
@@ -80,8 +80,8 @@ def test_what_does_not_depend_on_it_stays_to_the_last_bit(change, tmp_path):
 def test_the_pose_of_an_included_model_is_set_in_the_include(change, tmp_path):
     write_files(tmp_path, m=MODEL, w=TWICE)
     made = change('x', file='w')
-    assert (made.path, made.line) == (str(tmp_path / 'w.sdf'), 1)
-    assert made.new_text == TWICE.encode().replace(
+    assert (made.file.path, made.line) == (str(tmp_path / 'w.sdf'), 1)
+    assert made.file.new_text == TWICE.encode().replace(
         b'5 0 0 0 0 0', b'0.5 -1 2 1.570796327 0 1.570796327')
 
 
@@ -89,7 +89,7 @@ def test_an_include_without_a_pose_gets_one(change, tmp_path):
     write_files(tmp_path, m=MODEL.replace('<link', '<pose>7 0 0 0 0 0</pose><link', 1), w=TWICE)
     made = change('y', file='w')
     assert b'<include><pose>0.5 -1 2 1.570796327 0 1.570796327</pose><uri>m.sdf</uri><name>y' in (
-        made.new_text)
+        made.file.new_text)
 
 
 def test_an_element_of_a_file_that_is_included_twice(change, tmp_path):
@@ -97,14 +97,14 @@ def test_an_element_of_a_file_that_is_included_twice(change, tmp_path):
     with pytest.raises(PoseNotSetError, match='also places "y::a"') as caught:
         change('x::a', file='w')
     assert caught.value.place == (str(tmp_path / 'm.sdf'), 1, '')
-    assert change('x::a', file='w', all_instances=True).path == str(tmp_path / 'm.sdf')
+    assert change('x::a', file='w', all_instances=True).file.path == str(tmp_path / 'm.sdf')
 
 
 def test_a_merged_model_and_what_was_in_it(change, tmp_path):
     merged = model_file('<link name="base"/>\n<include merge="true"><uri>m.sdf</uri></include>')
     write_files(tmp_path, m=MODEL, w=merged)
-    assert change('m::_merged__m__model__', file='w').path == str(tmp_path / 'w.sdf')
-    assert change('m::f', 'm::base', file='w').path == str(tmp_path / 'm.sdf')
+    assert change('m::_merged__m__model__', file='w').file.path == str(tmp_path / 'w.sdf')
+    assert change('m::f', 'm::base', file='w').file.path == str(tmp_path / 'm.sdf')
 
 
 def test_a_pose_that_parameters_set_is_set_there(change, tmp_path):
@@ -112,7 +112,7 @@ def test_a_pose_that_parameters_set_is_set_there(change, tmp_path):
         '<include><uri>m.sdf</uri><experimental:params>\n<frame element_id="grip" action="modify">'
         '<pose>9 0 0 0 0 0</pose></frame></experimental:params></include>'))
     made = change('m::grip', file='w')
-    assert (made.path, made.line) == (str(tmp_path / 'w.sdf'), 2)
+    assert (made.file.path, made.line) == (str(tmp_path / 'w.sdf'), 2)
 
 
 @pytest.mark.parametrize(('params', 'reason'), [
@@ -154,6 +154,6 @@ def test_a_file_of_the_cache_of_fuel_is_refused(change, tmp_path, monkeypatch):
 
 def test_the_difference_is_one_line(change, tmp_path):
     write_files(tmp_path, m=MODEL.replace('><', '>\n<'))
-    added = [line for line in change('m::a').diff.splitlines() if line[:2] in ('+<', '-<')]
+    added = [line for line in change('m::a').file.diff.splitlines() if line[:2] in ('+<', '-<')]
     assert added == [
         '-<pose>1 0 0 0 0 0</pose>', '+<pose>0.5 -1 2 1.570796327 0 1.570796327</pose>']
