@@ -36,7 +36,7 @@ from sdf_pose_bridge.sdformat.xml_tree import written_tag
 
 _FIRST_WITH_POSE = Version(1, 4)
 _TEXT_AFTER_COMMENTS = re.compile(rb'(?:\s*<!--.*?-->)*([^<]*)', re.DOTALL)
-_WORD = re.compile(rb'[^ \t\n\r]+')
+_WORD = re.compile(rb'[^ \t\n\r,]+')
 _INDENTATION = re.compile(rb'\s*?(\r?\n[ \t]*)?(?=<)')
 _SAME_ROTATION = 1e-12
 
@@ -199,7 +199,8 @@ class PoseText:
             text = _TEXT_AFTER_COMMENTS.match(self._text, end + 1)
             assert text is not None
             words = list(_WORD.finditer(self._text, *text.span(1)))
-        if [word[0].decode() for word in words] != text_of(self._elements[element]).split():
+        if [word[0].decode() for word in words] != (
+                text_of(self._elements[element]).replace(',', ' ').split()):
             msg = 'the numbers of the pose are not written as plain text'
             raise PoseNotSetError(msg, self._place(element))
         return words

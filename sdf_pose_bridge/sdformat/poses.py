@@ -5,7 +5,8 @@ Read the texts of ``<pose>``: x y z and a unit quaternion.
 
 The attributes ``rotation_format`` and ``degrees`` say what the numbers are (``pose.sdf`` of
 http://sdformat.org/spec). Of the numbers that C's ``strtod`` takes, a pose may have only decimal
-ones here: no ``0x10``, no ``1.5abc``. Quaternions are normalised, which libsdformat does not do.
+ones here: no ``0x10``, no ``1.5abc``. A comma may follow each number, as in ``1, 2, 3``, but it
+separates nothing. Quaternions are normalised, which libsdformat does not do.
 """
 
 from __future__ import annotations
@@ -107,6 +108,7 @@ def poses_from_texts(texts: Sequence[str], pose_format: PoseFormat) -> PosesFrom
     :param texts: n poses as written, all in the same format; a blank text is the identity.
     """
     failures: list[tuple[int, str]] = []
+    commas: list[tuple[int, str]] = []
     numbers = _numbers_from_texts(texts, len(pose_format.layout.split()))
     if numbers is None:
         rows = []
@@ -116,9 +118,13 @@ def poses_from_texts(texts: Sequence[str], pose_format: PoseFormat) -> PosesFrom
             except PoseTextError as error:
                 failures.append((index, str(error)))
                 rows.append(pose_numbers_from_text('', pose_format))
+            else:
+                if ',' in text:
+                    doubt = f'the commas in the pose "{_shown(text)}" are ignored'
+                    commas.append((index, f'{doubt}; only white space separates numbers'))
         numbers = np.array(rows)
-    return PosesFromTexts(
-        _poses_from_numbers(numbers, pose_format), failures, _doubts(texts, numbers, pose_format))
+    doubts = _doubts(texts, numbers, pose_format) + commas
+    return PosesFromTexts(_poses_from_numbers(numbers, pose_format), failures, doubts)
 
 
 def pose_from_text(text: str, pose_format: PoseFormat) -> Sequence[float]:
@@ -156,17 +162,18 @@ def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> list[float]:
     layout = pose_format.layout
     count = len(layout.split())
     words = _words(text) or _IDENTITY_TEXTS[count].split()
+    plain_words = [word.removesuffix(',') for word in words]
     shown = _shown(text)
-    for word in words[:count]:
-        is_decimal = _DECIMAL_NUMBER.fullmatch(word) is not None
-        if not is_decimal or not is_representable(word, float(word)):
+    for word, plain in zip(words[:count], plain_words, strict=False):
+        is_decimal = _DECIMAL_NUMBER.fullmatch(plain) is not None
+        if not is_decimal or not is_representable(plain, float(plain)):
             rule = 'beyond the range of a double' if is_decimal else 'not a finite decimal number'
             msg = f'"{word[:80]}" in the pose "{shown}" is {rule}'
             raise PoseTextError(msg)
     if len(words) != count:
         msg = f'a pose has {count} values ({layout}), "{shown}" has {len(words)}'
         raise PoseTextError(msg)
-    numbers = [float(word) for word in words]
+    numbers = list(map(float, plain_words))
     if pose_format.is_quaternion:
         norm = math.hypot(*numbers[3:])
         if norm < _SHORTEST_QUATERNION or math.isinf(norm):
@@ -194,10 +201,9 @@ def _doubts(
     if pose_format.is_quaternion:
         is_doubtful = np.abs(np.linalg.norm(numbers[:, 3:], axis=1) - 1.0) > _NORM_TOLERANCE
         doubt = 'the quaternion of the pose "{}" is not of length 1; it is normalised'
-    elif pose_format.is_degrees:
-        return []
     else:
-        is_doubtful = np.abs(numbers[:, 3:]).max(axis=1, initial=0.0) > _LARGEST_ANGLE_RAD
+        largest_rad = math.inf if pose_format.is_degrees else _LARGEST_ANGLE_RAD
+        is_doubtful = np.abs(numbers[:, 3:]).max(axis=1, initial=0.0) > largest_rad
         doubt = 'the angles of the pose "{}" are radians; did you mean degrees="true"?'
     rows: list[int] = np.flatnonzero(is_doubtful).tolist()
     return [(row, doubt.format(_shown(texts[row]))) for row in rows]

@@ -10,8 +10,9 @@ TinyXML-2, and libsdformat with it, accepts text that is not well-formed XML, wh
 here. It knows the five predefined entities and takes any other ``&`` as text. It takes ``<`` in
 attribute values, ``]]>`` in text, two hyphens in comments, attributes without white space between
 them, bytes that are not UTF-8, and any XML version and encoding. In text and comments it takes
-characters that XML does not have, which are replaced here. It skips text before the outermost
-element, and what follows it if that is not text alone. Lines stay where they are.
+characters that XML does not have, which are replaced here. It takes white space behind ``<``. It
+skips text before the outermost element, and what follows it if that is not text alone; behind an
+end tag that ends nothing it reads no further. Lines stay where they are.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ _ATTRIBUTE = re.compile(rf'(\s*)((?:{_NAME})\s*=\s*)("[^"]*"|\'[^\']*\')')
 _TOKEN = re.compile(
     rf'(?P<comment><!--.*?-->)|(?P<verbatim><!\[CDATA\[.*?\]\]>)|(?P<instruction><\?.*?\?>)'
     rf'|(?P<other><!(?!--|\[CDATA\[)[^>]*>)|(?P<text>[^<]+)'
-    rf'|<(?P<end>/?)(?P<tag>{_NAME})(?![\w:.\-])', re.DOTALL)
+    rf'|<(?P<space>[ \t-\r]*)(?P<end>/?)(?P<tag>{_NAME})(?![\w:.\-])', re.DOTALL)
 """A token, or the beginning of a tag, which attributes and ``_REST_OF_TAG`` follow."""
 _REST_OF_TAG = re.compile(r'\s*(?P<empty>/?)>')
 _REFERENCE = re.compile(r'&#(?:([0-9]+)|x([0-9a-fA-F]+));')
@@ -139,6 +140,8 @@ class _Repairer:
         self._line = 1
         self._depth = 0
         self._has_root = False
+        self._open_after_root: list[str] = []
+        """The tags of elements behind the outermost one that have not ended yet."""
         self._may_declare = True
 
     def repaired(self, text: bytes) -> Repair | None:
@@ -156,12 +159,20 @@ class _Repairer:
             if (token['instruction'] and not self._may_declare) or (
                     self._is_after_root() and is_last_text):
                 return None
+            if token['tag'] and self._is_after_root() and not rest['empty']:
+                if not token['end']:
+                    self._open_after_root.append(token['tag'])
+                elif not self._open_after_root:
+                    self._note('an end tag that ends nothing; what follows it is not read')
+                    break
+                elif self._open_after_root.pop() != token['tag']:
+                    return None
             self._may_declare &= bool(token['instruction']) or (
                 not (token['text'] or 'x').strip('\ufeff \t\r\n'))
             parts.append(
                 self._repaired_tag(token, rest) if token['tag'] else self._repaired_token(token))
             self._line += decoded.count('\n', begin, position)
-        return None if not self._has_root else Repair(
+        return None if self._open_after_root or not self._has_root else Repair(
             ''.join(parts).encode(errors='replace'),
             sorted((line, fault) for fault, line in self._faults.items()))
 
@@ -205,7 +216,10 @@ class _Repairer:
         elif not rest['empty']:
             self._depth += 1
         self._has_root = True
-        parts = [token[0]]
+        # White space may stand behind the name instead.
+        parts = [f'<{token["end"]}{token["tag"]}{_blank(token["space"])}']
+        if token['space']:
+            self._note('white space behind "<"')
         for attribute in _ATTRIBUTE.finditer(token.string, token.end(), rest.start()):
             space, name, value = attribute.groups()
             if not space:

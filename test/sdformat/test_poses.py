@@ -53,8 +53,9 @@ def quaternion(text):
 
 @pytest.mark.parametrize('word', [
     'nan', 'NaN', 'inf', '-inf', 'infinity', '1e999', '-1e999', '1e-320', '-1e-320', '1e-400',
-    '0x10', '0x1p3', '1.5abc', '1,', '1_000', '1e', '1e+', '1d3', 'true', ',', 'x', '.', '+', '-',
-    '+-1', '--1', '.e1', '1.2.3', '1e1.5', '1/2', '\u0661', '1\u00a0', '\u22121', '1f', '(1)',
+    '0x10', '0x1p3', '1.5abc', '1,,', '1,3', ',1', '1_000', '1e', '1e+', '1d3', 'true', ',', 'x',
+    '.', '+', '-', '+-1', '--1', '.e1', '1.2.3', '1e1.5', '1/2', '\u0661', '1\u00a0', '\u22121',
+    '1f', '(1)',
 ])
 def test_word_that_is_not_a_number_is_refused(word):
     with pytest.raises(PoseTextError) as caught:
@@ -77,6 +78,14 @@ def test_other_count_than_seven_is_refused_with_a_quaternion(count):
 def test_commas_do_not_separate_numbers():
     with pytest.raises(PoseTextError):
         rpy('1,2,3,0,0,0')
+
+
+def test_comma_may_follow_each_number():
+    texts = ['1 2 3 0 0 0', '1, 2, -3e-05, 0, 0, 0', '1.5,\n2 3, 0 0 0,']
+    poses, failures, doubts = poses_from_texts(texts, RPY)
+    assert poses[:, :3].tolist() == [[1, 2, 3], [1, 2, -3e-5], [1.5, 2, 3]]
+    assert failures == []
+    assert [(index, 'commas' in doubt) for index, doubt in doubts] == [(1, True), (2, True)]
 
 
 @pytest.mark.parametrize('text', ['1 ' * 10_000, '1' * 2_000_000 + ' 0 0 0 0 0', '1' * 300])

@@ -24,7 +24,8 @@ def root_of(text):
 
 @pytest.mark.parametrize('text', [
     b'<a', b'<a b=c/>', b'<a><b c></b></a>', b'<a/>text', b'<a><?late?></a>', b'<a/><?late?>',
-    b'<!-- <a/>', b'<a><![CDATA[</a>',
+    b'<!-- <a/>', b'<a><![CDATA[</a>', b'<a/><b>', b'<a/><b></c>', b'<a/><b><c></b></c>',
+    b'<a/><?late?></b>', b'<a></ a>',
 ])
 def test_text_that_libsdformat_refuses_is_not_repaired(text):
     assert repaired(text) is None
@@ -42,6 +43,11 @@ def test_text_that_libsdformat_refuses_is_not_repaired(text):
     (b' <?xml version="1.0"?><a>b</a>', 'b'),
     (b'before<a>b</a>', 'b'),
     (b'<a>b</a><c/>', 'b'),
+    (b'<a>b</a><c><d>e</d></c>', 'b'),
+    (b'<a>b</a></c> --> <a <<', 'b'),
+    (b'<a>b</a>text<c></c></a>&<?late?>', 'b'),
+    (b'<a>b< /a>', 'b'),
+    (b'<\f\na>b<\v/a>', 'b'),
 ])
 def test_text_of_the_outermost_element(text, content):
     root = root_of(text)
