@@ -142,7 +142,7 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
         positions = JointPositions(scene, tree.moving.dofs)
         frames = PublishedFrames(Publishers(ros), tree, positions, {}).moving
         assert frames is not None
-        follower = JointStates(ros, frames, is_published_later=False)
+        follower = JointStates(ros, frames, 0.0)
         broadcaster = JointBroadcaster(ros, 100, '/tf_of_counterpart')
         messages = joint_states(100)
         # The counterpart gets objects, which rclpy would have to make first.
@@ -153,7 +153,7 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
 
 @contextlib.contextmanager
 def shares_of_processors(
-    joints: int, counterpart: str = COUNTERPART, publish_rate: float = 0.0,
+    joints: int, counterpart: str = COUNTERPART, publish_frequency: float = 0.0,
 ) -> Iterator[tuple[Function, Function]]:
     """Measure what the bridge and the counterpart take while they follow the same messages."""
     import rclpy
@@ -164,7 +164,7 @@ def shares_of_processors(
         file.write_text(chain_text(joints), encoding='utf-8')
         bridge = RunningBridge(
             stack, file, 'use_joint_states:=true', 'watch:=false', 'pose_topics:=[]',
-            f'publish_rate:={publish_rate}')
+            f'publish_frequency:={publish_frequency}')
         processes = [bridge.process, bridge.start(
             stack, sys.executable, '-c', counterpart, str(joints), stderr=subprocess.DEVNULL)]
         context = Context()
@@ -226,8 +226,8 @@ def share_and_receiver() -> Iterator[tuple[Function, Function | None]]:
 
 
 @benchmark(
-    '30 joints at 500 Hz, published at 20 Hz, processor time in each second',
+    '30 joints at 500 Hz, publish_frequency 20, processor time in each second',
     counterpart='a minimal node that receives and does nothing', goal=AtMostTimes(1.0))
 def share_at_20_hz_and_receiver() -> Iterator[tuple[Function, Function | None]]:
-    with shares_of_processors(30, RECEIVER, publish_rate=20.0) as pair:
+    with shares_of_processors(30, RECEIVER, publish_frequency=20.0) as pair:
         yield pair

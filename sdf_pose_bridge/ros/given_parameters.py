@@ -32,9 +32,6 @@ from sdf_pose_bridge.ros.parameters import MOST_VALUES
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.parameters import SettingsError
 
-FREQUENCY = 'publish_frequency'
-"""The name of ``publish_rate`` in robot_state_publisher, which is understood at the start."""
-
 _NAMES_OF_TYPES = {
     Parameter.Type.STRING: 'a string', Parameter.Type.BOOL: 'true or false',
     Parameter.Type.INTEGER: 'an integer', Parameter.Type.DOUBLE: 'a number',
@@ -106,8 +103,6 @@ def changed_settings(
 def warnings_about_unknown_parameters(node: Node) -> list[str]:
     """Find parameters that were given when the node was started, but that it does not have."""
     return [
-        f'parameter {name} is called publish_rate here; its value is taken for that'
-        if name == FREQUENCY else
         f'there is no parameter "{name}", so it has no effect{hint_from_names(name, DECLARATIONS)}'
         for name in _given_parameters(node)
         if name not in DECLARATIONS and not node.has_parameter(name)]
@@ -200,7 +195,7 @@ def _parameters_at_start(given: Mapping[str, Parameter]) -> list[Parameter]:
     parameters = []
     for name, declaration in DECLARATIONS.items():
         type_, value = declaration.type_, declaration.default
-        parameter = given.get(name) or (given.get(FREQUENCY) if name == 'publish_rate' else None)
+        parameter = given.get(name)
         if parameter is not None and parameter.type_ is not Parameter.Type.NOT_SET:
             type_, value = parameter.type_, parameter.value
         elif parameter is not None and type_ is Parameter.Type.STRING_ARRAY:

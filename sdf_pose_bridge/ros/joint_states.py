@@ -6,6 +6,10 @@ Follow ``joint_states``: take the positions of joints, and publish the frames th
 ``/tf`` gets the transforms that a message changes, with the stamp of the message, and those of
 joints that no message has named so far, so that TF is complete. Before the first message all
 joints are published where the file puts them.
+
+With a highest rate, a message is published at once and those that follow it wait in the
+subscription for one period, without waking the executor: to wake it takes ten times as long as
+everything that is done with a message.
 """
 
 from __future__ import annotations
@@ -15,7 +19,7 @@ import time
 
 import numpy as np
 from numpy.typing import NDArray
-from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.clock import Clock
 from rclpy.clock import ClockType
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -23,6 +27,7 @@ from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from rclpy.qos import QoSProfile
 from rclpy.qos import ReliabilityPolicy
+from rclpy.timer import Timer
 from sensor_msgs.msg import JointState
 
 from sdf_pose_bridge.ros.cdr import joint_state_from_bytes
@@ -40,7 +45,7 @@ INITIAL_PERIOD_S = 0.1
 TOPICS_PERIOD_S = 1.0 / 30.0
 """How often the topics of moving frames are published at most."""
 
-_PERIODS_UNTIL_REST = 15
+_REST_S = 0.5
 _WARNING_PERIOD_S = 10.0
 _NANOSECONDS = 1_000_000_000
 _MOST_PLANS = 20
@@ -59,51 +64,69 @@ class _Plan:
     """A message for ``/tf`` with these."""
     stamp: Stamp | None = None
     """That of the last message."""
+    is_waiting: bool = False
+    """Whether that message still has to be published."""
+
+
+class _Gate(ReentrantCallbackGroup):
+    """The group of a subscription whose messages wake the executor only while it is open."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.is_open = True
+
+    def can_execute(self, _entity: object) -> bool:
+        return self.is_open
+
+    def beginning_execution(self, _entity: object) -> bool:
+        return self.is_open
 
 
 class JointStates:
     """
     Follows ``joint_states``.
 
-    :param is_published_later: whether messages wait for :meth:`publish_waiting` instead of being
-        published at once.
+    :param frequency: how often each transform is published on ``/tf`` at most, in Hz; 0.0 for
+        each message.
     """
 
-    def __init__(
-        self, node: Node, frames: PublishedMovingFrames, *, is_published_later: bool,
-    ) -> None:
-        self.is_published_later = is_published_later
+    def __init__(self, node: Node, frames: PublishedMovingFrames, frequency: float) -> None:
+        self.frequency = frequency
         self._node = node
         self._logger = node.get_logger()
         self._frames = frames
         self._plans: dict[tuple[str, ...], _Plan] = {}
         self._last_message: JointStateBytes | None = None
-        self._waiting_rows: set[int] = set()
         self._topics_due = 0.0
         self._are_topics_behind = False
-        self._periods_at_rest = 0
+        self._published_at = 0.0
+        self._gate = _Gate()
         # Simulated time may stand still.
         steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
-        self._rest_timer = node.create_timer(
-            TOPICS_PERIOD_S, self._follow_to_rest, clock=steady_clock)
         self._initial_timer = node.create_timer(
             INITIAL_PERIOD_S, self._publish_initially, clock=steady_clock)
-        self._timers = [self._rest_timer, self._initial_timer]
-        quality, group = qos_profile_sensor_data, None
-        if is_published_later:
-            # The messages of a period wait in the subscription, which does not wake the executor:
-            # that takes ten times as long as everything that is done with a message.
+        self._timers = [self._initial_timer]
+        rest_period, quality = TOPICS_PERIOD_S, qos_profile_sensor_data
+        self._period_timer: Timer | None = None
+        if frequency:
+            period = 1.0 / frequency
+            # While messages follow one another, the other timer does not wake the executor.
+            rest_period = min(max(TOPICS_PERIOD_S, 1.5 * period), _REST_S)
             quality = QoSProfile(depth=_MOST_WAITING, reliability=ReliabilityPolicy.BEST_EFFORT)
-            group = MutuallyExclusiveCallbackGroup()
-            self._timers.append(node.create_timer(
-                TOPICS_PERIOD_S, self._take_waiting, clock=steady_clock))
+            # A bag that is played faster has as many transforms in each of its seconds.
+            clock = node.get_clock()
+            self._period_timer = node.create_timer(
+                period, self._end_period,
+                clock=clock if clock.ros_time_is_active else steady_clock)
+            self._period_timer.cancel()
+            self._timers.append(self._period_timer)
+        self._rest_timer = node.create_timer(
+            rest_period, self._follow_to_rest, clock=steady_clock)
+        self._timers.append(self._rest_timer)
         # What is best effort and volatile fits every publisher, so there is nothing to report.
         self._subscription = node.create_subscription(
-            JointState, 'joint_states', self.take, quality, callback_group=group, raw=True,
+            JointState, 'joint_states', self.take, quality, callback_group=self._gate, raw=True,
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False))
-        if group is not None:
-            # To executors a callback of the group is always running, so they take no messages.
-            group.beginning_execution(self._subscription)
 
     def destroy(self) -> None:
         """Stop following, and destroy what was created for it."""
@@ -115,20 +138,11 @@ class JointStates:
         """Move other frames from now on."""
         self._frames = frames
         self._plans.clear()
-        self._waiting_rows.clear()
 
-    def publish_waiting(self) -> None:
-        """Publish on ``/tf`` what messages have changed since the last call."""
-        self._take_waiting()
-        if self._waiting_rows and self._frames.stamp is not None:
-            rows = np.array(sorted(self._waiting_rows), np.intp)
-            self._waiting_rows.clear()
-            self._frames.publish_tf(rows, self._frames.tf_message(rows), self._frames.stamp)
-
-    # Messages
-
-    def _take_waiting(self) -> None:
-        """Take all messages that wait in the subscription, for one period at most."""
+    def take_waiting(self) -> None:
+        """Take all messages that wait in the subscription, for a 30th of a second at most."""
+        if self._gate.is_open:
+            return  # the executor takes them
         # Other callbacks would wait for ever for the end of messages that come too fast.
         ends_at = time.monotonic() + TOPICS_PERIOD_S
         # Executors do the same; rclpy has no public way.
@@ -137,9 +151,11 @@ class JointStates:
                     taken := self._subscription.handle.take_message(JointState, True)) is not None:
                 self.take(taken[0])
 
+    # Messages
+
     def take(self, data: bytes) -> None:
         """
-        Take positions of joints, and publish what they move.
+        Take positions of joints, and publish what they move unless it has to wait.
 
         :param data: a serialized message.
         """
@@ -178,12 +194,10 @@ class JointStates:
             self._logger.info(f'following {self._subscription.topic_name}')
         self._frames.stamp = stamp
         # TF takes one transform for each time, and complains about a second one.
-        is_repeated, plan.stamp = plan.stamp == stamp, stamp
-        if self.is_published_later:
-            self._waiting_rows.update(plan.rows.tolist())
-        elif not is_repeated:
-            self._frames.publish_tf(plan.rows, plan.message, stamp)
-        self._publish_topics_if_due()
+        plan.is_waiting |= plan.stamp != stamp
+        plan.stamp = stamp
+        if self._gate.is_open:
+            self._publish()
 
     def _new_plan(self, message: JointStateBytes) -> _Plan:
         positions = self._frames.positions
@@ -197,6 +211,7 @@ class JointStates:
         positions.update(selection, message.positions)
         if len(self._plans) == _MOST_PLANS or (positions.is_known != were_known).any():
             # Other plans would publish what this one does from now on.
+            self._publish_tf()
             self._plans.clear()
         rows = np.array([], np.intp)
         if len(selection.rows):
@@ -205,6 +220,30 @@ class JointStates:
         plan = _Plan(selection, rows, self._frames.tf_message(rows))
         self._plans[message.names] = plan
         return plan
+
+    def _publish(self) -> None:
+        """Publish what messages have changed, and let those that follow wait."""
+        self._publish_tf()
+        self._publish_topics_if_due()
+        # Simulated time that has not begun would never end a period.
+        if self._period_timer is not None and self._node.get_clock().now().nanoseconds:
+            self._gate.is_open = False
+            self._period_timer.reset()
+
+    def _publish_tf(self) -> None:
+        for plan in self._plans.values():
+            if plan.is_waiting and plan.stamp is not None:
+                plan.is_waiting = False
+                self._frames.publish_tf(plan.rows, plan.message, plan.stamp)
+
+    def _end_period(self) -> None:
+        """Publish what has waited; where nothing has, publish the next message at once."""
+        self.take_waiting()
+        if any(plan.is_waiting for plan in self._plans.values()):
+            self._publish()
+        elif self._period_timer is not None:
+            self._period_timer.cancel()
+            self._gate.is_open = True
 
     def _publish_initially(self) -> None:
         """Publish all frames on ``/tf`` until there are positions."""
@@ -224,12 +263,11 @@ class JointStates:
             self._frames.publish_topics(only_listeners=True)
         # While messages follow one another, the timer need not wake the executor.
         self._rest_timer.reset()
-        self._periods_at_rest = 0
+        self._published_at = now
 
     def _follow_to_rest(self) -> None:
         """Publish the last positions on topics; at rest once more, for later listeners."""
-        self._periods_at_rest += 1
-        is_at_rest = self._periods_at_rest == _PERIODS_UNTIL_REST
+        is_at_rest = time.monotonic() >= self._published_at + _REST_S
         if is_at_rest:
             self._rest_timer.cancel()
         if is_at_rest or self._are_topics_behind:

@@ -51,6 +51,7 @@ from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
 from sdf_pose_bridge.ros.topic_names import PoseTopics
 from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
 from sdf_pose_bridge.sdformat.include.uris import AddressError
+from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge_interfaces.srv import SetPose
 
 if TYPE_CHECKING:
@@ -93,7 +94,8 @@ class SdfPoseBridge:
         self._joint_states: JointStates | None = None
         self._again_timer: Timer | None = None
         self._publish_again_at(settings.publish_rate)
-        add_services(node, lambda: self._loaded.lookup)
+        self._follow_joints()
+        add_services(node, self._current_lookup)
         node.create_service(
             Trigger, '~/reload', self._answer_to_reload, qos_profile=SERVICE_QOS,
             callback_group=self._changes)
@@ -144,10 +146,9 @@ class SdfPoseBridge:
 
     def _follow_joints(self) -> None:
         """Let ``joint_states`` move the frames, if joints follow it."""
-        moving = self._frames.moving
-        is_published_later = self._settings.publish_rate > 0.0
+        moving, frequency = self._frames.moving, self._settings.publish_frequency
         current = self._joint_states
-        if current is not None and current.is_published_later is is_published_later and moving:
+        if current is not None and current.frequency == frequency and moving:
             current.replace(moving)
             return
         if current is not None:
@@ -156,8 +157,13 @@ class SdfPoseBridge:
         if moving is not None:
             # Imported here because it takes 8 ms, and most often joints do not move.
             from sdf_pose_bridge.ros.joint_states import JointStates
-            self._joint_states = JointStates(
-                self._node, moving, is_published_later=is_published_later)
+            self._joint_states = JointStates(self._node, moving, frequency)
+
+    def _current_lookup(self) -> PoseLookup:
+        """Return what poses are looked up in, with the positions of all messages so far."""
+        if self._joint_states is not None:
+            self._joint_states.take_waiting()
+        return self._loaded.lookup
 
     def _publish_robot_description(self) -> None:
         self._robot_description.publish(
@@ -222,6 +228,8 @@ class SdfPoseBridge:
         self, request: SetPose.Request, response: SetPose.Response,
     ) -> SetPose.Response:
         """Write a measured pose, and answer when it is published."""
+        if self._joint_states is not None:
+            self._joint_states.take_waiting()
         loaded = self._loaded
         try:
             answer: SetPose.Response = await run_in_thread(
@@ -285,6 +293,7 @@ class SdfPoseBridge:
             self._publish_again_at(settings.publish_rate)
         if loaded is not self._loaded or settings.pose_topics != before.pose_topics:
             await self._show(loaded)
+        self._follow_joints()
         if settings.publish_robot_description != before.publish_robot_description:
             self._publish_robot_description()
 
@@ -298,7 +307,6 @@ class SdfPoseBridge:
             self._again_timer = self._node.create_timer(
                 1.0 / rate, self._publish_again, callback_group=self._again_group,
                 clock=self._steady_clock)
-        self._follow_joints()
 
     async def _publish_again(self) -> None:
         if self._publishing.is_held:
@@ -306,8 +314,6 @@ class SdfPoseBridge:
         begin = time.perf_counter()
         async with self._publishing:
             await self._frames.publish_fixed_again()
-        if self._joint_states is not None:
-            self._joint_states.publish_waiting()
         seconds = time.perf_counter() - begin
         if seconds * self._settings.publish_rate > 1.0:
             if self._again_timer is not None:

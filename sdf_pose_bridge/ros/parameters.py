@@ -40,8 +40,14 @@ PUBLISHED_KINDS = {
     kind.label: kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD, Kind.ACTOR)}
 """The kinds of element that can become frames, by their names."""
 
-LOWEST_RATE, HIGHEST_RATE = 0.001, 100.0
-"""The limits of ``publish_rate`` in Hz."""
+LOWEST_RATE = 0.001
+"""The lowest rate in Hz that a parameter can have, but for 0.0."""
+
+HIGHEST_RATE = 100.0
+"""The limit of ``publish_rate`` in Hz."""
+
+HIGHEST_FREQUENCY = 1000.0
+"""The limit of ``publish_frequency`` in Hz, as in robot_state_publisher."""
 
 MOST_VALUES = 1000
 """How many patterns or directories a parameter may have. Each pattern is compared with each frame,
@@ -126,13 +132,6 @@ def separator_setting(value: str) -> str:
     return _name_setting(value, MOST_CHARACTERS_OF_SEPARATOR)
 
 
-def rate_setting(value: float) -> float:
-    """Refuse rates that are too low, too high or not a number; 0.0 is for never."""
-    if value and not LOWEST_RATE <= value <= HIGHEST_RATE:
-        raise _refusal(value, f'0.0 for never, or from {LOWEST_RATE} to {HIGHEST_RATE}')
-    return value
-
-
 def kinds_setting(values: Sequence[str]) -> frozenset[Kind]:
     """Make kinds of element of their names."""
     known = ', '.join(PUBLISHED_KINDS)
@@ -205,6 +204,26 @@ def _choice(default: Choice, description: str) -> Declaration[Choice]:
         return type(default)(value)
 
     return Declaration(default.value, description, rule, setting)
+
+
+def _rate(
+    description: str, zero: str, highest: float, *, default: float = 0.0,
+) -> Declaration[float]:
+    """
+    Declare a parameter whose values are rates in Hz.
+
+    :param zero: what 0.0 is for.
+    """
+    rule = f'0.0 {zero}, or from {LOWEST_RATE} to {highest}'
+
+    def setting(value: float) -> float:
+        # What is not a number is out of any range.
+        if value and not LOWEST_RATE <= value <= highest:
+            raise _refusal(value, rule)
+        return value
+
+    return Declaration(
+        default, description, rule, setting, needs_load=False, maximum=highest)
 
 
 class Settings:
@@ -308,14 +327,15 @@ class Settings:
         'paths of directories, at most 1000; empty ones are ignored',
         directories_setting,
     )
-    publish_rate = Declaration(
-        0.0,
-        'How often everything is published again, in Hz, for listeners that cannot be latched; '
-        '0.0 for once, which is enough for all others. Also the highest rate of /tf.',
-        f'0.0 for never, or from {LOWEST_RATE} to {HIGHEST_RATE}',
-        rate_setting,
-        needs_load=False,
-        maximum=HIGHEST_RATE,
+    publish_frequency = _rate(
+        'How often a transform that joints move is published on /tf at most, in Hz; 0.0 for each '
+        'message on joint_states.',
+        'for each message', HIGHEST_FREQUENCY,
+    )
+    publish_rate = _rate(
+        'How often everything that joints do not move is published again, in Hz, for listeners '
+        'that cannot be latched; 0.0 for once, which is enough for all others.',
+        'for never', HIGHEST_RATE,
     )
     watch = _switch(
         True,

@@ -189,7 +189,7 @@ def test_a_wrong_message_is_reported_and_the_next_one_taken(
 
 @pytest.mark.parametrize('rate', ['0.0', '10.0'])
 def test_a_flood_of_messages_does_not_keep_callers_waiting(start, file, tf, rate):
-    bridge = start(file, f'publish_rate:={rate}')
+    bridge = start(file, f'publish_frequency:={rate}')
     flooding = LoggedProcess([sys.executable, '-c', FLOODING])
     try:
         bridge.wait_for_line('not the name of one moving joint')
@@ -327,8 +327,8 @@ def test_a_broken_file_leaves_the_joints_moving(start, file, joints, tf):
     assert tf.wait_for('slide', joints.send({'lift': 0.5})).translation.z == 1.5
 
 
-def test_tf_is_published_at_most_at_the_publish_rate(start, file, joints, tf):
-    start(file, 'publish_rate:=2.0')
+def test_tf_is_published_at_most_at_the_publish_frequency(start, file, joints, tf):
+    start(file, 'publish_frequency:=2.0')
     tf.wait_for('slide', joints.send({'lift': 0.1}))
     before = tf.count
     for number in range(50):
@@ -337,19 +337,25 @@ def test_tf_is_published_at_most_at_the_publish_rate(start, file, joints, tf):
     assert tf.count < before + 25
 
 
+def test_publishing_again_is_no_highest_rate_of_tf(start, file, joints, tf):
+    start(file, 'publish_rate:=0.1')
+    for number in range(3):
+        assert tf.wait_for('slide', joints.send({'lift': number / 10}))
+
+
 def test_no_message_of_a_period_is_lost(start, file, joints, tf):
-    start(file, 'publish_rate:=2.0')
+    start(file, 'publish_frequency:=2.0')
     tf.wait_for('slide', joints.send({'lift': 0.1}))
-    joints.send({'lift': 0.25})
+    first = joints.send({'lift': 0.25})
     for number in range(20):
         last = joints.send({'turn': number / 100})
     assert tf.wait_for('upper', last).rotation.z != 0.0
-    assert tf.wait_for('slide', last).translation.z == 1.25
+    assert tf.wait_for('slide', first).translation.z == 1.25
 
 
 def test_lookups_do_not_wait_for_the_next_period(start, file, joints, tf):
     start(file)
-    result, = set_parameters(tf.listener, publish_rate=0.01)
+    result, = set_parameters(tf.listener, publish_frequency=0.01)
     assert result.successful, result.reason
     tf.listener.wait(
         lambda: joints.send({'lift': 0.25}) and pose_of(tf, 'slide').z == 2.25,
@@ -360,7 +366,7 @@ def test_the_rate_can_be_set_while_joints_move(start, file, joints, tf):
     start(file)
     tf.wait_for('slide', joints.send({'lift': 0.1}))
     for rate in (20.0, 0.0):
-        result, = set_parameters(tf.listener, publish_rate=rate)
+        result, = set_parameters(tf.listener, publish_frequency=rate)
         assert result.successful, result.reason
         # The first messages may come before the publisher knows the new subscription.
         tf.listener.wait(

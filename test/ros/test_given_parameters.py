@@ -46,6 +46,8 @@ def default_settings(make_node):
     ('publish_rate', '500.0', 'is 500.0; it must be 0.0 for never, or from 0.001 to 100.0'),
     ('publish_rate', '500', 'is 500.0; it must be 0.0 for never, or from 0.001 to 100.0'),
     ('publish_rate', '1e-12', 'is 1e-12; it must be 0.0 for never, or from 0.001 to 100.0'),
+    ('publish_frequency', 'fast', 'is fast, which is a string; it must be a number'),
+    ('publish_frequency', '1001', 'is 1001.0; it must be 0.0 for each message, or from 0.001'),
     ('publish_rate', '.nan', 'is nan; it must be 0.0 for never, or from 0.001 to 100.0'),
     ('anchor_models', 'some', 'is "some"; it must be one of auto, all, static, none'),
     ('kinds', '[]', 'is []; it must be at least one of'),
@@ -87,26 +89,6 @@ def test_unknown_parameters_are_named_with_the_nearest_one(make_node):
     assert warnings_about_unknown_parameters(node) == sentences
     settings_from_node(node)
     assert warnings_about_unknown_parameters(node) == sentences
-
-
-@pytest.mark.parametrize(('arguments', 'rate'), [
-    (['publish_frequency:=20.0'], 20.0), (['publish_frequency:=20'], 20.0),
-    (['publish_frequency:=20.0', 'publish_rate:=5.0'], 5.0)])
-def test_the_rate_of_robot_state_publisher_is_understood_with_a_warning(
-        make_node, arguments, rate):
-    node = make_node('bridge', *FILE, *(word for each in arguments for word in ('-p', each)))
-    (sentence,) = warnings_about_unknown_parameters(node)
-    assert 'publish_frequency is called publish_rate here' in sentence
-    assert settings_from_node(node).publish_rate == rate
-
-
-@pytest.mark.parametrize(('value', 'sentence'), [
-    ('fast', 'is fast, which is a string; it must be a number'),
-    ('500.0', 'is 500.0; it must be 0.0 for never')])
-def test_a_wrong_rate_of_robot_state_publisher_is_refused(make_node, value, sentence):
-    node = make_node('bridge', *FILE, '-p', f'publish_frequency:={value}')
-    with pytest.raises(SettingsError, match=sentence):
-        settings_from_node(node)
 
 
 def test_too_many_patterns_are_refused(make_node):
@@ -241,13 +223,14 @@ def test_only_the_permission_to_write_files_cannot_be_changed(make_node):
     assert [each.name for each in descriptors if each.read_only] == ['allow_set_pose']
 
 
-def test_only_the_rate_has_a_range(make_node):
+def test_rates_have_a_range(make_node):
     node = make_node('bridge', *FILE)
     settings_from_node(node)
     assert {
         (each.name, number.from_value, number.to_value)
         for each in node.describe_parameters(list(DECLARATIONS))
-        for number in each.floating_point_range} == {('publish_rate', 0.0, 100.0)}
+        for number in each.floating_point_range} == {
+            ('publish_rate', 0.0, 100.0), ('publish_frequency', 0.0, 1000.0)}
 
 
 @pytest.mark.parametrize('name', DECLARATIONS)

@@ -10,6 +10,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped
+from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy
 from rclpy.qos import QoSProfile
 from rclpy.qos import ReliabilityPolicy
@@ -36,6 +37,7 @@ ARM = """<sdf version="1.11"><model name="arm">
 <joint name="grip" type="prismatic"><parent>base</parent><child>finger</child>
   <axis><xyz>1 0 0</xyz></axis></joint>
 </model></sdf>"""
+JOINTS = ('turn', 'lift', 'grip')
 LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 NOW = 10**9
 """Seconds of a time that the clock has passed."""
@@ -65,7 +67,7 @@ def make_moving_frames(make_node):
 
 @pytest.fixture(name='states')
 def joint_states(moving_frames):
-    return JointStates(*moving_frames(ARM), is_published_later=False)
+    return JointStates(*moving_frames(ARM), 0.0)
 
 
 @pytest.fixture
@@ -119,11 +121,11 @@ def test_messages_with_another_number_of_positions_are_ignored(published, capfd)
     assert capfd.readouterr().err.count('has 2 names and 1 positions') == 1, 'not at a high rate'
 
 
-@pytest.mark.parametrize('is_published_later', [False, True])
-def test_publishers_that_are_best_effort_are_heard(states, is_published_later):
+@pytest.mark.parametrize('frequency', [0.0, 20.0])
+def test_publishers_that_are_best_effort_are_heard(states, frequency):
     node = states._node
     states.destroy()
-    JointStates(node, states._frames, is_published_later=is_published_later)
+    JointStates(node, states._frames, frequency)
     subscription, = node.subscriptions
     assert node.resolve_topic_name('joint_states') == subscription.topic_name
     assert subscription.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
@@ -149,17 +151,6 @@ def test_a_message_without_a_stamp_gets_the_time_of_the_node(published, states):
     published(joint_state(0, {'turn': 0.5}), joint_state(6, {'turn': 0.25}))
     states.take(serialize_message(joint_state(0, {'turn': 0.5})))
     assert states._frames.stamp[0] > NOW
-
-
-def test_messages_that_are_published_later_are_published_together(published, states):
-    states.is_published_later = True
-    states.take(serialize_message(joint_state(5, {'turn': 0.5, 'lift': 0.5, 'grip': 0.5})))
-    states.take(serialize_message(joint_state(6, {'turn': 0.25})))
-    states.publish_waiting()
-    states.publish_waiting()  # nothing has changed since
-    states.is_published_later = False
-    assert published(joint_state(7, {'turn': 0.5})) == [
-        (6, {'upper', 'slide', 'finger'}), (7, {'upper'})]
 
 
 def test_the_same_names_can_move_other_frames_later(published, states, moving_frames):
@@ -217,27 +208,82 @@ def test_after_a_message_frames_have_its_time_alone(listener, wait_until, states
     assert on_tf[on_tf.index(5):] == [5]
 
 
-@pytest.mark.parametrize('is_published_later', [False, True])
-def test_what_was_created_for_it_is_destroyed_with_it(states, is_published_later):
+@pytest.mark.parametrize('frequency', [0.0, 20.0])
+def test_what_was_created_for_it_is_destroyed_with_it(states, frequency):
     node = states._node
     states.destroy()
-    JointStates(node, states._frames, is_published_later=is_published_later).destroy()
+    JointStates(node, states._frames, frequency).destroy()
     assert [*node.timers, *node.subscriptions] == []
 
 
-def test_what_waits_in_the_subscription_is_taken_before_it_is_published(
-        listener, states, make_executor):
-    states.destroy()
-    later = JointStates(states._node, states._frames, is_published_later=True)
-    found = []
-    listener.create_subscription(
-        TFMessage, '/tf', lambda each: found.append(each.transforms[0].header.stamp.sec), 100)
-    publisher = listener.create_publisher(JointState, 'joint_states', 10)
-    # The timers of the node, which take messages too, do not run.
-    executor = make_executor(listener)
-    deadline = time.monotonic() + 20.0
-    while 5 not in found:
-        assert time.monotonic() < deadline, found
-        publisher.publish(joint_state(5, {'turn': 0.5}))
-        later.publish_waiting()
-        executor.spin_once(timeout_sec=0.1)
+@pytest.fixture(name='slow_states')
+def make_slow_states(states, listener, wait_until):
+    """
+    Follows messages with a highest rate; ``slow_states(frequency)``.
+
+    Returns it, a publisher of messages, and a list that gets the stamp and the frames of each
+    message on ``/tf``.
+    """
+    def start(frequency):
+        states.destroy()
+        slow, found = JointStates(states._node, states._frames, frequency), []
+        publisher = listener.create_publisher(JointState, 'joint_states', 100)
+
+        def add(message):
+            stamp = message.transforms[0].header.stamp.sec
+            if stamp < NOW:
+                found.append((stamp, {each.child_frame_id for each in message.transforms}))
+
+        listener.create_subscription(TFMessage, '/tf', add, 100)
+        # The first ones are lost until both have discovered each other.
+        sent = []
+        wait_until(
+            lambda: found or publisher.publish(
+                sent.append(1) or joint_state(len(sent), dict.fromkeys(JOINTS, 0.0))), found)
+        found.clear()
+        return slow, publisher, found
+    return start
+
+
+def test_messages_wait_for_the_end_of_a_period(slow_states, wait_until):
+    _, publisher, found = slow_states(2.0)
+    for sec in range(NOW - 20, NOW):
+        publisher.publish(joint_state(sec, {'turn': 0.5}))
+    wait_until(lambda: (NOW - 1, {'upper'}) in found, found)
+    assert len(found) < 10
+
+
+def test_each_waiting_message_keeps_its_stamp(slow_states, wait_until):
+    _, publisher, found = slow_states(2.0)
+    publisher.publish(joint_state(NOW - 2, {'turn': 0.5}))
+    publisher.publish(joint_state(NOW - 1, {'grip': 0.5}))
+    wait_until(lambda: (NOW - 1, {'finger'}) in found, found)
+    assert (NOW - 2, {'upper'}) in found
+
+
+def test_a_message_after_a_period_without_any_is_published_at_once(slow_states, wait_until):
+    slow, publisher, found = slow_states(50.0)
+    for sec in (NOW - 2, NOW - 1):
+        wait_until(lambda: slow._gate.is_open, 'the end of a period')
+        publisher.publish(joint_state(sec, {'turn': 0.5}))
+        wait_until(lambda sec=sec: found[-1:] == [(sec, {'upper'})], found)
+
+
+def test_positions_can_be_taken_before_the_end_of_a_period(slow_states, wait_until):
+    slow, publisher, found = slow_states(0.001)
+    publisher.publish(joint_state(NOW - 1, {'turn': 0.5}))
+    positions = slow._frames.positions
+
+    def is_taken():
+        slow.take_waiting()
+        return 0.5 in positions.values
+
+    wait_until(is_taken, positions.values)
+    assert not found
+
+
+def test_simulated_time_that_has_not_begun_holds_nothing_up(slow_states, states, wait_until):
+    states._node.set_parameters([Parameter('use_sim_time', value=True)])
+    _, publisher, found = slow_states(0.001)
+    publisher.publish(joint_state(NOW - 1, {'turn': 0.5}))
+    wait_until(lambda: (NOW - 1, {'upper'}) in found, found)

@@ -13,6 +13,9 @@ from sdf_pose_bridge.ros import parameters as rules
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.tree import AnchorModels
 
+PUBLISH_RATE = rules.DECLARATIONS['publish_rate'].convert
+PUBLISH_FREQUENCY = rules.DECLARATIONS['publish_frequency'].convert
+
 
 @pytest.mark.parametrize(('rule', 'value', 'words'), [
     (rules.root_frame_setting, '', 'is ""; it must be a frame id'),
@@ -25,10 +28,11 @@ from sdf_pose_bridge.tf.tree import AnchorModels
     (rules.root_frame_setting, 'x' * 256, 'has a value of 256 characters; it must have at'),
     (rules.prefix_setting, 'x' * 256, 'has a value of 256 characters; it must have at most 255'),
     (rules.separator_setting, '_' * 9, 'has a value of 9 characters; it must have at most 8'),
-    (rules.rate_setting, 0.0009, 'is 0.0009; it must be 0.0 for never, or from 0.001 to 100.0'),
-    (rules.rate_setting, 100.1, 'is 100.1; it must be 0.0 for never'),
-    (rules.rate_setting, -1.0, 'is -1.0; it must be 0.0 for never'),
-    (rules.rate_setting, math.nan, 'is nan; it must be 0.0 for never'),
+    (PUBLISH_RATE, 0.0009, 'is 0.0009; it must be 0.0 for never, or from 0.001 to 100.0'),
+    (PUBLISH_RATE, 100.1, 'is 100.1; it must be 0.0 for never'),
+    (PUBLISH_RATE, -1.0, 'is -1.0; it must be 0.0 for never'),
+    (PUBLISH_RATE, math.nan, 'is nan; it must be 0.0 for never'),
+    (PUBLISH_FREQUENCY, 1000.1, 'it must be 0.0 for each message, or from 0.001 to 1000.0'),
     (rules.DECLARATIONS['anchor_models'].convert, 'ALL', 'is "ALL"; it must be one of '),
     (rules.kinds_setting, [], 'is []; it must be at least one of model, '),
     (rules.kinds_setting, ['link', 'links'], 'is "links"; it must be made of model, '),
@@ -52,9 +56,10 @@ def test_refused(rule, value, words):
     (rules.prefix_setting, 'r1/', 'r1/'),
     (rules.prefix_setting, 'x' * 255, 'x' * 255),
     (rules.separator_setting, '::', '::'),
-    (rules.rate_setting, 0.0, 0.0),
-    (rules.rate_setting, 0.001, 0.001),
-    (rules.rate_setting, 100.0, 100.0),
+    (PUBLISH_RATE, 0.0, 0.0),
+    (PUBLISH_RATE, 0.001, 0.001),
+    (PUBLISH_RATE, 100.0, 100.0),
+    (PUBLISH_FREQUENCY, 1000.0, 1000.0),
     (rules.DECLARATIONS['anchor_models'].convert, 'static', AnchorModels.STATIC),
     (rules.kinds_setting, ['link', 'light', 'link'], frozenset({Kind.LINK, Kind.LIGHT})),
     (rules.patterns_setting, ['*'] * 1000, ('*',) * 1000),
