@@ -10,18 +10,24 @@ from collections.abc import Callable
 from collections.abc import Iterable
 from collections.abc import Mapping
 from collections.abc import Sequence
+import contextlib
 from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterDescriptor
 from rcl_interfaces.msg import SetParametersResult
+from rcl_interfaces.srv import DescribeParameters
+from rcl_interfaces.srv import GetParameters
+from rcl_interfaces.srv import GetParameterTypes
+from rcl_interfaces.srv import ListParameters
 from rcl_interfaces.srv import SetParameters
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.callback_groups import CallbackGroup
+from rclpy.exceptions import ParameterNotDeclaredException
+from rclpy.exceptions import ParameterUninitializedException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.parameter_service import ParameterService
 from rclpy.qos import qos_profile_parameters
 
 from sdf_pose_bridge.names import hint_from_names
@@ -141,18 +147,55 @@ def add_parameter_services(
         response.result = await result(request.parameters)
         return response
 
-    own = [
+    services = [
+        (SetParameters, 'set_parameters', answer, group),
+        (SetParametersAtomically, 'set_parameters_atomically', answer_atomically, group),
+        *((type_, name, read, None) for type_, name, read in _reading_services(node))]
+    for service_type, name, callback, callback_group in services:
         node.create_service(
             service_type, f'~/{name}', callback, qos_profile=qos_profile_parameters,
-            callback_group=group)
-        for service_type, name, callback in (
-            (SetParameters, 'set_parameters', answer),
-            (SetParametersAtomically, 'set_parameters_atomically', answer_atomically))]
-    # It takes no callbacks for single services. While there are two of a kind, no call is lost.
-    ParameterService(node)
-    for service in list(node.services):
-        if service.srv_type in (SetParameters, SetParametersAtomically) and service not in own:
-            node.destroy_service(service)
+            callback_group=callback_group)
+
+
+def _reading_services(node: Node) -> list[tuple[type, str, Callable[[Any, Any], Any]]]:
+    """Return types, names and callbacks of the services that show parameters, as rclpy's do."""
+    # Of names that are not declared, or have no value, these services return nothing at all.
+    def describe(
+        request: DescribeParameters.Request, response: DescribeParameters.Response,
+    ) -> DescribeParameters.Response:
+        with contextlib.suppress(ParameterNotDeclaredException):
+            response.descriptors = node.describe_parameters(request.names)
+        return response
+
+    def values(
+        request: GetParameters.Request, response: GetParameters.Response,
+    ) -> GetParameters.Response:
+        with contextlib.suppress(ParameterNotDeclaredException, ParameterUninitializedException):
+            response.values = [
+                parameter.get_parameter_value()
+                for parameter in node.get_parameters(request.names)]
+        return response
+
+    def types(
+        request: GetParameterTypes.Request, response: GetParameterTypes.Response,
+    ) -> GetParameterTypes.Response:
+        with contextlib.suppress(ParameterNotDeclaredException):
+            response.types = [
+                Parameter.Type(type_).value for type_ in node.get_parameter_types(request.names)]
+        return response
+
+    def names(
+        request: ListParameters.Request, response: ListParameters.Response,
+    ) -> ListParameters.Response:
+        with contextlib.suppress(TypeError, ValueError):
+            response.result = node.list_parameters(request.prefixes, request.depth)
+        return response
+
+    return [
+        (DescribeParameters, 'describe_parameters', describe),
+        (GetParameters, 'get_parameters', values),
+        (GetParameterTypes, 'get_parameter_types', types),
+        (ListParameters, 'list_parameters', names)]
 
 
 def _parameters_from_messages(
@@ -185,9 +228,22 @@ def _parameters_from_messages(
 
 def _given_parameters(node: Node) -> Mapping[str, Parameter]:
     """Return what was given when the node was started, by names."""
-    # rclpy shows this in no public way but to declare all of it, with any type and unexplained.
-    given: Mapping[str, Parameter] = node._parameter_overrides  # noqa: SLF001
-    return given
+    given: Mapping[str, Parameter] | None = getattr(node, '_parameter_overrides', None)
+    return _given_declared_parameters(node) if given is None else given
+
+
+def _given_declared_parameters(node: Node) -> Mapping[str, Parameter]:
+    """
+    Return values of those parameters that are declared here, in the public way of rclpy.
+
+    It takes longer, and does not show parameters that are not declared here.
+    """
+    values = {}
+    for name, declaration in DECLARATIONS.items():
+        values[name] = node.declare_parameter(
+            name, declaration.default, ParameterDescriptor(dynamic_typing=True))
+        node.undeclare_parameter(name)
+    return values
 
 
 def _parameters_at_start(given: Mapping[str, Parameter]) -> list[Parameter]:

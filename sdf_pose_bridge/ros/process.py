@@ -23,7 +23,6 @@ import traceback
 import rclpy
 from rclpy.exceptions import InvalidParameterTypeException
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Task
@@ -170,8 +169,8 @@ def _log_warnings(node: Node, warnings: Sequence[object]) -> None:
 
 
 def _sentence_from_ros_error(error: RuntimeError) -> str:
-    # The class has no public name.
-    if isinstance(error, rclpy_implementation.UnknownROSArgsError):
+    # The class cannot be imported by a public name.
+    if type(error).__name__ == 'UnknownROSArgsError':
         return f'unknown arguments after --ros-args: {error}'
     # The rest of the message names lines of the source of ROS.
     return str(error).partition(', at /')[0]
