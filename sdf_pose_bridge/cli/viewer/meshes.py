@@ -9,13 +9,8 @@ Readers of mesh formats trust their files.
 from __future__ import annotations
 
 import io
-import multiprocessing
-from multiprocessing.connection import Connection
-from multiprocessing.context import SpawnProcess
 import os
 from pathlib import Path
-import resource
-import signal
 from typing import Any
 from typing import NamedTuple
 
@@ -24,6 +19,10 @@ import trimesh
 from trimesh.resolvers import FilePathResolver
 
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.limited_process import Allowance
+from sdf_pose_bridge.limited_process import LimitedProcess
+from sdf_pose_bridge.limited_process import LimitExceededError
+from sdf_pose_bridge.limited_process import ProcessEndedError
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
@@ -37,10 +36,8 @@ MOST_BYTES = 100_000_000
 """Size of a mesh with the files that it names."""
 MOST_TRIANGLES = 500_000
 """How many triangles a mesh may have."""
-MOST_SECONDS = 20.0
-"""How long it may take to read a mesh."""
-MOST_MEMORY_BYTES = 2_000_000_000
-"""Address space of the process."""
+ALLOWANCE = Allowance(memory_bytes=2_000_000_000, processor_s=20.0, wall_s=20.0)
+"""What to read a mesh may take."""
 FORMATS = ('.dae', '.glb', '.gltf', '.obj', '.stl')
 """What is read. Archives are not, as they can unpack to any size."""
 
@@ -68,13 +65,6 @@ class Mesh(NamedTuple):
     """Why these are not its surfaces; empty if they are."""
 
 
-class _ReadingProcess(NamedTuple):
-    """A process that reads meshes, and the end of its pipe."""
-
-    process: SpawnProcess
-    pipe: Connection
-
-
 class MeshReader:
     """
     Reads meshes, and remembers them until their files change.
@@ -84,7 +74,7 @@ class MeshReader:
 
     def __init__(self, finder: ResourceFinder) -> None:
         self._finder = finder
-        self._reading: _ReadingProcess | None = None
+        self._process = LimitedProcess(ALLOWANCE)
         self._meshes: dict[object, Mesh] = {}
 
     def mesh(self, shape: Shape, file: str, size_m: float) -> Mesh:
@@ -106,10 +96,7 @@ class MeshReader:
 
     def close(self) -> None:
         """End the process."""
-        if self._reading is not None:
-            self._reading.process.kill()
-            self._reading.process.join()
-            self._reading = None
+        self._process.close()
 
     def _mesh_of_file(self, shape: Shape, file: str) -> Mesh:
         path = self._finder.file_from_uri(shape.mesh_uri, file)
@@ -122,31 +109,12 @@ class MeshReader:
         return self._meshes[key]
 
     def _read(self, path: str, submesh: str) -> Mesh:
-        if self._reading is None or not self._reading.process.is_alive():
-            self._reading = _started_process()
-        pipe = self._reading.pipe
         try:
-            pipe.send((path, submesh))
-            if pipe.poll(MOST_SECONDS):
-                mesh: Mesh = pipe.recv()
-                return mesh
-            reason = f'to read it takes more than {MOST_SECONDS:g} s'
-        except (EOFError, OSError):
-            reason = 'to read it ends the process that does so'
-        self.close()
-        return Mesh(reason=reason)
-
-
-def _started_process() -> _ReadingProcess:
-    # Each thread of this library would take its share of the memory.
-    os.environ['OPENBLAS_NUM_THREADS'] = '1'
-    context = multiprocessing.get_context('spawn')
-    pipe, other_end = context.Pipe()
-    process = context.Process(target=_read_meshes, args=(other_end,), daemon=True)
-    process.start()
-    # That the process ends is seen only where nobody else holds this end open.
-    other_end.close()
-    return _ReadingProcess(process, pipe)
+            return self._process.call(mesh_from_file, path, submesh)
+        except LimitExceededError as error:
+            return Mesh(reason=f'it needs {error} to be read')
+        except ProcessEndedError as error:
+            return Mesh(reason=str(error))
 
 
 def _mesh_of_shape(shape: Shape, largest_m: float) -> Mesh:
@@ -156,16 +124,6 @@ def _mesh_of_shape(shape: Shape, largest_m: float) -> Mesh:
         # Planes are often much larger than what stands on them.
         shape = shape._replace(sizes_m=tuple(min(size_m, largest_m) for size_m in shape.sizes_m))
     return Mesh((MeshPart(*shape.surface),))
-
-
-def _read_meshes(pipe: Connection) -> None:
-    """Read what the other end of a pipe asks for, with little memory."""
-    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY_BYTES, MOST_MEMORY_BYTES))
-    # Ctrl-C is for the process that started this one, and what libraries print for nobody.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-    while True:
-        pipe.send(mesh_from_file(*pipe.recv()))
 
 
 def mesh_from_file(path: str, submesh: str) -> Mesh:
@@ -183,7 +141,7 @@ def mesh_from_file(path: str, submesh: str) -> Mesh:
     except SdfError as error:
         return Mesh(reason=error.message)
     except MemoryError:
-        return Mesh(reason=f'it needs more than {MOST_MEMORY_BYTES} bytes to be read')
+        raise
     except Exception as error:  # noqa: BLE001  # its readers raise errors of all classes
         return Mesh(reason=f'it cannot be shown: {printable(shortened(str(error)))}')
 

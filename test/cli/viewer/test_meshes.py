@@ -4,7 +4,7 @@
 
 import os
 import signal
-from types import SimpleNamespace
+import threading
 
 import mesh_texts
 import numpy as np
@@ -15,11 +15,10 @@ pytest.importorskip('collada', reason='needs pycollada')
 from sdf_pose_bridge.cli.viewer import meshes
 from sdf_pose_bridge.cli.viewer.meshes import mesh_from_file
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
+from sdf_pose_bridge.limited_process import LimitedProcess
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 from sdf_pose_bridge.sdformat.shapes import Shape
-
-DEADLINE_S = 120.0
 
 
 @pytest.fixture
@@ -164,40 +163,25 @@ def test_mesh_that_cannot_be_read(named):
 
 
 def test_small_file_that_needs_much_memory(named):
-    assert 'bytes' in named('a.gltf', mesh_texts.gltf(
+    assert 'MB of memory to be read' in named('a.gltf', mesh_texts.gltf(
         mesh_texts.IN_FILE, count=10**9, with_view=False)).reason
     assert not named('b.stl', mesh_texts.STL.format(y=1)).reason
 
 
-def test_mesh_that_takes_too_long(named, monkeypatch):
-    monkeypatch.setattr(meshes, 'MOST_SECONDS', 0.0)
-    assert 'takes more than' in named('a.stl', mesh_texts.STL.format(y=1)).reason
-    monkeypatch.undo()
-    assert not named('b.stl', mesh_texts.STL.format(y=1)).reason
+def test_mesh_that_takes_too_long(named, reader, monkeypatch):
+    # To start the process takes longer than to look how long it takes.
+    monkeypatch.setattr(reader, '_process', LimitedProcess(meshes.ALLOWANCE._replace(wall_s=0.0)))
+    assert named('a.stl', mesh_texts.STL.format(y=1)).reason == (
+        'the mesh "a.stl": it needs more than 0 s to be read')
 
 
-def test_process_that_ends_while_it_reads(named, reader, monkeypatch):
-    assert not named('a.stl', mesh_texts.STL.format(y=1)).reason
-    process, pipe = reader._reading
+def test_process_that_ends_while_it_reads(named, reader):
+    pid = reader._process.call(os.getpid)
     # It has no time to answer.
-    os.kill(process.pid, signal.SIGSTOP)
-
-    def send(asked):
-        pipe.send(asked)
-        process.kill()
-
-    reader._reading = reader._reading._replace(
-        pipe=SimpleNamespace(send=send, poll=pipe.poll, recv=pipe.recv))
-    monkeypatch.setattr(meshes, 'MOST_SECONDS', DEADLINE_S)
-    reason = 'the mesh "b.stl": to read it ends the process that does so'
-    assert named('b.stl', mesh_texts.STL.format(y=1)).reason == reason
-    assert not named('c.stl', mesh_texts.STL.format(y=1)).reason
-
-
-def test_process_that_has_ended_before(named, reader):
-    assert not named('a.stl', mesh_texts.STL.format(y=1)).reason
-    reader._reading.process.kill()
-    reader._reading.process.join()
+    os.kill(pid, signal.SIGSTOP)
+    threading.Timer(0.2, os.kill, (pid, signal.SIGKILL)).start()
+    assert named('a.stl', mesh_texts.STL.format(y=1)).reason == (
+        'the mesh "a.stl": the process that reads files has ended by signal 9')
     assert not named('b.stl', mesh_texts.STL.format(y=1)).reason
 
 
