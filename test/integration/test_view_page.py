@@ -7,6 +7,9 @@ import os
 import re
 import subprocess
 from types import SimpleNamespace
+import urllib.error
+from urllib.parse import urlsplit
+import urllib.request
 
 from browser import browser
 from browser import DEADLINE_S
@@ -166,19 +169,38 @@ def test_page_asks_for_nothing_elsewhere(page, shown):
     assert page.errors == []
 
 
-@pytest.mark.parametrize(('origin', 'is_accepted'), [
-    ('http://127.0.0.1:9', True), ('http://example.org', False), ('null', False)])
-def test_pages_of_other_servers_are_refused(shown, origin, is_accepted):
+@pytest.mark.parametrize('origin', [None, 'http://example.org', 'null', 'the same port'])
+@pytest.mark.parametrize('has_secret', [True, False])
+def test_nobody_else_may_connect(shown, origin, has_secret):
     viser = pytest.importorskip('viser')
     client = pytest.importorskip('websockets.sync.client')
-    with client.connect(
-            shown.address.replace('http', 'ws'), origin=origin, max_size=None,
-            subprotocols=[f'viser-v{viser.__version__}']) as socket:
-        if is_accepted:
-            assert socket.recv(timeout=DEADLINE_S)
-        else:
-            with pytest.raises(Exception, match='1008'):
-                socket.recv(timeout=DEADLINE_S)
+    exceptions = pytest.importorskip('websockets.exceptions')
+    address = urlsplit(shown.address)
+    path = address.path if has_secret else '/'
+    origin = f'{address.scheme}://{address.netloc}' if origin == 'the same port' else origin
+
+    def first_message():
+        with client.connect(
+                f'ws://{address.netloc}{path}', origin=origin, max_size=None,
+                subprotocols=[f'viser-v{viser.__version__}']) as socket:
+            return socket.recv(timeout=DEADLINE_S)
+
+    if has_secret and origin not in ('http://example.org', 'null'):
+        assert first_message()
+    else:
+        with pytest.raises(exceptions.InvalidStatus, match='HTTP 403'):
+            first_message()
+
+
+def test_nothing_is_served_without_the_secret(shown):
+    address = urlsplit(shown.address)
+    with pytest.raises(urllib.error.HTTPError, match='403'):
+        urllib.request.urlopen(f'{address.scheme}://{address.netloc}/', timeout=DEADLINE_S)
+
+
+def test_the_file_that_would_be_written_is_shown(page, shown):
+    select(page, HOSTILE)
+    page.wait_for(f"document.body.innerText.includes('in the file {shown.file}')")
 
 
 def test_written_page_and_picture(shown, tmp_path):

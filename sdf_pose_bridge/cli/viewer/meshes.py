@@ -38,6 +38,8 @@ MOST_TRIANGLES = 500_000
 """How many triangles a mesh may have."""
 ALLOWANCE = Allowance(memory_bytes=2_000_000_000, processor_s=20.0, wall_s=20.0)
 """What to read a mesh may take."""
+MOST_BYTES_KEPT = 300_000_000
+"""How much of memory the meshes take together that are kept."""
 FORMATS = ('.dae', '.glb', '.gltf', '.obj', '.stl')
 """What is read. Archives are not, as they can unpack to any size."""
 
@@ -65,9 +67,22 @@ class Mesh(NamedTuple):
     """Why these are not its surfaces; empty if they are."""
 
 
+class _KeptMesh(NamedTuple):
+    """A mesh that may be drawn again."""
+
+    mesh: Mesh
+    version: tuple[int, int]
+    """Of its file: when it was changed, and its size."""
+
+    @property
+    def size(self) -> int:
+        """Its bytes, with some for what else is kept of it."""
+        return 1000 + sum(int(part.points.nbytes + part.faces.nbytes) for part in self.mesh.parts)
+
+
 class MeshReader:
     """
-    Reads meshes, and remembers them until their files change.
+    Reads meshes, and remembers those used last until their files change.
 
     :param finder: finds their files.
     """
@@ -75,7 +90,9 @@ class MeshReader:
     def __init__(self, finder: ResourceFinder) -> None:
         self._finder = finder
         self._process = LimitedProcess(ALLOWANCE)
-        self._meshes: dict[object, Mesh] = {}
+        # The one that was used last is the last.
+        self._kept: dict[tuple[str, str], _KeptMesh] = {}
+        self._kept_bytes = 0
 
     def mesh(self, shape: Shape, file: str, size_m: float) -> Mesh:
         """
@@ -103,10 +120,17 @@ class MeshReader:
         if path is None:
             return Mesh(reason='it is not found')
         status = os.stat(path)  # noqa: PTH116
-        key = (path, shape.submesh, status.st_mtime_ns, status.st_size)
-        if key not in self._meshes:
-            self._meshes[key] = self._read(path, shape.submesh)
-        return self._meshes[key]
+        version = status.st_mtime_ns, status.st_size
+        kept = self._kept.pop((path, shape.submesh), None)
+        if kept is not None:
+            self._kept_bytes -= kept.size
+        if kept is None or kept.version != version:
+            kept = _KeptMesh(self._read(path, shape.submesh), version)
+        while self._kept and self._kept_bytes + kept.size > MOST_BYTES_KEPT:
+            self._kept_bytes -= self._kept.pop(next(iter(self._kept))).size
+        self._kept[path, shape.submesh] = kept
+        self._kept_bytes += kept.size
+        return kept.mesh
 
     def _read(self, path: str, submesh: str) -> Mesh:
         try:

@@ -10,17 +10,13 @@ from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
 from itertools import islice
-import logging
 import math
+import os
 from queue import Empty
 from queue import SimpleQueue
 from typing import Any
-from urllib.parse import urlsplit
 
 import numpy as np
-import rich
-import viser
-from viser.infra import WebsockClientConnection
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
 from sdf_pose_bridge.cli.printing import Unit
@@ -31,10 +27,12 @@ from sdf_pose_bridge.cli.viewer.frame_texts import escaped
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_frame
 from sdf_pose_bridge.cli.viewer.frame_texts import rows_of_tree
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
+from sdf_pose_bridge.cli.viewer.server import server_for_its_owner
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
@@ -51,7 +49,6 @@ from sdf_pose_bridge.tf.tree import TfOptions
 MOST_ROWS = 300
 """How many rows of the tree of frames are in the page at once; a search finds the others."""
 
-_ADDRESS = '127.0.0.1'
 _LARGEST_RANGE = 1000.0
 """A joint with a wider range counts as one without limits, which the page moves by half a turn or
 half a metre to either side."""
@@ -61,34 +58,8 @@ _ROWS_STYLE = ('<style>.rows{max-height:40vh;overflow:auto;margin:0 1em;font-siz
                '.rows label{display:block;cursor:pointer;white-space:pre}'
                '.rows .selected{font-weight:bold}div:has(>.rows)~*{display:none}</style>')
 _HOW_TO_SELECT = '<div style="margin:0 1em;font-size:0.8em">Click one above or in the scene.</div>'
+_FILE_STYLE = 'margin:0 1em;font-size:0.8em;overflow-wrap:anywhere'
 _ERROR_STYLE = 'color:#c92a2a;white-space:pre-wrap;overflow-wrap:anywhere;margin:0 1em;'
-
-
-def server_for_this_machine(port: int) -> viser.ViserServer:
-    """
-    Start a server that other machines, and the pages of other servers, cannot reach.
-
-    :param port: its port, or the next one that is free; 0 for any.
-    """
-    rich.get_console().quiet = True
-    # Else each connection that a browser opens in advance, and closes, is an error with a trace.
-    logging.getLogger('websockets').setLevel(logging.CRITICAL)
-    server = viser.ViserServer(_ADDRESS, port, verbose=False)
-    sockets = server._websock_server  # noqa: SLF001  # viser itself accepts every page
-
-    async def refuse_other_pages(connection: WebsockClientConnection) -> None:
-        socket = sockets._live_connections[connection.client_id]  # noqa: SLF001
-        origin = None if socket.request is None else socket.request.headers.get('Origin')
-        if origin is not None and urlsplit(origin).hostname not in (_ADDRESS, 'localhost'):
-            await socket.close(1008, 'only pages of this server may connect')
-
-    sockets.on_client_connect(refuse_other_pages)
-    sockets.disconnect_all_clients()
-    server.gui.configure_theme(show_logo=False, show_share_button=False)
-    # The picture of surroundings that viser lights a scene with makes every color pale.
-    server.scene.configure_environment_map(None)
-    server.scene.configure_default_lights(cast_shadow=False)
-    return server
 
 
 class Page:
@@ -105,9 +76,9 @@ class Page:
 
     def __init__(
         self, port: int, options: TfOptions, units: Units, finder: ResourceFinder,
-        set_pose: Callable[..., object] | None = None,
+        set_pose: Callable[..., PoseChange] | None = None,
     ) -> None:
-        self._server = server_for_this_machine(port)
+        self._server, self.address = server_for_its_owner(port)
         self._options, self._units, self._set_pose = options, units, set_pose
         self._meshes = MeshReader(finder)
         self._actions: SimpleQueue[Callable[[], object]] = SimpleQueue()
@@ -122,11 +93,6 @@ class Page:
         self._server.on_client_connect(
             lambda client: self._when(
                 client.camera.on_update, partial(self._drawing.look_from, client.camera)))
-
-    @property
-    def address(self) -> str:
-        """The address of the page on this machine."""
-        return f'http://{_ADDRESS}:{self._server.get_port()}'
 
     def html(self, title: str) -> str:
         """Return the scene, without controls, as a page that needs no network."""
@@ -342,10 +308,10 @@ class Page:
         pose = Pose(*self._tree.poses[frame].tolist())
         self._describe(frame, pose)
         if self._set_pose is not None and self._tree.elements[frame] >= 0:
-            errors = self._errors_of_setting(pose, dry_run=True)
-            self._description.content += _html_of_lines('errors_of_setting', errors)
+            change = self._change(pose, dry_run=True)
+            self._description.content += _html_of_change(change)
             gizmo.position, gizmo.wxyz = pose[:3], (pose.qw, *pose[3:6])
-            gizmo.visible = not errors
+            gizmo.visible = isinstance(change, PoseChange)
 
     def _drag(self) -> None:
         gizmo = self._drawing.gizmo
@@ -366,20 +332,28 @@ class Page:
 
     def _write_pose(self) -> None:
         if self._dragged is not None:
-            self.show_errors(self._errors_of_setting(self._dragged, dry_run=False))
+            change = self._change(self._dragged, dry_run=False)
+            self.show_errors([] if isinstance(change, PoseChange) else change)
 
-    def _errors_of_setting(self, pose: Pose, *, dry_run: bool) -> list[str]:
-        """Put the selected frame there, in the file; return why this is not possible."""
+    def _change(self, pose: Pose, *, dry_run: bool) -> PoseChange | list[str]:
+        """Put the selected frame there, in the file; return why if this is not possible."""
         def measured(scene: Scene, element: int) -> Pose:
             return scene_at_positions(scene, self._positions).pose_of(element)
 
         assert self._set_pose is not None
         element = int(self._tree.elements[self._tree.frame_ids.index(self._selected)])
         try:
-            self._set_pose(self._loaded, element, pose, measured, dry_run=dry_run)
+            return self._set_pose(self._loaded, element, pose, measured, dry_run=dry_run)
         except SdfError as error:
             return list(map(str, error.errors))
-        return []
+
+
+def _html_of_change(change: PoseChange | list[str]) -> str:
+    """Tell which file a frame can be written to, or why it cannot."""
+    if not isinstance(change, PoseChange):
+        return _html_of_lines('errors_of_setting', change)
+    path = os.path.realpath(change.file.path)
+    return f'<div class="file" style="{_FILE_STYLE}">in the file {escaped(path)}</div>'
 
 
 def _html_of_lines(name: str, lines: Iterable[str]) -> str:

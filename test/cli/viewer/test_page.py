@@ -9,6 +9,8 @@ from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.viewer.page import Page
 from sdf_pose_bridge.errors import ElementInvalidError
+from sdf_pose_bridge.scene.pose_setting import PoseChange
+from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf.tree import TfOptions
 
@@ -20,6 +22,8 @@ def put(scene, element, pose, measured, *, dry_run):
     """Refuse to place one of the frames, as the file cannot say some poses."""
     if scene.names[element].endswith('fixed'):
         raise ElementInvalidError('no', scene.place(element))
+    change = FileChange(scene.path, b'', 'utf-8', 0, 0, b'')
+    return PoseChange(change, 1, scene)
 
 
 @pytest.fixture

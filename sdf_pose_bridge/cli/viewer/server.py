@@ -1,0 +1,102 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The server of the page, which only who knows the address of the page can use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+import contextlib
+from dataclasses import replace
+from http import HTTPStatus
+import logging
+import secrets
+from typing import Any
+from typing import NamedTuple
+from urllib.parse import urlsplit
+
+import rich
+import viser
+from websockets.asyncio import server as websockets_server
+from websockets.asyncio.server import ServerConnection
+from websockets.http11 import Request
+from websockets.http11 import Response
+
+_ADDRESS = '127.0.0.1'
+_NAMES = (_ADDRESS, 'localhost')
+
+
+class PageServer(NamedTuple):
+    """A server, and the address of its page."""
+
+    viser: viser.ViserServer
+    address: str
+    """It has a secret in its path, without which nothing is answered."""
+
+
+def server_for_its_owner(port: int) -> PageServer:
+    """
+    Start a server that other machines, other users and the pages of other servers cannot use.
+
+    :param port: its port, or the next one that is free; 0 for any.
+    """
+    rich.get_console().quiet = True
+    # Else each connection that a browser opens in advance, and closes, is an error with a trace.
+    logging.getLogger('websockets').setLevel(logging.CRITICAL)
+    secret = secrets.token_urlsafe(16)
+    with _requests_need(secret):
+        server = viser.ViserServer(_ADDRESS, port, verbose=False)
+    server.gui.configure_theme(show_logo=False, show_share_button=False)
+    # The picture of surroundings that viser lights a scene with makes every color pale.
+    server.scene.configure_environment_map(None)
+    server.scene.configure_default_lights(cast_shadow=False)
+    return PageServer(server, f'http://{_ADDRESS}:{server.get_port()}/{secret}/')
+
+
+def reason_to_refuse(request: Request, secret: str) -> str:
+    """
+    Judge a request for a file, or for a connection.
+
+    :param secret: what its path begins with.
+    :return: why it is refused; empty if it is not.
+    """
+    given = urlsplit(request.path).path.split('/')[1:2]
+    if not given or not secrets.compare_digest(given[0].encode(), secret.encode()):
+        return 'this page is shown only at the address that sdf_pose view has printed'
+    host, origin = request.headers.get('Host'), request.headers.get('Origin')
+    if urlsplit(f'//{host}').hostname not in _NAMES or origin not in (None, f'http://{host}'):
+        return 'only the page of this server may connect'
+    return ''
+
+
+@contextlib.contextmanager
+def _requests_need(secret: str) -> Iterator[None]:
+    """
+    Let a server that is started meanwhile answer only to requests with a secret in their path.
+
+    :raises RuntimeError: if no server was started in the way that is known.
+    """
+    # viser has no place for this, so it is put where viser starts its server. To judge connections
+    # when viser has accepted them would be too late for what is asked for before.
+    serve = websockets_server.serve
+    guarded = []
+
+    def guarded_serve(*arguments: Any, process_request: Any, **options: Any) -> Any:
+        def process(connection: ServerConnection, request: Request) -> Response | None:
+            reason = reason_to_refuse(request, secret)
+            if reason:
+                return connection.respond(HTTPStatus.FORBIDDEN, f'{reason}\n')
+            path = request.path.removeprefix(f'/{secret}') or '/'
+            answer: Response | None = process_request(connection, replace(request, path=path))
+            return answer
+
+        guarded.append(process)
+        return serve(*arguments, process_request=process, **options)
+
+    websockets_server.serve = guarded_serve  # type: ignore[assignment,misc]
+    try:
+        yield
+    finally:
+        websockets_server.serve = serve  # type: ignore[misc]
+    if not guarded:
+        msg = 'this release of viser starts its server in a way that is not known'
+        raise RuntimeError(msg)

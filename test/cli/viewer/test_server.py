@@ -1,0 +1,58 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Which requests the server of the page answers; integration/test_view_page.py asks it."""
+
+import pytest
+
+pytest.importorskip('viser', reason='needs viser')
+from websockets.asyncio import server as websockets_server
+from websockets.datastructures import Headers
+from websockets.http11 import Request
+
+from sdf_pose_bridge.cli.viewer.server import reason_to_refuse
+from sdf_pose_bridge.cli.viewer.server import server_for_its_owner
+
+HERE = 'http://127.0.0.1:8080'
+
+
+@pytest.mark.parametrize('path', ['/secret', '/secret/', '/secret/?a=/b', '/secret/index.html'])
+@pytest.mark.parametrize(('origin', 'host'), [
+    (None, '127.0.0.1:8080'), (HERE, '127.0.0.1:8080'),
+    # As by "ssh -L 9000:127.0.0.1:8080".
+    ('http://localhost:9000', 'localhost:9000')])
+def test_the_page_is_answered(path, origin, host):
+    assert reason_to_refuse(request(path, origin, host), 'secret') == ''
+
+
+@pytest.mark.parametrize('path', ['', '/', '//', '/secre', '/secrets/', '/x/secret', '/?secret',
+                                  '//secret/', '/%73ecret/', '/é/'])
+def test_without_the_secret_nothing_is_answered(path):
+    assert 'printed' in reason_to_refuse(request(path, HERE, '127.0.0.1:8080'), 'secret')
+
+
+@pytest.mark.parametrize(('origin', 'host'), [
+    ('http://127.0.0.1:9999', '127.0.0.1:8080'), ('http://localhost:8080', '127.0.0.1:8080'),
+    ('https://127.0.0.1:8080', '127.0.0.1:8080'), ('null', '127.0.0.1:8080'), ('', '127.0.0.1'),
+    # A name that its owner lets stand for this machine.
+    ('http://example.org:8080', 'example.org:8080'), (None, 'example.org'), (None, None)])
+def test_other_pages_are_refused(origin, host):
+    assert 'only the page' in reason_to_refuse(request('/secret/', origin, host), 'secret')
+
+
+def request(path, origin, host):
+    headers = Headers()
+    for name, value in (('Origin', origin), ('Host', host)):
+        if value is not None:
+            headers[name] = value
+    return Request(path, headers)
+
+
+def test_each_server_has_its_own_secret():
+    serve = websockets_server.serve
+    servers = [server_for_its_owner(0) for _ in range(2)]
+    assert websockets_server.serve is serve
+    secrets = {server.address.split('/')[3] for server in servers}
+    for server in servers:
+        server.viser.stop()
+    assert len(secrets) == 2
+    assert all(len(secret) > 20 for secret in secrets)
