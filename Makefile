@@ -5,9 +5,12 @@ SHELL := bash
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test test_long run lint bench differential fuzz growth soak licenses audit docs pictures clean
 
-# The distribution of ROS 2, also for the scripts in underlay.
+# The distribution of ROS 2, versions of other packages, and a folder with another rclpy, also for
+# the scripts in underlay.
 ROS ?= jazzy
-export ROS
+VERSIONS ?=
+RCLPY ?=
+export ROS VERSIONS RCLPY
 
 # Another ROS in the caller's shell would be found before the one that is meant.
 ifneq ($(filter-out $(ROS),$(ROS_DISTRO)),)
@@ -43,6 +46,9 @@ help:
 	@echo ''
 	@echo 'ROS 2 Jazzy is used from /opt/ros/jazzy, or comes from PyPI where that does not exist.'
 	@echo 'ROS=kilted uses ROS 2 Kilted in the same way, for example: make demo ROS=kilted'
+	@echo 'ROS=lyrical uses ROS 2 Lyrical from /opt/ros/lyrical; it is not on PyPI.'
+	@echo 'VERSIONS=noble uses numpy, lxml, pytest and more as Ubuntu 24.04 has them, with Python 3.12.'
+	@echo 'RCLPY=<folder> uses the rclpy in that folder, for example: make test ROS=kilted RCLPY=~/rclpy_10'
 	@echo 'PYTHON=python3.12 chooses the Python that the environment is made with.'
 
 setup:

@@ -3,10 +3,14 @@
 """Fixtures of tests with ROS, settings of property tests, and the number of parallel processes."""
 
 import contextlib
+from importlib.metadata import version
+import importlib.util
 import os
+from pathlib import Path
 
 from hypothesis import HealthCheck
 from hypothesis import settings
+from lxml import etree
 import pytest
 from ros_domain import claimed_domain
 
@@ -20,6 +24,14 @@ settings.load_profile('untimed')
 def pytest_xdist_auto_num_workers():
     """Return the number of processes for ``-n auto``: most tests wait for other processes."""
     return min(2 * len(os.sched_getaffinity(0)), 16)
+
+
+def pytest_report_header():
+    """Return lines that say what the tests run with."""
+    found = importlib.util.find_spec('rclpy')
+    names = [f'{name} {version(name)}' for name in ('numpy', 'lxml')]
+    return [f'versions: {", ".join(names)}, libxml2 {".".join(map(str, etree.LIBXML_VERSION))}',
+            f'rclpy: {Path(found.origin).parent if found else "none"}']
 
 
 @contextlib.contextmanager

@@ -16,7 +16,8 @@ ROOT = Path(__file__).resolve().parents[1]
 TF_MESSAGE_HASH = 'RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087'
 SHELL_TOOLS = ('bash', 'dirname', 'env', 'head')
 DISTRO = os.environ.get('ROS_DISTRO', 'jazzy')
-SUFFIX = '' if DISTRO == 'jazzy' else f'-{DISTRO}'
+SUFFIX = '-'.join(['', *(name for name in (DISTRO, os.environ.get('VERSIONS')) if name)])
+SUFFIX = SUFFIX.removeprefix('-jazzy')
 """Of the folders of the environment that runs these tests."""
 
 # The interpreter beneath this virtual environment, as the script would be given it.
@@ -166,7 +167,8 @@ def test_lock_files_name_no_index():
 
 
 @pytest.mark.parametrize('name', [
-    'build', 'requirements', 'requirements_kilted', 'tools', 'unresolved', 'unresolved_kilted'])
+    'build', 'requirements', 'requirements_kilted', 'requirements_noble', 'tools', 'unresolved',
+    'unresolved_kilted'])
 def test_every_locked_package_is_pinned_with_hashes(name):
     text = (ROOT / f'underlay/{name}.txt').read_text().replace('\\\n', ' ')
     packages = [line for line in text.splitlines() if line and not line.startswith('#')]
@@ -224,7 +226,64 @@ def test_setup_bash_refuses_a_ros_that_is_not_supported(checkout):
 
 
 def test_a_ros_that_is_not_supported_is_refused(checkout):
-    assert_refused_with(make_underlay(checkout, ROS='humble'), "'humble'", 'jazzy and kilted')
+    assert_refused_with(
+        make_underlay(checkout, ROS='humble'), "'humble'", 'jazzy, kilted and lyrical')
+
+
+def test_lyrical_is_not_installed_from_pypi(checkout):
+    assert_refused_with(
+        make_underlay(checkout, ROS='lyrical'), 'ROS 2 Lyrical is not on PyPI', '/opt/ros/lyrical')
+
+
+@pytest.mark.parametrize(('version', 'is_refused'), [
+    ('3.11.9', True), ('3.12.3', False), ('3.14.0', False), ('3.15.0', True)])
+def test_lyrical_has_its_own_range_of_pythons(checkout, tools, tmp_path, version, is_refused):
+    (tmp_path / 'setup.bash').touch()
+    python = command(tools, 'python', f'[[ $* == *-S* ]] && printf {version}')
+    result = make_underlay(
+        checkout, ROS='lyrical', PYTHON=str(python), SDF_POSE_BRIDGE_ROS_PREFIX=str(tmp_path))
+    assert ('ROS 2 Lyrical needs Python 3.12 to 3.14' in result.stderr) is is_refused
+
+
+@pytest.mark.parametrize(('ros', 'versions'), [
+    ('jazzy', 'jammy'), ('kilted', 'noble'), ('lyrical', 'noble')])
+def test_versions_that_are_not_locked_are_refused(checkout, ros, versions):
+    assert_refused_with(
+        make_underlay(checkout, ROS=ros, VERSIONS=versions), f"'{versions}'", 'only noble')
+
+
+def test_versions_of_ubuntu_are_for_its_python(checkout, tools):
+    python = command(tools, 'python', 'printf 3.11.9')
+    assert_refused_with(
+        make_underlay(checkout, VERSIONS='noble', PYTHON=str(python)),
+        'Python 3.11.9 cannot be used: VERSIONS=noble needs Python 3.12;')
+
+
+def test_versions_of_ubuntu_come_with_ros_from_pypi(checkout, tools, tmp_path):
+    (tmp_path / 'setup.bash').touch()
+    # Prints what make_underlay.py would be called with.
+    python = command(tools, 'python', '[[ $* == *-S* ]] && printf 3.12.3 || echo "$@"')
+    result = make_underlay(
+        checkout, VERSIONS='noble', PYTHON=str(python), SDF_POSE_BRIDGE_ROS_PREFIX=str(tmp_path))
+    assert f'--ros-prefix {checkout}/.underlay-noble' in result.stdout
+
+
+def test_setup_bash_puts_a_given_rclpy_before_the_one_of_ros(built, tmp_path):
+    (tmp_path / 'rclpy').mkdir()
+    (tmp_path / 'rclpy/__init__.py').touch()
+    result = shell(
+        f'{built}; {built}; python -c "import rclpy; print(rclpy.__file__)"; echo "$PYTHONPATH"',
+        RCLPY=str(tmp_path))
+    file, paths = result.stdout.splitlines()
+    assert file == str(tmp_path / 'rclpy/__init__.py')
+    assert paths.split(':').count(str(tmp_path)) == 1
+    assert '' not in paths.split(':')
+
+
+def test_setup_bash_refuses_a_folder_without_rclpy(built, tmp_path):
+    result = shell(built, RCLPY=str(tmp_path))
+    assert (result.returncode, result.stderr.count('\n')) == (1, 1)
+    assert 'no rclpy' in result.stderr
 
 
 def test_tf_message_on_the_wire_has_the_type_hash_of_jazzy():

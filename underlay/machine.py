@@ -19,6 +19,9 @@ from steps import RefusalError
 DISTRO = os.environ.get('ROS') or 'jazzy'
 """The distribution of ROS 2 that the environment is for."""
 
+VERSIONS = os.environ.get('VERSIONS') or ''
+"""The release of Ubuntu whose versions of other packages are used; empty for the newest ones."""
+
 TITLE = f'ROS 2 {DISTRO.capitalize()}'
 
 FREE_BYTES_NEEDED = 1500 * 1024 * 1024
@@ -65,7 +68,7 @@ def check_python() -> None:
     if sys.implementation.name != 'cpython' or sysconfig.get_config_var('Py_GIL_DISABLED'):
         msg = (
             f'{sys.executable} ({sys.implementation.name} {version}) cannot be used: {TITLE} '
-            f'needs the ordinary CPython, 3.10 to 3.13; choose one with PYTHON=<command>.')
+            f'needs the ordinary CPython; choose one with PYTHON=<command>.')
         raise RefusalError(msg)
     if not (importlib.util.find_spec('venv') and importlib.util.find_spec('ensurepip')):
         msg = (

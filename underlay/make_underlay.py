@@ -3,7 +3,8 @@
 """
 Make the environment in .underlay, and build both packages on top of it.
 
-With ROS=kilted all of it is in folders of other names: .underlay-kilted, build-kilted and so on.
+With ROS=kilted all of it is in folders of other names: .underlay-kilted, build-kilted and so on,
+and with VERSIONS=noble in .underlay-noble, build-noble and so on.
 
 Called by the script of the same name, with the Python that the environment shall have. Each step
 leaves a stamp, the hash of everything that it was made from, so that a later run does only what
@@ -37,7 +38,8 @@ from steps import Steps
 FORMAT = 1
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
-SUFFIX = '' if machine.DISTRO == 'jazzy' else f'-{machine.DISTRO}'
+ROS_SUFFIX = '' if machine.DISTRO == 'jazzy' else f'-{machine.DISTRO}'
+SUFFIX = f'{ROS_SUFFIX}-{machine.VERSIONS}' if machine.VERSIONS else ROS_SUFFIX
 UNDERLAY = ROOT / f'.underlay{SUFFIX}'
 BUILD = ROOT / f'build{SUFFIX}'
 INSTALL = ROOT / f'install{SUFFIX}'
@@ -144,9 +146,9 @@ class Underlay:
         self._lock = lock
         self._python = UNDERLAY / 'bin/python'
         # In the order of installation: what the second group needs to be built is in the first.
-        ending = SUFFIX.replace('-', '_')
+        wheels = (f'requirements{SUFFIX}', f'unresolved{ROS_SUFFIX}')
         groups = (
-            (('build',), (f'requirements{ending}', f'unresolved{ending}')) if self._from_pypi
+            (('build',), tuple(name.replace('-', '_') for name in wheels)) if self._from_pypi
             else (('tools',),))
         self._locks = [[HERE / f'{name}.txt' for name in group] for group in groups]
         self._env = {
@@ -245,9 +247,13 @@ class Underlay:
         include = sysconfig.get_config_var('INCLUDEPY')
         library = next((UNDERLAY / 'lib').glob('python3.*'))
         paths = {'include': str(include), 'lib': str(library)}
+        # That of numpy is numpy/_core since numpy 2, with which the wheels were built.
+        old_numpy = not (library / 'site-packages/numpy/_core/include').exists()
         for file in (UNDERLAY / 'share').rglob('*.cmake'):
             text = file.read_text(encoding='utf-8')
             repaired = BUILD_MACHINE_PREFIX.sub(lambda match: paths[match[1]], text)
+            if old_numpy:
+                repaired = repaired.replace('/numpy/_core/include', '/numpy/core/include')
             if repaired != text:
                 file.write_text(repaired, encoding='utf-8')
 

@@ -5,14 +5,15 @@
 
 _spb_distro=${ROS:-${ROS_DISTRO:-jazzy}}
 case $_spb_distro in
-  jazzy) _spb_underlay=.underlay ;;
-  kilted) _spb_underlay=.underlay-kilted ;;
+  jazzy | kilted | lyrical) ;;
   *)
-    echo "ROS 2 $_spb_distro is not supported, only jazzy and kilted; use a new shell for them." >&2
+    echo "ROS 2 $_spb_distro is not supported, only jazzy, kilted and lyrical; use a new shell for them." >&2
     unset _spb_distro
     return 1
     ;;
 esac
+_spb_underlay=-$_spb_distro${VERSIONS:+-$VERSIONS}
+_spb_underlay=.underlay${_spb_underlay#-jazzy}
 _spb_underlay=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../$_spb_underlay" 2> /dev/null && pwd -P)
 if [[ ! -r $_spb_underlay/stamps/packages ]]; then
   echo 'The environment was not made yet; run `make setup` in the repository first.' >&2

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # To be sourced in bash: ROS 2 Jazzy, the tools, and this repository's packages as last built. With
-# ROS=kilted in the environment, ROS 2 Kilted.
+# ROS=kilted or ROS=lyrical in the environment, that ROS 2; with VERSIONS=noble, the versions of
+# Ubuntu 24.04; with RCLPY=<folder>, the rclpy in that folder instead of the one of ROS 2.
 
 if [ -z "${BASH_VERSION-}" ]; then
   echo 'This is for bash; start bash and source it there.' >&2
@@ -10,8 +11,7 @@ if [ -z "${BASH_VERSION-}" ]; then
 fi
 _spb_here=$(CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd -P)
 . "$_spb_here/ros.bash" || { unset _spb_here; return 1; }
-_spb_install=${_spb_here%/*}/install-$ROS_DISTRO
-_spb_install=${_spb_install%-jazzy}
+_spb_install=${_spb_here%/*}/install${VIRTUAL_ENV##*/.underlay}
 if [[ ! -r $_spb_install/local_setup.bash ]]; then
   echo 'The packages were not built yet; run `make setup` in the repository first.' >&2
   unset _spb_here _spb_install
@@ -22,3 +22,15 @@ case $- in *u*) _spb_nounset=1; set +u ;; *) _spb_nounset= ;; esac
 . "$_spb_install/local_setup.bash"
 [[ -z $_spb_nounset ]] || set -u
 unset _spb_here _spb_install _spb_nounset
+if [[ -n ${RCLPY-} ]]; then
+  if [[ ! -r $RCLPY/rclpy/__init__.py ]]; then
+    echo "RCLPY names '$RCLPY', and there is no rclpy in that folder." >&2
+    return 1
+  fi
+  _spb_rclpy=$(CDPATH='' cd -- "$RCLPY" && pwd -P)
+  PYTHONPATH=:${PYTHONPATH-}:
+  PYTHONPATH=${PYTHONPATH//":$_spb_rclpy:"/:}
+  PYTHONPATH=${PYTHONPATH#:}
+  export PYTHONPATH=$_spb_rclpy:${PYTHONPATH%:}
+  unset _spb_rclpy
+fi

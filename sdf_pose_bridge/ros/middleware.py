@@ -34,7 +34,7 @@ FAST_DDS_2 = Profile(
 FAST_DDS_3 = Profile(
     'config/fastdds3_profile.xml', 'FASTDDS_DEFAULT_PROFILES_FILE', 'DEFAULT_FASTDDS_PROFILES.xml')
 
-PROFILES = {'jazzy': FAST_DDS_2, 'kilted': FAST_DDS_3}
+PROFILES = {'jazzy': FAST_DDS_2, 'kilted': FAST_DDS_3, 'lyrical': FAST_DDS_3}
 """The profile for each distribution of ROS 2; each Fast DDS refuses that of the other one."""
 
 VARIABLES = (FAST_DDS_2.variable, FAST_DDS_3.variable)
