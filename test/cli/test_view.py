@@ -22,7 +22,8 @@ def viser():
 
 
 def test_missing_library_is_an_error_of_one_line(run_main, monkeypatch):
-    monkeypatch.delitem(sys.modules, 'sdf_pose_bridge.cli.viewer.page', raising=False)
+    for module in [name for name in sys.modules if name.startswith('sdf_pose_bridge.cli.viewer.')]:
+        monkeypatch.delitem(sys.modules, module)
     monkeypatch.setitem(sys.modules, 'viser', None)
     done = run_main('view', 'good.sdf', '-o', 'page.html')
     assert (done.returncode, done.stdout) == (1, '')
@@ -92,7 +93,7 @@ def test_page_opens_in_the_browser(run_main, monkeypatch, has_browser):
     monkeypatch.setattr(webbrowser, 'open', lambda uri: bool(opened.append(uri)) or has_browser)
     monkeypatch.setattr('sdf_pose_bridge.cli.view._follow', stop)
     done = run_main('view', 'good.sdf', '--port', '0')
-    assert re.fullmatch(r'http://127\.0\.0\.1:[0-9]+\n', done.stdout)
+    assert re.fullmatch(r'http://127\.0\.0\.1:[0-9]+/[\w-]+/\n', done.stdout)
     assert (done.returncode, opened) == (130, [done.stdout.strip()])
     assert bool(done.stderr) is not has_browser
 
