@@ -14,6 +14,7 @@ everything that is done with a message.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 import time
 
@@ -27,6 +28,7 @@ from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from rclpy.qos import QoSProfile
 from rclpy.qos import ReliabilityPolicy
+from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 from sensor_msgs.msg import JointState
 
@@ -69,17 +71,22 @@ class _Plan:
 
 
 class _Gate(ReentrantCallbackGroup):
-    """The group of a subscription whose messages wake the executor only while it is open."""
+    """
+    The group of a subscription whose messages wake the executor only while it is open.
+
+    What is closed lets the executor take messages all the same if nothing else can.
+    """
 
     def __init__(self) -> None:
         super().__init__()
         self.is_open = True
+        self.keeps_messages = False
 
     def can_execute(self, _entity: object) -> bool:
-        return self.is_open
+        return self.is_open or not self.keeps_messages
 
-    def beginning_execution(self, _entity: object) -> bool:
-        return self.is_open
+    def beginning_execution(self, entity: object) -> bool:
+        return self.can_execute(entity)
 
 
 class JointStates:
@@ -127,6 +134,8 @@ class JointStates:
         self._subscription = node.create_subscription(
             JointState, 'joint_states', self.take, quality, callback_group=self._gate, raw=True,
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False))
+        self._take_message = _take_message_from_subscription(self._subscription)
+        self._gate.keeps_messages = self._take_message is not None
 
     def destroy(self) -> None:
         """Stop following, and destroy what was created for it."""
@@ -141,14 +150,13 @@ class JointStates:
 
     def take_waiting(self) -> None:
         """Take all messages that wait in the subscription, for a 30th of a second at most."""
-        if self._gate.is_open:
+        if self._gate.is_open or self._take_message is None:
             return  # the executor takes them
         # Other callbacks would wait for ever for the end of messages that come too fast.
         ends_at = time.monotonic() + TOPICS_PERIOD_S
-        # Executors do the same; rclpy has no public way.
         with self._subscription.handle:
             while time.monotonic() < ends_at and (
-                    taken := self._subscription.handle.take_message(JointState, True)) is not None:
+                    taken := self._take_message(JointState, True)) is not None:
                 self.take(taken[0])
 
     # Messages
@@ -273,3 +281,13 @@ class JointStates:
         if is_at_rest or self._are_topics_behind:
             self._are_topics_behind = False
             self._frames.publish_topics(only_listeners=not is_at_rest)
+
+
+def _take_message_from_subscription(
+    subscription: Subscription,
+) -> Callable[[type, bool], tuple[bytes, object] | None] | None:
+    """Return what takes a waiting message from a subscription, if this release of rclpy has it."""
+    # Executors call it; rclpy has no public way.
+    take: Callable[[type, bool], tuple[bytes, object] | None] | None = getattr(
+        subscription.handle, 'take_message', None)
+    return take

@@ -216,14 +216,20 @@ def test_what_was_created_for_it_is_destroyed_with_it(states, frequency):
     assert [*node.timers, *node.subscriptions] == []
 
 
-@pytest.fixture(name='slow_states')
-def make_slow_states(states, listener, wait_until):
+@pytest.fixture(name='slow_states', params=['in the subscription', 'here'])
+def make_slow_states(request, monkeypatch, states, listener, wait_until):
     """
     Follows messages with a highest rate; ``slow_states(frequency)``.
 
     Returns it, a publisher of messages, and a list that gets the stamp and the frames of each
-    message on ``/tf``.
+    message on ``/tf``. Messages wait in the subscription, or, as with a release of rclpy that has
+    no such function to take them from there, where they are followed.
     """
+    if request.param == 'here':
+        monkeypatch.setattr(
+            'sdf_pose_bridge.ros.joint_states._take_message_from_subscription',
+            lambda subscription: None)
+
     def start(frequency):
         states.destroy()
         slow, found = JointStates(states._node, states._frames, frequency), []
