@@ -281,7 +281,12 @@ class FileWriteError(SdfError):
 
 
 class JointPositionError(SdfError, ValueError):
-    """A query names a joint that does not exist, or gives a joint a value that is no position."""
+    """
+    A query about positions of joints that cannot be answered.
+
+    It names a joint that does not exist, gives a joint a value that is no position, or depends on
+    a joint whose position nobody has reported.
+    """
 
     code = 'JOINT_POSITION_INVALID'
 

@@ -8,6 +8,7 @@ The package diagnostic_updater is not used because it would add parameters of it
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from collections.abc import Sequence
 import datetime
 
@@ -18,6 +19,7 @@ from rclpy.node import Node
 
 from sdf_pose_bridge.ros.loaded_scene import LoadedScene
 from sdf_pose_bridge.ros.log_lines import count_in_words
+from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints
 from sdf_pose_bridge.ros.publishers import new_publisher
 from sdf_pose_bridge.ros.publishers import Topic
 
@@ -31,10 +33,16 @@ costs.
 
 
 class Diagnostics:
-    """The publisher of the diagnostics of a node."""
+    """
+    The publisher of the diagnostics of a node.
 
-    def __init__(self, node: Node) -> None:
+    :param unreported_joints: returns the names of the joints whose positions are missing.
+    """
+
+    def __init__(self, node: Node, unreported_joints: Callable[[], Sequence[str]]) -> None:
         self._node = node
+        self._unreported_joints = unreported_joints
+        self._last: tuple[LoadedScene, Sequence[str]] | None = None
         self._publisher = new_publisher(
             node, Topic('/diagnostics', DiagnosticArray, depth=10, is_latched=False))
         self._message = DiagnosticArray()
@@ -46,25 +54,29 @@ class Diagnostics:
         :param failure: what was wrong at the last load, one line for each error; empty if the
             last load succeeded.
         """
-        name = self._node.get_fully_qualified_name().lstrip('/')
-        self._message.status = [status_from_scene(loaded, failure, name)]
+        self._last = loaded, failure
         self.publish()
 
     def publish(self) -> None:
         """Publish the status."""
+        if self._last is not None:
+            name = self._node.get_fully_qualified_name().lstrip('/')
+            self._message.status = [
+                status_from_scene(*self._last, self._unreported_joints(), name)]
         self._message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(self._message)
 
 
 def status_from_scene(
-    loaded: LoadedScene, failure: Sequence[str], name: str,
+    loaded: LoadedScene, failure: Sequence[str], unreported_joints: Sequence[str], name: str,
 ) -> DiagnosticStatus:
     """
     Describe what is served in a status.
 
     :param failure: what was wrong at the last load; empty if it succeeded.
+    :param unreported_joints: the names of joints whose positions are missing.
     :return: ERROR if the last load failed, while what was loaded before is still served; WARN if
-        what is served has warnings; otherwise OK.
+        what is served has warnings, or joints without positions; otherwise OK.
     """
     warnings = loaded.warnings
     loaded_at = datetime.datetime.fromtimestamp(
@@ -80,10 +92,15 @@ def status_from_scene(
         'warnings': str(len(warnings)),
         'first warning': str(warnings[0]) if warnings else '',
         'last error': '\n'.join(failure),
+        'joints not reported': str(len(unreported_joints)),
+        'first joint not reported': unreported_joints[0] if unreported_joints else '',
     }
     if failure:
         level = DiagnosticStatus.ERROR
         text = f'the last load failed, what was loaded before is served: {failure[0]}'
+    elif unreported_joints:
+        level = DiagnosticStatus.WARN
+        text = line_about_unreported_joints(unreported_joints)
     elif warnings:
         level = DiagnosticStatus.WARN
         text = f'serving {loaded.path.name} with {count_in_words(len(warnings), "warning")}'

@@ -3,9 +3,9 @@
 """
 Follow ``joint_states``: take the positions of joints, and publish the frames that they move.
 
-``/tf`` gets the transforms that a message changes, with the stamp of the message, and those of
-joints that no message has named so far, so that TF is complete. Before the first message all
-joints are published where the file puts them.
+``/tf`` gets the transforms that a message changes, with the stamp of the message. What a joint
+moves that no message has named so far is not there; or, if such joints are at zero, it is there
+before the first message, and then with each message, so that TF is complete.
 
 With a highest rate, a message is published at once and those that follow it wait in the
 subscription for one period, without waking the executor: to wake it takes ten times as long as
@@ -35,6 +35,7 @@ from sensor_msgs.msg import JointState
 from sdf_pose_bridge.ros.cdr import joint_state_from_bytes
 from sdf_pose_bridge.ros.cdr import JointStateBytes
 from sdf_pose_bridge.ros.cdr import StampedMessages
+from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.publishers import Stamp
@@ -42,7 +43,10 @@ from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION
 from sdf_pose_bridge.tf.joint_positions import Selection
 
 INITIAL_PERIOD_S = 0.1
-"""How often ``/tf`` is published before the first message of ``joint_states``."""
+"""How often ``/tf`` is published before the first message, if joints are at zero then."""
+
+GRACE_S = 2.0
+"""After how long joints that no message has named are reported."""
 
 TOPICS_PERIOD_S = 1.0 / 30.0
 """How often the topics of moving frames are published at most."""
@@ -107,12 +111,15 @@ class JointStates:
         self._topics_due = 0.0
         self._are_topics_behind = False
         self._published_at = 0.0
+        self._is_grace_over = False
+        self._has_reported_missing = False
         self._gate = _Gate()
         # Simulated time may stand still.
         steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
         self._initial_timer = node.create_timer(
             INITIAL_PERIOD_S, self._publish_initially, clock=steady_clock)
-        self._timers = [self._initial_timer]
+        self._grace_timer = node.create_timer(GRACE_S, self._end_grace, clock=steady_clock)
+        self._timers = [self._initial_timer, self._grace_timer]
         rest_period, quality = TOPICS_PERIOD_S, qos_profile_sensor_data
         self._period_timer: Timer | None = None
         if frequency:
@@ -145,8 +152,19 @@ class JointStates:
 
     def replace(self, frames: PublishedMovingFrames) -> None:
         """Move other frames from now on."""
+        if frames is self._frames:
+            return
+        if set(frames.positions.missing).difference(self._frames.positions.missing):
+            self._is_grace_over = False
+            self._grace_timer.reset()
         self._frames = frames
         self._plans.clear()
+        self._initial_timer.reset()
+
+    @property
+    def unreported(self) -> tuple[str, ...]:
+        """The joints that no message has named, although there was time."""
+        return self._frames.positions.missing if self._is_grace_over else ()
 
     def take_waiting(self) -> None:
         """Take all messages that wait in the subscription, for a 30th of a second at most."""
@@ -187,8 +205,18 @@ class JointStates:
                 f'nanosec={stamp[1]}; it is ignored, as sec must not be negative and nanosec must '
                 f'be less than {_NANOSECONDS}', throttle_duration_sec=_WARNING_PERIOD_S)
             return
+        positions = self._frames.positions
         plan = self._plans.get(message.names) or self._new_plan(message)
-        invalid = self._frames.positions.update(plan.selection, values)
+        were_reported = positions.is_reported.copy()
+        invalid = positions.update(plan.selection, values)
+        if (positions.is_reported != were_reported).any():
+            # Plans would publish other transforms from now on.
+            self._publish_tf()
+            self._plans.clear()
+            plan = self._new_plan(message)
+            if self._has_reported_missing and not positions.missing:
+                self._has_reported_missing = False
+                self._logger.info('all joints have been reported now')
         if invalid:
             self._logger.warning(
                 f'{self._subscription.topic_name} has positions for {names_in_line(invalid)} that '
@@ -215,16 +243,14 @@ class JointStates:
                 f'{self._subscription.topic_name} has {names_in_line(selection.unknown)}, not the '
                 f'name of one moving joint{positions.hint(selection.unknown[0])}',
                 throttle_duration_sec=_WARNING_PERIOD_S)
-        were_known = positions.is_known.copy()
-        positions.update(selection, message.positions)
-        if len(self._plans) == _MOST_PLANS or (positions.is_known != were_known).any():
-            # Other plans would publish what this one does from now on.
+        if len(self._plans) == _MOST_PLANS:
             self._publish_tf()
             self._plans.clear()
         rows = np.array([], np.intp)
         if len(selection.rows):
-            unknown = np.flatnonzero(~positions.is_known).tolist()
-            rows = self._frames.frames.rows_moved_by([*selection.changed, *unknown])
+            others = np.flatnonzero(positions.is_known & ~positions.is_reported).tolist()
+            rows = self._frames.frames.rows_moved_by([*selection.changed, *others])
+            rows = rows[self._frames.has_transform[rows]]
         plan = _Plan(selection, rows, self._frames.tf_message(rows))
         self._plans[message.names] = plan
         return plan
@@ -253,13 +279,20 @@ class JointStates:
             self._period_timer.cancel()
             self._gate.is_open = True
 
+    def _end_grace(self) -> None:
+        """Report the joints that no message has named, once."""
+        self._grace_timer.cancel()
+        self._is_grace_over = True
+        if self.unreported:
+            self._has_reported_missing = True
+            self._logger.info(line_about_unreported_joints(self.unreported))
+
     def _publish_initially(self) -> None:
         """Publish all frames on ``/tf`` until there are positions."""
-        if self._frames.stamp is None:
+        if self._frames.stamp is None and self._frames.positions.is_known.any():
             self._frames.publish_all()
         else:
-            # If it were only cancelled, the executor would go on to wait for it.
-            self._node.destroy_timer(self._initial_timer)
+            self._initial_timer.cancel()
 
     def _publish_topics_if_due(self) -> None:
         """Publish the topics of moving frames now, or leave it to a message or timer."""

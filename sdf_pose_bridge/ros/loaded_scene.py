@@ -74,7 +74,7 @@ def loaded_scene_from_settings(
     scene = _scene_from_text(text, path, settings, texts=texts)
     tree = tf_tree_from_scene(scene, settings.tf_options)
     joint_positions = None if tree.moving is None else JointPositions(
-        scene, tree.moving.dofs, settings.frame_names, settings.model)
+        scene, tree.moving.dofs, settings.frame_names, settings.model, settings.unreported_joints)
     return LoadedScene(
         settings=settings,
         path=path,
@@ -82,8 +82,7 @@ def loaded_scene_from_settings(
         description='' if tree.world else unicode_text(text),
         scene=scene,
         tree=tree,
-        lookup=PoseLookup(
-            scene, tree, None if joint_positions is None else joint_positions.values),
+        lookup=PoseLookup(scene, tree, joint_positions),
         joint_positions=joint_positions,
         warnings=(*warnings, *scene.warnings, *tree.warnings),
         files=(*manifests, *(scene.files if settings.sdf_file else scene.files[1:])),

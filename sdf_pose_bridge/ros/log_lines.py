@@ -13,7 +13,9 @@ from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
 from sdf_pose_bridge.tf.parents import NO_PARENT
+from sdf_pose_bridge.tf.tree import elements_in_model
 from sdf_pose_bridge.tf.tree import TfTree
 
 MOST_LINES = 20
@@ -87,6 +89,34 @@ def line_about_detached_models(tree: TfTree, scene: Scene) -> str:
     return (
         f'no transform from "{tree.root_frame}" to {names_in_line(tuple(models))}: odometry or '
         'localization can publish one, or this node with anchor_models "all"')
+
+
+def line_about_unreported_joints(names: Sequence[str]) -> str:
+    """Say how many joints, one at least, nobody has reported, and name the first one."""
+    have = 'has' if len(names) == 1 else 'have'
+    return (
+        f'{count_in_words(len(names), "joint")} {have} not been reported yet, for example '
+        f'{names_in_line(names[:1])}; what a joint moves has no transform until a message on '
+        'joint_states names the joint')
+
+
+def line_about_joints_at_rest(scene: Scene, model: str) -> str:
+    """
+    Say that joints stand still; return '' if no joint can move.
+
+    :param model: the scoped name of the only model that is published; empty for everything.
+    """
+    is_inside = elements_in_model(scene, model)
+    names = [
+        scene.names[joint.element] for joint in scene.joints
+        if JOINT_TYPES[joint.type].dofs and is_inside[joint.element]
+        and scene.static_models.isdisjoint(scene.with_ancestors(joint.element))]
+    if not names:
+        return ''
+    return (
+        f'{count_in_words(len(names), "joint")} that can move, for example '
+        f'{names_in_line(names[:1])}, {"stays" if len(names) == 1 else "stay"} where the file '
+        'says; with the parameter use_joint_states joints follow the topic joint_states')
 
 
 def count_in_words(number: int, what: str) -> str:

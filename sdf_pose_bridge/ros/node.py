@@ -37,6 +37,7 @@ from sdf_pose_bridge.ros.loaded_scene import LoadedScene
 from sdf_pose_bridge.ros.loaded_scene import may_pass
 from sdf_pose_bridge.ros.log_lines import count_in_words
 from sdf_pose_bridge.ros.log_lines import line_about_detached_models
+from sdf_pose_bridge.ros.log_lines import line_about_joints_at_rest
 from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
@@ -81,7 +82,8 @@ class SdfPoseBridge:
         self._pending_failure: list[str] = []
         # When to read the files again after a failure that may pass without a change of them.
         self._retry_time = math.inf
-        self._diagnostics = Diagnostics(node)
+        self._diagnostics = Diagnostics(node, self._unreported_joints)
+        self._has_told_of_joints = False
         self._watcher = FileWatcher()
         # All callbacks that change what is published: one runs after the other.
         self._changes = MutuallyExclusiveCallbackGroup()
@@ -165,6 +167,9 @@ class SdfPoseBridge:
             self._joint_states.take_waiting()
         return self._loaded.lookup
 
+    def _unreported_joints(self) -> Sequence[str]:
+        return () if self._joint_states is None else self._joint_states.unreported
+
     def _publish_robot_description(self) -> None:
         self._robot_description.publish(
             self._loaded.description if self._settings.publish_robot_description else '')
@@ -182,6 +187,11 @@ class SdfPoseBridge:
             f'"{loaded.tree.root_frame}" (read in {1e3 * loaded.seconds:.0f} ms)')
         line = line_about_detached_models(loaded.tree, loaded.scene)
         if line:
+            self._logger.info(line)
+        line = '' if loaded.tree.moving else line_about_joints_at_rest(
+            loaded.scene, loaded.settings.model)
+        if line and not self._has_told_of_joints:
+            self._has_told_of_joints = True
             self._logger.info(line)
         self._diagnostics.update(loaded)
 

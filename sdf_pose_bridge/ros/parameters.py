@@ -28,6 +28,7 @@ from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import FrameNames
+from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
 from sdf_pose_bridge.tf.tree import AnchorModels
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 from sdf_pose_bridge.tf.tree import TfOptions
@@ -319,6 +320,11 @@ class Settings:
         False,
         'Makes moving joints follow the topic joint_states: their transforms are on /tf instead '
         'of /tf_static.',
+    )
+    unreported_joints = _choice(
+        UnreportedJoints.NONE,
+        'Where joints are that no message on joint_states has named: with "none" the frames that '
+        'they move are not published, with "zero" they are where the file puts them.',
     )
     resource_paths = Declaration(
         [],

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from collections.abc import Sequence
 from functools import cached_property
+from itertools import compress
 
 from geometry_msgs.msg import PoseStamped
 from geometry_msgs.msg import TransformStamped
@@ -159,6 +160,11 @@ class PublishedMovingFrames:
             [[tree.pose_frame] * len(self._posed_rows)],
             tree.poses_in_pose_frame[moving.posed_indices[self._posed_rows]])
 
+    @property
+    def has_transform(self) -> NDArray[np.bool_]:
+        """Which of the moving transforms follow from known positions."""
+        return self.frames.has_transform(self.positions.is_known)
+
     def tf_message(self, rows: NDArray[np.intp]) -> StampedMessages:
         """
         Prepare a message for ``/tf``.
@@ -182,14 +188,14 @@ class PublishedMovingFrames:
         self._tf.publish(data)
 
     def publish_all(self) -> None:
-        """Publish all moving transforms on ``/tf`` with the time of the node."""
-        rows = np.arange(len(self.frames.indices))
+        """Publish on ``/tf`` all that moves and has a position, with the time of the node."""
+        rows = np.flatnonzero(self.has_transform)
         if len(rows):
             self.publish_tf(rows, self.tf_message(rows), self._publishers.now())
 
     def publish_topics(self, *, only_listeners: bool) -> None:
         """
-        Publish on ``~/transforms`` and ``~/poses/...``.
+        Publish on ``~/transforms`` and ``~/poses/...`` what has a position.
 
         :param only_listeners: whether to leave out topics that nobody listens to.
         """
@@ -203,15 +209,17 @@ class PublishedMovingFrames:
         publisher = wanted_publisher(self.transforms_topic)
         if publisher is not None:
             self._transform_messages.set_poses(self.frames.transforms(self.positions.values))
-            for message in self._transform_messages.with_stamp(*stamp):
+            for message in compress(
+                    self._transform_messages.with_stamp(*stamp), self.has_transform):
                 publisher.publish(message)
         publishers = list(map(wanted_publisher, self._posed_topics))
         if any(publishers):
             self._pose_messages.set_poses(
                 self.frames.poses(self.positions.values)[self._posed_rows])
-            for publisher, message in zip(
-                    publishers, self._pose_messages.with_stamp(*stamp), strict=True):
-                if publisher is not None:
+            has_pose = self.frames.has_pose(self.positions.is_known)[self._posed_rows]
+            for publisher, message, is_known in zip(
+                    publishers, self._pose_messages.with_stamp(*stamp), has_pose, strict=True):
+                if publisher is not None and is_known:
                     publisher.publish(message)
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 import array
 from collections.abc import Callable
 from collections.abc import Mapping
+import copy
 import traceback
 from typing import Any
 from typing import TypeAlias
@@ -16,6 +17,7 @@ from rclpy.clock import Clock
 from rclpy.node import Node
 from rclpy.qos import qos_profile_parameters
 
+from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import PoseNotSetError
 from sdf_pose_bridge.errors import UnknownFrameError
@@ -107,7 +109,7 @@ def answer_to_lookup_pose(
     """Look up a pose."""
     try:
         found = lookup.pose(request.frame, request.relative_to)
-    except UnknownFrameError as error:
+    except (UnknownFrameError, JointPositionError) as error:
         response.message = error.message
         return response
     # To fill the existing messages is faster than to make new ones.
@@ -137,7 +139,7 @@ def set_pose(request: SetPose.Request, loaded: LoadedScene) -> SetPose.Response:
         raise PoseNotSetError(msg, Place(str(loaded.path)))
     asked, reference = _pose_from_request(request, loaded), request.pose.header.frame_id
     # A copy: the joints go on moving.
-    positions = None if loaded.joint_positions is None else loaded.joint_positions.values.copy()
+    positions = copy.deepcopy(loaded.joint_positions)
 
     def scene_with(texts: Mapping[str, bytes]) -> Scene:
         return loaded_scene_from_settings(loaded.settings, texts).scene

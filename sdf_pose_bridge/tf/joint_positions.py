@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from collections.abc import Sequence
 import dataclasses
+import enum
 from typing import NamedTuple
 
 import numpy as np
@@ -37,6 +38,15 @@ LARGEST_POSITION = 1e9
 
 _MOST_STEPS = 10
 """How many innermost steps of a name may stand for it."""
+
+
+class UnreportedJoints(enum.Enum):
+    """Where joints are that no message has named."""
+
+    NONE = 'none'
+    """Nowhere: what they move has no pose."""
+    ZERO = 'zero'
+    """At zero, where the file puts them."""
 
 
 class Follower(NamedTuple):
@@ -71,16 +81,22 @@ class JointPositions:
 
     :param frame_names: how much of a scoped name goes into the name of a joint.
     :param model: the scoped name of the only model whose joints have names; empty for all.
+    :param unreported: whether this zero counts as a position.
     """
 
     def __init__(
         self, scene: Scene, dofs: Sequence[DegreeOfFreedom],
         frame_names: FrameNames = FrameNames.AUTO, model: str = '',
+        unreported: UnreportedJoints = UnreportedJoints.NONE,
     ) -> None:
         self.values = np.zeros(len(dofs))
         """The position of each degree of freedom, in radians or metres."""
-        self.is_known = np.zeros(len(dofs), np.bool_)
+        self.is_reported = np.zeros(len(dofs), np.bool_)
         """Whether each has been given a position, or follows from one that has."""
+        self.is_known = (
+            self.is_reported if unreported is UnreportedJoints.NONE
+            else np.ones(len(dofs), np.bool_))
+        """Whether the position of each counts."""
         self.dofs = tuple(dofs)
         joints = np.array([each.joint.element for each in dofs], np.int32)
         names = FrameNaming(frame_names).frame_ids_from_scene(scene, joints)
@@ -89,6 +105,14 @@ class JointPositions:
         """The name of each degree of freedom."""
         self._indices = _indices_from_names(self.names, scene, dofs, model)
         self._followers = _followers(dofs)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """The names of those whose positions do not count, and follow from no others."""
+        followers = {each.dof for found in self._followers.values() for each in found}
+        return tuple(
+            self.names[dof] for dof in np.flatnonzero(~self.is_known).tolist()
+            if dof not in followers)
 
     def selection(self, names: Sequence[str]) -> Selection:
         """Look up names."""
@@ -131,12 +155,12 @@ class JointPositions:
             invalid = [self.names[dof] for dof in dofs[~is_valid].tolist()]
             dofs, new = dofs[is_valid], new[is_valid]
         self.values[dofs] = new
-        self.is_known[dofs] = True
+        self.is_reported[dofs] = True
         for dof, leader, mimic in selection.followers:
             value = mimic.multiplier * (self.values[leader] - mimic.reference) + mimic.offset
-            if self.is_known[leader] and abs(value) <= LARGEST_POSITION:
+            if self.is_reported[leader] and abs(value) <= LARGEST_POSITION:
                 self.values[dof] = value
-                self.is_known[dof] = True
+                self.is_reported[dof] = True
         return invalid
 
     def take_over(self, before: JointPositions) -> None:
@@ -149,7 +173,7 @@ class JointPositions:
         for dof, name in enumerate(self.names):
             if name in rows:
                 self.values[dof] = before.values[rows[name]]
-                self.is_known[dof] = before.is_known[rows[name]]
+                self.is_reported[dof] = before.is_reported[rows[name]]
 
 
 def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:

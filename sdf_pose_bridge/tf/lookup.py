@@ -7,15 +7,15 @@ from __future__ import annotations
 from functools import cached_property
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.tf.joint_motion import NO_DOF
+from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.tree import TfTree
 
 
@@ -36,16 +36,16 @@ class PoseLookup:
     (``robot/arm/tool``), including those of optical frames. A name that is both is taken as a name
     of SDF.
 
-    :param positions: the current position of each degree of freedom of the joints, in radians or
-        metres; not copied. None for all joints where the file puts them.
+    :param positions: the current positions of the joints; not copied. None for all joints where
+        the file puts them.
     """
 
     def __init__(
-        self, scene: Scene, tree: TfTree, positions: NDArray[np.float64] | None = None,
+        self, scene: Scene, tree: TfTree, positions: JointPositions | None = None,
     ) -> None:
         self._scene = scene
         self._tree = tree
-        self._positions = positions
+        self._joints = positions
         self._indices = {frame_id: index for index, frame_id in enumerate(tree.frame_ids)}
         self._frame_ids = dict(zip(tree.elements.tolist(), tree.frame_ids, strict=True))
 
@@ -56,11 +56,14 @@ class PoseLookup:
         :param frame: a name of SDF or of TF.
         :param relative_to: the reference frame, likewise; empty for the root frame.
         :raises UnknownFrameError: if a name is unknown or ambiguous.
+        :raises JointPositionError: if it depends on a joint without a position.
         """
-        pose, _ = self._pose_in_root(frame)
+        pose, _, last = self._pose_in_root(frame)
         if not relative_to:
+            self._check_positions(last, NO_DOF)
             return FoundPose(pose, self._tree.root_frame)
-        reference, frame_id = self._pose_in_root(relative_to)
+        reference, frame_id, last_of_reference = self._pose_in_root(relative_to)
+        self._check_positions(last, last_of_reference)
         return FoundPose(canonical_relative_pose(reference, pose), frame_id)
 
     def pose_of_element(self, element: int, relative_to: str = '') -> Pose:
@@ -69,9 +72,14 @@ class PoseLookup:
 
         :param relative_to: as for :meth:`pose`.
         :raises UnknownFrameError: if the name is unknown or ambiguous.
+        :raises JointPositionError: as for :meth:`pose`.
         """
-        reference = self._pose_in_root(relative_to)[0] if relative_to else Pose()
-        return canonical_relative_pose(reference, self._pose_of(element))
+        reference, last_of_reference = Pose(), NO_DOF
+        if relative_to:
+            reference, _, last_of_reference = self._pose_in_root(relative_to)
+        pose, last = self._pose_of(element)
+        self._check_positions(last, last_of_reference)
+        return canonical_relative_pose(reference, pose)
 
     def element(self, name: str) -> tuple[int, Pose]:
         """
@@ -101,19 +109,42 @@ class PoseLookup:
         """All names, put in order when one was not found for the first time."""
         return NameIndex([*self._indices, *self._scene.names])
 
-    def _pose_in_root(self, name: str) -> tuple[Pose, str]:
-        """Return the pose of a frame in the root frame, and its frame id or else its name."""
-        scene, tree, positions = self._scene, self._tree, self._positions
+    def _check_positions(self, first: int, second: int) -> None:
+        """
+        Refuse a pose that depends on a joint without a position.
+
+        :param first: the last degree of freedom between the root and the one frame.
+        :param second: likewise for the other one.
+        """
+        moving, joints = self._tree.moving, self._joints
+        if moving is None or joints is None or joints.is_known.all():
+            return
+        for dof in moving.dofs_between(first, second):
+            if not joints.is_known[dof]:
+                msg = (f'the pose depends on joint "{joints.names[dof]}", which has not been '
+                       'reported yet')
+                raise JointPositionError(msg, Place(self._scene.path))
+
+    def _pose_in_root(self, name: str) -> tuple[Pose, str, int]:
+        """
+        Return the pose of a frame in the root frame.
+
+        :return: the pose, its frame id or else its name, and the last degree of freedom between
+            the root and it.
+        """
+        scene, tree = self._scene, self._tree
         if name == tree.root_frame:
-            return Pose(), name
+            return Pose(), name, NO_DOF
         if not scene.has(name) and name in self._indices:
             index = self._indices[name]
-            if positions is not None and tree.moving is not None:
-                return tree.moving.pose_of_frame(index, positions), name
-            return Pose(*tree.poses[index].tolist()), name
+            if self._joints is not None and tree.moving is not None:
+                pose = tree.moving.pose_of_frame(index, self._joints.values)
+                return pose, name, tree.moving.last_dof_of_frame(index)
+            return Pose(*tree.poses[index].tolist()), name, NO_DOF
         element = self._element(name)
         frame_id = tree.root_frame if element == 0 else self._frame_ids.get(element, name)
-        return self._pose_of(element), frame_id
+        pose, last = self._pose_of(element)
+        return pose, frame_id, last
 
     def _element(self, name: str) -> int:
         """Find an element by its name in SDF."""
@@ -127,9 +158,10 @@ class PoseLookup:
             raise UnknownFrameError(msg, Place(scene.path))
         return element
 
-    def _pose_of(self, element: int) -> Pose:
-        """Return the pose of an element in the root frame."""
-        pose = self._scene.pose_of(element)
-        if element and self._positions is not None and self._tree.moving is not None:
-            return self._tree.moving.pose_of_element(element, pose, self._positions)
-        return pose
+    def _pose_of(self, element: int) -> tuple[Pose, int]:
+        """Return the pose of an element in the root frame, and its last degree of freedom."""
+        pose, moving = self._scene.pose_of(element), self._tree.moving
+        if element and self._joints is not None and moving is not None:
+            moved = moving.pose_of_element(element, pose, self._joints.values)
+            return moved, moving.last_dof_of_element(element)
+        return pose, NO_DOF

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sdf_pose_bridge.geometry.chains import ends_from_pointers
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import canonical_relative_poses
 from sdf_pose_bridge.geometry.poses import Pose
@@ -101,6 +102,64 @@ class MovingFrames:
             return poses
         reference = self.pose_of_frame(self._pose_frame, positions)
         return canonical_relative_poses(np.array(reference), poses)
+
+    def has_transform(self, is_known: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """
+        Return which of :meth:`transforms` follow from known positions.
+
+        :param is_known: whether the position of each degree of freedom is known.
+        :return: shape (m,).
+        """
+        found = np.ones(len(self.indices), np.bool_)
+        for rows, dofs, _ in self._parts:
+            found[rows] &= is_known[dofs]
+        return found
+
+    def has_pose(self, is_known: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """
+        Return which of :meth:`poses` follow from known positions.
+
+        :param is_known: whether the position of each degree of freedom is known.
+        :return: shape (k,).
+        """
+        # The root comes last, where the index -1 finds it.
+        previous = np.append(self._motion.previous, NO_DOF)
+        is_unknown = np.append(~is_known, False)
+        reference = NO_DOF if self._pose_frame < 0 else self.last_dof_of_frame(self._pose_frame)
+        common = self._with_previous(reference)
+        needed = [dof for dof in common if is_unknown[dof]][:1]
+        is_common = np.isin(np.arange(len(previous)), common)
+        # Those between the root and the reference count only for frames that are not behind them.
+        is_barrier = is_unknown & ~is_common
+        last = self._motion.last_dofs[self._elements[self.posed_indices]]
+        found = ~is_barrier[ends_from_pointers(np.where(is_barrier, -1, previous))[last]]
+        if needed:
+            is_needed = np.isin(np.arange(len(previous)), needed)
+            found &= is_needed[ends_from_pointers(np.where(is_needed, -1, previous))[last]]
+        return found
+
+    def last_dof_of_frame(self, index: int) -> int:
+        """Return the last degree of freedom between the root and a frame; -1 for none."""
+        return self.last_dof_of_element(int(self._elements[index]))
+
+    def last_dof_of_element(self, element: int) -> int:
+        """Return the last degree of freedom between the root and an element; -1 for none."""
+        return int(self._motion.last_dofs[element])
+
+    def dofs_between(self, first: int, second: int) -> list[int]:
+        """
+        Return the degrees of freedom that decide where two frames are to one another.
+
+        :param first: the last degree of freedom between the root and the one; -1 for none.
+        :param second: likewise for the other one.
+        """
+        ways = self._with_previous(first), self._with_previous(second)
+        common = set(ways[0]).intersection(ways[1])
+        return [dof for dof in (*ways[0], *ways[1]) if dof not in common]
+
+    def _with_previous(self, dof: int) -> list[int]:
+        """Return a degree of freedom and all before it, from the last to the first."""
+        return _dofs_between(self._motion.previous, NO_DOF, dof)[::-1]
 
     def pose_of_frame(self, index: int, positions: NDArray[np.float64]) -> Pose:
         """Return the pose of one frame in the root."""

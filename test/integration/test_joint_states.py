@@ -105,17 +105,16 @@ def listen_to_moving_frames(start_listener):
 @pytest.fixture(name='start')
 def make_start(start_bridge, joints, tf):
     """Starts a bridge, and returns when the publisher of joints and the listener are connected."""
-    def start(file, *parameters):
+    def start(file, *parameters, first=('turn', 'lift')):
         arguments = [f'sdf_file:={file}', 'use_joint_states:=true', *parameters]
         bridge = start_bridge('--ros-args', *(
             word for each in arguments for word in ('-p', each))).wait_until_started()
-        tf.listener.wait(lambda: tf.last.keys() >= MOVED, lambda: 'all moving frames')
         stamps = set()
 
         def is_connected():
             # The first messages are lost, until the bridge has discovered the publisher.
-            stamps.add(joints.send({'turn': 0.0}))
-            return tf.last['upper'].header.stamp.sec in stamps
+            stamps.add(joints.send(dict.fromkeys(first, 0.0)))
+            return 'upper' in tf.last and tf.last['upper'].header.stamp.sec in stamps
 
         tf.listener.wait(is_connected, lambda: 'the first message')
         return bridge
@@ -128,14 +127,61 @@ def pose_of(tf, frame):
     return answer.pose.pose.position
 
 
-def test_before_the_first_message_all_joints_are_at_zero(start_bridge, file, tf):
-    start_bridge('--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true')
+def test_before_the_first_message_all_joints_can_be_at_zero(start_bridge, file, tf):
+    start_bridge(
+        '--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true', '-p',
+        'unreported_joints:=zero')
     tf.listener.wait(lambda: tf.last.keys() >= MOVED, lambda: 'all moving frames')
     assert tf.last['slide'].transform.translation.z == 1.0
     listen_to_tf(tf.listener)
     tf.listener.wait(lambda: tf.listener.tf_messages, lambda: '/tf_static')
     fixed = {each.child_frame_id for each in tf.listener.tf_messages[0].transforms}
     assert fixed == {'arm', 'tool'}, 'and nothing for base, whose parent is odometry'
+
+
+def test_joints_that_no_message_has_named_are_nowhere_until_their_driver_is_up(
+        start, file, joints, tf):
+    bridge = start(file, 'anchor_models:=all', first=['turn'])
+    poses = listen_to_poses(tf, 'base', 'upper', 'slide', 'tool', 'finger')
+    transforms = {}
+    tf.listener.node.create_subscription(
+        TransformStamped, f'{BRIDGE}/transforms',
+        lambda message: transforms.update({message.child_frame_id: message}), latched(100))
+    tf.listener.wait(
+        lambda: 'upper' in transforms and poses.keys() >= {'base', 'upper'}, lambda: poses)
+    bridge.wait_for_line('1 joint has not been reported yet, for example "lift"')
+    assert tf.last.keys() == {'upper'}
+    assert not transforms.keys() & {'slide', 'finger'}
+    assert poses.keys() == {'base', 'upper'}
+    answer = tf.listener.call(
+        LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(frame='tool', relative_to='base'))
+    assert (answer.success, answer.message) == (
+        False, 'the pose depends on joint "lift", which has not been reported yet')
+    assert pose_of(tf, 'upper').z == 1.0
+    tf.wait_for('slide', joints.send({'lift': 0.25}))
+    bridge.wait_for_line('all joints have been reported now')
+    tf.listener.wait(lambda: len(poses) == 5 and 'finger' in transforms, lambda: poses)
+    assert tf.last['finger'].transform.translation.x == 0.5, 'the mimic follows its leader'
+    assert (pose_of(tf, 'tool').z, poses['tool'].pose.position.z) == (2.25, 2.25)
+
+
+def test_a_reload_keeps_what_was_reported(start, file, joints, tf):
+    start(file, 'watch:=false')
+    tf.wait_for('slide', joints.send({'lift': 0.25}))
+    tf.last.clear()
+    replace(file, ARM.format(tool=2))
+    assert reload(tf.listener).success
+    tf.listener.wait(lambda: tf.last.keys() == MOVED, lambda: tf.last)
+    assert (pose_of(tf, 'tool').x, pose_of(tf, 'tool').z) == (2.0, 2.25)
+
+
+def test_joints_that_do_not_follow_say_once_which_parameter_moves_them(start_bridge, file, tf):
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
+    assert reload(tf.listener).success
+    bridge.wait_for_line(' publishing ', 2)
+    lines = [line for line in bridge.lines if 'use_joint_states' in line]
+    assert len(lines) == 1
+    assert '3 joints that can move, for example "arm::turn", stay where the file says' in lines[0]
 
 
 def test_frames_follow_a_message(start, file, joints, tf):
@@ -274,7 +320,9 @@ def test_the_frame_of_poses_can_be_set_while_joints_move(start, file, joints, tf
 
 
 def test_topics_follow_a_reload_before_any_message(start_bridge, file, tf):
-    start_bridge('--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true')
+    start_bridge(
+        '--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true', '-p',
+        'unreported_joints:=zero')
     poses = listen_to_poses(tf, 'tool')
     tf.listener.wait(lambda: poses, lambda: 'a pose')
     replace(file, ARM.format(tool=2))

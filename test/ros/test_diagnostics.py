@@ -20,13 +20,13 @@ LIGHT = '<light name="i" type="point"><pose relative_to="x"/></light>'
 
 @pytest.fixture
 def status_of(make_node, tmp_path):
-    def status(text, *failure):
+    def status(text, *failure, unreported=()):
         path = tmp_path / 'cell.sdf'
         path.write_text(text, encoding='utf-8')
         node = make_node('bridge', '-p', f'sdf_file:={path}', '-p', 'root_frame:=map')
         loaded = loaded_scene_from_settings(settings_from_node(node))
         return status_from_scene(
-            loaded._replace(read_since_ns=LOADED_AT_NS), failure, 'left/bridge')
+            loaded._replace(read_since_ns=LOADED_AT_NS), failure, unreported, 'left/bridge')
     return status
 
 
@@ -48,6 +48,16 @@ def test_warnings_of_what_is_served_are_counted(status_of, count, words):
     assert status.message == f'serving cell.sdf with {words}'
 
 
+def test_joints_that_nobody_reports_are_a_warning(status_of):
+    status = status_of(GOOD, unreported=('arm/elbow', 'arm/wrist'))
+    assert status.level == DiagnosticStatus.WARN
+    assert status.message.startswith(
+        '2 joints have not been reported yet, for example "arm/elbow";')
+    values = {value.key: value.value for value in status.values}
+    assert values['joints not reported'] == '2'
+    assert values['first joint not reported'] == 'arm/elbow'
+
+
 def test_a_failed_load_is_an_error_whatever_is_served(status_of):
     status = status_of(with_lights(1), 'cell.sdf:3: first', 'cell.sdf:4: second')
     assert status.level == DiagnosticStatus.ERROR
@@ -62,12 +72,13 @@ def test_the_values_describe_what_is_served_and_what_is_wrong(status_of, tmp_pat
     assert values == {
         'file': str(tmp_path / 'cell.sdf'), 'root frame': 'map', 'frames': '2', 'transforms': '1',
         'files read': '1', 'last good load': '2026-01-02T03:04:05+00:00', 'warnings': '0',
-        'first warning': '', 'last error': 'first\nsecond'}
+        'first warning': '', 'last error': 'first\nsecond', 'joints not reported': '0',
+        'first joint not reported': ''}
 
 
 def test_each_message_has_the_time_of_the_node(make_node):
     node = make_node('bridge')
-    diagnostics = Diagnostics(node)
+    diagnostics = Diagnostics(node, tuple)
     before = node.get_clock().now().to_msg()
     diagnostics.publish()
     assert diagnostics._message.header.stamp.sec >= before.sec > 0

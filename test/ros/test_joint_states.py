@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What messages of joint states put on ``/tf``: which frames, with which stamp, and how often."""
 
+import math
 import time
 
 import pytest
@@ -25,6 +26,7 @@ from sdf_pose_bridge.ros.joint_states import TOPICS_PERIOD_S
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
 
@@ -55,10 +57,11 @@ def make_moving_frames(make_node):
     node = make_node('bridge')
     publishers = Publishers(node)
 
-    def moving_frames(text):
+    def moving_frames(text, unreported=UnreportedJoints.ZERO):
         scene = load_text(text)
         tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
-        frames = PublishedFrames(publishers, tree, JointPositions(scene, tree.moving.dofs), {})
+        positions = JointPositions(scene, tree.moving.dofs, unreported=unreported)
+        frames = PublishedFrames(publishers, tree, positions, {})
         publishers.opened(frames.moving.transforms_topic)
         return node, frames.moving
 
@@ -138,6 +141,46 @@ def test_a_second_message_with_one_stamp_is_not_published(published):
 
 def test_joints_that_no_message_has_named_are_published_too(published):
     assert published(joint_state(5, {'lift': 0.5})) == [(5, {'upper', 'slide', 'finger'})]
+
+
+@pytest.fixture
+def published_when_reported(published, states, moving_frames):
+    """Does what ``published`` does, with joints that have no position before a message."""
+    published(joint_state(1, dict.fromkeys(JOINTS, 0.0)))
+    _, frames = moving_frames(ARM, UnreportedJoints.NONE)
+    states.replace(frames)
+
+    def published_since(*messages):
+        return [each for each in published(*messages) if each[0] > 1]
+    return published_since
+
+
+def test_a_joint_that_no_message_has_named_moves_nothing(published_when_reported):
+    assert published_when_reported(
+        joint_state(5, {'lift': 0.5}), joint_state(6, {'turn': 0.5}),
+        joint_state(7, {'lift': 0.5}),
+    ) == [(5, {'slide'}), (6, {'upper'}), (7, {'slide'})]
+
+
+def test_a_value_that_is_no_position_reports_no_joint(published_when_reported):
+    assert published_when_reported(
+        joint_state(5, {'lift': math.nan, 'turn': 0.5}),
+        joint_state(6, {'lift': 1.0, 'turn': 0.5}),
+    ) == [(5, {'upper'}), (6, {'upper', 'slide'})]
+
+
+def test_joints_that_stay_unreported_are_named_once_and_then_that_none_is(
+        states, moving_frames, wait_until, capfd):
+    states.replace(moving_frames(ARM, UnreportedJoints.NONE)[1])
+    states.take(serialize_message(joint_state(5, {'lift': 0.5})))
+    assert states.unreported == ()
+    wait_until(lambda: states.unreported, 'two seconds')
+    assert states.unreported == ('turn', 'grip')
+    for sec in (6, 7):
+        states.take(serialize_message(joint_state(sec, dict.fromkeys(JOINTS, 0.0))))
+    log = capfd.readouterr().err
+    assert log.count('2 joints have not been reported yet, for example "turn"') == 1
+    assert log.count('all joints have been reported now') == 1
 
 
 def test_of_joints_that_are_known_those_that_move_are_published(published):

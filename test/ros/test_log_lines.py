@@ -6,6 +6,8 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from sdf_texts import fixed_joint
+from sdf_texts import joint
 from sdf_texts import world_file
 from tf_checks import tree_of
 
@@ -14,6 +16,8 @@ from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros.log_lines import line_about_detached_models
+from sdf_pose_bridge.ros.log_lines import line_about_joints_at_rest
+from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints
 from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
@@ -90,6 +94,26 @@ def test_frames_that_tf_cannot_forget_are_named():
     assert detached.startswith('1 frame without a parent now')
     assert detached.endswith('"a/l"')
     assert lines_about_lost_frames(tree('a', AnchorModels.NONE), tree('')) == []
+
+
+@pytest.mark.parametrize(('count', 'words'), [
+    (1, '1 joint has not been reported yet, for example "j0";'),
+    (3, '3 joints have not been reported yet, for example "j0";')])
+def test_joints_that_nobody_reports_are_counted(count, words):
+    assert line_about_unreported_joints([f'j{row}' for row in range(count)]).startswith(words)
+
+
+def test_joints_that_stand_still_are_counted_where_they_are_published():
+    ends = '<parent>a</parent><child>b</child>'
+    arm = ('<model name="{}">{}<link name="a"/><link name="b"/>'
+           + joint(ends, 'j', 'revolute') + fixed_joint('f', 'a', 'b') + '</model>')
+    still = arm.format('still', '<static>true</static>')
+    scene = load_text(world_file(arm.format('left', '') + arm.format('right', '') + still))
+    assert '2 joints that can move, for example "left::j", stay' in line_about_joints_at_rest(
+        scene, '')
+    assert '1 joint that can move, for example "right::j", stays' in line_about_joints_at_rest(
+        scene, 'right')
+    assert line_about_joints_at_rest(load_text(world_file(still)), '') == ''
 
 
 def test_models_without_a_transform_from_the_root_are_named():

@@ -9,6 +9,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import TransformStamped
 from rclpy.qos import DurabilityPolicy
 from rclpy.qos import QoSProfile
 from tf_checks import tree_of
@@ -17,6 +18,7 @@ from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
 
@@ -85,11 +87,12 @@ def test_another_tree_gets_another_stamp(node):
     assert first.stamp == same.stamp < other.stamp
 
 
-def frames_of_arm(publishers, before=None):
+def frames_of_arm(publishers, before=None, unreported=UnreportedJoints.ZERO):
     scene = load_text(ARM)
     tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
     return PublishedFrames(
-        publishers, tree, JointPositions(scene, tree.moving.dofs),
+        publishers, tree,
+        JointPositions(scene, tree.moving.dofs, unreported=unreported),
         {'upper': 'upper', 'base': 'base'}, before)
 
 
@@ -136,6 +139,21 @@ def test_after_a_reload_poses_have_the_stamps_of_the_tree_and_of_the_joints(node
     wait_until(node, lambda: {'upper', 'base'} <= dict(poses).keys(), poses)
     stamps = {name: (stamp.sec, stamp.nanosec) for name, stamp in poses}
     assert stamps == {'base': frames.stamp, 'upper': (5, 6)}
+
+
+def test_what_a_joint_without_a_position_moves_is_not_published(node, poses):
+    publishers, transforms = Publishers(node), []
+    node.create_subscription(TransformStamped, '/bridge/transforms', transforms.append, LATCHED)
+    before = frames_of_arm(publishers, unreported=UnreportedJoints.NONE)
+    node.executor.create_task(before.publish_topics)
+    wait_until(node, lambda: 'base' in dict(poses), poses)
+    assert 'upper' not in dict(poses)
+    before.moving.positions.is_reported[:] = True
+    before.moving.publish_topics(only_listeners=False)
+    wait_until(
+        node, lambda: 'upper' in dict(poses)
+        and 'upper' in [each.child_frame_id for each in transforms], poses)
+    assert [each.child_frame_id for each in transforms].count('upper') == 1
 
 
 def test_tf_has_the_quality_of_service_of_tf2_ros(node):

@@ -117,7 +117,7 @@ def test_a_wrong_position_leaves_the_others():
     selection = positions.selection(['x/j', 'y/j'])
     assert positions.update(selection, np.array([np.nan, 2.0])) == ['x/j']
     assert positions.values.tolist() == [0.0, 2.0]
-    assert positions.is_known.tolist() == [False, True]
+    assert positions.is_reported.tolist() == [False, True]
 
 
 def test_a_follower_moves_with_its_leader():
@@ -133,7 +133,7 @@ def test_a_follower_stays_while_its_leader_has_no_position():
         ENDS + '<axis><xyz>0 0 1</xyz></axis>', 'j', 'revolute') + following(), version='1.11'))
     assert update(positions, j=np.nan) == ['j']
     assert values_of(positions) == {'j': 0.0, 'k': 0.0}
-    assert not positions.is_known.any()
+    assert not positions.is_reported.any()
 
 
 def test_the_position_of_a_follower_can_be_given():
@@ -159,7 +159,7 @@ def test_joints_of_the_same_name_continue_in_another_scene():
         + joint('<parent>b</parent><child>c</child>', 'j', 'revolute')))
     after.take_over(before)
     assert values_of(after) == {'i': 0.0, 'j': 2.0}
-    assert after.is_known.tolist() == [name == 'j' for name in after.names]
+    assert after.is_reported.tolist() == [name == 'j' for name in after.names]
 
 
 # Scenes at a configuration

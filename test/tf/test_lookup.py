@@ -6,13 +6,16 @@ from matrices import assert_same_pose
 from matrices import matrix_from_degrees
 import numpy as np
 import pytest
+from sdf_texts import joint
 from sdf_texts import model_file
 from sdf_texts import world_file
 
 from sdf_pose_bridge import Kind
+from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.frame_ids import FrameNames
+from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
@@ -39,6 +42,30 @@ OPTICAL = np.array([[0.0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 def lookup_in(text, **options):
     scene = load_text(text, 'file.sdf')
     return PoseLookup(scene, tf_tree_from_scene(scene, TfOptions(**options)))
+
+
+ARM = model_file(
+    '<link name="base"/><link name="upper"/><link name="hand"/><frame name="tool" '
+    'attached_to="hand"/>'
+    + joint('<parent>base</parent><child>upper</child>', 'elbow', 'revolute')
+    + joint('<parent>upper</parent><child>hand</child>', 'wrist', 'revolute'))
+
+
+@pytest.mark.parametrize(('frame', 'relative_to', 'reported', 'missing'), [
+    ('upper', '', [], 'elbow'), ('upper', 'tool', ['elbow'], 'wrist'),
+    ('tool', 'base', ['wrist'], 'elbow'), ('tool', 'hand', [], ''), ('base', '', [], ''),
+    ('m::hand', 'm::upper', ['wrist'], ''), ('tool', 'm', ['elbow', 'wrist'], '')])
+def test_a_pose_behind_a_joint_needs_its_position(frame, relative_to, reported, missing):
+    scene = load_text(ARM)
+    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
+    joints = JointPositions(scene, tree.moving.dofs)
+    joints.update(joints.selection(reported), np.zeros(len(reported)))
+    lookup = PoseLookup(scene, tree, joints)
+    if missing:
+        with pytest.raises(JointPositionError, match=f'on joint "{missing}", which has not been'):
+            lookup.pose(frame, relative_to)
+    else:
+        assert lookup.pose(frame, relative_to).pose == (0, 0, 0, 0, 0, 0, 1)
 
 
 @pytest.fixture(name='lookup')

@@ -17,6 +17,8 @@ from sdf_texts import model_file
 from sdf_pose_bridge import Kind
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
@@ -33,6 +35,12 @@ ARM = (
 
 def moving_tree(text, **options):
     return tf_tree_from_scene(load_text(text), TfOptions(use_joint_states=True, **options))
+
+
+def known_positions(scene, tree, values):
+    joints = JointPositions(scene, tree.moving.dofs, unreported=UnreportedJoints.ZERO)
+    joints.values[:] = values
+    return joints
 
 
 def moving_ids(tree):
@@ -107,7 +115,7 @@ def test_poses_in_the_pose_frame_are_those_that_a_lookup_finds(pose_frame):
     for positions in (np.zeros(2), np.array([0.5, -1.2])):
         poses = tree.poses_in_pose_frame.copy()
         poses[tree.moving.posed_indices] = tree.moving.poses(positions)
-        lookup = PoseLookup(scene, tree, positions)
+        lookup = PoseLookup(scene, tree, known_positions(scene, tree, positions))
         expected = [lookup.pose(frame_id, pose_frame).pose for frame_id in tree.frame_ids]
         np.testing.assert_allclose(poses, expected, atol=1e-15)
 
@@ -115,13 +123,47 @@ def test_poses_in_the_pose_frame_are_those_that_a_lookup_finds(pose_frame):
 def test_a_lookup_follows_the_positions():
     scene = load_text(model_file(ARM + '<frame name="f" attached_to="b"/>'))
     tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
-    positions = np.zeros(2)
-    lookup = PoseLookup(scene, tree, positions)
+    joints = known_positions(scene, tree, np.zeros(2))
+    lookup = PoseLookup(scene, tree, joints)
     assert lookup.pose('m::b::s').pose[:3] == (1.0, 0.0, 0.0)
-    positions[0] = np.pi / 2
+    joints.values[0] = np.pi / 2
     for name in ('m::b::s', 'b/s', 'b/s_optical'):
         np.testing.assert_allclose(lookup.pose(name).pose[:3], [0.0, 1.0, 0.0], atol=1e-15)
     np.testing.assert_allclose(lookup.pose('b/s', 'f').pose[:3], [1.0, 0.0, 0.0], atol=1e-15)
+
+
+def test_transforms_need_the_positions_that_they_cross():
+    moving = moving_tree(
+        model_file(ARM + '<frame name="f" attached_to="c"/>'),
+        kinds=frozenset({Kind.FRAME, Kind.SENSOR}), anchor_models=AnchorModels.ALL).moving
+    # The sensor is behind the first joint, the frame behind both.
+    for known, expected in (
+            ([False, False], [False, False]), ([True, False], [True, False]),
+            ([False, True], [False, False]), ([True, True], [True, True])):
+        assert moving.has_transform(np.array(known)).tolist() == expected
+
+
+def test_joints_between_two_frames():
+    moving = moving_tree(model_file(ARM)).moving
+    base, middle, end = (
+        moving.last_dof_of_element(element) for element in (2, 3, 5))
+    assert (base, middle, end) == (-1, 0, 1)
+    assert moving.dofs_between(base, end) == [1, 0]
+    assert moving.dofs_between(end, middle) == [1]
+    assert moving.dofs_between(middle, middle) == []
+
+
+@given(st.data(), st.integers(2, 7))
+def test_poses_need_the_positions_between_them_and_the_pose_frame(data, count):
+    joints = data.draw(random_joints(count))
+    text = model_text([data.draw(POSES) for _ in range(count)], joints)
+    ids = tf_tree_from_scene(load_text(text)).frame_ids
+    moving = moving_tree(text, pose_frame=data.draw(st.sampled_from(['', *ids]))).moving
+    is_known = np.array([data.draw(st.booleans()) for _ in moving.dofs], np.bool_)
+    reference = -1 if moving._pose_frame < 0 else moving.last_dof_of_frame(moving._pose_frame)
+    assert moving.has_pose(is_known).tolist() == [
+        all(is_known[moving.dofs_between(moving.last_dof_of_frame(index), reference)])
+        for index in moving.posed_indices.tolist()]
 
 
 @given(st.data(), st.integers(2, 7))
