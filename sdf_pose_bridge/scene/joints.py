@@ -95,6 +95,9 @@ class JointChecks:
         leader = self._scopes.frame(self._scope_of[joint], name) if name else None
         if leader is None or leader not in self._elements.joints:
             msg = f'mimic joint="{name}" names no joint'
+        elif not self._is_found_by_parts(leader, self._scope_of[joint], name):
+            msg = (f'mimic joint="{name}" names no joint: libsdformat finds none in a model whose '
+                   f'own name holds "{SEPARATOR}"')
         elif mimic.axis not in AXIS_TAGS:
             msg = f'mimic axis="{mimic.axis}" must be one of {", ".join(AXIS_TAGS)}'
         elif (leader, AXIS_TAGS.index(mimic.axis)) == (joint, axis):
@@ -105,6 +108,17 @@ class JointChecks:
             return leader
         self._report(MimicError, msg, joint, mimic.joint.line, AXIS_TAGS[axis])
         return NO_ELEMENT
+
+    def _is_found_by_parts(self, leader: int, scope: int, name: str) -> bool:
+        """Return whether each part of a scoped name is the whole name of a model or joint."""
+        parents = self._elements.parents
+        if parents[leader] == scope:
+            return True
+        for part in reversed(name.split(SEPARATOR)):
+            if self._elements.names[leader] != part:
+                return False
+            leader = int(parents[leader])
+        return True
 
     def _are_ends_valid(self, ends: JointEnds) -> bool:
         joint, parent_index, child_index = ends.joint, ends.parent, ends.child

@@ -28,6 +28,9 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _XACRO_DECLARATIONS = ('xacro:arg', 'xacro:property')
 _XACRO_EXPRESSION = re.compile(r'\$[({]')
+_LOCATIONS = ('uri', 'filename', '_map')
+"""Ends of tags whose text is the location of something that no frame depends on, unless they stand
+in an include."""
 
 
 class Document(NamedTuple):
@@ -117,16 +120,31 @@ def _check_is_expanded(root: XmlElement, path: str, sources: Sources) -> None:
     Refuse a file that xacro has not expanded yet.
 
     It would be read, and would mean something else: macros are not called, and what ``<xacro:if>``
-    holds is left out. Only declarations, and expressions in plugins and names of topics, change no
-    frame.
+    holds is left out. Only declarations, and expressions in plugins, names of topics and locations
+    of meshes, change no frame; of such locations there is one warning.
     """
+    name = Path(path).name
+    locations = []
     for xml, found in _unexpanded(root):
-        name = Path(path).name
+        if root.tag == 'sdf' and not name.endswith('.xacro') and _is_location(xml, found):
+            locations.append((xml, found))
+            continue
         target = name.removesuffix('.xacro') if name.endswith('.xacro') else f'expanded_{name}'
         command = f': xacro {shlex.quote(name)} -o {shlex.quote(target)}' if '.' in name else ''
         msg = (f'{found} is for xacro, which has to be run before, and what it writes has to be '
                f'read{command}')
         raise ParsingError(msg, Place(path, sources.line(xml)))
+    for xml, found in locations[:1]:
+        msg = (f'{found} is for xacro or launch files and stays as it is, so nothing is found '
+               'there; no frame depends on it')
+        sources.warning(xml, msg)
+
+
+def _is_location(xml: XmlElement, found: str) -> bool:
+    """Return whether what is left to do in an element says where a mesh or the like is."""
+    parent = xml.getparent()
+    return found.startswith('"') and written_tag(xml).endswith(_LOCATIONS) and (
+        parent is not None and parent.tag != 'include')
 
 
 def _unexpanded(xml: XmlElement) -> Iterator[tuple[XmlElement, str]]:

@@ -136,9 +136,8 @@ _ITEM = re.compile(
     r'(?P<attribute>@?)(?P<name>[\w*]*)(?P<required>[!+]?)(?:=(?P<identifier>\w+(?:/\w+)?))?'
     r'(?P<value>:(?P<type>\w+)(?:\[(?P<minimum>[^,]*),(?P<maximum>.*)\])?)?')
 _KINDS = {kind.label: kind for kind in Kind}
-_UNREAD = frozenset({'population', 'road', 'state', *_KINDS})
-"""Elements that hold no frames; kinds are among them where the content of another one names them,
-such as the links of an actor."""
+_UNREAD = frozenset({'population', 'road', 'state'})
+"""Elements of which libsdformat makes no objects."""
 
 _VALUE_TYPES = {each.label: each for each in ValueType} | dict.fromkeys(CHOICES, ValueType.CHOICE)
 

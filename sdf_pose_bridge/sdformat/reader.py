@@ -64,6 +64,8 @@ from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
+_READ_ALREADY = definition_of('plugin')
+"""A definition by which children are not read."""
 _CHECKS = {'material': check_material, 'submesh': check_submesh}
 """Functions that check elements without a frame, by the identifiers of these."""
 _CHECKS_OF_UNREAD = {
@@ -210,6 +212,12 @@ class _Reader:
         path: str,
     ) -> tuple[Definition, int, int, str]:
         """Add an element to the table; return by what to read its children."""
+        if parent != NO_ELEMENT and self._builder.kinds[parent] == Kind.ACTOR:
+            # Links and joints of actors are read, but nothing can refer to them.
+            reader = _Reader(self._sources)
+            reader.read(xml, definition, path=path)
+            reader._builder.elements(self._sources.problems)
+            return _READ_ALREADY, NO_ELEMENT, scope, path
         has_name = 'name' in definition.attributes
         name = self._names.add(kind, xml, parent, path) if has_name else kind.label
         if name is None:

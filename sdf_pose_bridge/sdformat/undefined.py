@@ -62,7 +62,9 @@ class UndefinedReporter:
                 or parent_xml is None or self._is_only_counted()):
             return
         if tag == 'include':
-            self._sources.warning(xml, f'<include> in <{written_tag(parent_xml)}> is not read')
+            # One that is read anywhere else was replaced, or is reported already.
+            if parent.value_type is not None:
+                self._sources.warning(xml, f'<include> in <{written_tag(parent_xml)}> is not read')
             return
         hint = _ELEMENT_HINTS.get(f'{parent.identifier}/{tag}', '') or _ELEMENT_HINTS.get(tag, '')
         if not hint and tag in parent.attributes:

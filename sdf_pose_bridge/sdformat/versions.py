@@ -106,10 +106,10 @@ def convert(root: XmlElement, version: Version, sources: Sources) -> None:
     """
     _move_elements(root, version)
     if version < Version(1, 5):
-        _express_axes_in_model(root)
+        _express_axes_in_model(root, sources)
     if version < Version(1, 7):
         _rename_frame_attributes(root)
-        _convert_use_parent_model_frame(root)
+        _convert_use_parent_model_frame(root, sources)
     if version < Version(1, 8):
         # An <inertial> may be placed in nothing but its link; an empty attribute meant that.
         for pose in root.xpath('.//inertial/pose[@relative_to=""]'):
@@ -133,12 +133,12 @@ def _move_elements(root: XmlElement, version: Version) -> None:
                 noise.getparent().remove(noise)
 
 
-def _express_axes_in_model(root: XmlElement) -> None:
+def _express_axes_in_model(root: XmlElement, sources: Sources) -> None:
     """1.4 to 1.5: axes are given in the model frame if nothing else is said."""
     axes = '*[self::axis or self::axis2][not(use_parent_model_frame)]'
     for path in _MODELS:
-        for xyz in root.xpath(f'{path}/joint/{axes}/xyz[1]'):
-            xyz.set('expressed_in', MODEL_FRAME)
+        for axis in root.xpath(f'{path}/joint/{axes}'):
+            _express_in_model(axis, sources)
 
 
 def _rename_frame_attributes(root: XmlElement) -> None:
@@ -150,16 +150,24 @@ def _rename_frame_attributes(root: XmlElement) -> None:
             pose.set('relative_to', frame)
 
 
-def _convert_use_parent_model_frame(root: XmlElement) -> None:
+def _convert_use_parent_model_frame(root: XmlElement, sources: Sources) -> None:
     """1.6 to 1.7: ``axis/use_parent_model_frame`` becomes ``axis/xyz/@expressed_in``."""
     for flag in list(root.iter('use_parent_model_frame')):
         axis = flag.getparent()
         if axis is None or is_foreign(flag):
             continue
-        xyz = first_child(axis, 'xyz')
-        if boolean_from_text(text_of(flag)) and xyz is not None:
-            xyz.set('expressed_in', MODEL_FRAME)
+        if boolean_from_text(text_of(flag)):
+            _express_in_model(axis, sources)
         axis.remove(flag)
+
+
+def _express_in_model(axis: XmlElement, sources: Sources) -> None:
+    """Express an axis in the model frame; without an ``<xyz>`` that makes an empty one."""
+    xyz = first_child(axis, 'xyz')
+    if xyz is None:
+        xyz = etree.SubElement(axis, 'xyz')
+        sources.set_source(xyz, axis)
+    xyz.set('expressed_in', MODEL_FRAME)
 
 
 def _nest_scoped_elements(model: XmlElement, sources: Sources) -> None:
@@ -168,15 +176,23 @@ def _nest_scoped_elements(model: XmlElement, sources: Sources) -> None:
 
     Old libraries could not nest models. They wrote the content of an included model into the
     model around it, with such names, and a frame ``nested::__model__`` for its model frame.
+    libsdformat stops at the first model that is nested already: it nests elements of that one, but
+    no later ones of the model around, unless an earlier one has the same ``nested``.
 
     :raises ConversionError: if a moved element refers to something outside its new model.
     """
     nested_models: dict[str, XmlElement] = {}
+    is_stopped = False
     for child in list(child_elements(model)):
         scope, separator, name = attribute_of(child, 'name').partition(SEPARATOR)
+        if child.tag == 'model' and scope and not separator and not is_stopped:
+            _nest_scoped_elements(child, sources)
+            is_stopped = True
         if child.tag not in _SCOPED_TAGS or not separator or not scope or not name:
             continue
         if scope not in nested_models:
+            if is_stopped:
+                continue
             nested_models[scope] = etree.Element('model', {'name': scope})
             sources.set_source(nested_models[scope], child)
         prefix = scope + SEPARATOR

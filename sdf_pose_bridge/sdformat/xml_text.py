@@ -48,6 +48,8 @@ _TOKEN = re.compile(
 """A token, or the beginning of a tag, which attributes and ``_REST_OF_TAG`` follow."""
 _REST_OF_TAG = re.compile(r'\s*(?P<empty>/?)>')
 _REFERENCE = re.compile(r'&#(?:([0-9]+)|x([0-9a-fA-F]+));')
+_OTHER_SPACE = '\x0b\x0c'
+"""White space that XML does not have."""
 _NOT_XML = re.compile('[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]')
 """A character that XML does not have."""
 _REPLACEMENT = '\ufffd'
@@ -67,6 +69,8 @@ class _Replacement(NamedTuple):
 
 _CHARACTERS = _Replacement(
     _NOT_XML, _REPLACEMENT, 'U+{:04X} is no character of XML; it is replaced')
+_SPACES = _Replacement(
+    re.compile(f'[{_OTHER_SPACE}]'), ' ', 'U+{:04X} is no character of XML; it is read as a blank')
 _AMPERSANDS = _Replacement(
     re.compile(r'&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)'), '&amp;',
     '"&" is not the beginning of a known entity')
@@ -202,7 +206,7 @@ class _Repairer:
                 self._note('the declared XML version is not 1.0')
             return _blank(whole)
         if token['verbatim']:
-            whole = self._replaced(whole, _CHARACTERS)
+            whole = self._replaced(self._replaced(whole, _SPACES), _CHARACTERS)
         if (token['verbatim'] and is_outside) or (token['other'] and self._is_after_root()):
             return _blank(whole)
         return whole
@@ -233,7 +237,8 @@ class _Repairer:
     def _repaired_text(self, text: str) -> str:
         if ']]>' in text:
             self._note('"]]>" in text')
-        text = _REFERENCE.sub(self._repaired_reference, self._replaced(text, _CHARACTERS))
+        text = self._replaced(self._replaced(text, _SPACES), _CHARACTERS)
+        text = _REFERENCE.sub(self._repaired_reference, text)
         return self._replaced(text, _AMPERSANDS).replace(']]>', ']]&gt;')
 
     def _repaired_reference(self, reference: re.Match[str]) -> str:
@@ -242,7 +247,7 @@ class _Repairer:
         if 0 < code <= sys.maxunicode and not _NOT_XML.match(chr(code)):
             return reference[0]
         self._note(f'{reference[0][:20]} is no character of XML; it is replaced')
-        return _REPLACEMENT
+        return ' ' if 0 < code <= sys.maxunicode and chr(code) in _OTHER_SPACE else _REPLACEMENT
 
     def _replaced(self, text: str, replacement: _Replacement) -> str:
         pattern, new, fault = replacement

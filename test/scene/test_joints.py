@@ -147,6 +147,20 @@ def test_axis_can_mimic_another_one(file_with):
     assert follower.axes[0].mimic == (leading.element, 0, 1.0, 0.0, 0.0)
 
 
+@pytest.mark.parametrize(('model', 'is_found'), [('n', True), ('n::o', False)])
+def test_leader_in_a_model_whose_name_holds_the_separator_is_not_found(model, is_found):
+    leader = fixed_joint('j', 'world', 'k', '<axis><xyz>1 0 0</xyz></axis>')
+    follower = fixed_joint(
+        'i', 'world', 'a', f'<axis><xyz>1 0 0</xyz><mimic joint="{model}::j"/></axis>')
+    text = model_file(
+        f'<link name="a"/><model name="{model}"><link name="k"/>{leader}</model>{follower}',
+        version='1.6')
+    if is_found:
+        assert sdf_pose_bridge.load_text(text).joints[-1].axes[0].mimic is not None
+    else:
+        assert codes_of(text) == ['JOINT_AXIS_MIMIC_INVALID']
+
+
 @at_every_depth
 @pytest.mark.parametrize('ends', [
     ('a', 'b'), ('world', 'a'), ('on_a', 'b'), ('b', 'also_on_a'), ('a', 'n'), ('n::k', 'b'),

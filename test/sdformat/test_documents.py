@@ -180,6 +180,33 @@ def test_declarations_plugins_and_topics_may_stay():
     assert scene.warnings == ()
 
 
+MESH = ('<link name="l"><visual name="v"><geometry><mesh><uri>$(find arm)/arm.dae</uri></mesh>'
+        '</geometry></visual></link>')
+
+
+def test_location_of_a_mesh_may_stay_with_one_warning():
+    scene = load_text(sdf(MESH + '<link name="k">' + MESH[len('<link name="l">'):]))
+    assert 'm::k::v' in scene.names
+    (warning,) = scene.warnings
+    assert warning.message.startswith('"$(find arm)/arm.dae" in <uri> is for xacro')
+    assert warning.place.line == 2
+
+
+@pytest.mark.parametrize(('content', 'found'), [
+    ('<link name="${a}"/>', 'name="${a}" of <link>'),
+    ('<include><uri>$(find arm)/arm.sdf</uri></include>', '"$(find arm)/arm.sdf" in <uri>'),
+])
+def test_location_of_a_mesh_hides_nothing_else(content, found):
+    error = only_error(sdf(MESH + content))
+    assert error.message.startswith(f'{found} is for xacro')
+
+
+def test_location_of_a_mesh_in_a_file_for_xacro_is_refused(tmp_path):
+    (tmp_path / 'm.sdf.xacro').write_text(sdf(MESH), encoding='utf-8')
+    (error,) = errors_of_file(tmp_path / 'm.sdf.xacro')
+    assert error.code == 'PARSING_ERROR'
+
+
 def test_a_dollar_alone_is_no_expression():
     assert 'm::$a' in load_text(sdf('<link name="$a"/>')).names
 

@@ -60,6 +60,8 @@ INSERTION = STATE.format('<insertions><model name="m">{}</model></insertions>')
     (INSERTION, '<joint name="j" type="fixed"><child>x</child></joint>', 'parent'),
     ('<actor name="a">{}</actor>', '<joint name="j" type="fixed"><parent>x</parent></joint>',
      'child'),
+    ('<actor name="a">{}</actor>', '<joint name="j" type="fixed"><child>x</child></joint>',
+     'parent'),
 ])
 def test_joint_without_a_frame_must_have_its_parts(place, content, missing):
     error = only_error(world_file(place.format(content)))

@@ -61,6 +61,28 @@ def test_light_or_actor_at_the_top(tag):
     assert_at(scene, 'x', (1, 2, 3))
 
 
+LINK_OF_ACTOR = '<link name="l"><pose relative_to="nowhere">1 0 0 0 0 0</pose>{}</link>'
+
+
+@pytest.mark.parametrize(('content', 'code'), [
+    ('<visual name="v"><geometry/></visual>' * 2, 'DUPLICATE_NAME'),
+    ('<sensor name="s" type="nose"/>', 'ATTRIBUTE_INVALID'),
+    ('<visual name="v"><geometry/><material><script><name>n</name></script></material></visual>',
+     'ELEMENT_INVALID'),
+    ('<visual name="v"><pose>1 2</pose><geometry/></visual>', 'ELEMENT_INVALID'),
+])
+def test_wrong_content_of_a_link_of_an_actor_is_refused(content, code):
+    text = world_file(f'<actor name="a">{LINK_OF_ACTOR.format(content)}</actor>')
+    assert codes_of(text) == [code]
+
+
+def test_links_and_joints_of_an_actor_are_no_elements():
+    joint = '<joint name="j" type="fixed"><parent>l</parent><child>nowhere</child></joint>'
+    content = LINK_OF_ACTOR.format('<visual name="v"><geometry/></visual>')
+    scene = load_text(world_file(f'<actor name="a">{content * 2}{joint * 2}</actor>'))
+    assert (scene.names, scene.warnings) == (('world', 'a'), ())
+
+
 def test_world_beside_a_model():
     text = '<sdf version="1.9"><world name="w"/><model name="m"><link name="l"/></model></sdf>'
     assert load_text(text).names == ('world', '__root__', 'm', 'm::l')

@@ -105,5 +105,5 @@ def test_misspelt_element_of_an_include_is_a_warning_with_its_line(tmp_path):
 
 
 def test_include_where_none_is_read_has_a_warning_of_its_own():
-    scene = load_text(world_file('<actor name="a"><include><uri>u</uri></include></actor>'))
-    assert [each.message for each in scene.warnings] == ['<include> in <actor> is not read']
+    scene = load_text(model_file(LINK + '<pose><include><uri>u</uri></include></pose>'))
+    assert [each.message for each in scene.warnings] == ['<include> in <pose> is not read']

@@ -114,6 +114,18 @@ def test_default_frame_of_an_axis_in_an_old_nested_model_is_the_joint():
     assert frame_of_axis(model_file(LINK + inner, version='1.4')) is None
 
 
+@pytest.mark.parametrize(('axis', 'version'), [
+    ('', '1.4'), ('<use_parent_model_frame>1</use_parent_model_frame>', '1.6')])
+def test_axis_in_the_old_model_frame_must_have_a_direction(axis, version):
+    assert codes_of(file_with_axis(axis, version)) == ['ELEMENT_INVALID']
+
+
+@pytest.mark.parametrize(('axis', 'version'), [
+    ('', '1.5'), ('<use_parent_model_frame>0</use_parent_model_frame>', '1.4')])
+def test_axis_in_the_old_joint_frame_has_a_default_direction(axis, version):
+    assert 'm::j' in load_text(file_with_axis(axis, version)).names
+
+
 def test_old_flag_means_nothing_in_newer_files():
     axis = '<xyz>1 0 0</xyz><use_parent_model_frame>true</use_parent_model_frame>'
     assert frame_of_axis(file_with_axis(axis, '1.7')) is None
@@ -178,6 +190,20 @@ def test_name_with_the_same_beginning_stays():
 def test_models_are_nested_as_deep_as_their_names():
     scene = load_text(world('<link name="base"/><link name="a::b::c"/>'))
     assert scene.names[3:] == ('m::a', 'm::a::b', 'm::a::b::c')
+
+
+NESTED_ALREADY = '<model name="k"><link name="l"/><link name="p::a"/></model>'
+
+
+@pytest.mark.parametrize(('content', 'names'), [
+    (NESTED_ALREADY + '<link name="n::a"/>', ['k', 'k::l', 'k::p', 'k::p::a', 'n::a']),
+    ('<link name="n::a"/>' + NESTED_ALREADY + '<link name="n::b"/><link name="o::b"/>',
+     ['k', 'k::l', 'k::p', 'k::p::a', 'o::b', 'n', 'n::a', 'n::b']),
+    (NESTED_ALREADY + NESTED_ALREADY.replace('"k"', '"j"'),
+     ['k', 'k::l', 'k::p', 'k::p::a', 'j', 'j::l', 'j::p::a']),
+])
+def test_a_model_that_is_nested_already_stops_the_conversion(content, names):
+    assert names_of(load_text(world(content)))[1:] == [f'm::{name}' for name in names]
 
 
 def test_world_stays_the_parent_of_a_joint():

@@ -36,6 +36,8 @@ def test_text_that_libsdformat_refuses_is_not_repaired(text):
     (b'<a>&e;</a>', '&e;'),
     (b'<a>&#x41;&lt;</a>', 'A<'),
     (b'<a>]]></a>', ']]>'),
+    (b'<a>1\v2\f3&#12;4</a>', '1 2 3 4'),
+    (b'<a><![CDATA[1\v2]]></a>', '1 2'),
     (b'<a><![CDATA[& --]]></a>', '& --'),
     (b'<a><!-- a -- b --->c</a>', None),
     (b'<a>\xe9</a>', '\u00e9'),

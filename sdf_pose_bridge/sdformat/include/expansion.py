@@ -34,6 +34,7 @@ from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.sdformat.documents import Document
 from sdf_pose_bridge.sdformat.documents import document_from_file
+from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.merge import merge
 from sdf_pose_bridge.sdformat.include.merge import ModelByItself
@@ -113,7 +114,8 @@ class IncludeExpansion:
     def _expand_in(self, root: XmlElement, files: tuple[str, ...]) -> None:
         """Replace the includes in a tree; ``files`` led to it, each included by the one before."""
         for include in list(root.iter('include')):
-            if all(map(_may_hold_includes, include.iterancestors())):
+            parent = include.getparent()
+            if parent is not None and _definition_in_tree(parent) is not None:
                 self._expand_include(include, files)
                 if include.getparent() is not None:
                     self._mark_missing(include)
@@ -344,8 +346,10 @@ class IncludeExpansion:
     def _insert(self, include: XmlElement, top: XmlElement) -> None:
         parent = include.getparent()
         assert parent is not None
-        if parent.tag == 'model' and top.tag != 'model':
-            msg = f'the included {written_tag(top)} is left out; a model can include only models'
+        definition = _definition_in_tree(parent)
+        if definition is None or top.tag not in definition.children:
+            msg = (f'the included {written_tag(top)} is left out; a <{written_tag(parent)}> '
+                   'cannot hold one')
             self._sources.warning(include, msg)
             parent.remove(include)
         else:
@@ -362,8 +366,18 @@ def _steps_of_copy(top: XmlElement) -> int:
         len(etree.tostring(top, with_tail=False)) // CHARACTERS_OF_STEP)
 
 
-def _may_hold_includes(xml: XmlElement) -> bool:
-    return xml.tag in ('model', 'world') or (xml.tag == 'sdf' and xml.getparent() is None)
+def _definition_in_tree(xml: XmlElement) -> Definition | None:
+    """Return the definition of an element that may hold others; None if it is not read."""
+    parent = xml.getparent()
+    if parent is None:
+        # The copy of an included element has no <sdf> around it yet.
+        is_top = xml.tag in ('sdf', *_TOP_TAGS)
+        return definition_of(str(xml.tag), has_frames=True) if is_top else None
+    outer = _definition_in_tree(parent)
+    definition = None if outer is None else outer.children.get(xml.tag)
+    if definition is None or definition.value_type is not None or definition.takes_any_children:
+        return None
+    return definition
 
 
 def _name_from_uri(uri: str) -> str:

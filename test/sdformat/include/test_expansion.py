@@ -217,6 +217,45 @@ def test_64_files_inside_one_another_are_read(tmp_path):
     assert len(load(write_chain(tmp_path, 64)).files) == 64
 
 
+# Includes elsewhere than in models and worlds
+
+LIGHT = '<sdf version="1.9"><light name="lamp" type="point"><pose>9 0 0 0 0 0</pose></light></sdf>'
+
+
+def in_link(content):
+    return ('<model name="m"><link name="l"><pose>5 0 0 0 0 0</pose>' + content
+            + '</link></model>')
+
+
+def test_light_is_included_in_a_link(scene_of):
+    scene = scene_of(in_link(include('lamp.sdf', '<pose>0 2 0 0 0 0</pose>')), lamp=LIGHT)
+    assert_at(scene, 'm::l::lamp', (5, 2, 0))
+    assert scene.warnings == ()
+
+
+@pytest.mark.parametrize(('place', 'name'), [
+    (in_link('{}'), 'm::l::leaf'), (in_link('<visual name="v"><geometry/>{}</visual>'), 'leaf')])
+def test_model_that_is_included_where_none_can_be_is_left_out_with_a_warning(
+    scene_of, place, name,
+):
+    scene = scene_of(place.format(include()))
+    assert name not in scene.names
+    (warning,) = scene.warnings
+    assert warning.message.startswith('the included model is left out')
+
+
+@pytest.mark.parametrize(('content', 'code'), [
+    ('<include/>', 'ATTRIBUTE_MISSING'), (include('nothing.sdf'), 'URI_LOOKUP'),
+    (include(attributes='merge="true"'), 'MERGE_INCLUDE_UNSUPPORTED'),
+])
+@pytest.mark.parametrize('place', [
+    in_link('{}'),
+    '<model name="m"><link name="l"/>' + fixed_joint('j', 'world', 'l', '{}') + '</model>'])
+def test_wrong_include_in_a_link_or_a_joint_is_refused(errors_in, place, content, code):
+    (error,) = errors_in(place.format(content))
+    assert error.code == code
+
+
 # Missing includes that are skipped
 
 def test_missing_include_is_skipped_with_what_refers_to_it(write):
