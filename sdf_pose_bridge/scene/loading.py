@@ -72,7 +72,8 @@ def load(
         those of the environment variables ``GZ_SIM_RESOURCE_PATH`` and ``SDF_PATH``.
     :param on_missing_include: ``error``, or ``skip`` to leave out includes that are not found.
     :param limits: what the load may use; hostile files that need more are refused.
-    :param shapes: whether to read the shapes of visuals and collisions too.
+    :param shapes: whether to read the shapes of visuals and collisions, and the dynamics of
+        joints, too.
     :param texts: what to read instead of some files, by their paths as in ``Scene.files``: to see
         what a change would mean before it is made.
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.

@@ -23,6 +23,7 @@ from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.geometry.poses import transformed_points
+from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.frame_graph import FrameGraph
 from sdf_pose_bridge.scene.joints import JointEnds
@@ -33,6 +34,8 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.inertials import Inertial
+from sdf_pose_bridge.sdformat.inertials import moments_from_matrix
 from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
 
 _Details = TypeVar('_Details')
@@ -49,7 +52,7 @@ def scene_from_graph(
     :param problems: has the warnings of the load.
     """
     poses = _root_poses(elements, graph)
-    _set_automatic_inertials(poses, elements)
+    computed_inertials = _place_automatic_inertials(poses, elements)
     count = len(elements.names)
     is_kept = np.ones(count, dtype=bool)
     is_kept[list(graph.unresolved)] = False
@@ -85,7 +88,15 @@ def scene_from_graph(
             _joint(ends, elements, poses, new_index_of)
             for ends in graph.joints if is_kept[ends.joint]),
         sensors=kept(elements.sensors),
+        inertials=kept({
+            index: inertial
+            for index, inertial in {**elements.inertials, **computed_inertials}.items()
+            if isinstance(inertial, Inertial)}),
+        has_shapes=elements.has_shapes,
         shapes=kept(elements.shapes),
+        urdf_texts=kept({
+            model: details.urdf_texts for model, details in elements.models.items()
+            if details.urdf_texts}),
         lines=elements.lines[is_kept],
         pose_lines=elements.pose_lines[is_kept],
         includes=kept(elements.includes),
@@ -112,7 +123,8 @@ def _joint(
             _axis_in_joint(axis.xyz, expressed_in, ends.joint, poses), axis.lower, axis.upper,
             None if mimic is None or leader == NO_ELEMENT else Mimic(
                 leader, AXIS_TAGS.index(mimic.axis), mimic.multiplier, mimic.offset,
-                mimic.reference)))
+                mimic.reference),
+            axis.dynamics))
     return Joint(
         new_index_of[ends.joint], details.type, new_index_of[ends.parent],
         new_index_of[ends.child], (axes[0], axes[1]), details.screw_pitch_m)
@@ -130,20 +142,37 @@ def _root_poses(elements: Elements, graph: FrameGraph) -> PoseArray:
     return canonical_poses(resolved)
 
 
-def _set_automatic_inertials(root_poses: PoseArray, elements: Elements) -> None:
-    """Move automatic inertials to the centers of mass of their links' collisions, in place."""
+def _place_automatic_inertials(root_poses: PoseArray, elements: Elements) -> dict[int, Inertial]:
+    """
+    Move automatic inertials to the centers of mass of their links' collisions, in place.
+
+    :return: what they are, with the axes of their links.
+    """
     collisions: dict[int, list[int]] = {}
     if elements.automatic_inertials:
         for index in np.flatnonzero(elements.kinds == Kind.COLLISION).tolist():
             collisions.setdefault(int(elements.parents[index]), []).append(index)
-    for index, masses in elements.automatic_inertials.items():
+    inertials = {}
+    for index, (parts, mass_kg) in elements.automatic_inertials.items():
         link = int(elements.parents[index])
         points = transformed_points(
             root_poses[collisions[link]],
-            np.array([(0.0, 0.0, mass.center_z_m) for mass in masses]))
-        root_poses[index, :3] = np.average(
-            points, axis=0, weights=[mass.mass_kg for mass in masses])
+            np.array([(0.0, 0.0, part.center_z_m) for part in parts]))
+        masses = np.array([part.mass_kg for part in parts])
+        root_poses[index, :3] = np.average(points, axis=0, weights=masses)
         root_poses[index, 3:] = root_poses[link, 3:]
+        to_link = matrix_from_quaternion(root_poses[link, 3:]).T
+        axes = to_link @ matrix_from_quaternion(root_poses[collisions[link], 3:])
+        moments = np.array([part.moments_kg_m2 for part in parts])
+        offsets = (points - root_poses[index, :3]) @ to_link.T
+        # Steiner's theorem.
+        matrix = np.einsum('nij,nj,nkj->ik', axes, moments, axes) + (
+            np.eye(3) * (masses @ (offsets ** 2).sum(axis=1))
+            - np.einsum('n,ni,nj->ij', masses, offsets, offsets))
+        scale = 1.0 if mass_kg is None else mass_kg / masses.sum()
+        inertials[index] = Inertial(
+            float(scale * masses.sum()), moments_from_matrix(scale * matrix))
+    return inertials
 
 
 def _axis_in_joint(

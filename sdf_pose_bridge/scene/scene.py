@@ -24,6 +24,9 @@ from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.scene.frame_graph import default_references
 from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.inertials import Inertial
+from sdf_pose_bridge.sdformat.joints import Dynamics
+from sdf_pose_bridge.sdformat.joints import NO_DYNAMICS
 from sdf_pose_bridge.sdformat.shapes import Shape
 
 
@@ -53,6 +56,8 @@ class JointAxis(NamedTuple):
     upper: float = math.inf
     """Upper limit of the position, in radians or metres."""
     mimic: Mimic | None = None
+    dynamics: Dynamics = NO_DYNAMICS
+    """What it does against a motion; nothing unless the load was to read shapes."""
 
 
 class Joint(NamedTuple):
@@ -112,8 +117,15 @@ class Scene:
     """All joints, in file order."""
     sensors: Mapping[int, SensorDetails]
     """Details of each sensor, by its index."""
+    inertials: Mapping[int, Inertial]
+    """Masses and moments of inertia, by the indices of inertials; automatic ones where they are
+    computed."""
+    has_shapes: bool
+    """Whether the load was to read shapes."""
     shapes: Mapping[int, Shape]
     """The shapes of visuals and collisions, by index; empty unless the load was to read them."""
+    urdf_texts: Mapping[int, tuple[str, ...]]
+    """The XML of the elements in models that are URDF, by the indices of models that have some."""
     lines: Indices
     """The line of each element; 0 where it is not known."""
     pose_lines: Indices

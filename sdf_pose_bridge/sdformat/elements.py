@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from collections.abc import Sequence
 from dataclasses import dataclass
 from dataclasses import field
+from functools import cached_property
 from typing import Any
 from typing import NamedTuple
 
@@ -20,8 +21,9 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.automatic_inertials import CollisionMass
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.inertials import AutomaticInertial
+from sdf_pose_bridge.sdformat.inertials import Inertial
 from sdf_pose_bridge.sdformat.joints import JointDetails
 from sdf_pose_bridge.sdformat.poses import PoseFormat
 from sdf_pose_bridge.sdformat.poses import poses_from_texts
@@ -42,6 +44,8 @@ class ModelDetails(NamedTuple):
     """Value of the attribute; empty for the default."""
     placement_frame: str
     """The frame that the pose places; empty for the model frame."""
+    urdf_texts: tuple[str, ...]
+    """The XML of the elements in it that are URDF."""
 
 
 class FrameDetails(NamedTuple):
@@ -93,6 +97,8 @@ class Elements:
     unit quaternion x y z w; the identity for an element without ``<pose>``."""
     paths: Sequence[str]
     """The files of the load."""
+    has_shapes: bool = False
+    """Whether shapes were asked for."""
     relative_to: Mapping[int, str] = field(default_factory=dict)
     """The frames that poses are relative to, where they are given."""
     models: Mapping[int, ModelDetails] = field(default_factory=dict)
@@ -101,8 +107,8 @@ class Elements:
     sensors: Mapping[int, SensorDetails] = field(default_factory=dict)
     shapes: Mapping[int, Shape] = field(default_factory=dict)
     """The shapes of visuals and collisions; empty unless they were asked for."""
-    automatic_inertials: Mapping[int, tuple[CollisionMass, ...]] = field(default_factory=dict)
-    """For each inertial that is computed: the masses of its link's collisions in their order."""
+    inertials: Mapping[int, Inertial | AutomaticInertial] = field(default_factory=dict)
+    """Without automatic ones that cannot be computed."""
     includes: Mapping[int, Place] = field(default_factory=dict)
     """For each element that an include is about: the place of the ``<include>``."""
     missing_includes: Mapping[int, Mapping[str, str]] = field(default_factory=dict)
@@ -110,6 +116,13 @@ class Elements:
     empty name is that of a merge, which could have had elements of any name."""
     _known_paths: dict[int, str] = field(default_factory=dict, init=False, repr=False)
     """Paths of some elements, which :meth:`place` has made."""
+
+    @cached_property
+    def automatic_inertials(self) -> Mapping[int, AutomaticInertial]:
+        """The inertials that are computed."""
+        return {
+            index: inertial for index, inertial in self.inertials.items()
+            if isinstance(inertial, AutomaticInertial)}
 
     def kind(self, index: int) -> Kind:
         """Return the kind of an element."""
@@ -153,7 +166,8 @@ class Elements:
 class ElementsBuilder:
     """The table while it grows."""
 
-    def __init__(self, paths: Sequence[str]) -> None:
+    def __init__(self, paths: Sequence[str], *, has_shapes: bool = False) -> None:
+        self._has_shapes = has_shapes
         self.kinds = array('B')
         self.names: list[str] = []
         self.parents = array('i')
@@ -211,7 +225,7 @@ class ElementsBuilder:
             parents=_indices(self.parents), scopes=_indices(self._scopes),
             file_indices=_indices(self.file_indices), lines=_indices(self.lines),
             pose_lines=_indices(self.pose_lines), poses=np.tile(Pose(), (len(self.names), 1)),
-            paths=self._paths, **self.details)
+            paths=self._paths, has_shapes=self._has_shapes, **self.details)
         for pose_format, (indices, texts) in self._poses.items():
             result = poses_from_texts(texts, pose_format)
             table.poses[indices] = result.poses

@@ -49,6 +49,22 @@ class MimicDetails(NamedTuple):
     reference: float
 
 
+class Dynamics(NamedTuple):
+    """What a joint does against a motion; forces for those that slide, torques for others."""
+
+    effort: float = math.inf
+    """Largest force in newtons, or torque in newton metres; not negative."""
+    velocity: float = math.inf
+    """Largest velocity, in metres or radians per second; not negative."""
+    damping: float = 0.0
+    """Force or torque for a velocity of 1."""
+    friction: float = 0.0
+    """Force or torque without a velocity."""
+
+
+NO_DYNAMICS = Dynamics()
+
+
 class AxisDetails(NamedTuple):
     """An axis of a joint."""
 
@@ -61,6 +77,7 @@ class AxisDetails(NamedTuple):
     upper: float
     """Upper limit of the position, in radians or metres."""
     mimic: MimicDetails | None
+    dynamics: Dynamics
 
 
 class JointDetails(NamedTuple):
@@ -80,15 +97,19 @@ class JointDetails(NamedTuple):
 _NO_REFERENCE = Reference('')
 
 
-def joint_details_from_element(xml: XmlElement, sources: Sources) -> JointDetails:
+def joint_details_from_element(
+    xml: XmlElement, sources: Sources, *, reads_dynamics: bool,
+) -> JointDetails:
     """
     Read a joint.
 
+    :param reads_dynamics: whether to read effort, velocity, damping and friction.
     :return: its details. References are empty where they are missing or reserved.
     """
     joint_type = attribute_of(xml, 'type').lower()
     has_thread = joint_type in JOINT_TYPES and JOINT_TYPES[joint_type].has_thread
-    axis, axis2 = (_axis(xml, tag, sources) for tag in AXIS_TAGS)
+    axis, axis2 = (
+        _axis(xml, tag, sources, reads_dynamics=reads_dynamics) for tag in AXIS_TAGS)
     return JointDetails(
         joint_type,
         _end(xml, 'parent', joint_type, sources),
@@ -121,7 +142,9 @@ def _end(xml: XmlElement, tag: str, joint_type: str, sources: Sources) -> Refere
     return Reference(name, sources.line(element))
 
 
-def _axis(joint: XmlElement, tag: str, sources: Sources) -> AxisDetails | None:
+def _axis(
+    joint: XmlElement, tag: str, sources: Sources, *, reads_dynamics: bool,
+) -> AxisDetails | None:
     axis = first_child(joint, tag)
     if axis is None:
         return None
@@ -137,7 +160,21 @@ def _axis(joint: XmlElement, tag: str, sources: Sources) -> AxisDetails | None:
         (upper,) = numbers_of_child(limit, 'upper', (upper,))
     mimic = first_child(axis, 'mimic')
     return AxisDetails(
-        (x, y, z), expressed_in, lower, upper, None if mimic is None else _mimic(mimic, sources))
+        (x, y, z), expressed_in, lower, upper, None if mimic is None else _mimic(mimic, sources),
+        _dynamics(axis) if reads_dynamics else NO_DYNAMICS)
+
+
+def _dynamics(axis: XmlElement) -> Dynamics:
+    values = NO_DYNAMICS._asdict()
+    for tag, names in (('limit', ('effort', 'velocity')), ('dynamics', ('damping', 'friction'))):
+        part = first_child(axis, tag)
+        if part is None:
+            continue
+        for name in names:
+            (value,) = numbers_of_child(part, name, (values[name],))
+            # A limit below zero is how older files say that there is none.
+            values[name] = math.inf if tag == 'limit' and value < 0.0 else value
+    return Dynamics(**values)
 
 
 def _mimic(xml: XmlElement, sources: Sources) -> MimicDetails:

@@ -15,6 +15,8 @@ from itertools import chain
 from itertools import islice
 from typing import Any
 
+from lxml import etree
+
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import AttributeMissingError
 from sdf_pose_bridge.errors import DuplicateNameError
@@ -23,7 +25,6 @@ from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.sdformat.automatic_inertials import collision_masses
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.elements import FrameDetails
@@ -33,6 +34,7 @@ from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.inertials import inertial_from_element
 from sdf_pose_bridge.sdformat.joints import check_children_of_joint
 from sdf_pose_bridge.sdformat.joints import joint_details_from_element
 from sdf_pose_bridge.sdformat.poses import pose_format_of
@@ -45,6 +47,7 @@ from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sibling_names import SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import CAMERA_TYPES
+from sdf_pose_bridge.sdformat.specification import URDF_TAGS
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.values import choice_fault
@@ -116,16 +119,17 @@ class _Reader:
     def __init__(self, sources: Sources, *, shapes: bool = False) -> None:
         self._sources = sources
         self._deepest = sources.usage.limits.depth
-        self._builder = ElementsBuilder(sources.paths)
+        self._builder = ElementsBuilder(sources.paths, has_shapes=shapes)
         self._names = SiblingNames(self._builder, sources)
         self._undefined = UndefinedReporter(sources)
         self._file_indices = sources.file_indices
         self._readers_of_details: dict[Kind, tuple[str, Callable[[XmlElement], Any]]] = {
             Kind.MODEL: ('models', _model_details),
             Kind.FRAME: ('frames', partial(_frame_details, sources=sources)),
-            Kind.JOINT: ('joints', partial(joint_details_from_element, sources=sources)),
+            Kind.JOINT: ('joints', partial(
+                joint_details_from_element, sources=sources, reads_dynamics=shapes)),
             Kind.SENSOR: ('sensors', _sensor_details),
-            Kind.INERTIAL: ('automatic_inertials', partial(collision_masses, sources=sources)),
+            Kind.INERTIAL: ('inertials', partial(inertial_from_element, sources=sources)),
         }
         """What only some kinds have: the field of the elements, and what reads it or None."""
         if shapes:
@@ -306,7 +310,10 @@ class _Reader:
 def _model_details(xml: XmlElement) -> ModelDetails:
     return ModelDetails(
         boolean_from_text(child_value(xml, 'static')) is True,
-        frame_of_attribute(xml, 'canonical_link'), frame_of_attribute(xml, 'placement_frame'))
+        frame_of_attribute(xml, 'canonical_link'), frame_of_attribute(xml, 'placement_frame'),
+        tuple(
+            etree.tostring(child, encoding='unicode', with_tail=False)
+            for child in child_elements(xml, *URDF_TAGS)))
 
 
 def _frame_details(xml: XmlElement, sources: Sources) -> FrameDetails:

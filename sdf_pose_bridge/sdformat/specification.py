@@ -86,6 +86,9 @@ URDF_JOINT_TYPES: Mapping[str, UrdfJointType] = {
 }
 """The types of joints by the names that they have in URDF."""
 
+URDF_TAGS = ('ros2_control', 'transmission', 'gazebo')
+"""The elements of URDF that users write into a ``<model>``, which SDFormat does not define."""
+
 
 class Choice(NamedTuple):
     """The texts that a value can be."""

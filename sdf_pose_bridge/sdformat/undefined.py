@@ -14,6 +14,7 @@ from collections.abc import Iterable
 from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.specification import URDF_TAGS
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
@@ -23,6 +24,7 @@ _ELEMENT_HINTS = {
     'sensor/ignition_frame_id': 'it is used all the same',
     'gz_frame_id': 'Gazebo looks for it in <sensor>',
     'ignition_frame_id': 'Gazebo looks for it in <sensor>',
+    **{f'model/{tag}': 'URDF that is made of the model has it' for tag in URDF_TAGS},
 }
 """The ends of messages about elements, by tag, or parent and tag."""
 

@@ -140,3 +140,26 @@ def test_pitch_of_a_screw_joint(content, pitch_m):
     loaded, = load_text(model_file(
         TWO_LINKS + joint(ends + content, joint_type='screw'))).joints
     assert loaded.screw_pitch_m == pytest.approx(pitch_m)
+
+
+def dynamics_of(content, **options):
+    axis = f'<parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz>{content}</axis>'
+    scene = load_text(
+        model_file(TWO_LINKS + joint(axis, joint_type='revolute')), **options)
+    return scene.joints[0].axes[0].dynamics
+
+
+@pytest.mark.parametrize(('content', 'dynamics'), [
+    ('', (math.inf, math.inf, 0, 0)),
+    ('<limit/>', (math.inf, math.inf, 0, 0)),
+    ('<limit><effort>-1</effort><velocity>-1</velocity></limit>', (math.inf, math.inf, 0, 0)),
+    (('<limit><effort>0</effort><velocity>2</velocity></limit>'
+      '<dynamics><damping>.1</damping><friction>.2</friction></dynamics>'), (0, 2, 0.1, 0.2)),
+])
+def test_axis_has_dynamics(content, dynamics):
+    assert dynamics_of(content, shapes=True) == dynamics
+
+
+def test_dynamics_are_not_read_unless_they_are_asked_for():
+    content = '<dynamics><damping>.1</damping></dynamics>'
+    assert dynamics_of(content).damping == 0.0

@@ -424,3 +424,16 @@ def test_sensor_with_a_camera(content, is_camera, optical_frame_id):
     ('camera', True), ('rgbd_camera', True), ('gpu_lidar', False)])
 def test_sensor_of_the_type_of_a_camera(sensor_type, is_camera):
     assert sensor_with('', sensor_type).is_camera == is_camera
+
+
+# What is URDF
+
+def test_elements_of_urdf_are_kept_as_they_are_written():
+    transmission = '<transmission name="t"><!-- a --><joint name="j">\n</joint></transmission>'
+    scene = load_text(model_file(
+        f'{LINK}<ros2_control name="c"/>\n{transmission} <model name="n">{LINK}</model>'))
+    assert dict(scene.urdf_texts) == {
+        scene.index('m'): ('<ros2_control name="c"/>', transmission)}
+    assert [warning.message for warning in scene.warnings] == [
+        f'<{tag}> in <model> is not defined in SDFormat; URDF that is made of the model has it'
+        for tag in ('ros2_control', 'transmission')]

@@ -1,15 +1,21 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Automatic inertials: the centers of mass of collisions."""
+"""Masses and moments of inertia, and automatic ones with the centers of mass of collisions."""
 
 import math
 
+from hypothesis import given
+from hypothesis import strategies as st
+import numpy as np
 import pytest
 from sdf_texts import codes_of
 from sdf_texts import link_with
 from sdf_texts import model_file
 
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge.sdformat.inertials import Inertial
+from sdf_pose_bridge.sdformat.inertials import matrix_from_moments
+from sdf_pose_bridge.sdformat.inertials import moments_from_matrix
 
 AUTO = '<inertial auto="true"/>'
 UNIT_BOX = '<box><size>1 1 1</size></box>'
@@ -25,7 +31,81 @@ def center_of(content):
     return load_text(link_with(content)).pose('m::l::inertial')
 
 
-# What cannot be computed
+def inertial_of(content):
+    scene = load_text(link_with(content))
+    assert scene.warnings == ()
+    return scene.inertials[scene.index('m::l::inertial')]
+
+
+def inertia(*moments, mass='2'):
+    values = zip(('ixx', 'iyy', 'izz', 'ixy', 'ixz', 'iyz'), moments, strict=True)
+    content = ''.join(f'<{tag}>{value}</{tag}>' for tag, value in values)
+    return f'<inertial><mass>{mass}</mass><inertia>{content}</inertia></inertial>'
+
+
+# What libsdformat refuses, although no pose depends on it
+
+@pytest.mark.parametrize('content', [
+    inertia(1, 1, 1, 0, 0, 0, mass=-1),
+    inertia(1, 1, 3, 0, 0, 0),
+    inertia(-1, 1, 1, 0, 0, 0),
+    inertia(1, 1, 1, 0, 2, 0),
+    inertia('nan', 1, 1, 0, 0, 0),
+    inertia('inf', 1, 1, 0, 0, 0),
+])
+def test_moments_that_no_body_can_have_are_a_warning(content):
+    scene = load_text(link_with(f'\n{content}'), 'm.sdf')
+    (warning,) = scene.warnings
+    assert (warning.code, warning.place.line) == ('LINK_INERTIA_INVALID', 2)
+    assert 'moments of inertia of link "l"' in warning.message
+
+
+@pytest.mark.parametrize('content', [
+    inertia(1, 1, 2, 0, 0, 0),  # a plate
+    inertia(0, 0, 0, 0, 0, 0),  # a point
+    inertia(0, 0, 0, 0, 0, 0, mass=0),
+    inertia(0.1, 0.2, 0.1 + 0.2, 0, 0, 0),
+    inertia(2, 2, 2, 0.1, -0.1, 0.1),
+])
+def test_moments_of_bodies_give_no_warning(content):
+    inertial_of(content)
+
+
+@given(st.lists(st.tuples(*[st.floats(-1.0, 1.0)] * 3), min_size=1, max_size=4))
+def test_moments_of_points_are_valid(points):
+    points = np.array(points)
+    matrix = np.eye(3) * (points ** 2).sum() - points.T @ points
+    assert Inertial(1.0, moments_from_matrix(matrix)).is_valid
+
+
+@given(st.lists(st.floats(-1.0, 1.0), min_size=6, max_size=6))
+def test_validity_is_that_of_the_principal_moments(moments):
+    smallest, middle, largest = np.linalg.eigvalsh(matrix_from_moments(moments))
+    margin = min(smallest, smallest + middle - largest)
+    if abs(margin) > 1e-9:
+        assert Inertial(1.0, tuple(moments)).is_valid is bool(margin > 0.0)
+
+
+# What is written
+
+@pytest.mark.parametrize(('content', 'mass_kg', 'moments'), [
+    ('<inertial/>', 1, (1, 1, 1, 0, 0, 0)),
+    ('<inertial><mass>3</mass></inertial>', 3, (1, 1, 1, 0, 0, 0)),
+    ('<inertial><inertia><iyy>1.5</iyy><ixz>.1</ixz></inertia></inertial>',
+     1, (1, 1.5, 1, 0, 0.1, 0)),
+    (inertia(1, 1.1, 1.2, 0.1, 0.2, 0.3), 2, (1, 1.1, 1.2, 0.1, 0.2, 0.3)),
+    ('<inertial><mass/></inertial>', 1, (1, 1, 1, 0, 0, 0)),
+])
+def test_inertial_has_mass_and_moments(content, mass_kg, moments):
+    assert inertial_of(content) == (mass_kg, moments)
+
+
+def test_added_mass_is_no_mass():
+    content = '<inertial><mass>2</mass><fluid_added_mass><xx>5</xx></fluid_added_mass></inertial>'
+    assert inertial_of(content).mass_kg == 2.0
+
+
+# Automatic ones that cannot be computed
 
 @pytest.mark.parametrize('shape', [
     '<plane/>', '<empty/>', '', '<heightmap><uri>a</uri></heightmap>',
@@ -125,3 +205,45 @@ def test_inertial_that_is_not_automatic_has_its_pose():
     assert center_of(
         '<inertial auto="false"><pose>3 0 0 0 0 0</pose></inertial>'
         + collision('c', 1, UNIT_BOX)).x == 3.0
+
+
+# Moments of automatic ones
+
+def moments_of(content):
+    return pytest.approx(inertial_of(content).moments_kg_m2)
+
+
+def test_automatic_inertial_of_a_box():
+    content = AUTO + collision('c', 7, '<box><size>1 2 3</size></box>', '2')
+    assert inertial_of(content).mass_kg == pytest.approx(12.0)
+    assert moments_of(content) == (13.0, 10.0, 5.0, 0.0, 0.0, 0.0)
+
+
+def test_boxes_side_by_side_are_one_box():
+    halves = ''.join(
+        collision(name, x, '<box><size>1 2 3</size></box>', '2')
+        for name, x in (('a', -0.5), ('b', 0.5)))
+    whole = collision('c', 0, '<box><size>2 2 3</size></box>', '2')
+    assert moments_of(AUTO + halves) == inertial_of(AUTO + whole).moments_kg_m2
+
+
+def test_moments_are_in_the_axes_of_the_link():
+    scene = load_text(model_file(
+        f'<link name="l"><pose degrees="true">0 0 0 10 20 30</pose>{AUTO}'
+        '<collision name="c"><pose degrees="true">1 0 0 0 0 45</pose><density>12</density>'
+        '<geometry><box><size>1 2 1</size></box></geometry></collision></link>'))
+    (inertial,) = scene.inertials.values()
+    # Those of the box are 10, 4 and 10.
+    assert inertial.moments_kg_m2 == pytest.approx((7, 7, 10, 3, 0, 0), abs=1e-12)
+
+
+def test_given_mass_scales_the_moments():
+    box = collision('c', 0, '<box><size>1 2 3</size></box>', '2')
+    content = f'<inertial auto="true"><mass>24</mass></inertial>{box}'
+    assert inertial_of(content).mass_kg == pytest.approx(24.0)
+    assert moments_of(content) == (26.0, 20.0, 10.0, 0.0, 0.0, 0.0)
+
+
+def test_automatic_inertial_of_a_mesh_is_not_known():
+    scene = load_text(link_with(AUTO + collision('c', 1, '<mesh><uri>a</uri></mesh>')))
+    assert scene.inertials == {}

@@ -1,0 +1,182 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Read masses and moments of inertia, which no pose depends on unless they are automatic.
+
+An automatic inertial (``<inertial auto="true">``) is at the center of mass of the collisions of
+its link. Source: ``Link::Load``, ``Link::ResolveAutoInertials``, ``Collision::CalculateInertial``
+and ``Geometry::CalculateInertial`` of libsdformat 14, and ``MassMatrix3`` of gz-math 7.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import math
+import sys
+from typing import NamedTuple
+
+import numpy as np
+
+from sdf_pose_bridge.errors import ElementMissingError
+from sdf_pose_bridge.errors import LinkInertiaError
+from sdf_pose_bridge.geometry.rotations import Floats
+from sdf_pose_bridge.sdformat.grammar import ValueType
+from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
+from sdf_pose_bridge.sdformat.shapes import shape_of
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.values import boolean_from_text
+from sdf_pose_bridge.sdformat.values import numbers_from_text
+from sdf_pose_bridge.sdformat.values import numbers_of_child
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of
+from sdf_pose_bridge.sdformat.xml_tree import child_elements
+from sdf_pose_bridge.sdformat.xml_tree import first_child
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+DEFAULT_DENSITY_KG_M3 = 1000.0
+"""Density of a collision where neither it nor the inertial has one: that of water."""
+
+_DEFAULTS = {
+    'mass': 1.0, 'ixx': 1.0, 'iyy': 1.0, 'izz': 1.0, 'ixy': 0.0, 'ixz': 0.0, 'iyz': 0.0}
+_TOLERANCE = 10.0 * sys.float_info.epsilon
+"""Of gz-math: by which part of half their sum moments may break a rule."""
+
+
+class Inertial(NamedTuple):
+    """A mass, with the frame of an ``<inertial>`` at its center."""
+
+    mass_kg: float
+    moments_kg_m2: tuple[float, ...]
+    """``ixx``, ``iyy``, ``izz``, ``ixy``, ``ixz`` and ``iyz`` in that frame."""
+
+    @property
+    def is_valid(self) -> bool:
+        """Whether libsdformat accepts it: a body can have it (``MassMatrix3::IsValid``)."""
+        ixx, iyy, izz, ixy, ixz, iyz = self.moments_kg_m2
+        # Most matrices are plainly valid, and this decides it in a microsecond. What is left of
+        # the half trace beside each moment is an integral of squares, as each moment is.
+        half = 0.5 * (ixx + iyy + izz)
+        if self.mass_kg >= 0.0 and _is_positive(ixx, iyy, izz, ixy, ixz, iyz) and _is_positive(
+                half - ixx, half - iyy, half - izz, -ixy, -ixz, -iyz):
+            return True
+        if not all(map(math.isfinite, self.moments_kg_m2)):
+            return False
+        tolerance = _TOLERANCE * abs(half)
+        matrix = matrix_from_moments(self.moments_kg_m2)
+        smallest, middle, largest = np.linalg.eigvalsh(matrix).tolist()
+        return bool(
+            self.mass_kg >= 0.0 and ixx + tolerance >= 0.0
+            and ixx * iyy - ixy ** 2 + tolerance >= 0.0
+            and np.linalg.det(matrix) + tolerance >= 0.0
+            and smallest + tolerance >= 0.0 and smallest + middle + tolerance >= largest)
+
+
+class CollisionMass(NamedTuple):
+    """The mass of a collision that an automatic inertial is computed from."""
+
+    mass_kg: float
+    center_z_m: float
+    """The z of the center of mass in the frame of the collision; its x and y are 0."""
+    moments_kg_m2: tuple[float, ...]
+    """About axes through the center of mass that are parallel to those of the collision."""
+
+
+class AutomaticInertial(NamedTuple):
+    """What an automatic inertial is computed from."""
+
+    collisions: tuple[CollisionMass, ...]
+    """The masses of the collisions of its link, in file order."""
+    mass_kg: float | None
+    """What they weigh together, where the file says it."""
+
+
+def _is_positive(
+    xx: float, yy: float, zz: float, xy: float, xz: float, yz: float,
+) -> bool:
+    """Return whether all eigenvalues of a symmetric matrix are positive (Sylvester)."""
+    minor = xx * yy - xy * xy
+    return xx > 0.0 and minor > 0.0 and (
+        zz * minor - xx * yz * yz - yy * xz * xz + 2.0 * xy * xz * yz > 0.0)
+
+
+def matrix_from_moments(moments: Sequence[float]) -> Floats:
+    """Make the matrix, shape (3, 3), of the moments of an :class:`Inertial`."""
+    xx, yy, zz, xy, xz, yz = moments
+    return np.array([(xx, xy, xz), (xy, yy, yz), (xz, yz, zz)])
+
+
+def moments_from_matrix(matrix: Floats) -> tuple[float, ...]:
+    """Return the moments of an :class:`Inertial` from their matrix, shape (3, 3)."""
+    return tuple(matrix[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]].tolist())
+
+
+def inertial_from_element(
+    xml: XmlElement, sources: Sources,
+) -> Inertial | AutomaticInertial | None:
+    """
+    Read an ``<inertial>`` in its link.
+
+    :param sources: gets a warning about an inertial that libsdformat refuses, since no pose
+        depends on it.
+    :return: the inertial; None for an automatic one that cannot be computed.
+    """
+    auto = xml.get('auto')
+    if auto and boolean_from_text(auto):
+        return _automatic_inertial(xml, sources)
+    # Values are checked where all others are. Here each is read with little effort, since every
+    # load does it.
+    texts = {child.tag: child.text for child in xml.iterdescendants()}
+    try:
+        mass_kg, *moments = [float(texts[tag]) for tag in _DEFAULTS]
+    except (KeyError, TypeError, ValueError):
+        mass_kg, *moments = [
+            next(iter(numbers_from_text(texts.get(tag) or '', ValueType.NUMBER)), default)
+            for tag, default in _DEFAULTS.items()]
+    inertial = Inertial(mass_kg, tuple(moments))
+    if not inertial.is_valid:
+        link = xml.getparent()
+        name = '' if link is None else attribute_of(link, 'name')
+        sources.warning(
+            xml, f'no body can have the mass and the moments of inertia of link "{name}"; '
+            'libsdformat refuses them, but no pose depends on them', LinkInertiaError.code)
+    return inertial
+
+
+def _automatic_inertial(inertial: XmlElement, sources: Sources) -> AutomaticInertial | None:
+    """Return what an automatic inertial is computed from; None if not each mass is known."""
+    link = inertial.getparent()
+    collisions = [] if link is None else list(child_elements(link, 'collision'))
+    if not collisions:
+        msg = 'the inertial is automatic, but its link has no <collision>'
+        sources.error(ElementMissingError, inertial, msg)
+    pose = first_child(inertial, 'pose')
+    if pose is not None:
+        msg = 'the pose of an automatic inertial is ignored; the collisions give it'
+        sources.warning(pose, msg)
+    (default_density,) = numbers_of_child(inertial, 'density', (DEFAULT_DENSITY_KG_M3,))
+    masses = []
+    for collision in collisions:
+        shape = shape_of(collision)
+        if shape is not None and shape.type == 'mesh':
+            name = '' if link is None else attribute_of(link, 'name')
+            msg = (f'the automatic inertial of link "{name}" has its pose as written, as the mass '
+                   'of a mesh is not computed')
+            sources.warning(collision, msg)
+            return None
+        # An empty density is the default of the element, and not that of the inertial.
+        has_density = first_child(collision, 'density') is not None
+        (density,) = numbers_of_child(collision, 'density', (DEFAULT_DENSITY_KG_M3,))
+        solid = None if shape is None else shape.solid
+        density_kg_m3 = density if has_density else default_density
+        if solid is None or density_kg_m3 <= 0.0:
+            types = [name for name, each in SHAPE_TYPES.items() if each.solid is not None]
+            msg = (f'an automatic inertial needs collisions of the types {", ".join(types)}, with '
+                   'positive dimensions and density')
+            sources.error(LinkInertiaError, collision, msg)
+        else:
+            mass_kg = density_kg_m3 * solid.volume_m3
+            masses.append(CollisionMass(
+                mass_kg, solid.center_z_m,
+                tuple(mass_kg * moment for moment in solid.moments_m2)))
+    has_mass = first_child(inertial, 'mass') is not None
+    (mass_kg,) = numbers_of_child(inertial, 'mass', (1.0,))
+    return AutomaticInertial(tuple(masses), mass_kg if has_mass else None) if masses else None
