@@ -124,12 +124,12 @@ def inertial_from_element(
         return _automatic_inertial(xml, sources)
     # Values are checked where all others are. Here each is read with little effort, since every
     # load does it.
-    texts = {child.tag: child.text for child in xml.iterdescendants()}
+    texts = {child.tag: child.text or '' for child in xml.iterdescendants()}
     try:
         mass_kg, *moments = [float(texts[tag]) for tag in _DEFAULTS]
-    except (KeyError, TypeError, ValueError):
+    except (KeyError, ValueError):
         mass_kg, *moments = [
-            next(iter(numbers_from_text(texts.get(tag) or '', ValueType.NUMBER)), default)
+            next(iter(numbers_from_text(texts.get(tag, ''), ValueType.NUMBER)), default)
             for tag, default in _DEFAULTS.items()]
     inertial = Inertial(mass_kg, tuple(moments))
     if not inertial.is_valid:
