@@ -5,14 +5,23 @@
 import configparser
 import os
 from pathlib import Path
+import re
 import sys
 from typing import Any
+import xml.etree.ElementTree as ET
 
+import setuptools
 from setuptools import find_packages
 from setuptools import setup
 from setuptools.command.install_scripts import install_scripts
 
+# Links of files need not lead here, as where colcon builds with links.
+ROOT = Path(__file__).resolve().parent
 PACKAGE = 'sdf_pose_bridge'
+MANIFEST = ET.parse(ROOT / 'package.xml').getroot()
+VERSION = MANIFEST.findtext('version')
+URL = MANIFEST.findtext('url[@type="repository"]')
+LICENSE = MANIFEST.findtext('license')
 SHARE = f'share/{PACKAGE}'
 NOT_INSTALLED = ('__pycache__', '.pytest_cache', '.mypy_cache', '.ruff_cache')
 COMMAND_LINE = 'sdf_pose = sdf_pose_bridge.cli.main:main'
@@ -29,8 +38,20 @@ BLOCK_SIGNALS = (
 def shared_folders() -> list[str]:
     """Return the folders in the root that are installed in share/."""
     settings = configparser.ConfigParser()
-    settings.read('setup.cfg')
+    settings.read(ROOT / 'setup.cfg')
     return settings[PACKAGE]['share'].split()
+
+
+def text_of(tag: str) -> str:
+    """Return the text of an element of package.xml, in one line."""
+    return ' '.join(MANIFEST.findtext(tag, '').split())
+
+
+def readme_for_an_index() -> str:
+    """Return README.md with links, and pictures, that lead into the repository from anywhere."""
+    text = (ROOT / 'README.md').read_text(encoding='utf-8')
+    text = re.sub(r'(!\[[^]]*\]\()(?!\w+:)', rf'\1{URL}/raw/{VERSION}/', text)
+    return re.sub(r'(\]\()(?!\w+:|#)', rf'\1{URL}/blob/{VERSION}/', text)
 
 
 def data_files_of(folder: str) -> list[tuple[str, list[str]]]:
@@ -69,29 +90,53 @@ class InstallScripts(install_scripts):
         program = (
             *(BLOCK_SIGNALS if module.startswith(f'{PACKAGE}.ros.') else ()), 'import sys',
             f'from {module} import {function}', f'sys.exit({function}())')
-        lines = [first_line, "if __name__ == '__main__':", *(f'    {line}' for line in program)]
-        super().write_script(script_name, '\n'.join([*lines, '']), *args, **kwargs)
+        lines = [
+            first_line, '# PYTHON_ARGCOMPLETE_OK', "if __name__ == '__main__':",
+            *(f'    {line}' for line in program), '']
+        super().write_script(script_name, '\n'.join(lines), *args, **kwargs)
 
 
 setup(
     name=PACKAGE,
-    version='0.1.0',
-    description='Every frame of an SDFormat file on TF, resolved as libsdformat resolves it',
-    long_description=(
-        'Reads SDFormat files, resolves every pose as libsdformat would, and publishes the '
-        'frames on TF and on pose topics of ROS 2. The reader and the command line work '
-        'without ROS.'
-    ),
-    maintainer='sdf_pose_bridge maintainers',
-    maintainer_email='maintainers@sdf-pose-bridge.example.org',
-    license='Apache-2.0',
+    version=VERSION,
+    description=text_of('description'),
+    long_description=readme_for_an_index(),
+    long_description_content_type='text/markdown',
+    url=URL,
+    project_urls={
+        'Documentation': f'{URL}/tree/{VERSION}/docs',
+        'Issues': f'{URL}/issues',
+        'Changelog': f'{URL}/blob/{VERSION}/CHANGELOG.rst',
+    },
+    author=text_of('author'),
+    maintainer=text_of('maintainer'),
+    maintainer_email=MANIFEST.find('maintainer').get('email'),
+    # setuptools 77 is the first that knows expressions of SPDX as such.
+    **{'license_expression' if int(setuptools.__version__.split('.')[0]) >= 77 else 'license':
+       LICENSE},
+    keywords=[
+        'ros', 'ros2', 'sdformat', 'sdf', 'gazebo', 'urdf', 'tf', 'tf2', 'robotics', 'transforms'],
+    classifiers=[
+        'Development Status :: 4 - Beta',
+        'Environment :: Console',
+        'Intended Audience :: Developers',
+        'Intended Audience :: Manufacturing',
+        'Intended Audience :: Science/Research',
+        'Operating System :: POSIX :: Linux',
+        'Programming Language :: Python :: 3',
+        *(f'Programming Language :: Python :: 3.{minor}' for minor in range(10, 14)),
+        'Topic :: Scientific/Engineering',
+        'Typing :: Typed',
+    ],
     python_requires='>=3.10',
-    install_requires=['numpy', 'lxml'],
-    # By this colcon knows that it is pytest that runs the tests.
+    # Each with the oldest release that the tests pass with, and below the first that they do not
+    # know. docs/releasing.md says how this is tested.
+    install_requires=['numpy>=1.21.5,<3', 'lxml>=4.8,<7'],
+    # By the first colcon knows that it is pytest that runs the tests.
     extras_require={
-        'test': ['pytest', 'hypothesis'],
+        'test': ['pytest', 'hypothesis', 'mpmath'],
         # For sdf_pose view, whose pictures need Chrome or Chromium as well.
-        'view': ['viser', 'trimesh', 'pycollada'],
+        'view': ['viser>=1.1.1,<1.2', 'trimesh>=5.0,<6', 'pycollada>=0.7.2,<0.10'],
     },
     packages=find_packages(include=[PACKAGE, f'{PACKAGE}.*']),
     package_data={PACKAGE: ['py.typed']},

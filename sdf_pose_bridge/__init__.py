@@ -16,6 +16,7 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    __version__: str
     from sdf_pose_bridge.errors import Place as Place
     from sdf_pose_bridge.errors import SdfError as SdfError
     from sdf_pose_bridge.errors import SdfWarning as SdfWarning
@@ -48,12 +49,25 @@ __all__ = list(_HOMES)
 def __getattr__(name: str) -> object:
     # Looked up when they are used: the executable of the node takes signals before anything slow,
     # such as numpy, is imported.
-    if name not in _HOMES:
+    if name == '__version__':
+        value: object = _version()
+    elif name in _HOMES:
+        value = getattr(importlib.import_module(f'{__name__}.{_HOMES[name]}'), name)
+    else:
         msg = f'module {__name__!r} has no attribute {name!r}'
         raise AttributeError(msg)
-    value = getattr(importlib.import_module(f'{__name__}.{_HOMES[name]}'), name)
     globals()[name] = value
     return value
+
+
+def _version() -> str:
+    from importlib.metadata import version
+    from pathlib import Path
+    from xml.etree import ElementTree as ET
+    manifest = Path(__file__).resolve().parents[1] / 'package.xml'
+    if manifest.exists():  # beside the source; what is installed besides may be of another version
+        return ET.parse(manifest).getroot().findtext('version') or ''
+    return version(__name__)
 
 
 def __dir__() -> list[str]:

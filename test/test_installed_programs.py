@@ -86,3 +86,10 @@ def test_executables_can_be_imported(name, tmp_path):
 def test_the_node_of_the_wheel_has_a_name_of_its_own(prefix_of_wheel):
     assert sorted(path.name for path in (prefix_of_wheel / 'bin').iterdir()) == [
         'sdf_pose', 'sdf_pose_bridge']
+
+
+def test_the_environment_has_the_node_under_the_same_name():
+    program = shutil.which('sdf_pose_bridge')
+    if program is None or executable_of_workspace('bridge') is None:
+        pytest.skip('needs the environment of underlay/setup.bash')
+    assert Path(program).resolve() == executable_of_workspace('bridge').resolve()

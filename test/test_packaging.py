@@ -14,6 +14,9 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
+import sdf_pose_bridge
+from sdf_pose_bridge.cli.viewer import LIBRARIES
+
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = {
     'sdf_pose_bridge': ROOT,
@@ -35,29 +38,30 @@ def run_setup(*options):
         capture_output=True, text=True, env={**os.environ, 'PYTHONWARNINGS': 'ignore'})
 
 
-def setup_value(*options):
-    return run_setup(*options).stdout.strip().splitlines()[-1]
-
-
 def service_files():
     return sorted((PACKAGES['sdf_pose_bridge_interfaces'] / 'srv').glob('*.srv'))
 
 
 def installed_files():
     """Return where below the install prefix setup.py puts each data file, by the file."""
-    code = (
-        'import json, setuptools; found = {}; '
-        'setuptools.setup = found.update; '
-        'exec(compile(open("setup.py").read(), "setup.py", "exec")); '
-        'print(json.dumps(found["data_files"]))')
-    result = subprocess.run(
-        [sys.executable, '-c', code], cwd=ROOT, check=True, capture_output=True, text=True)
     return {
         source: f'{target}/{Path(source).name}'
-        for target, sources in json.loads(result.stdout) for source in sources}
+        for target, sources in arguments_of_setup()['data_files'] for source in sources}
 
 
-OF_THE_VIEWER = {'rich', 'trimesh', 'viser'}
+def arguments_of_setup(*command):
+    """Return what setup.py calls setuptools with, for a command."""
+    pytest.importorskip('setuptools', reason='needs setuptools')
+    code = (
+        'import json, runpy, setuptools; found = {}; setuptools.setup = found.update; '
+        'runpy.run_path("setup.py"); found.pop("cmdclass"); print(json.dumps(found))')
+    result = subprocess.run(
+        [sys.executable, '-c', code, *command], cwd=ROOT, check=True, capture_output=True,
+        text=True)
+    return json.loads(result.stdout)
+
+
+OF_THE_VIEWER = {'rich', 'trimesh', 'viser', 'websockets'}
 """What only ``sdf_pose view`` imports: viser, what comes with it, and trimesh."""
 
 
@@ -106,17 +110,47 @@ def test_every_license_is_apache(package):
     assert [tag.text for tag in package_xml(package).iter('license')] == ['Apache-2.0']
 
 
-def test_both_packages_have_one_version():
-    assert len({package_xml(package).findtext('version') for package in OURS}) == 1
+def test_there_is_one_version():
+    versions = {package_xml(name).findtext('version') for name in PACKAGES if name != 'tf2_msgs'}
+    assert versions == {arguments_of_setup()['version']} == {sdf_pose_bridge.__version__}
 
 
-def test_setup_py_has_the_version_of_package_xml():
-    assert setup_value('--version') == package_xml('sdf_pose_bridge').findtext('version')
+def test_people_are_those_of_package_xml():
+    root, found = package_xml('sdf_pose_bridge'), arguments_of_setup()
+    maintainer = root.find('maintainer')
+    assert (found['maintainer'], found['maintainer_email'], found['author']) == (
+        maintainer.text, maintainer.get('email'), root.findtext('author'))
 
 
-def test_setup_py_has_the_maintainer_of_package_xml():
-    maintainer = package_xml('sdf_pose_bridge').find('maintainer')
-    assert setup_value('--maintainer', '--maintainer-email') == maintainer.get('email')
+def test_the_address_of_the_repository_stands_in_one_place():
+    files = [
+        file for pattern in ('*.*', '.github/**/*.*', 'docs/*.*', 'sdf_pose_bridge_*/*.*')
+        for file in ROOT.glob(pattern) if file.is_file()]
+    assert [file.name for file in files if re.search(
+        r'github\.com/[^/\s]+/sdf_pose_bridge\b', file.read_text(errors='replace'))] == [
+            'package.xml']
+
+
+def test_links_and_pictures_lead_into_the_repository_from_a_package_index():
+    found = arguments_of_setup()
+    links = re.findall(r'(!?)\[[^]]*\]\(([^)]*)\)', found['long_description'])
+    assert len(links) > 10
+    version, url = found['version'], found['url']
+    for is_picture, link in links:
+        kind, name = re.fullmatch(rf'{re.escape(url)}/(\w+)/{version}/(.*)', link).groups()
+        assert kind == ('raw' if is_picture else 'blob')
+        assert (ROOT / name).is_file(), name
+
+
+def test_libraries_of_view_are_those_that_it_names_in_its_errors():
+    assert arguments_of_setup()['extras_require']['view'] == list(LIBRARIES)
+
+
+@pytest.mark.parametrize(('command', 'node'), [
+    ('install', 'bridge'), ('develop', 'bridge'), ('bdist_wheel', 'sdf_pose_bridge')])
+def test_the_node_is_called_bridge_in_a_ros_workspace_only(command, node):
+    scripts = arguments_of_setup(command)['entry_points']['console_scripts']
+    assert {script.split(' = ')[0] for script in scripts} == {'sdf_pose', node}
 
 
 def test_scripts_go_where_ros2_run_looks():
@@ -129,8 +163,9 @@ def test_scripts_go_where_ros2_run_looks():
 @pytest.mark.parametrize('name', ['bridge', 'sdf_pose'])
 def test_scripts_import_what_they_call(name, tmp_path):
     run_setup('egg_info', '--egg-base', tmp_path, 'install_scripts', '--install-dir', tmp_path)
-    first, guard, *lines = map(str.strip, (tmp_path / name).read_text().splitlines())
+    first, mark, guard, *lines = map(str.strip, (tmp_path / name).read_text().splitlines())
     assert first.startswith('#!')
+    assert mark == '# PYTHON_ARGCOMPLETE_OK'
     assert guard == "if __name__ == '__main__':"
     if name == 'bridge':  # signals come first
         import_signal, block, *lines = lines

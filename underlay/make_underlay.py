@@ -285,11 +285,12 @@ class Underlay:
             _remove(BUILD / BRIDGE)
             _remove(INSTALL / BRIDGE)
         self._colcon(COLCON_LOG, BUILD, INSTALL, '--packages-select', BRIDGE)
-        # The command line in the PATH of setup.bash; the folder it is in has the node's too, whose
-        # name is that of a command of the system.
-        link = UNDERLAY / 'bin' / COMMAND_LINE
-        link.unlink(missing_ok=True)
-        link.symlink_to(INSTALL / BRIDGE / 'lib' / BRIDGE / COMMAND_LINE)
+        # In the PATH of setup.bash under the names that pip gives them: "bridge" is a program of
+        # the system there.
+        for name, executable in ((COMMAND_LINE, COMMAND_LINE), (BRIDGE, 'bridge')):
+            link = UNDERLAY / 'bin' / name
+            link.unlink(missing_ok=True)
+            link.symlink_to(INSTALL / BRIDGE / 'lib' / BRIDGE / executable)
 
     def _colcon(self, log: Path, build: Path, install: Path, *arguments: str) -> None:
         cmake = [

@@ -23,7 +23,7 @@ from sdf_pose_bridge.scene.comparison import TOLERANCE
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command."""
     parser = subparsers.add_parser(
-        'diff', help='print which frames of two files were added, removed, renamed and moved',
+        'diff', help='print which frames of two files differ',
         description='Compare two files: print which elements were added, removed, renamed and '
                     'moved, one per line, with the distance and the angle. The exit code is 1 if '
                     'there is a difference, 2 if a file has an error.')

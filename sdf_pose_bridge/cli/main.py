@@ -1,15 +1,19 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
+# PYTHON_ARGCOMPLETE_OK
 """The command line ``sdf_pose``: a parser with one subcommand for each module of this room."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+import contextlib
+import importlib
 import io
 import os
 import sys
 
+import sdf_pose_bridge
 from sdf_pose_bridge.cli import check
 from sdf_pose_bridge.cli import convert
 from sdf_pose_bridge.cli import diff
@@ -34,13 +38,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     :return: exit code: 0 for success, 1 if a file or a value is wrong, 2 if the arguments are, 130
         after Ctrl-C.
     """
-    parser = argparse.ArgumentParser(
-        prog='sdf_pose',
-        description='Poses and frames of SDFormat files, exactly as libsdformat resolves them.')
-    subparsers = parser.add_subparsers(
-        dest='command', required=True, metavar='COMMAND', title='commands')
-    for command in (check, poses, tree, graph, view, convert, diff, set_command):
-        command.add_parser(subparsers)
+    parser = _parser()
     options = parser.parse_args(arguments)
     if sys.stdout is None:
         # The caller has closed it. What is printed must fail, as it does where a disk is full.
@@ -49,6 +47,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # A name that the encoding of the terminal does not have must not end the command.
         sys.stdout.reconfigure(errors='backslashreplace')
     try:
+        if options.version:
+            print(f'sdf_pose {sdf_pose_bridge.__version__}')
+            return 0
+        if options.command is None:
+            parser.print_help()
+            return 0
         code: int = options.run(options)
         sys.stdout.flush()
     except BrokenPipeError:
@@ -72,3 +76,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 130
     return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog='sdf_pose',
+        description='Poses and frames of SDFormat files, exactly as libsdformat resolves them.')
+    parser.add_argument('--version', action='store_true', help='show the version and exit')
+    subparsers = parser.add_subparsers(dest='command', metavar='COMMAND', title='commands')
+    for command in (check, poses, tree, graph, view, convert, diff, set_command):
+        command.add_parser(subparsers)
+    if '_ARGCOMPLETE' in os.environ:
+        # The shell asks how a command line goes on. As for ros2, this works where it is installed.
+        with contextlib.suppress(ImportError):
+            importlib.import_module('argcomplete').autocomplete(parser, exclude=['-h', '--help'])
+    return parser

@@ -10,12 +10,14 @@ from functools import partial
 import importlib
 import os
 from pathlib import Path
+import re
 import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import time
+from types import ModuleType
 from typing import Any
 
 from sdf_pose_bridge.cli.loading import add_file_arguments
@@ -27,6 +29,7 @@ from sdf_pose_bridge.cli.printing import add_output_argument
 from sdf_pose_bridge.cli.printing import CommandError
 from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.set import set_pose
+from sdf_pose_bridge.cli.viewer import LIBRARIES
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
@@ -34,7 +37,6 @@ from sdf_pose_bridge.sdformat.include.uris import resource_finder
 _FORMATS = ('.html', '.png')
 _PORT = 8080
 _PERIOD_S = 0.05
-_NEEDS_VISER = "this needs viser, trimesh and pycollada: pip install 'sdf_pose_bridge[view]'"
 
 _BROWSERS = ('chromium', 'chromium-browser', 'google-chrome', 'chrome')
 # WebGL in software where there is no graphics card; no requests but those of the page.
@@ -76,11 +78,7 @@ def run(options: argparse.Namespace) -> int:
     :return: exit code: 0.
     :raises CommandError: if it cannot be shown or written.
     """
-    try:
-        # Other commands need none of this.
-        viewer = importlib.import_module('sdf_pose_bridge.cli.viewer.page')
-    except ImportError:
-        raise CommandError(_NEEDS_VISER) from None
+    viewer = _viewer()
     # Else a browser that draws a picture would outlive this process.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     path, read_since_ns = options.files[0], time.time_ns()
@@ -108,6 +106,46 @@ def run(options: argparse.Namespace) -> int:
     finally:
         page.close()
     return 0
+
+
+def _viewer() -> ModuleType:
+    """
+    Import what shows the page; other commands need none of this.
+
+    :raises CommandError: if a library is missing or too old.
+    """
+    from importlib.metadata import PackageNotFoundError
+    from importlib.metadata import version
+    try:
+        for library in LIBRARIES:
+            name, oldest = re.split('>=|,', library)[:2]
+            found = version(name)
+            if _numbers(found) < _numbers(oldest):
+                msg = f'this needs {name} {oldest} or newer and found {found}: {_how_to_install()}'
+                raise CommandError(msg)
+        return importlib.import_module('sdf_pose_bridge.cli.viewer.page')
+    except (PackageNotFoundError, ImportError) as error:
+        msg = (f'this needs viser, trimesh and pycollada, and {error.name or error} is missing: '
+               f'{_how_to_install()}')
+        raise CommandError(msg) from None
+
+
+def _numbers(version: str) -> tuple[int, ...]:
+    return tuple(map(int, re.findall(r'\d+', version)[:3]))
+
+
+def _how_to_install() -> str:
+    import sysconfig
+    libraries = ' '.join(f"'{library}'" for library in LIBRARIES)
+    is_of_the_system = sys.prefix == sys.base_prefix and Path(
+        sysconfig.get_path('stdlib'), 'EXTERNALLY-MANAGED').exists()
+    if not is_of_the_system:
+        return f'pip install {libraries}'
+    return (
+        'python3 -m venv --system-site-packages ~/sdf_pose_view && '
+        f'~/sdf_pose_view/bin/pip install {libraries}; then '
+        '"~/sdf_pose_view/bin/python -m sdf_pose_bridge view" is this command (apt has no viser, '
+        'and pip installs nothing beside the packages of apt)')
 
 
 def _open(address: str) -> None:

@@ -2,17 +2,42 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command line as a process: wrong arguments, exit codes and closed pipes."""
 
+from pathlib import Path
+import re
 import shlex
 import subprocess
+import xml.etree.ElementTree as ET
 
 from command_line import COMMAND
 from command_line import ENVIRONMENT
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_a_command_is_required(sdf_pose):
+def test_without_a_command_all_are_listed_with_a_line_each(sdf_pose):
     done = sdf_pose()
-    assert done.returncode == 2
-    assert 'COMMAND' in done.stderr
+    assert (done.returncode, done.stderr) == (0, '')
+    listed = re.findall(r'^    ([a-z]+) +\S.*$', done.stdout, re.MULTILINE)
+    modules = (ROOT / 'sdf_pose_bridge/cli').glob('*.py')
+    assert set(listed) == {module.stem for module in modules} - {
+        '__init__', 'loading', 'main', 'printing'}
+
+
+def test_version(sdf_pose):
+    done = sdf_pose('--version')
+    version = ET.parse(ROOT / 'package.xml').getroot().findtext('version')
+    assert (done.returncode, done.stdout, done.stderr) == (0, f'sdf_pose {version}\n', '')
+
+
+def test_the_shell_completes_commands(files):
+    pytest.importorskip('argcomplete', reason='needs argcomplete')
+    line = 'sdf_pose ch'
+    environment = {
+        **ENVIRONMENT, '_ARGCOMPLETE': '1', '_ARGCOMPLETE_STDOUT_FILENAME': str(files / 'answer'),
+        'COMP_LINE': line, 'COMP_POINT': str(len(line))}
+    subprocess.run(COMMAND, env=environment, cwd=files, check=True, timeout=60)
+    assert (files / 'answer').read_text().split() == ['check']
 
 
 def test_an_unknown_command_is_an_error_that_lists_the_known_ones(sdf_pose):

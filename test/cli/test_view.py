@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """``sdf_pose view``: pages, and libraries that are not installed."""
 
+from importlib.metadata import version
 from pathlib import Path
 import re
 import subprocess
@@ -27,9 +28,35 @@ def test_missing_library_is_an_error_of_one_line(run_main, monkeypatch):
     monkeypatch.setitem(sys.modules, 'viser', None)
     done = run_main('view', 'good.sdf', '-o', 'page.html')
     assert (done.returncode, done.stdout) == (1, '')
-    assert done.stderr == (
-        "sdf_pose view: this needs viser, trimesh and pycollada: pip install "
-        "'sdf_pose_bridge[view]'\n")
+    assert done.stderr.startswith(
+        'sdf_pose view: this needs viser, trimesh and pycollada, and viser is missing: ')
+    assert len(done.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize(('name', 'old', 'oldest'), [
+    ('viser', '0.2.23', '1.1.1'), ('viser', '1.0.0rc1', '1.1.1'), ('trimesh', '4.5.1', '5.0')])
+def test_library_that_is_too_old_is_an_error_of_one_line(run_main, monkeypatch, name, old, oldest):
+    versions = {name: old}
+    monkeypatch.setattr(
+        'importlib.metadata.version', lambda each: versions.get(each, version(each)))
+    done = run_main('view', 'good.sdf', '-o', 'page.html')
+    assert (done.returncode, done.stdout) == (1, '')
+    assert done.stderr.startswith(
+        f'sdf_pose view: this needs {name} {oldest} or newer and found {old}: ')
+    assert len(done.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize(('is_of_apt', 'way'), [
+    (False, "found 4.5.1: pip install 'viser>="), (True, 'found 4.5.1: python3 -m venv ')])
+def test_a_python_of_apt_needs_an_environment(run_main, monkeypatch, tmp_path, is_of_apt, way):
+    monkeypatch.setattr(
+        'importlib.metadata.version',
+        lambda each: '4.5.1' if each == 'trimesh' else version(each))
+    monkeypatch.setattr('sys.prefix', sys.base_prefix)
+    monkeypatch.setattr('sysconfig.get_path', lambda *_: str(tmp_path))
+    if is_of_apt:
+        (tmp_path / 'EXTERNALLY-MANAGED').touch()
+    assert way in run_main('view', 'good.sdf', '-o', 'page.html').stderr
 
 
 def test_missing_browser_is_an_error_of_one_line(run_main, monkeypatch):

@@ -27,6 +27,7 @@ from sdf_pose_bridge.cli.viewer.frame_texts import escaped
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_frame
 from sdf_pose_bridge.cli.viewer.frame_texts import rows_of_tree
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
+from sdf_pose_bridge.cli.viewer.server import id_of_button
 from sdf_pose_bridge.cli.viewer.server import server_for_its_owner
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
@@ -277,7 +278,7 @@ class Page:
         self._row_frames = [frame for frame, _, _ in rows]
         ids = self._tree.frame_ids
         content = ''.join(
-            f'<label for="{button._impl.uuid}" style="padding-left:{depth}em"'  # noqa: SLF001
+            f'<label for="{id_of_button(button)}" style="padding-left:{depth}em"'
             f'{" class=selected" if ids[frame] == self._selected else ""}>'
             f'{escaped(text)}</label>'
             for button, (frame, depth, text) in zip(self._buttons, rows, strict=False))

@@ -1,6 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The server of the page, which only who knows the address of the page can use."""
+"""
+The server of the page, which only who knows the address of the page can use.
+
+Everything that has no public name in viser is used here alone.
+"""
 
 from __future__ import annotations
 
@@ -21,8 +25,14 @@ from websockets.asyncio.server import ServerConnection
 from websockets.http11 import Request
 from websockets.http11 import Response
 
+from sdf_pose_bridge.cli.printing import CommandError
+from sdf_pose_bridge.cli.viewer import LIBRARIES
+
 _ADDRESS = '127.0.0.1'
 _NAMES = (_ADDRESS, 'localhost')
+_NOT_KNOWN = (
+    f'viser {viser.__version__} does not work as the releases that this is tested with '
+    f'({LIBRARIES[0]})')
 
 
 class PageServer(NamedTuple):
@@ -38,6 +48,7 @@ def server_for_its_owner(port: int) -> PageServer:
     Start a server that other machines, other users and the pages of other servers cannot use.
 
     :param port: its port, or the next one that is free; 0 for any.
+    :raises CommandError: if this cannot be done with the installed viser.
     """
     rich.get_console().quiet = True
     # Else each connection that a browser opens in advance, and closes, is an error with a trace.
@@ -50,6 +61,18 @@ def server_for_its_owner(port: int) -> PageServer:
     server.scene.configure_environment_map(None)
     server.scene.configure_default_lights(cast_shadow=False)
     return PageServer(server, f'http://{_ADDRESS}:{server.get_port()}/{secret}/')
+
+
+def id_of_button(button: viser.GuiButtonHandle) -> str:
+    """
+    Return the id of a button in HTML, so that a label can stand for it.
+
+    :raises CommandError: if the installed viser does not tell it.
+    """
+    try:
+        return str(button._impl.uuid)  # noqa: SLF001  # there is no public name for it
+    except AttributeError:
+        raise CommandError(_NOT_KNOWN) from None
 
 
 def reason_to_refuse(request: Request, secret: str) -> str:
@@ -73,7 +96,7 @@ def _requests_need(secret: str) -> Iterator[None]:
     """
     Let a server that is started meanwhile answer only to requests with a secret in their path.
 
-    :raises RuntimeError: if no server was started in the way that is known.
+    :raises CommandError: if no server was started in the way that is known.
     """
     # viser has no place for this, so it is put where viser starts its server. To judge connections
     # when viser has accepted them would be too late for what is asked for before.
@@ -98,5 +121,4 @@ def _requests_need(secret: str) -> Iterator[None]:
     finally:
         websockets_server.serve = serve  # type: ignore[misc]
     if not guarded:
-        msg = 'this release of viser starts its server in a way that is not known'
-        raise RuntimeError(msg)
+        raise CommandError(_NOT_KNOWN)
