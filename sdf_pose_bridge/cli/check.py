@@ -10,6 +10,12 @@ import sys
 from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import load_file
 from sdf_pose_bridge.cli.printing import print_problems
+from sdf_pose_bridge.cli.printing import problems_in_order
+from sdf_pose_bridge.cli.records import add_format_argument
+from sdf_pose_bridge.cli.records import GITHUB
+from sdf_pose_bridge.cli.records import JSON
+from sdf_pose_bridge.cli.records import print_annotations
+from sdf_pose_bridge.cli.records import print_json
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -19,6 +25,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description='Print every error and warning of files, one per line: FILE:LINE: CODE: '
                     'MESSAGE. The exit code is 1 if a file has an error.')
     add_file_arguments(parser)
+    add_format_argument(parser, JSON, GITHUB)
     parser.add_argument(
         '--strict', action='store_true', help='the exit code is 1 for a warning too')
     parser.set_defaults(run=run)
@@ -33,7 +40,12 @@ def run(options: argparse.Namespace) -> int:
     exit_code = 0
     for path in options.files:
         loaded = load_file(path, options)
-        print_problems(loaded.errors, loaded.warnings, sys.stdout)
+        if options.format == JSON:
+            print_json(path, loaded.errors, loaded.warnings)
+        elif options.format == GITHUB:
+            print_annotations(problems_in_order(loaded.errors, loaded.warnings))
+        else:
+            print_problems(loaded.errors, loaded.warnings, sys.stdout)
         if loaded.errors or (options.strict and loaded.warnings):
             exit_code = 1
     return exit_code

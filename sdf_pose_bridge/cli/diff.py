@@ -12,6 +12,13 @@ from sdf_pose_bridge.cli.loading import add_kinds_argument
 from sdf_pose_bridge.cli.loading import add_loading_arguments
 from sdf_pose_bridge.cli.loading import load_file
 from sdf_pose_bridge.cli.printing import print_problems
+from sdf_pose_bridge.cli.records import add_format_argument
+from sdf_pose_bridge.cli.records import CSV
+from sdf_pose_bridge.cli.records import JSON
+from sdf_pose_bridge.cli.records import print_csv
+from sdf_pose_bridge.cli.records import print_csv_header
+from sdf_pose_bridge.cli.records import print_json
+from sdf_pose_bridge.cli.records import TEXT
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.comparison import Change
@@ -30,6 +37,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument('old', metavar='OLD', help='an SDFormat file')
     parser.add_argument('new', metavar='NEW', help='the file to compare it with')
     add_loading_arguments(parser)
+    add_format_argument(parser, CSV, JSON)
     parser.add_argument(
         '--relative-to', metavar='FRAME', default='',
         help='compare poses relative to this frame, such as robot::arm::hand')
@@ -47,23 +55,32 @@ def run(options: argparse.Namespace) -> int:
 
     :return: exit code: 0 if there is no difference, 1 if there is one, 2 if a file has an error.
     """
-    files = [load_file(path, options) for path in (options.old, options.new)]
-    for file in files:
-        print_problems(file.errors, file.warnings, sys.stderr)
-    old, new = (file.scene for file in files)
-    if old is None or new is None:
-        return 2
-    try:
-        differences = [
-            difference for difference in differences_of_scenes(
-                old, new, relative_to=options.relative_to, tolerance=options.tolerance)
-            if difference.kind in options.kinds]
-    except SdfError as error:
-        print_problems(error.errors, error.warnings, sys.stderr)
-        return 2
-    for difference in differences:
-        print(_line(difference))
-    return 1 if differences else 0
+    old, new = (load_file(path, options) for path in (options.old, options.new))
+    errors, warnings = old.errors + new.errors, old.warnings + new.warnings
+    differences: list[Difference] = []
+    if old.scene is not None and new.scene is not None:
+        try:
+            differences = [
+                difference for difference in differences_of_scenes(
+                    old.scene, new.scene, relative_to=options.relative_to,
+                    tolerance=options.tolerance)
+                if difference.kind in options.kinds]
+        except SdfError as error:
+            errors = error.errors
+    records = [
+        {**difference._asdict(), 'change': difference.change.value, 'kind': difference.kind.label}
+        for difference in differences]
+    if options.format == JSON:
+        print_json(options.new, errors, warnings, old=options.old, differences=records)
+    else:
+        print_problems(errors, warnings, sys.stderr)
+    if options.format == CSV:
+        print_csv_header(Difference._fields)
+        print_csv(Difference._fields, records)
+    elif options.format == TEXT:
+        for difference in differences:
+            print(_line(difference))
+    return 2 if errors else 1 if differences else 0
 
 
 def _tolerance_from_text(text: str) -> float:

@@ -1,13 +1,12 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""``sdf_pose poses``: print the poses of files as tables or as JSON."""
+"""``sdf_pose poses``: print the poses of files."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
 from collections.abc import Sequence
-import json
 import sys
 from typing import Any
 
@@ -18,12 +17,19 @@ from sdf_pose_bridge.cli.loading import add_kinds_argument
 from sdf_pose_bridge.cli.loading import load_file
 from sdf_pose_bridge.cli.loading import LoadedFile
 from sdf_pose_bridge.cli.printing import print_problems
+from sdf_pose_bridge.cli.records import add_format_argument
+from sdf_pose_bridge.cli.records import CSV
+from sdf_pose_bridge.cli.records import JSON
+from sdf_pose_bridge.cli.records import print_csv
+from sdf_pose_bridge.cli.records import print_csv_header
+from sdf_pose_bridge.cli.records import print_json
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.joint_positions import scene_at_positions
+
+_COLUMNS = ('file', 'world', 'kind', 'name', 'x', 'y', 'z', 'qx', 'qy', 'qz', 'qw')
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -34,9 +40,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
                     'x y z w, in the world or in the implicit root of a model file. The exit code '
                     'is 1 if a file has an error.')
     add_file_arguments(parser)
+    add_format_argument(parser, CSV, JSON)
     parser.add_argument(
-        '--json', dest='print_file', action='store_const', const=_print_json,
-        default=_print_table, help='print one JSON object for each file, one per line')
+        '--json', dest='format', action='store_const', const=JSON,
+        help='the same as --format json')
     parser.add_argument(
         '--relative-to', metavar='FRAME', default='',
         help='print poses relative to this frame, such as robot::arm::hand')
@@ -56,6 +63,8 @@ def run(options: argparse.Namespace) -> int:
     :return: exit code: 0 if all files are valid, else 1.
     """
     are_valid = True
+    if options.format == CSV:
+        print_csv_header(_COLUMNS)
     for path in options.files:
         loaded = load_file(path, options)
         elements: list[dict[str, Any]] = []
@@ -68,7 +77,18 @@ def run(options: argparse.Namespace) -> int:
             except SdfError as error:
                 loaded = LoadedFile(None, error.errors, loaded.warnings)
         are_valid = are_valid and loaded.scene is not None
-        options.print_file(path, loaded, elements, len(options.files))
+        if options.format == JSON:
+            print_json(path, loaded.errors, loaded.warnings, elements=elements)
+            continue
+        print_problems(loaded.errors, loaded.warnings, sys.stderr)
+        if options.format == CSV:
+            print_csv(_COLUMNS, (
+                {'file': path, **element, **dict(zip(_COLUMNS[4:], element['pose'], strict=True))}
+                for element in elements))
+        elif not loaded.errors:
+            if len(options.files) > 1:
+                print(printable(path))
+            _print_table(elements)
     return 0 if are_valid else 1
 
 
@@ -93,33 +113,7 @@ def _elements(scene: Scene, options: argparse.Namespace) -> list[dict[str, Any]]
     return elements
 
 
-# Formats
-
-
-def _print_json(
-    path: str, loaded: LoadedFile, elements: Sequence[Mapping[str, Any]], _file_count: int,
-) -> None:
-    print(json.dumps({
-        'file': path,
-        'ok': not loaded.errors,
-        'errors': [_problem(error) for error in loaded.errors],
-        'warnings': [_problem(warning) for warning in loaded.warnings],
-        'elements': elements,
-    }))
-
-
-def _problem(problem: SdfError | SdfWarning) -> dict[str, Any]:
-    return {'code': problem.code, 'message': problem.message, **problem.place._asdict()}
-
-
-def _print_table(
-    path: str, loaded: LoadedFile, elements: Sequence[Mapping[str, Any]], file_count: int,
-) -> None:
-    print_problems(loaded.errors, loaded.warnings, sys.stderr)
-    if loaded.errors:
-        return
-    if file_count > 1:
-        print(printable(path))
+def _print_table(elements: Sequence[Mapping[str, Any]]) -> None:
     has_worlds = len({element['world'] for element in elements}) > 1
     names = [
         printable(f'{element["world"]}: {element["name"]}' if has_worlds else element['name'])

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from heapq import merge
 import math
 import os
 from pathlib import Path
@@ -38,18 +39,33 @@ def is_colored(stream: TextIO) -> bool:
 def print_problems(
     errors: tuple[SdfError, ...], warnings: tuple[SdfWarning, ...], stream: TextIO,
 ) -> None:
-    """Print errors and warnings, one per line; in color on a terminal."""
+    """Print errors and warnings in the order of files and lines; in color on a terminal."""
     # What was printed before comes first, also where both streams go to one place.
     sys.stdout.flush()
     has_colors = is_colored(stream)
     bold, plain = (_BOLD, _PLAIN) if has_colors else ('', '')
-    problems: list[SdfError | SdfWarning] = [*errors, *warnings]
-    for problem in problems:
+    for problem in problems_in_order(errors, warnings):
         is_error = isinstance(problem, SdfError)
         color = '' if not has_colors else _RED if is_error else _YELLOW
         kind = '' if is_error or problem.code == 'WARNING' else 'WARNING: '
         place, message = printable(str(problem.place)), printable(problem.message)
         print(f'{bold}{place}:{plain} {color}{kind}{problem.code}:{plain} {message}', file=stream)
+
+
+def problems_in_order(
+    errors: tuple[SdfError, ...], warnings: tuple[SdfWarning, ...],
+) -> list[SdfError | SdfWarning]:
+    """
+    Merge the errors and the warnings of a load.
+
+    :param errors: errors in the order of files and lines.
+    :param warnings: warnings in the same order.
+    :return: both in this order; of one line the errors come first.
+    """
+    both: tuple[Sequence[SdfError | SdfWarning], ...] = errors, warnings
+    files = [problem.place.file for problems in both for problem in problems]
+    ranks = {file: rank for rank, file in reversed([*enumerate(files)])}
+    return [*merge(*both, key=lambda problem: (ranks[problem.place.file], problem.place.line))]
 
 
 def discard_output() -> None:

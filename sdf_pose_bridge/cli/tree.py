@@ -9,23 +9,33 @@ from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from itertools import compress
 import math
+import shutil
 import sys
+from typing import Any
 from typing import NamedTuple
 
 import numpy as np
 
 from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import add_frame_arguments
-from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.loading import load_file
 from sdf_pose_bridge.cli.loading import SHOWN_KINDS
 from sdf_pose_bridge.cli.loading import tf_options_from_arguments
 from sdf_pose_bridge.cli.printing import is_colored
 from sdf_pose_bridge.cli.printing import kind_labels_of
 from sdf_pose_bridge.cli.printing import print_problems
 from sdf_pose_bridge.cli.printing import Units
+from sdf_pose_bridge.cli.records import add_format_argument
+from sdf_pose_bridge.cli.records import CSV
+from sdf_pose_bridge.cli.records import JSON
+from sdf_pose_bridge.cli.records import print_csv
+from sdf_pose_bridge.cli.records import print_csv_header
+from sdf_pose_bridge.cli.records import print_json
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.scene import Joint
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -40,7 +50,8 @@ _COLORS = {
     'sensor': '\x1b[34m', 'optical frame': '\x1b[34m'}
 _BRANCHES = ('├─ ', '└─ ', '│  ', '   ')
 _ASCII_BRANCHES = ('|- ', '`- ', '|  ', '   ')
-_WIDEST_NAME = 80
+_COLUMNS = ('file', 'name', 'kind', 'parent', 'x', 'y', 'z', 'qx', 'qy', 'qz', 'qw', 'note')
+_WIDEST_NAME, _SHORTEST_NAME = 80, 16
 _WIDEST_INDENT = 60
 
 
@@ -72,6 +83,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
                     'its pose in the parent, x y z roll pitch yaw. The exit code is 1 if a file '
                     'has an error.')
     add_file_arguments(parser)
+    add_format_argument(parser, CSV, JSON)
     parser.add_argument(
         '--scope', action='store_true',
         help='print elements below those that hold them in the file, all kinds unless --kinds '
@@ -95,17 +107,35 @@ def run(options: argparse.Namespace) -> int:
     """
     exit_code = 0
     options.kinds = options.kinds or (SHOWN_KINDS if options.scope else DEFAULT_KINDS)
+    if options.format == CSV:
+        print_csv_header(_COLUMNS)
     for path in options.files:
-        try:
-            scene = scene_of(path, options)
-            rows = (_rows_by_scope if options.scope else _rows_of_frames)(scene, options)
-        except SdfError as error:
-            print_problems(error.errors, error.warnings, sys.stderr)
-            exit_code = 1
+        loaded = load_file(path, options)
+        lines: list[_Line] = []
+        if loaded.scene is not None:
+            try:
+                rows, warnings = (_rows_by_scope if options.scope else _rows_of_frames)(
+                    loaded.scene, options)
+                loaded = loaded._replace(warnings=loaded.warnings + warnings)
+                lines = _lines(rows, options)
+            except SdfError as error:
+                loaded = loaded._replace(errors=error.errors)
+        exit_code |= bool(loaded.errors)
+        if options.format == JSON:
+            print_json(
+                path, loaded.errors, loaded.warnings,
+                frames=[_record(line.row, rows) for line in lines])
             continue
-        if len(options.files) > 1:
-            print(printable(path))
-        _print_lines(_lines(rows, options), Units(options.length_unit, options.angle_unit))
+        print_problems(loaded.errors, loaded.warnings, sys.stderr)
+        if options.format == CSV:
+            print_csv(_COLUMNS, (
+                {'file': path, **record, **dict(
+                    zip(_COLUMNS[4:], record['pose'] or (), strict=False))}
+                for record in (_record(line.row, rows) for line in lines)))
+        elif not loaded.errors:
+            if len(options.files) > 1:
+                print(printable(path))
+            _print_lines(lines, Units(options.length_unit, options.angle_unit))
     return exit_code
 
 
@@ -116,9 +146,18 @@ def _depth_from_text(text: str) -> int:
     return int(text)
 
 
-def _rows_of_frames(scene: Scene, options: argparse.Namespace) -> list[_Row]:
+def _record(row: _Row, rows: Sequence[_Row]) -> dict[str, Any]:
+    """Return a row with the name of its parent and its pose as x y z qx qy qz qw."""
+    return {
+        'name': row.full_name, 'kind': row.kind,
+        'parent': rows[row.parent].full_name if row.parent >= 0 else None,
+        'pose': row.pose, 'note': row.note}
+
+
+def _rows_of_frames(
+    scene: Scene, options: argparse.Namespace,
+) -> tuple[list[_Row], tuple[SdfWarning, ...]]:
     tree = tf_tree_from_scene(scene, tf_options_from_arguments(options))
-    print_problems((), tree.warnings, sys.stderr)
     root = _Row(tree.root_frame, tree.root_frame, 'root', -1, None)
     # The root frame is row 0, so that the index of a row is that of its frame plus one.
     return [root, *(
@@ -126,10 +165,12 @@ def _rows_of_frames(scene: Scene, options: argparse.Namespace) -> list[_Row]:
         else _Row(frame_id, frame_id, kind, parent + 1, Pose(*pose))
         for frame_id, kind, parent, pose in zip(
             tree.frame_ids, kind_labels_of(scene, tree), tree.parents.tolist(),
-            tree.transforms.tolist(), strict=True))]
+            tree.transforms.tolist(), strict=True))], tree.warnings
 
 
-def _rows_by_scope(scene: Scene, options: argparse.Namespace) -> list[_Row]:
+def _rows_by_scope(
+    scene: Scene, options: argparse.Namespace,
+) -> tuple[list[_Row], tuple[SdfWarning, ...]]:
     """Return the elements of all worlds below those that hold them."""
     joints = {joint.element: joint for joint in scene.joints}
     is_shown = (scene.parents < 0) | (
@@ -148,7 +189,7 @@ def _rows_by_scope(scene: Scene, options: argparse.Namespace) -> list[_Row]:
                 None if reference < 0 else scene.relative_pose_of(element, reference),
                 _note(scene, element, joints.get(element))))
             indices[element] = len(rows) - 1
-    return rows
+    return rows, ()
 
 
 def _note(scene: Scene, element: int, joint: Joint | None) -> str:
@@ -203,23 +244,32 @@ def _branches() -> Sequence[str]:
     return _BRANCHES
 
 
+def _widest_name(other_columns: int) -> int:
+    """Return how many characters of a line are left for a branch and a name."""
+    if not sys.stdout.isatty():
+        return _WIDEST_NAME
+    return max(shutil.get_terminal_size().columns - other_columns, _SHORTEST_NAME)
+
+
 def _print_lines(lines: Sequence[_Line], units: Units) -> None:
-    width = min(_WIDEST_NAME, max(
-        (len(line.branches) + len(printable(line.row.name)) for line in lines), default=0))
+    texts = [('',) * 6 if line.row.pose is None else units.texts(line.row.pose) for line in lines]
+    labels = (f'x {units.length.name}', 'y', 'z', f'roll {units.angle.name}', 'pitch', 'yaw')
+    widths = [max(map(len, column)) for column in zip(labels, *texts, strict=True)]
     kind_width = max((len(line.row.kind) for line in lines), default=0)
     colors = _COLORS if is_colored(sys.stdout) else {}
     bold, dim, plain = (_BOLD, _DIM, _PLAIN) if is_colored(sys.stdout) else ('', '', '')
-    labels = (f'x {units.length.name}', 'y', 'z', f'roll {units.angle.name}', 'pitch', 'yaw')
-    heads = ' '.join(f'{label:>10}' for label in labels)
+    width = min(
+        max((len(line.branches) + len(printable(line.row.name)) for line in lines), default=0),
+        _widest_name(kind_width + sum(widths) + 9))
+    heads = ' '.join(map(str.rjust, labels, widths))
     print(f'{"frame":{width}}  {"kind":{kind_width}}  {heads}')
-    for branches, row, hidden, is_match in lines:
-        name = printable(row.name)
+    for (branches, row, hidden, is_match), numbers in zip(lines, texts, strict=True):
+        name = shortened(printable(row.name), max(width - len(branches), _SHORTEST_NAME))
         pad = ' ' * (width - len(branches) - len(name))
-        numbers = ' ' * 65 if row.pose is None else ' '.join(
-            f'{text:>10}' for text in units.texts(row.pose))
         notes = [printable(row.note)] if row.note else []
         notes += [f'{hidden} more below'] if hidden else []
         print(
             f'{dim}{branches}{plain}{bold if is_match else ""}{name}{plain if is_match else ""}'
-            f'{pad}  {colors.get(row.kind, "")}{row.kind:{kind_width}}{plain}  {numbers}'
+            f'{pad}  {colors.get(row.kind, "")}{row.kind:{kind_width}}{plain}  '
+            f'{" ".join(map(str.rjust, numbers, widths))}'
             f'{"  " if notes else ""}{dim}{", ".join(notes)}{plain}'.rstrip())

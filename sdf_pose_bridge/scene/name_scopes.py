@@ -124,15 +124,15 @@ class NameScopes:
                 rest = reference[len(first) + len(SEPARATOR):]
                 return (f'; inside a model its own name is not visible, write '
                         f'"{rest or MODEL_FRAME}"')
-            outer = int(self._elements.parents[scope])
-            while outer >= 0:
-                if self.frame(outer, reference) is not None:
-                    return (f'; {self._described(outer)} has a frame of that name, but names of '
-                            'enclosing scopes cannot be used')
-                outer = int(self._elements.parents[outer])
         scoped = reference.replace('/', SEPARATOR)
         if scoped != reference and self.frame(scope, scoped) is not None:
             return f'; did you mean "{scoped}"?'
+        outer = int(self._elements.parents[scope])
+        while outer >= 0:
+            if self.frame(outer, scoped) is not None:
+                return (f'; {self._described(outer)} has a frame "{scoped}", but names of '
+                        'enclosing scopes cannot be used here')
+            outer = int(self._elements.parents[outer])
         own, prefix = (MODEL_FRAME, self.names[scope] + SEPARATOR) if self._is_model[scope] else (
             WORLD_FRAME, '')
         visible = (name[len(prefix):] for name in self._frames[self.roots[scope]]

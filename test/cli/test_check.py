@@ -86,3 +86,12 @@ def test_strict_check_exits_with_1_for_a_warning(sdf_pose):
 
 def test_strict_check_exits_with_0_without_warnings(sdf_pose):
     assert sdf_pose('check', '--strict', 'good.sdf').returncode == 0
+
+
+def test_errors_and_warnings_are_in_the_order_of_lines(run_main, files):
+    (files / 'both.sdf').write_text("""<sdf version="1.9"><model name="m"><link name="l"/>
+      <frame name="f" attached_to="x"/>
+      <lnk/>
+      <frame name="g" attached_to="y"/></model></sdf>""")
+    lines = run_main('check', 'both.sdf').stdout.splitlines()
+    assert [line.split(':')[1] for line in lines] == ['2', '3', '4']
