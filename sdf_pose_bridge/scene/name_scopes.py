@@ -119,11 +119,10 @@ class NameScopes:
 
     def _hint(self, scope: int, reference: str) -> str:
         first = reference.split(SEPARATOR, 1)[0]
-        if self._is_model[scope]:
-            if first == self._elements.names[scope]:
-                rest = reference[len(first) + len(SEPARATOR):]
-                return (f'; inside a model its own name is not visible, write '
-                        f'"{rest or MODEL_FRAME}"')
+        if self._is_model[scope] and first == self._elements.names[scope]:
+            rest = reference[len(first) + len(SEPARATOR):]
+            return (f'; inside a model its own name is not visible, write '
+                    f'"{rest or MODEL_FRAME}"')
         scoped = reference.replace('/', SEPARATOR)
         if scoped != reference and self.frame(scope, scoped) is not None:
             return f'; did you mean "{scoped}"?'

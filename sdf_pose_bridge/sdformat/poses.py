@@ -171,7 +171,8 @@ def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> list[float]:
             msg = f'"{word[:80]}" in the pose "{shown}" is {rule}'
             raise PoseTextError(msg)
     if len(words) != count:
-        msg = f'a pose has {count} values ({layout}), "{shown}" has {len(words)}'
+        hint = '' if len(words) != 7 else '; did you mean rotation_format="quat_xyzw"?'
+        msg = f'a pose has {count} values ({layout}), "{shown}" has {len(words)}{hint}'
         raise PoseTextError(msg)
     numbers = list(map(float, plain_words))
     if pose_format.is_quaternion:

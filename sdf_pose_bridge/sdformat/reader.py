@@ -23,6 +23,7 @@ from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementIncorrectTypeError
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ReservedNameError
+from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.elements import Elements
@@ -263,7 +264,9 @@ class _Reader:
                     error = (
                         ElementInvalidError if definition.kind is None else AttributeInvalidError)
                     msg = f'{name}="{value.strip(WHITE_SPACE)}" of <{written_tag(xml)}> {fault}'
-                    self._sources.error(error, xml, msg)
+                    hint = hint_from_names(value.strip(WHITE_SPACE), attribute.choice.texts) if (
+                        self._sources.problems.allows_hint()) else ''
+                    self._sources.error(error, xml, msg + hint)
 
     def _read_pose(self, xml: XmlElement, definition: Definition, parent: int) -> None:
         """Keep the pose of an element, or check another pose."""

@@ -13,6 +13,7 @@ from collections.abc import Iterable
 
 from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.sdformat.grammar import Definition
+from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_TAGS
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
@@ -27,6 +28,11 @@ _ELEMENT_HINTS = {
     **{f'model/{tag}': 'URDF that is made of the model has it' for tag in URDF_TAGS},
 }
 """The ends of messages about elements, by tag, or parent and tag."""
+
+_PLACES = {
+    kind.label: ' or '.join(f'<{parent}>' for parent in kind.parents)
+    for kind in Kind if kind.parents}
+"""The elements in which each kind of element can stand."""
 
 _ATTRIBUTE_HINTS = {
     ('pose', 'frame'): 'since version 1.7 it is relative_to',
@@ -71,6 +77,8 @@ class UndefinedReporter:
         hint = _ELEMENT_HINTS.get(f'{parent.identifier}/{tag}', '') or _ELEMENT_HINTS.get(tag, '')
         if not hint and tag in parent.attributes:
             hint = f'it is an attribute: {tag}="..."'
+        elif not hint and tag in _PLACES:
+            hint = f'it can stand in {_PLACES[tag]}'
         elif not hint:
             hint = self._did_you_mean(tag, parent.identifier, map(str, parent.children), '<{}>')
         self._warn(xml, f'<{tag}> in <{written_tag(parent_xml)}>', hint)

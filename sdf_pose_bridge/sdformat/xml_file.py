@@ -39,6 +39,21 @@ _PASSING = frozenset({
     errno.EAGAIN, errno.EINTR, errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.ESTALE,
     errno.ETIMEDOUT})
 
+_FAULTS = {
+    r'Opening and ending tag mismatch: (.+) line (\d+) and (.+)':
+        r'</\3> cannot end <\1> of line \2; </\1> is missing or misspelt',
+    r'Premature end of data in tag (.+) line (\d+)':
+        r'the file ends inside <\1> of line \2; </\1> is missing',
+    r"Couldn't find end of Start Tag (.+) line (\d+)":
+        r'the start tag <\1 of line \2 has no ">"',
+    'attributes construct error': 'an attribute is not written as name="value"',
+    "Unescaped '<' not allowed in attributes values":
+        'the value of an attribute holds "<"; a quotation mark before it may be missing',
+    'AttValue: " or \' expected': 'the value of an attribute is not in quotation marks',
+    'Attribute (.+) redefined': r'the attribute \1 is given twice',
+}
+"""What messages of libxml2 mean, by regular expressions for them."""
+
 _IGNORED_ERRORS = frozenset({
     'NS_ERR_UNDEFINED_NAMESPACE', 'NS_ERR_QNAME', 'NS_ERR_COLON', 'DTD_ID_REDEFINED'})
 """SDFormat has prefixes without namespaces, and ``xml:id`` has no meaning in it."""
@@ -185,7 +200,7 @@ def _parsed(text: bytes, path: str) -> XmlElement:
         root = etree.fromstring(text, parser)
     errors = [entry for entry in parser.error_log if entry.type_name not in _IGNORED_ERRORS]
     if errors:
-        msg = f'this is not well-formed XML: {errors[0].message.strip()}'
+        msg = f'this is not well-formed XML: {_fault_from_message(errors[0].message.strip())}'
         # What is missing at the end is missed behind the last line break.
         last_line = text.count(b'\n') + (not text.endswith(b'\n'))
         raise FileReadError(msg, Place(path, min(errors[0].line, last_line)))
@@ -195,6 +210,15 @@ def _parsed(text: bytes, path: str) -> XmlElement:
     if len(parser.error_log) >= _MOST_ERRORS:
         _check_with_expat(text, path)
     return root
+
+
+def _fault_from_message(message: str) -> str:
+    """Return what a message of libxml2 means to the author of a file, where that is not plain."""
+    for pattern, fault in _FAULTS.items():
+        match = re.fullmatch(pattern, message)
+        if match:
+            return match.expand(fault)
+    return message
 
 
 def _check_instructions(root: XmlElement, path: str) -> None:

@@ -24,6 +24,7 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import JOINT_SUFFIX
+from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene.scene import Mimic
 from sdf_pose_bridge.scene.scene import Scene
@@ -38,6 +39,8 @@ LARGEST_POSITION = 1e9
 
 _MOST_STEPS = 10
 """How many innermost steps of a name may stand for it."""
+
+_MOST_NAMES_SHOWN = 6
 
 
 class UnreportedJoints(enum.Enum):
@@ -193,7 +196,9 @@ def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
     selection = state.selection(list(positions))
     invalid = state.update(selection, np.array(list(positions.values()), float))
     for name in selection.unknown:
-        msg = f'"{name}" is not the name of one moving joint{state.hint(name)}'
+        known = (f'the moving joints are {quoted_names(state.names, _MOST_NAMES_SHOWN)}'
+                 if state.names else 'the file has no moving joint')
+        msg = f'"{name}" is not the name of one moving joint{state.hint(name)}; {known}'
         raise JointPositionError(msg, Place(scene.path))
     for name in invalid:
         msg = f'the position of "{name}" must be finite and at most {LARGEST_POSITION:g}'

@@ -148,6 +148,11 @@ def test_message_explains_that_enclosing_scopes_are_not_visible():
     assert 'enclosing scopes' in only_error(in_nested('l')).message
 
 
+def test_name_with_slashes_is_searched_in_enclosing_scopes_too():
+    assert 'has a frame "n2::deep", but names of enclosing scopes' in (
+        only_error(in_nested('n2/deep')).message)
+
+
 def test_message_has_the_scope():
     assert 'model "m::n::n2"' in only_error(in_nested('zzz')).message
     assert 'world "w"' in only_error(in_world('zzz')).message

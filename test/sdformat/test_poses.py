@@ -222,3 +222,8 @@ def test_many_plain_texts_are_read_as_one_by_one(texts, pose_format):
     expected, expected_failures = read_one_by_one(texts, pose_format)
     assert failures == expected_failures
     np.testing.assert_allclose(poses, expected, rtol=1e-15, atol=1e-15)
+
+
+def test_seven_numbers_are_probably_a_quaternion():
+    with pytest.raises(PoseTextError, match='did you mean rotation_format="quat_xyzw"'):
+        pose_from_text('1 2 3 0 0 0 1', PoseFormat())

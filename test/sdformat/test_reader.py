@@ -8,6 +8,7 @@ from sdf_texts import codes_of
 from sdf_texts import errors_of
 from sdf_texts import errors_of_file
 from sdf_texts import fixed_joint
+from sdf_texts import joint
 from sdf_texts import LINK
 from sdf_texts import LINK_CHILDREN
 from sdf_texts import link_with
@@ -437,3 +438,11 @@ def test_elements_of_urdf_are_kept_as_they_are_written():
     assert [warning.message for warning in scene.warnings] == [
         f'<{tag}> in <model> is not defined in SDFormat; URDF that is made of the model has it'
         for tag in ('ros2_control', 'transmission')]
+
+
+# Hints
+
+def test_nearest_type_is_named():
+    text = model_file('<link name="a"/><link name="b"/>' + joint(
+        '<parent>a</parent><child>b</child>', joint_type='fix'))
+    assert only_error(text).message.endswith('universal; did you mean "fixed"?')

@@ -31,6 +31,8 @@ def messages_of(text):
      '<gz_frame_id> in <sensor> is not defined in SDFormat; it is used all the same'),
     (link_with('<gz_frame_id>f</gz_frame_id>'),
      '<gz_frame_id> in <link> is not defined in SDFormat; Gazebo looks for it in <sensor>'),
+    (model_file(LINK + '<sensor name="s" type="imu"/>'),
+     '<sensor> in <model> is not defined in SDFormat; it can stand in <link> or <joint>'),
     (link_with('<inertial><mas>1</mas></inertial>'),
      '<mas> in <inertial> is not defined in SDFormat; did you mean <mass>?'),
     (world_file('<modle name="m"/>'),

@@ -432,3 +432,17 @@ def test_name_with_a_break_has_a_warning(name, what):
     '<link name="ab"/><plugin name="a\tb" filename="f"/>'])
 def test_name_without_a_break_in_it_has_no_warning(link):
     assert not load_text(f'<sdf version="1.9"><model name="m">{link}</model></sdf>').warnings
+
+
+@pytest.mark.parametrize(('text', 'fault', 'line'), [
+    ('<sdf version="1.9">\n<model name="m">\n<link>\n</model></sdf>',
+     '</model> cannot end <link> of line 3; </link> is missing or misspelt', 4),
+    ('<sdf version="1.9">\n<model name="m">\n', 'the file ends inside <model> of line 2', 2),
+    ('<sdf version=1.9/>', 'the value of an attribute is not in quotation marks', 1),
+    ('<sdf version="1.9"><a b="c" b="d"/></sdf>', 'the attribute b is given twice', 1),
+    ('<sdf version="1.9"><a b="c><d/></a></sdf>', 'a quotation mark before it may be missing', 1),
+])
+def test_fault_is_told_in_words_of_the_author(text, fault, line):
+    error = only_error(text)
+    assert fault in error.message
+    assert error.line == line

@@ -171,7 +171,8 @@ def limited(limit=''):
 
 
 @pytest.mark.parametrize(('name', 'value', 'words'), [
-    ('i', 1.0, '"i" is not the name of one moving joint'), ('j', np.nan, 'must be finite'),
+    ('i', 1.0, '"i" is not the name of one moving joint; the moving joints are "j", '),
+    ('j', np.nan, 'must be finite'),
 ])
 def test_a_wrong_configuration_is_refused(name, value, words):
     with pytest.raises(JointPositionError, match=words):

@@ -179,7 +179,7 @@ class IncludeExpansion:
         """Return a file; the reason why it is not found; or None if it cannot be read."""
         path = self._finder.path_from_uri(uri, place.file)
         if path is None:
-            return self._finder.reason_not_found(uri)
+            return self._finder.reason_not_found(uri, place.file)
         if os.path.isdir(path):  # noqa: PTH112
             chosen = self._model_file(path)
             if isinstance(chosen, str):

@@ -23,6 +23,7 @@ from sdf_pose_bridge.errors import FileReadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.versions import NEWEST
@@ -36,6 +37,10 @@ from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 _SCHEME = re.compile(r'([A-Za-z][A-Za-z0-9+.-]*)://')
 _SCHEME_OF_ADDRESS = re.compile(r'[A-Za-z][A-Za-z0-9+.-]+(?=:/)')
 _PATH_VARIABLES = ('GZ_SIM_RESOURCE_PATH', 'SDF_PATH')
+
+
+_MOST_SHOWN = 5
+"""How many directories a message names."""
 
 
 class AddressError(ValueError):
@@ -118,13 +123,28 @@ class ResourceFinder(NamedTuple):
         msg = f'"{address}" {fault}'
         raise AddressError(msg)
 
-    def reason_not_found(self, uri: str) -> str:
-        """Return why :meth:`path_from_uri` has no path for a URI, and what to do about it."""
+    def reason_not_found(self, uri: str, including_file: str) -> str:
+        """
+        Return why :meth:`path_from_uri` has no path for a URI, and what to do about it.
+
+        :param including_file: path of the file that holds the include.
+        """
         if uri.lower().startswith(('http://', 'https://')):
             return ('it is not in the cache of Gazebo Fuel; fetch it with: gz fuel download -u '
                     f'"{uri}"')
-        return ('nothing of that name was found beside the file or in the resource paths, to '
-                'which the variable GZ_SIM_RESOURCE_PATH adds')
+        scheme = _SCHEME.match(uri)
+        beside = [] if scheme and scheme[1].lower() in ('model', 'package') else [
+            os.path.dirname(including_file) or '.']  # noqa: PTH120
+        directories = [*dict.fromkeys((
+            *self.search_paths, *beside, *self.environment_paths, '.'))]
+        packages = ''
+        if scheme and scheme[1].lower() == 'package':
+            package = uri[scheme.end():].lstrip('/').partition('/')[0]
+            is_known = next(self._package_shares(package), None) is not None
+            packages = f'the package "{package}" has no such file, and it is ' if is_known else (
+                f'no package "{package}" is installed, and it is ')
+        return (f'{packages or "it is "}not in {quoted_names(directories, _MOST_SHOWN)}; the '
+                'variable GZ_SIM_RESOURCE_PATH and the resource paths add directories')
 
     def _candidates(self, uri: str, including_file: str) -> Iterator[str | Path]:
         scheme = _SCHEME.match(uri)

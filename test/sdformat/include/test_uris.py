@@ -179,12 +179,19 @@ def test_file_of_a_fuel_model_is_found_in_the_cache(tmp_path):
 
 def test_reason_for_a_missing_fuel_model_says_how_to_fetch_it():
     uri = 'https://fuel.gazebosim.org/1.0/Open/models/Box'
-    assert resource_finder((), {}).reason_not_found(uri).endswith(
+    assert resource_finder((), {}).reason_not_found(uri, 'a.sdf').endswith(
         f'fetch it with: gz fuel download -u "{uri}"')
 
 
-def test_reason_for_a_missing_model_names_the_variable_with_paths():
-    assert 'GZ_SIM_RESOURCE_PATH' in resource_finder((), {}).reason_not_found('model://box')
+@pytest.mark.parametrize(('uri', 'reason'), [
+    ('model://box', 'it is not in "mine", "there", "."'),
+    ('box', 'it is not in "mine", "cells", "there", "."'),
+    ('package://arm/box', 'no package "arm" is installed, and it is not in "mine", '),
+])
+def test_reason_for_a_missing_model_names_what_was_searched(uri, reason):
+    finder = resource_finder(['mine'], {'SDF_PATH': 'there'})
+    assert finder.reason_not_found(uri, 'cells/a.sdf').startswith(reason)
+    assert 'GZ_SIM_RESOURCE_PATH' in finder.reason_not_found(uri, 'cells/a.sdf')
 
 
 # Addresses that users give
