@@ -37,6 +37,8 @@ class SdfWarning(NamedTuple):
     message: str
     """One sentence."""
     place: Place
+    is_for_gazebo: bool = False
+    """Whether it is about what only Gazebo would do with a URDF that is read as ROS reads it."""
 
     def __str__(self) -> str:
         return f'{self.place}: {self.code}: {self.message}'

@@ -51,18 +51,24 @@ class Problems:
         self._errors = _First[SdfError]()
         self._warnings = _First[SdfWarning]()
         self._hints = 0
+        self.are_for_gazebo = False
+        """Whether all warnings from now on are about what only Gazebo would do."""
 
     def error(self, error: SdfError) -> None:
         """Add an error."""
         self._errors.add(error, self._key(error))
 
-    def warning(self, message: str, place: Place, code: str = 'WARNING') -> None:
+    def warning(
+        self, message: str, place: Place, code: str = 'WARNING', *, is_for_gazebo: bool = False,
+    ) -> None:
         """
         Add a warning.
 
         :param code: code of the corresponding error, or ``WARNING``.
+        :param is_for_gazebo: whether it is about what only Gazebo would do.
         """
-        warning = SdfWarning(code, shortened_message(message), place)
+        warning = SdfWarning(
+            code, shortened_message(message), place, is_for_gazebo or self.are_for_gazebo)
         self._warnings.add(warning, self._key(warning))
 
     def extend(self, problems: Iterable[SdfError | SdfWarning]) -> None:
@@ -71,7 +77,9 @@ class Problems:
             if isinstance(problem, SdfError):
                 self.error(problem)
             else:
-                self.warning(problem.message, problem.place, problem.code)
+                self.warning(
+                    problem.message, problem.place, problem.code,
+                    is_for_gazebo=problem.is_for_gazebo)
 
     def extend_parent(self) -> None:
         """Add these errors and warnings to those of the whole load."""

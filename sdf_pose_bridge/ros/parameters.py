@@ -286,7 +286,8 @@ class Settings:
     )
     frame_prefix = Declaration(
         '',
-        'Precedes every frame id but that of root_frame, with nothing in between.',
+        'Precedes every frame id but that of root_frame, with nothing in between; also that of '
+        'the link "world" of a URDF.',
         'no leading slash, at most 255 characters',
         prefix_setting,
     )

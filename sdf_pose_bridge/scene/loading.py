@@ -86,7 +86,7 @@ def load(
         for error in gazebo_errors:
             problems.warning(
                 f'{error.message}; so what <gazebo> elements hold is left out', error.place,
-                error.code)
+                error.code, is_for_gazebo=True)
         try:
             document = document_from_file(
                 os.fspath(path), sources, reads_gazebo_elements=not gazebo_errors)
@@ -140,7 +140,8 @@ def _scene(
     elements = elements_from_tree(document.root, sources, shapes=shapes)
     graph = frame_graph_from_elements(elements, sources.usage, sources.problems)
     sources.problems.raise_errors()
-    return scene_from_graph(document.path, elements, graph, sources.problems)
+    return scene_from_graph(
+        document.path, elements, graph, sources.problems, document.urdf_root)
 
 
 def _model_by_itself(root: XmlElement, sources: Sources) -> ModelByItself | None:

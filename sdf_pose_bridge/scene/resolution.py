@@ -43,6 +43,7 @@ _Details = TypeVar('_Details')
 
 def scene_from_graph(
     path: str, elements: Elements, graph: FrameGraph, problems: Problems,
+    urdf_root: str | None = None,
 ) -> Scene:
     """
     Resolve all poses, and leave out unresolved elements.
@@ -50,6 +51,7 @@ def scene_from_graph(
     :param path: path of the file, as it was opened.
     :param graph: the references of the elements, which are valid.
     :param problems: has the warnings of the load.
+    :param urdf_root: of URDF that is read as ROS reads it: the link that has no parent.
     """
     poses = _root_poses(elements, graph)
     computed_inertials = _place_automatic_inertials(poses, elements)
@@ -106,6 +108,7 @@ def scene_from_graph(
             index: elements.names[index]
             for index in np.flatnonzero(elements.kinds == Kind.WORLD).tolist()}),
         warnings=problems.warnings,
+        urdf_root=urdf_root,
     )
 
 

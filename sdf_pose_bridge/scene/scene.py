@@ -140,6 +140,9 @@ class Scene:
     """The name of each world, by its index."""
     warnings: tuple[SdfWarning, ...]
     """What libsdformat accepts, but the author of the file should know of, in file order."""
+    urdf_root: str | None
+    """The link without a parent of a URDF that is the file or the text itself; None for SDFormat.
+    Where it is ``world``, it is the implicit root here."""
 
     def __post_init__(self) -> None:
         for value in vars(self).values():

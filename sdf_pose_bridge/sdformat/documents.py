@@ -42,6 +42,8 @@ class Document(NamedTuple):
     """The ``sdf`` element."""
     has_gazebo_elements: bool = False
     """Whether it is URDF with ``<gazebo>`` elements."""
+    urdf_root: str | None = None
+    """Of URDF that is read as ROS reads it: the name of the link that has no parent."""
 
 
 def document_from_file(
@@ -70,6 +72,7 @@ def document_from_file(
     if b'$' in file.text or b'xacro' in file.text:
         _check_is_expanded(root, path, sources)
     gazebo_elements: list[XmlElement] = []
+    urdf_root = None
     if root.tag == 'robot':
         # Most files are not URDF and need not wait for this import.
         from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
@@ -77,7 +80,11 @@ def document_from_file(
         if not reads_gazebo_elements:
             for element in gazebo_elements:
                 root.remove(element)
-        root = sdf_from_urdf(root, sources, is_included=is_included)
+        root, root_link = sdf_from_urdf(root, sources, is_included=is_included)
+        if not is_included:
+            urdf_root = root_link
+            # All links and joints are converted; what follows is about <gazebo> elements.
+            sources.problems.are_for_gazebo = True
         sources.add_tree(path, root, file.lines)
     place = Place(path, sources.line(root))
     version = _declared_version(root, place)
@@ -87,7 +94,7 @@ def document_from_file(
         b':' in file.text and SEPARATOR.encode() in file.text)
     convert(root, version, sources)
     _check_top_model(root, sources)
-    return Document(path, root, bool(gazebo_elements))
+    return Document(path, root, bool(gazebo_elements), urdf_root)
 
 
 def _declared_version(root: XmlElement, place: Place) -> Version:

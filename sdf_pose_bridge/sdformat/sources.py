@@ -126,9 +126,15 @@ class Sources:
         """Add an error about the name of an element, which an include may have given to it."""
         self.problems.error(error_class(message, self.origin(xml).include or self.place(xml)))
 
-    def warning(self, xml: XmlElement, message: str, code: str = 'WARNING') -> None:
-        """Add a warning about an element to the problems."""
-        self.problems.warning(message, self.place(xml), code)
+    def warning(
+        self, xml: XmlElement, message: str, code: str = 'WARNING', *, is_for_gazebo: bool = False,
+    ) -> None:
+        """
+        Add a warning about an element to the problems.
+
+        The parameters are those of :meth:`Problems.warning`.
+        """
+        self.problems.warning(message, self.place(xml), code, is_for_gazebo=is_for_gazebo)
 
     def count_work(self, steps: int, xml: XmlElement) -> None:
         """Count work that an element makes, against the limits."""

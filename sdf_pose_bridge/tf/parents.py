@@ -6,6 +6,9 @@ Choose the TF parent of every element: what it is fixed to, or what a joint conn
 ``relative_to`` says only where things start. ``attached_to`` and joints say which things move
 together. So the parent of a frame is what it is attached to, that of a model its canonical link,
 and that of a link the link on the other side of a joint.
+
+A URDF keeps its own tree: a link that no joint connects, but for its root, hangs on a floating
+joint, and has no parent.
 """
 
 from __future__ import annotations
@@ -162,10 +165,13 @@ def _parents_of_free_bodies(scene: Scene, connected: Container[int]) -> dict[int
     Choose the parents of links, and of models without links, that have no parent along joints.
 
     That is the canonical link of the model around; for a canonical link, which represents its
-    model, the canonical link of the next model around.
+    model, the canonical link of the next model around; in URDF the root.
     """
     parents, canonical_links = scene.parents.tolist(), scene.canonical_links.tolist()
     is_link, is_model = scene.kinds == Kind.LINK, scene.kinds == Kind.MODEL
+    if scene.urdf_root is not None:
+        return dict.fromkeys(
+            (link for link in np.flatnonzero(is_link).tolist() if link not in connected), 0)
     common_parents = {root: root for root in np.flatnonzero(scene.parents < 0).tolist()}
     outermost_models: dict[int, int] = {}
     for model in np.flatnonzero(is_model).tolist():

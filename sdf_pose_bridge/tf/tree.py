@@ -24,6 +24,7 @@ from sdf_pose_bridge.geometry.poses import canonical_relative_poses
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -67,8 +68,9 @@ class TfOptions(NamedTuple):
     """Replaces ``::``."""
     frame_prefix: str = ''
     """Precedes every frame id but the root's."""
-    kinds: frozenset[Kind] = DEFAULT_KINDS
-    """The kinds of element that become frames."""
+    kinds: frozenset[Kind] | None = DEFAULT_KINDS
+    """The kinds of element that become frames; None for the links of URDF, and for
+    :data:`DEFAULT_KINDS` of SDFormat. The model of a URDF never does."""
     pose_frame: str = ''
     """The frame id of the frame in which poses are published; empty for the root frame."""
     optical_frames: bool = True
@@ -163,6 +165,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     frame_ids = naming.frame_ids_from_scene(scene, elements)
     elements, frame_ids, sensor_ids = with_ids_of_sensors(
         elements, frame_ids, scene, naming, options.root_frame)
+    elements, frame_ids = _with_link_world(elements, frame_ids, scene, options)
     owners = elements.tolist()
     optical_frames = optical_frames_of_cameras(
         owners, frame_ids, sensor_ids, scene, naming) if options.optical_frames else []
@@ -219,8 +222,32 @@ def _published_elements(scene: Scene, options: TfOptions, problems: Problems) ->
         problems.warning(msg, scene.place(root))
     is_inside = (
         elements_in_model(scene, options.model) if options.model else scene.roots == 0)
-    is_wanted = np.array([kind in options.kinds for kind in Kind])[scene.kinds]
+    kinds = _kinds(scene, options)
+    is_wanted = np.array([kind in kinds for kind in Kind])[scene.kinds]
     return np.flatnonzero(is_inside & is_wanted & ~is_root).astype(np.int32)
+
+
+def _kinds(scene: Scene, options: TfOptions) -> frozenset[Kind]:
+    """Return the kinds of element that become frames."""
+    if scene.urdf_root is None:
+        return DEFAULT_KINDS if options.kinds is None else options.kinds
+    # Two robots of one make have one name, and a frame has one parent.
+    return (frozenset({Kind.LINK}) if options.kinds is None else options.kinds) - {Kind.MODEL}
+
+
+def _with_link_world(
+    elements: Indices, frame_ids: list[str], scene: Scene, options: TfOptions,
+) -> tuple[Indices, list[str]]:
+    """
+    Add the link ``world`` at the root of a URDF, unless the root frame has its frame id.
+
+    :return: the elements, with the implicit root for that link, and their frame ids.
+    """
+    frame_id = options.frame_prefix + WORLD_FRAME
+    if (scene.urdf_root != WORLD_FRAME or frame_id == options.root_frame
+            or Kind.LINK not in _kinds(scene, options)):
+        return elements, frame_ids
+    return np.concatenate([[0], elements]).astype(np.int32), [frame_id, *frame_ids]
 
 
 def elements_in_model(scene: Scene, name: str) -> NDArray[np.bool_]:
@@ -310,6 +337,7 @@ def _nearest_frames_and_parents(
         may be :data:`ROOT_IS_PARENT` or :data:`NO_PARENT`.
     """
     is_root = scene.parents < 0
+    is_world_link = (elements == 0)
     is_detached = np.zeros(len(is_root), np.bool_)
     if anchor_models is AnchorModels.AUTO:
         anchor_models = AnchorModels.ALL if 0 in scene.world_names else AnchorModels.STATIC
@@ -317,8 +345,10 @@ def _nearest_frames_and_parents(
         is_body = np.isin(scene.kinds, (Kind.LINK, Kind.MODEL))
         for body in np.flatnonzero(is_body & is_root[tf_parents.parents]).tolist():
             *_, top_level_model, _ = scene.with_ancestors(body)
-            is_detached[body] = anchor_models is AnchorModels.NONE or (
-                body in tf_parents.free_bodies and top_level_model not in scene.static_models)
+            # What hangs on the link "world" of a URDF keeps its parent.
+            is_detached[body] = (
+                anchor_models is AnchorModels.NONE and scene.urdf_root != WORLD_FRAME) or (
+                    body in tf_parents.free_bodies and top_level_model not in scene.static_models)
     frames = np.full(len(is_root), NO_PARENT, np.int32)
     frames[is_root] = ROOT_IS_PARENT
     frames[elements] = np.arange(len(elements))
@@ -328,4 +358,6 @@ def _nearest_frames_and_parents(
         np.where(ends_here, -1, tf_parents.parents))]
     parents: Indices = nearest_frames[tf_parents.parents[elements]]
     parents[is_detached[elements]] = NO_PARENT
+    parents[is_world_link] = (
+        ROOT_IS_PARENT if anchor_models is AnchorModels.ALL else NO_PARENT)
     return nearest_frames, parents

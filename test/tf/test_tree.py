@@ -24,6 +24,7 @@ from tf_checks import parents_of
 from tf_checks import pose_of
 from tf_checks import tree_errors_of
 from tf_checks import tree_of
+import urdf_texts as urdf
 
 import sdf_pose_bridge
 from sdf_pose_bridge import Kind
@@ -189,6 +190,54 @@ URDF = (
 def test_a_model_file_that_can_move_is_not_anchored_by_default(text, on_root):
     assert {child for child, parent in parents_of(text).items() if parent == 'world'} == on_root
     assert (tree_of(text).fixed_frame == 'world') is bool(on_root)
+
+
+@given(st.data(), st.sampled_from(['base', 'world']), st.sampled_from(['', 'left/']),
+       st.sampled_from(AnchorModels))
+def test_a_urdf_keeps_its_own_tree(data, root, prefix, anchor):
+    links, joints, expected = [root], [], {}
+    for number in range(data.draw(st.integers(0, 6))):
+        name, parent = f'l{number}', data.draw(st.sampled_from(links))
+        joint_type = data.draw(st.sampled_from(['fixed', 'continuous', 'planar', 'floating']))
+        joints.append(urdf.joint(f'j{number}', parent, name, joint_type, urdf.origin('1 2 3')))
+        links.append(name)
+        if joint_type != 'floating':
+            expected[prefix + name] = prefix + parent
+    text = urdf.robot(''.join(data.draw(st.permutations(
+        [f'<link name="{name}"/>' for name in links] + joints))))
+    found = parents_of(text, frame_prefix=prefix, anchor_models=anchor, kinds=None)
+    assert {*found, *found.values(), 'world', ''} == {
+        *(prefix + name for name in links), 'world', ''}
+    if anchor is AnchorModels.ALL:
+        expected = {**dict.fromkeys(found, 'world'), **expected}
+    assert {child: parent for child, parent in found.items() if parent} == expected
+
+
+def test_the_link_world_of_a_urdf_has_the_prefix_and_the_world_itself_has_not():
+    text = urdf.robot(
+        '<link name="world"/><link name="a"/>' + urdf.joint('j', 'world', 'a', 'fixed'))
+    assert parents_of(text) == {'a': 'world'}
+    assert parents_of(text, frame_prefix='r/') == {'r/world': '', 'r/a': 'r/world'}
+    assert parents_of(text, root_frame='map', anchor_models=AnchorModels.ALL) == {
+        'world': 'map', 'a': 'world'}
+    assert parents_of(text, root_frame='r/world', frame_prefix='r/') == {'r/a': 'r/world'}
+    assert parents_of(text, kinds=frozenset({Kind.JOINT})) == {'j': 'world'}
+
+
+def test_sensors_of_a_urdf_are_leaves_below_its_links_and_joints_come_on_demand():
+    camera = '<sensor name="eye" type="camera"/>'
+    text = urdf.robot(
+        '<link name="r"/><link name="a"/>' + urdf.joint('j', 'r', 'a', 'fixed')
+        + urdf.gazebo(camera, 'a') + urdf.gazebo('<frame name="f"/>'))
+    assert parents_of(text) == {
+        'r': '', 'a': 'r', 'a/eye': 'a', 'a/eye_optical': 'a/eye', 'f': 'r'}
+    assert parents_of(text, kinds=None) == {'r': '', 'a': 'r'}
+    assert parents_of(text, kinds=frozenset({Kind.LINK, Kind.JOINT, Kind.MODEL})) == {
+        'r': '', 'a': 'r', 'j': 'a'}
+
+
+def test_kinds_by_format_are_the_default_ones_of_sdformat():
+    assert parents_of(CELL, kinds=None) == parents_of(CELL)
 
 
 @pytest.mark.parametrize(('kinds', 'anchor', 'nearest'), [

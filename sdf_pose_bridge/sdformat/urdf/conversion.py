@@ -1,14 +1,16 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Convert URDF to SDFormat as libsdformat does, so that a robot has the poses that Gazebo gives it.
+Convert URDF to SDFormat: in an include as libsdformat does, or else as ROS reads it.
 
-A file that is not included is read as ROS reads it: every link has its frame, also where Gazebo
-leaves the link out because it has no mass, and a joint may have the name of a link.
+In an include a robot has the poses that Gazebo gives it. A link that a fixed joint holds is lumped
+into its parent link: what it has moves there, and two frames with the names of the joint and of
+the link remain. A link without a mass is left out. ``<gazebo>`` elements hold SDFormat for the
+link or joint that they refer to, or for the model. Source: libsdformat's ``parser_urdf.cc``.
 
-A link that a fixed joint holds is lumped into its parent link: what it has moves there, and two
-frames with the names of the joint and of the link remain. ``<gazebo>`` elements hold SDFormat for
-the link or joint that they refer to, or for the model. Source: libsdformat's ``parser_urdf.cc``.
+A file that is not included keeps its tree: every link is a link, below the one that its joint
+names, and a joint may have the name of a link. What ``<gazebo>`` elements hold adds to it only
+what is below a link or a joint.
 
 Materials, and what only physics needs, are not converted.
 """
@@ -52,7 +54,11 @@ from sdf_pose_bridge.sdformat.xml_tree import child_elements
 from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import text_of
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
+from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+_GAZEBO_TAGS = ('include', 'joint', 'link', 'model')
+"""Children of ``<gazebo>`` for the model that would change the tree of a robot."""
 
 _MOVED_TAGS = ('light', 'projector', 'sensor')
 """Children of ``<gazebo>`` whose poses change when their link is lumped."""
@@ -61,6 +67,15 @@ _STEPS_OF_MOVE = 16
 """Steps of work to move a sensor from a link that is lumped to the next one."""
 
 _LUMP_PREFIX = '_fixed_joint_lump__'
+
+
+class ConvertedRobot(NamedTuple):
+    """A URDF file as SDFormat."""
+
+    root: XmlElement
+    """The ``sdf`` element."""
+    root_link: str
+    """The name of the link that has no parent."""
 
 
 class _Base(NamedTuple):
@@ -73,9 +88,9 @@ class _Base(NamedTuple):
     """The link itself and those that are lumped into it."""
 
 
-def sdf_from_urdf(root: XmlElement, sources: Sources, *, is_included: bool) -> XmlElement:
+def sdf_from_urdf(root: XmlElement, sources: Sources, *, is_included: bool) -> ConvertedRobot:
     """
-    Convert a file; return its ``sdf`` element.
+    Convert a file.
 
     :param root: the ``robot`` element; what ``<gazebo>`` elements hold is taken out of it.
     :param sources: has the lines of its elements, and takes those of the new ones.
@@ -85,7 +100,9 @@ def sdf_from_urdf(root: XmlElement, sources: Sources, *, is_included: bool) -> X
     robot = robot_from_tree(root, sources)
     if not is_included:
         robot = robot_with_different_names(robot, sources)
-    return _Conversion(root, robot, sources, for_ros=not is_included).result()
+    return ConvertedRobot(
+        _Conversion(root, robot, sources, for_ros=not is_included).result(),
+        robot.links_in_order[0].name)
 
 
 class _Conversion:
@@ -109,12 +126,19 @@ class _Conversion:
         self._inertials = {link.name: link.inertial for link in self._links}
         for link in reversed(self._links):
             self._lump_inertial(link)
+        self._left_out = self._links_left_out()
+        if for_ros:
+            self._keep_tree()
 
     def result(self) -> XmlElement:
         self._replace_lumped_ends_of_joints()
         self._add_links()
-        if self._gazebo.static is not None:
-            self._element(self._model, 'static', self._root, text=self._gazebo.static)
+        static = self._gazebo.static
+        if self._for_ros:
+            # Its joints move. Without links, as of the link "world" alone, only that is valid.
+            static = None if first_child(self._model, 'link') is not None else 'true'
+        if static is not None:
+            self._element(self._model, 'static', self._root, text=static)
         self._add_extensions(self._model, '')
         self._add_frames()
         self._add_robot_origin()
@@ -157,6 +181,37 @@ class _Conversion:
             for a, b in zip(old.origin[:3], center[:3], strict=True))
         self._inertials[joint.parent] = Inertial(mass, old.origin._replace(x=x, y=y, z=z))
 
+    def _links_left_out(self) -> set[str]:
+        """Return the links that Gazebo leaves out, with a warning about each that has no mass."""
+        left_out = set()
+        for link in self._links:
+            joint = self._robot.parent_joints.get(link.name)
+            inertial = self._inertials[link.name]
+            if joint is not None and joint.parent in left_out:
+                left_out.add(link.name)
+            elif (inertial is None or inertial.mass <= 0.0) and link.name != WORLD_FRAME and not (
+                    joint is not None and self._is_reducible(joint)):
+                left_out.add(link.name)
+                self._sources.warning(
+                    link.xml, f'link "{link.name}" has no mass, so Gazebo leaves it out with all '
+                    f'links and joints below it{"" if self._for_ros else "; here, too"}',
+                    'LINK_INERTIA_INVALID', is_for_gazebo=self._for_ros)
+        return left_out
+
+    def _keep_tree(self) -> None:
+        """Lump no links, and leave out what would change the tree of the robot."""
+        self._bases = {link.name: _Base(link, Pose(), [link]) for link in self._links}
+        self._inertials = {link.name: link.inertial for link in self._links}
+        kept = []
+        for xml in self._gazebo.extensions.pop('', ()):
+            if xml.tag in _GAZEBO_TAGS:
+                self._sources.warning(
+                    xml, f'<{written_tag(xml)}> is for Gazebo alone, as ROS has only the tree of '
+                    'the robot', is_for_gazebo=True)
+            else:
+                kept.append(xml)
+        self._gazebo.extensions[''] = kept
+
     # Writing
 
     def _element(
@@ -175,22 +230,12 @@ class _Conversion:
         return name
 
     def _add_links(self) -> None:
-        left_out = set()
         for link in self._links:
             name = link.name
             joint = self._robot.parent_joints.get(name)
             inertial = self._inertials[name]
             is_massless = inertial is None or inertial.mass <= 0.0
-            if joint is not None and joint.parent in left_out:
-                left_out.add(name)
-            elif is_massless and name != WORLD_FRAME and not (
-                    joint is not None and self._is_reducible(joint)):
-                left_out.add(name)
-                self._sources.warning(
-                    link.xml, 'the link has no mass, so Gazebo leaves it out with all links and '
-                    f'joints below it{"" if self._for_ros else "; here, too"}',
-                    'LINK_INERTIA_INVALID')
-            is_kept = self._for_ros or not (is_massless or name in left_out)
+            is_kept = self._for_ros or not (is_massless or name in self._left_out)
             if is_kept and not self._is_lumped(link) and (
                     joint is not None or name != WORLD_FRAME):
                 self._add_link(link, None if is_massless else inertial, joint)
@@ -200,6 +245,8 @@ class _Conversion:
         xml = self._element(self._model, 'link', link.xml, name=link.name)
         if joint is not None and is_joined:
             self._element(xml, 'pose', joint.xml, relative_to=joint.name)
+        elif joint is not None:
+            self._add_pose_in_link(xml, joint.xml, joint.origin, joint.parent)
         if inertial is not None:
             inertial_xml = self._element(xml, 'inertial', link.xml)
             self._add_pose(inertial_xml, link.xml, inertial.origin, rpy_by_gz_math)
@@ -243,6 +290,11 @@ class _Conversion:
                 msg += f', so link "{joint.child}" has no place'
                 self._sources.error(RelativeToError, joint.xml, msg)
                 return False
+            if joint.type == 'floating':
+                self._sources.warning(
+                    joint.xml, f'joint "{joint.name}" is floating; somebody else has to publish '
+                    f'where link "{joint.child}" is')
+                return False
             self._sources.warning(joint.xml, f'{msg}; it is fixed here')
             joint_type = 'fixed'
         elif (joint.type == 'fixed' and joint.name in self._gazebo.revolute_joints
@@ -251,9 +303,8 @@ class _Conversion:
         base = self._bases[joint.parent]
         parent = self._counted(base.link.name, joint.xml)
         xml = self._element(self._model, 'joint', joint.xml, name=joint.name, type=joint_type)
-        pose = self._add_pose(
-            xml, joint.xml, pose_product(base.pose, joint.origin), rpy_by_gz_math)
-        pose.set('relative_to', MODEL_FRAME if parent == WORLD_FRAME else parent)
+        self._add_pose_in_link(
+            xml, joint.xml, pose_product(base.pose, joint.origin), parent)
         self._element(xml, 'parent', joint.xml, text=parent)
         self._element(xml, 'child', joint.xml, text=joint.child)
         if JOINT_TYPES[joint_type].dofs:
@@ -321,6 +372,12 @@ class _Conversion:
         text = text_from_numbers([*pose[:3], *rpy_from_pose(pose)])
         return self._element(xml, 'pose', source, text=text)
 
+    def _add_pose_in_link(
+        self, xml: XmlElement, source: XmlElement, pose: Pose, link: str,
+    ) -> None:
+        self._add_pose(xml, source, pose, rpy_by_gz_math).set(
+            'relative_to', MODEL_FRAME if link == WORLD_FRAME else link)
+
     def _add_numbers(
         self, xml: XmlElement, source: XmlElement, numbers: Mapping[str, Sequence[float]],
     ) -> None:
@@ -371,4 +428,4 @@ class _Conversion:
         for reference, children in self._gazebo.extensions.items():
             self._sources.warning(
                 children[0], f'what <gazebo reference="{reference}"> holds is left out: the '
-                'converted model has no link or joint of that name')
+                'converted model has no link or joint of that name', is_for_gazebo=self._for_ros)

@@ -232,7 +232,8 @@ class _RobotReader:
         except NotFiniteError as error:
             self._errors.error(ElementInvalidError, xml, str(error))
         except ValueError as error:
-            self._sources.warning(xml, f'{error}; libsdformat reads the link no further')
+            self._sources.warning(
+                xml, f'link "{xml.get("name", "")}": {error}; libsdformat reads it no further')
         return Link(xml, xml.get('name', ''), inertial, shapes)
 
     def _joint(self, name: str, xml: XmlElement, links: Mapping[str, Link]) -> Joint | None:
@@ -319,8 +320,7 @@ def robot_with_different_names(robot: Robot, sources: Sources) -> Robot:
             names[joint.name] = _unused_name(f'{joint.name}{JOINT_SUFFIX}', used)
             sources.warning(
                 joint.xml, f'the joint has the name of link "{joint.name}"; it is called '
-                f'"{names[joint.name]}" here')
-
+                f'"{names[joint.name]}" here', is_for_gazebo=True)
     return robot._replace(
         name=_unused_name(f'{robot.name}_model', used) if robot.name in used else robot.name,
         joint_names=names,

@@ -34,14 +34,14 @@ TWO = link('a') + link('b')
 SENSOR = '<sensor name="s" type="imu">{}</sensor>'
 
 
-def converted(text, *, is_included=True):
+def model_from(text, *, is_included=True):
     """Return the ``model`` that a robot becomes."""
     sources = Sources()
     sources.add_path('f')
     file = xml_from_bytes(text.encode(), 'f')
     sources.add_tree('f', file.root, file.lines)
-    root = sdf_from_urdf(file.root, sources, is_included=is_included)
-    return root.find('model')
+    converted = sdf_from_urdf(file.root, sources, is_included=is_included)
+    return converted.root.find('model')
 
 
 def kinds_of(scene):
@@ -71,7 +71,7 @@ def test_children_are_in_the_order_of_their_joints():
 ])
 def test_type_of_a_joint(joint_type, expected):
     limit = '<limit effort="1" velocity="1"/>'
-    assert converted(robot(TWO + joint('j', 'a', 'b', joint_type, limit))).find(
+    assert model_from(robot(TWO + joint('j', 'a', 'b', joint_type, limit))).find(
         'joint').get('type') == expected
 
 
@@ -81,19 +81,27 @@ def test_joint_that_sdformat_does_not_have_is_refused_in_an_include(tmp_path, jo
     assert (error.code, error.line) == ('POSE_RELATIVE_TO_INVALID', 2)
 
 
-@pytest.mark.parametrize('joint_type', ['floating', 'planar'])
-def test_joint_that_sdformat_does_not_have_is_fixed_for_ros(joint_type):
-    scene = load_text(robot(TWO + joint('j', 'a', 'b', joint_type, origin('1 0 0'))))
+def test_planar_joint_is_fixed_for_ros():
+    scene = load_text(robot(TWO + joint('j', 'a', 'b', 'planar', origin('1 0 0'))))
     assert scene.pose('r::b').x == 1.0
     assert [each.type for each in scene.joints] == ['fixed']
     (warning,) = scene.warnings
-    assert f'is {joint_type}, which SDFormat does not have' in warning.message
+    assert 'joint "j" is planar, which SDFormat does not have' in warning.message
+
+
+def test_floating_joint_is_left_to_others_for_ros():
+    scene = load_text(robot(TWO + joint('j', 'a', 'b', 'floating', origin('1 0 0'))))
+    assert scene.pose('r::b').x == 1.0
+    assert scene.joints == ()
+    (warning,) = scene.warnings
+    assert warning.message == (
+        'joint "j" is floating; somebody else has to publish where link "b" is')
 
 
 def test_axis_limits_and_mimic_are_converted():
     content = ('<axis xyz="0 1 0"/><limit lower="2" upper="-1" effort="3" velocity="4"/>'
                '<mimic joint="k" multiplier="5"/>')
-    axis = converted(robot(TWO + joint('j', 'a', 'b', 'revolute', content))).find('joint/axis')
+    axis = model_from(robot(TWO + joint('j', 'a', 'b', 'revolute', content))).find('joint/axis')
     texts = {child.tag: child.text for child in axis.iter() if len(child) == 0}
     assert texts == {'xyz': '0 1 0', 'lower': '-1', 'upper': '2', 'effort': '3', 'velocity': '4',
                      'multiplier': '5', 'offset': '0'}
@@ -107,13 +115,13 @@ def test_mimic_of_a_joint_that_does_not_exist_is_left_out_for_ros():
 
 
 def test_axis_is_x_where_none_is_given():
-    model = converted(robot(TWO + joint('j', 'a', 'b', 'continuous')))
+    model = model_from(robot(TWO + joint('j', 'a', 'b', 'continuous')))
     assert model.find('joint/axis/xyz').text == '1 0 0'
 
 
 def test_continuous_joint_has_no_range():
     limit = '<limit lower="-1" upper="1" effort="3" velocity="4"/>'
-    model = converted(robot(TWO + joint('j', 'a', 'b', 'continuous', limit)))
+    model = model_from(robot(TWO + joint('j', 'a', 'b', 'continuous', limit)))
     assert [child.tag for child in model.find('joint/axis/limit')] == ['effort', 'velocity']
 
 
@@ -128,6 +136,7 @@ def test_link_world_is_the_world():
     assert names_of(scene) == ['r', 'r::j', 'r::b', 'r::b::inertial']
     assert scene.pose('r::b').x == 1.0
     assert len(scene.joints) == 1
+    assert scene.urdf_root == 'world'
 
 
 MASSLESS = (TWO + '<link name="c"/>' + link('d') + joint('j', 'a', 'b', 'continuous')
@@ -150,7 +159,8 @@ def test_link_without_mass_stays_for_ros_with_a_warning():
     (warning,) = scene.warnings
     assert (warning.code, warning.place.element) == (
         'LINK_INERTIA_INVALID', '/robot[@name="r"]/link[@name="c"]')
-    assert 'Gazebo leaves it out' in warning.message
+    assert warning.message.startswith('link "c" has no mass, so Gazebo leaves it out')
+    assert warning.is_for_gazebo
 
 
 def test_robot_without_any_mass_is_read_for_ros():
@@ -172,12 +182,29 @@ def test_world_holds_a_link_without_mass_for_ros():
 
 # Fixed joints
 
-def test_fixed_joint_leaves_two_frames():
-    scene = load_text(robot(TWO + FIXED))
+def test_fixed_joint_leaves_two_frames_in_an_include(tmp_path):
+    scene = load(write(tmp_path, TWO + FIXED))
     kinds = kinds_of(scene)
-    assert (kinds['r::j'], kinds['r::b']) == ('frame', 'frame')
-    assert scene.pose('r::b')[:3] == (1.0, 0.0, 0.0)
+    assert (kinds['n::j'], kinds['n::b']) == ('frame', 'frame')
+    assert scene.pose('n::b')[:3] == (6.0, 0.0, 0.0)
     assert scene.joints == ()
+    assert scene.urdf_root is None
+
+
+def test_fixed_joint_stays_for_ros_with_all_that_its_link_has():
+    text = SENSOR.format('<pose degrees="true">0.123456789 0 0 0 0 90</pose>')
+    scene = load_text(robot(
+        link('a', mass=1.0) + link('b', shape('visual'), mass=3.0, center='1 0 0') + FIXED
+        + gazebo(text, 'b')))
+    assert [each.type for each in scene.joints] == ['fixed']
+    assert names_of(scene) == [
+        'r', 'r::a', 'r::a::inertial', 'r::j', 'r::b', 'r::b::inertial', 'r::b::b_visual',
+        'r::b::s']
+    assert scene.pose('r::a::inertial')[:3] == (0.0, 0.0, 0.0)
+    assert scene.pose('r::b::inertial', 'r::b')[:3] == (1.0, 0.0, 0.0)
+    assert scene.pose('r::b::s', 'r::b').x == pytest.approx(0.123456789, abs=1e-15)
+    assert scene.urdf_root == 'a'
+    assert scene.warnings == ()
 
 
 @pytest.mark.parametrize(('option', 'expected'), [
@@ -189,13 +216,13 @@ def test_fixed_joint_leaves_two_frames():
 ])
 def test_fixed_joint_is_kept_on_demand(option, expected):
     text = robot(TWO + FIXED + gazebo(option, 'j'))
-    assert converted(text).find('joint').get('type') == expected
-    assert converted(text, is_included=False).find('joint').get('type') == 'fixed'
+    assert model_from(text).find('joint').get('type') == expected
+    assert model_from(text, is_included=False).find('joint').get('type') == 'fixed'
 
 
 def test_revolute_joint_in_place_of_a_fixed_one_has_the_axis_of_sdformat():
     option = '<disableFixedJointLumping>1</disableFixedJointLumping>'
-    joint_xml = converted(robot(TWO + FIXED + gazebo(option, 'j'))).find('joint')
+    joint_xml = model_from(robot(TWO + FIXED + gazebo(option, 'j'))).find('joint')
     assert joint_xml.findtext('axis/xyz') == '0 0 1'
     assert joint_xml.findtext('axis/limit/upper') == '0'
 
@@ -204,7 +231,7 @@ def test_only_fixed_joints_become_revolute():
     option = '<disableFixedJointLumping>1</disableFixedJointLumping>'
     limit = '<limit lower="0" upper="1" effort="1" velocity="1"/>'
     text = robot(TWO + joint('j', 'a', 'b', 'prismatic', limit) + gazebo(option, 'j'))
-    assert converted(text).find('joint').get('type') == 'prismatic'
+    assert model_from(text).find('joint').get('type') == 'prismatic'
 
 
 @pytest.mark.parametrize(('tag', 'expected'), [
@@ -212,25 +239,26 @@ def test_only_fixed_joints_become_revolute():
     ('collision', ['a_collision', 'a_fixed_joint_lump__b_collision_1',
                    'a_fixed_joint_lump__v_collision_2']),
 ])
-def test_shapes_of_a_lumped_link_move_to_its_parent(tag, expected):
+def test_shapes_of_a_lumped_link_move_to_its_parent(tmp_path, tag, expected):
     pose = origin('1 0 0')
-    scene = load_text(robot(
+    scene = load(write(
+        tmp_path,
         link('a', shape(tag)) + link('b', shape(tag, pose) + shape(tag, pose, 'v')) + FIXED))
-    names = [name.removeprefix('r::a::') for name in scene.names if tag in name]
+    names = [name.removeprefix('n::a::') for name in scene.names if tag in name]
     assert names == expected
-    assert scene.pose(f'r::a::{names[1]}')[:3] == pytest.approx((1.0, 1.0, 0.0))
+    assert scene.pose(f'n::a::{names[1]}', 'n')[:3] == pytest.approx((1.0, 1.0, 0.0))
 
 
 @pytest.mark.parametrize(('is_included', 'uri'), [
     (True, 'model://p/a.dae'), (False, 'package://p/a.dae')])
 def test_mesh_of_a_package_is_one_of_a_model_in_gazebo_alone(is_included, uri):
     mesh = '<visual><geometry><mesh filename="package://p/a.dae"/></geometry></visual>'
-    model = converted(robot(link('a', mesh)), is_included=is_included)
+    model = model_from(robot(link('a', mesh)), is_included=is_included)
     assert model.find('link/visual/geometry/mesh/uri').text == uri
 
 
 def test_joint_below_a_lumped_link_starts_at_the_link_it_is_lumped_into():
-    model = converted(robot(
+    model = model_from(robot(
         TWO + link('c') + FIXED + joint('k', 'b', 'c', 'continuous', origin('1 0 0'))))
     assert model.find('joint/parent').text == 'a'
     assert load_text(robot(
@@ -238,15 +266,17 @@ def test_joint_below_a_lumped_link_starts_at_the_link_it_is_lumped_into():
     )).pose('r::c')[:3] == pytest.approx((1.0, 1.0, 0.0))
 
 
-def test_masses_are_added():
-    scene = load_text(robot(
-        link('a', mass=1.0) + link('b', mass=3.0, center='1 0 0') + FIXED))
-    assert scene.pose('r::a::inertial')[:3] == pytest.approx((0.75, 0.75, 0.0))
+def test_masses_are_added(tmp_path):
+    scene = load(write(
+        tmp_path, link('a', mass=1.0) + link('b', mass=3.0, center='1 0 0') + FIXED))
+    assert scene.pose('n::a::inertial', 'n')[:3] == pytest.approx((0.75, 0.75, 0.0))
 
 
-def test_link_without_mass_gets_that_of_a_lumped_link():
-    scene = load_text(robot('<link name="a"/>' + link('b') + FIXED))
-    assert scene.pose('r::a::inertial')[:3] == (1.0, 0.0, 0.0)
+def test_link_without_mass_gets_that_of_a_lumped_link(tmp_path):
+    text = '<link name="a"/>' + link('b') + FIXED
+    scene = load(write(tmp_path, text))
+    assert scene.pose('n::a::inertial', 'n')[:3] == (1.0, 0.0, 0.0)
+    assert load_text(robot(text)).warnings == (), 'Gazebo leaves nothing out'
 
 
 def test_pitch_near_a_right_angle_is_rounded_as_by_libsdformat_in_an_include(tmp_path):
@@ -266,22 +296,22 @@ def test_sensor_of_a_link():
     assert scene.warnings == ()
 
 
-def test_pose_of_a_sensor_on_a_lumped_link_is_written_with_six_digits():
+def test_pose_of_a_sensor_on_a_lumped_link_is_written_with_six_digits(tmp_path):
     text = SENSOR.format('<pose>0.123456789 0 0 0 0 0</pose>')
-    scene = load_text(robot(TWO + FIXED + gazebo(text, 'b')))
-    assert scene.pose('r::a::s')[:2] == (1.0, 0.123457)
+    scene = load(write(tmp_path, TWO + FIXED + gazebo(text, 'b')))
+    assert scene.pose('n::a::s')[:2] == (6.0, 0.123457)
 
 
-def test_reference_of_a_sensor_on_a_lumped_link_is_kept():
+def test_reference_of_a_sensor_on_a_lumped_link_is_kept(tmp_path):
     text = SENSOR.format('<pose relative_to="b">1 0 0 0 0 0</pose>')
-    scene = load_text(robot(TWO + FIXED + gazebo(text, 'b')))
-    assert scene.pose('r::a::s')[:3] == pytest.approx((1.0, 1.0, 0.0))
+    scene = load(write(tmp_path, TWO + FIXED + gazebo(text, 'b')))
+    assert scene.pose('n::a::s')[:3] == pytest.approx((6.0, 1.0, 0.0))
 
 
-def test_degrees_are_ignored_with_a_warning_where_a_fixed_joint_is_removed():
+def test_degrees_are_ignored_with_a_warning_where_a_fixed_joint_is_removed(tmp_path):
     text = SENSOR.format('<pose degrees="true">0 0 0 1 0 0</pose>')
-    scene = load_text(robot(TWO + joint('j', 'a', 'b') + gazebo(text, 'b')))
-    assert scene.pose('r::a::s').qx == pytest.approx(math.sin(0.5))
+    scene = load(write(tmp_path, TWO + joint('j', 'a', 'b') + gazebo(text, 'b')))
+    assert scene.pose('n::a::s').qx == pytest.approx(math.sin(0.5))
     assert 'attributes of this <pose> are ignored' in scene.warnings[0].message
 
 
@@ -314,16 +344,36 @@ def test_sensor_of_a_joint():
 
 
 @pytest.mark.parametrize('reference', ['j', 'c'])
-def test_what_belongs_to_nothing_is_left_out_with_a_warning(reference):
-    scene = load_text(robot(TWO + FIXED + gazebo(SENSOR.format(''), reference)))
+def test_what_belongs_to_nothing_is_left_out_with_a_warning(tmp_path, reference):
+    scene = load(write(tmp_path, TWO + FIXED + gazebo(SENSOR.format(''), reference)))
     assert not any(name.endswith('::s') for name in scene.names)
     assert f'reference="{reference}"' in scene.warnings[0].message
+    assert not scene.warnings[0].is_for_gazebo
 
 
-def test_joint_in_a_gazebo_element_joins_the_link_that_remains():
-    text = '<joint name="k" type="ball"><parent>world</parent><child>b</child></joint>'
-    scene = load_text(robot(TWO + FIXED + gazebo(text)))
-    assert scene.names[scene.joints[0].child] == 'r::a'
+def test_what_belongs_to_nothing_is_left_out_for_ros_too():
+    scene = load_text(robot(TWO + FIXED + gazebo(SENSOR.format(''), 'c')))
+    assert not any(name.endswith('::s') for name in scene.names)
+    assert scene.warnings[0].is_for_gazebo
+
+
+BALL = '<joint name="k" type="ball"><parent>world</parent><child>b</child></joint>'
+
+
+def test_joint_in_a_gazebo_element_joins_the_link_that_remains(tmp_path):
+    scene = load(write(tmp_path, TWO + FIXED + gazebo(BALL)))
+    assert scene.names[scene.joints[0].child] == 'n::a'
+
+
+@pytest.mark.parametrize('content', [
+    BALL, '<link name="l"/>', '<model name="x"><link name="l"/></model>',
+    '<include><uri>model://x</uri></include>'])
+def test_gazebo_elements_change_no_tree_for_ros(content):
+    scene = load_text(robot(TWO + FIXED + gazebo(content)))
+    assert names_of(scene) == names_of(load_text(robot(TWO + FIXED)))
+    (warning,) = scene.warnings
+    assert 'is for Gazebo alone' in warning.message
+    assert warning.is_for_gazebo
 
 
 @pytest.mark.parametrize(('content', 'x'), [
@@ -336,9 +386,10 @@ def test_pose_of_the_robot(content, x):
     assert load_text(robot(link('a') + content)).pose('r').x == x
 
 
-def test_static_robot():
-    scene = load_text(robot(link('a') + gazebo('<static>yes</static>')))
-    assert len(scene.static_models) == 1
+def test_robot_is_static_in_an_include_alone(tmp_path):
+    text = link('a') + gazebo('<static>yes</static>')
+    assert len(load(write(tmp_path, text)).static_models) == 1
+    assert not load_text(robot(text)).static_models, 'in ROS its joints move'
 
 
 def test_what_sdformat_does_not_define_is_reported_only_in_gazebo_elements():
@@ -347,23 +398,24 @@ def test_what_sdformat_does_not_define_is_reported_only_in_gazebo_elements():
         + gazebo('<sensr name="s"/>', 'a')))
     (warning,) = scene.warnings
     assert 'did you mean <sensor>?' in warning.message
+    assert warning.is_for_gazebo
 
 
 # Hostile files
 
-def test_long_name_in_many_names_is_limited():
+def test_long_name_in_many_names_is_limited(tmp_path):
     shapes = shape('visual') * 200
-    text = robot(link('a' * 1000) + link('b', shapes) + joint('j', 'a' * 1000, 'b'))
+    text = link('a' * 1000) + link('b', shapes) + joint('j', 'a' * 1000, 'b')
     with pytest.raises(SdfError, match='the limit work is'):
-        load_text(text, limits=Limits(work=5000))
+        load(write(tmp_path, text), limits=Limits(work=5000))
 
 
-def test_sensors_at_the_end_of_a_long_chain_are_limited():
+def test_sensors_at_the_end_of_a_long_chain_are_limited(tmp_path):
     links = ''.join(link(f'l{i}') for i in range(101))
     joints = ''.join(joint(f'j{i}', f'l{i}', f'l{i + 1}') for i in range(100))
-    text = robot(links + joints + gazebo(SENSOR.format('') * 10, 'l100'))
+    text = links + joints + gazebo(SENSOR.format('') * 10, 'l100')
     with pytest.raises(SdfError, match='the limit work is'):
-        load_text(text, limits=Limits(work=999))
+        load(write(tmp_path, text), limits=Limits(work=999))
 
 
 def test_deep_chain_is_converted():
