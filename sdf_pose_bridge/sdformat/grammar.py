@@ -92,7 +92,7 @@ class Kind(enum.IntEnum):
         'physics+ scene! plugin road spherical_coordinates state population')
     MODEL = 'sdf world model', (
         '@name! @canonical_link:frame @placement_frame:frame pose static:bool self_collide:bool '
-        'allow_auto_disable:bool enable_wind:bool plugin gripper include'), True
+        'allow_auto_disable:bool enable_wind:bool plugin gripper include model_state'), True
     LINK = 'model', (
         '@name! pose gravity:bool enable_wind:bool self_collide:bool kinematic:bool '
         'must_be_base_link:bool velocity_decay audio_sink audio_source battery'), True
@@ -108,8 +108,9 @@ class Kind(enum.IntEnum):
         'geometry! surface')
     SENSOR = 'link joint', (
         '@name! @type!:sensor_type pose always_on:bool update_rate:double visualize:bool topic '
-        'enable_metrics:bool plugin air_pressure air_speed altimeter camera contact force_torque '
-        'gps imu lidar logical_camera magnetometer navsat ray rfid rfidtag sonar transceiver')
+        'enable_metrics:bool frame_id plugin air_pressure air_speed altimeter camera contact '
+        'force_torque gps imu lidar logical_camera magnetometer navsat ray rfid rfidtag sonar '
+        'transceiver')
     LIGHT = 'sdf world link', (
         '@name! @type!:light_type pose cast_shadows:bool light_on:bool visualize:bool '
         'intensity:double diffuse:color specular:color attenuation direction!:vector3 spot')
@@ -136,7 +137,7 @@ _ITEM = re.compile(
     r'(?P<attribute>@?)(?P<name>[\w*]*)(?P<required>[!+]?)(?:=(?P<identifier>\w+(?:/\w+)?))?'
     r'(?P<value>:(?P<type>\w+)(?:\[(?P<minimum>[^,]*),(?P<maximum>.*)\])?)?')
 _KINDS = {kind.label: kind for kind in Kind}
-_UNREAD = frozenset({'population', 'road', 'state'})
+_UNREAD = frozenset({'model_state', 'population', 'road', 'state'})
 """Elements of which libsdformat makes no objects."""
 
 _VALUE_TYPES = {each.label: each for each in ValueType} | dict.fromkeys(CHOICES, ValueType.CHOICE)

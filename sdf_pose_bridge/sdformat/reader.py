@@ -68,13 +68,15 @@ from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
+_FRAME_ID_TAGS = ('frame_id', 'gz_frame_id', 'ignition_frame_id')
+"""Elements of a sensor that say which frame its messages are in; the first of them counts."""
 _READ_ALREADY = definition_of('plugin')
 """A definition by which children are not read."""
 _CHECKS = {'material': check_material, 'submesh': check_submesh}
 """Functions that check elements without a frame, by the identifiers of these."""
 _CHECKS_OF_UNREAD = {
     'joint': partial(check_children_of_joint, tags=('parent', 'child')),
-    'joint_state': partial(check_children_of_joint, tags=('angle',))}
+    'old_joint_state': partial(check_children_of_joint, tags=('angle',))}
 """The same for elements in what libsdformat does not read, such as a state."""
 
 
@@ -325,8 +327,7 @@ def _frame_details(xml: XmlElement, sources: Sources) -> FrameDetails:
 
 
 def _sensor_details(xml: XmlElement) -> SensorDetails:
-    frame_ids = chain(
-        child_elements(xml, 'gz_frame_id'), child_elements(xml, 'ignition_frame_id'))
+    frame_ids = chain.from_iterable(child_elements(xml, tag) for tag in _FRAME_ID_TAGS)
     camera = first_child(xml, 'camera')
     sensor_type = attribute_of(xml, 'type')
     return SensorDetails(

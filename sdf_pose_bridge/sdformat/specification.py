@@ -3,6 +3,8 @@
 """
 What SDFormat defines: types of joints, choices of values, and all elements that have no pose.
 
+What version 1.12 renamed is there by both names.
+
 The elements are in the notation of the module ``grammar``. Facts of the specification, version
 1.11 (http://sdformat.org/spec).
 """
@@ -155,7 +157,7 @@ ELEMENTS = {
     'bullet/solver': 'type! min_step_size:double iters!:int sor!:double',
     'camera': (
         '@name triggered:bool camera_info_topic trigger_topic '
-        'horizontal_fov!:double[0.1,6.283186] image! clip! save depth_camera segmentation_type '
+        'horizontal_fov!:double[0.001,6.283186] image! clip! save depth_camera segmentation_type '
         'box_type noise distortion lens visibility_mask:uint optical_frame_id pose'),
     'camera/clip': 'near!:double[0,] far!:double[0.1,]',
     'camera/image': 'width!:int height!:int format anti_aliasing:int',
@@ -206,10 +208,10 @@ ELEMENTS = {
     'imu': (
         'orientation_reference_frame angular_velocity linear_acceleration '
         'enable_orientation:bool'),
-    'include': '@merge:bool uri! pose plugin name static:bool placement_frame',
+    'include': '@merge:bool uri! pose plugin name static:bool placement_frame model_state',
     'inertia': 'ixx!:double ixy!:double ixz!:double iyy!:double iyz!:double izz!:double',
     'inertial/pose': ':pose @rotation_format @degrees:bool',
-    'insertions': 'model+=model light+=light',
+    'insertions': 'model+=model light+=light joint+=joint',
     'intrinsics': 'fx!:double fy!:double cx!:double cy!:double s!:double',
     'joint/physics': 'simbody=joint_simbody ode=joint_ode provide_feedback:bool',
     'joint_ode': (
@@ -224,7 +226,12 @@ ELEMENTS = {
     'light_state': '@name! pose',
     'limit': 'cfm!:double erp!:double',
     'linear_acceleration': 'x y z',
-    'link_state': '@name! velocity:pose acceleration:pose wrench:pose collision pose',
+    'link_state': (
+        '@name! angular_velocity linear_velocity:vector3 velocity:pose angular_acceleration '
+        'linear_acceleration:vector3 acceleration:pose torque:vector3 force:vector3 wrench:pose '
+        'collision collision_state=link_state/collision pose'),
+    'link_state/angular_acceleration': ':vector3 @degrees:bool',
+    'link_state/angular_velocity': ':vector3 @degrees:bool',
     'link_state/collision': '@name!',
     'logical_camera': 'near!:double far!:double aspect_ratio!:double horizontal_fov!:double',
     'magnetometer': 'x y z',
@@ -239,10 +246,14 @@ ELEMENTS = {
         'ambient_occlusion_map normal_map emissive_map light_map'),
     'mimic': '@joint! @axis multiplier!:double offset!:double reference!:double',
     'model_state': (
-        '@name! joint=joint_state model=model_state frame=frame pose scale:vector3 '
-        'link=link_state'),
-    'joint_state': '@name! angle+',
-    'joint_state/angle': ':double @axis!:uint',
+        '@name! joint=old_joint_state joint_state model=model_state model_state frame=frame pose '
+        'scale:vector3 link=link_state link_state'),
+    'joint_state': '@name! angle axis_state axis2_state=axis_state',
+    'old_joint_state': '@name! angle+',
+    'angle': ':double @axis!:uint',
+    'axis_state': (
+        'position=quantity velocity=quantity acceleration=quantity effort:double'),
+    'quantity': ':double @degrees:bool',
     'navsat': 'position_sensing velocity_sensing',
     'noise': (
         '@type! mean:double stddev:double[0,] bias_mean:double bias_stddev:double[0,] '
@@ -306,7 +317,8 @@ ELEMENTS = {
     'spot': 'inner_angle!:double outer_angle!:double falloff!:double',
     'state': (
         '@world_name! sim_time:time wall_time:time real_time:time iterations!:uint '
-        'insertions deletions model=model_state light=light_state'),
+        'insertions deletions model=model_state model_state light=light_state light_state '
+        'joint_state'),
     'submesh': 'name! center:bool',
     'surface': 'bounce friction contact soft_contact',
     'surface/contact': (

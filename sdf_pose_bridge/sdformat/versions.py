@@ -55,6 +55,17 @@ _MOVED_ELEMENTS = (
 """Elements without poses: in files below a version, what an element at a path held as, and its
 tag in that element now."""
 
+_DEPRECATED = (
+    (Version(1, 10), 'joint', 'thread_pitch', '<screw_thread_pitch>, in metres per turn'),
+    (Version(1, 12), 'camera', 'optical_frame_id', '<frame_id> of the sensor'),
+    (Version(1, 12), 'link_state', 'velocity', '<linear_velocity> and <angular_velocity>'),
+    (Version(1, 12), 'link_state', 'acceleration',
+     '<linear_acceleration> and <angular_acceleration>'),
+    (Version(1, 12), 'link_state', 'wrench', '<force> and <torque>'),
+    (Version(1, 12), 'joint_state', 'angle', '<axis_state>'),
+)
+"""Elements that are deprecated from a version on: what holds them, their tag, and the new one."""
+
 _MODELS = ('model', 'world/model')
 """Paths of the models that are in no other model."""
 
@@ -104,6 +115,7 @@ def convert(root: XmlElement, version: Version, sources: Sources) -> None:
     :param root: the ``sdf`` element.
     :raises ConversionError: if names in it cannot be converted.
     """
+    _report_deprecated(root, version, sources)
     _move_elements(root, version)
     if version < Version(1, 5):
         _express_axes_in_model(root, sources)
@@ -117,6 +129,21 @@ def convert(root: XmlElement, version: Version, sources: Sources) -> None:
     if allows_scoped_names(version) and sources.may_hold_scoped_names:
         for model in root.iterfind('world/model'):
             _nest_scoped_elements(model, sources)
+
+
+def _report_deprecated(root: XmlElement, version: Version, sources: Sources) -> None:
+    deprecated = {
+        (parent, tag): new for since, parent, tag, new in _DEPRECATED if version >= since}
+    tags = {tag for _, tag in deprecated}
+    for xml in root.iter(*tags) if tags else ():
+        parent = xml.getparent()
+        if parent is None or not sources.problems.keeps_warnings():
+            return
+        parent_tag, tag = str(parent.tag), str(xml.tag)
+        new = deprecated.get((parent_tag, tag))
+        if new and not is_foreign(xml):
+            msg = f'<{tag}> in <{parent_tag}> is deprecated; the new element is {new}'
+            sources.warning(xml, msg)
 
 
 def _move_elements(root: XmlElement, version: Version) -> None:

@@ -7,9 +7,9 @@ Make TF frame ids of scoped SDF names.
 frame ids. Kinds that may share a name with elements of other kinds have the kind before their own
 name: ``robot/link/visual/name``.
 
-Gazebo stamps a sensor's messages with the frame id that the file sets (``gz_frame_id``), or with
-one made of the sensor's name. A camera's optical frame is named by ``optical_frame_id``, or like
-the camera with ``_optical`` appended.
+Gazebo stamps a sensor's messages with the frame id that the file sets (``frame_id``, before
+version 1.12 ``gz_frame_id``), or with one made of the sensor's name. A camera's optical frame is
+named by ``optical_frame_id``, or like the camera with ``_optical`` appended.
 """
 
 from __future__ import annotations

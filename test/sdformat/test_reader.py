@@ -404,6 +404,8 @@ def test_sensor_has_a_type():
     ('<gz_frame_id>a/b</gz_frame_id>', 'a/b'),
     ('<ignition_frame_id> a </ignition_frame_id>', 'a'),
     ('<ignition_frame_id>old</ignition_frame_id><gz_frame_id>new</gz_frame_id>', 'new'),
+    ('<gz_frame_id>old</gz_frame_id><frame_id>new</frame_id>', 'new'),
+    ('<gz_frame_id>old</gz_frame_id><frame_id/>', 'old'),
     ('<ignition_frame_id>old</ignition_frame_id><gz_frame_id/>', 'old'),
 ])
 def test_sensor_has_a_frame_id(content, frame_id):

@@ -218,6 +218,35 @@ def state(content):
     return world_file(f'<state world_name="w">{content}</state>')
 
 
+@pytest.mark.parametrize(('content', 'right', 'wrong'), [
+    ('<model_state name="m"><pose>{}</pose></model_state>', '1 2 3 0 0 0', '1 2'),
+    ('<model_state name="m"><link_state name="l"><force>{}</force></link_state></model_state>',
+     '1 2 3', '1 2'),
+    (('<model_state name="m"><joint_state name="j"><axis_state><position degrees="true">{}'
+      '</position></axis_state></joint_state></model_state>'), '90', 'x'),
+    ('<light_state name="s"><pose>{}</pose></light_state>', '', '1 2'),
+    ('<joint_state name="j"><axis2_state><effort>{}</effort></axis2_state></joint_state>',
+     '1', 'x'),
+])
+def test_values_of_a_state_by_the_names_of_version_1_12(content, right, wrong):
+    scene = load_text(state(content.format(right)))
+    assert (scene.names, scene.warnings) == (('world',), ())
+    assert codes_of(state(content.format(wrong))) == ['ELEMENT_INVALID']
+
+
+def test_state_of_a_model_in_the_model_has_no_frames():
+    model_state = '<model_state name="s"><frame name="f"/><pose>1 0 0 0 0 0</pose></model_state>'
+    scene = load_text(link_with('').replace('</model>', model_state + '</model>'))
+    assert scene.names == ('__root__', 'm', 'm::l')
+
+
+def test_horizontal_fov_may_be_as_small_as_any_libsdformat_reads():
+    sensor = ('<sensor name="s" type="camera"><camera><horizontal_fov>{}</horizontal_fov></camera>'
+              '</sensor>')
+    load_text(link_with(sensor.format('0.001')))
+    assert codes_of(link_with(sensor.format('0.0009'))) == ['ELEMENT_INVALID']
+
+
 @pytest.mark.parametrize('tag', ['sim_time', 'wall_time', 'real_time'])
 def test_time_of_a_state_is_two_integers(tag):
     assert not load_text(state(f'<{tag}>12 345</{tag}>')).warnings

@@ -43,6 +43,26 @@ def converted(text):
     return document_from_file('f', Sources(texts={'f': text})).root
 
 
+# Deprecated elements
+
+CAMERA = '<link name="l"><sensor name="s" type="camera"><camera>{}</camera></sensor></link>'
+SCREW = ('<link name="l"/><joint name="j" type="screw"><parent>world</parent><child>l</child>{}'
+         '</joint>')
+
+
+@pytest.mark.parametrize(('content', 'version', 'new'), [
+    (CAMERA.format('<optical_frame_id>o</optical_frame_id>'), '1.12', '<frame_id>'),
+    (CAMERA.format('<optical_frame_id>o</optical_frame_id>'), '1.11', ''),
+    (SCREW.format('<thread_pitch>1</thread_pitch>'), '1.10', '<screw_thread_pitch>'),
+    (SCREW.format('<thread_pitch>1</thread_pitch>'), '1.9', ''),
+    (LINK + '<plugin filename="p"><joint><thread_pitch/></joint></plugin>', '1.12', ''),
+])
+def test_deprecated_element_is_a_warning_that_names_the_new_one(content, version, new):
+    warnings = load_text(model_file(content, version=version)).warnings
+    assert ['is deprecated' in warning.message and new in warning.message
+            for warning in warnings] == [True] * bool(new)
+
+
 # 1.6 to 1.7: references of poses
 
 TWO_POSED_LINKS = ('<link name="a"><pose>1 0 0 0 0 0</pose></link>'
