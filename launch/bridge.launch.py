@@ -40,9 +40,9 @@ import yaml
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.given_parameters import settings_from_values
-from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.sdformat.include.uris import AddressError
+from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
 
 PARAMETERS = {
     'sdf_file': 'SDFormat file to publish: a path, or a file://, package:// or model:// URI.',
@@ -134,7 +134,7 @@ def _fixed_frame(context: LaunchContext, given: dict[str, str], params_file: str
         name: value if isinstance(value, str) else value.perform(context)
         for name, value in _parameters(given).items()})
     try:
-        tree = loaded_scene_from_settings(settings_from_values(values)).tree
+        tree = loaded_scene_from_request(settings_from_values(values).load_request).tree
     except (SdfError, SettingsError, AddressError):
         # The node says what is wrong.
         return given['root_frame']

@@ -42,6 +42,8 @@ _TICK_S = 1.0 / os.sysconf('SC_CLK_TCK')
 _PAGE_BYTES = os.sysconf('SC_PAGE_SIZE')
 _MEGABYTE = 1_000_000
 
+_NO_MEMORY = pickle.dumps((None, MemoryError(), ''), 5)
+
 _Result = TypeVar('_Result')
 
 
@@ -104,6 +106,7 @@ class LimitedProcess:
         :return: its result.
         :raises LimitExceededError: if it needs more than it may use.
         :raises ProcessEndedError: if the process ends meanwhile, or cannot be started.
+        :raises MemoryError: if the system has no memory for it.
         :raises Exception: what the function raises.
         """
         with self._lock:
@@ -159,20 +162,25 @@ class _Child:
     def __init__(self) -> None:
         # Imported here because it takes 5 ms, and many programs call nothing.
         import subprocess
-        # Nothing is written to this pipe. The other process is ended when its last end is closed.
-        life, self._life = os.pipe()
+        ends: tuple[int, ...] = ()
+        # Ctrl-C is for this process; the other one has it blocked from its start.
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
         try:
+            # Nothing is written to this pipe. When its last end here is closed, the process ends.
+            ends = life, self._life = os.pipe()
             self._process = subprocess.Popen(
                 [sys.executable, '-c', _CODE, str(life), *sys.path], stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE, pass_fds=[life], start_new_session=True,
+                stdout=subprocess.PIPE, pass_fds=[life],
                 # Threads of numpy for large matrices would take memory.
                 env={**os.environ, 'OPENBLAS_NUM_THREADS': '1'})
         except (OSError, MemoryError) as error:
-            os.close(self._life)
+            for end in ends:
+                os.close(end)
             msg = f'the process that reads files cannot be started: {error}'
             raise ProcessEndedError(msg, may_pass=True) from error
         finally:
-            os.close(life)
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        os.close(life)
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         self._calls, self._answers = self._process.stdin, self._process.stdout
@@ -197,7 +205,7 @@ class _Child:
         except (EOFError, OSError, pickle.UnpicklingError) as ended:
             raise self._reason_of_end() from ended
         if isinstance(error, MemoryError):
-            raise LimitExceededError(_more_than_bytes(self.use().memory_bytes))
+            raise error
         if error is not None:
             error.__cause__ = RuntimeError(f'in another process:\n{text}')
         return result, error
@@ -281,26 +289,32 @@ def serve(life: int) -> None:
             function, arguments = pickle.load(calls)
         except EOFError:
             return
-        try:
-            answer = pickle.dumps((function(*arguments), None, ''), 5)
-        except Exception as error:  # noqa: BLE001 - raised by the one who called
-            answer = _answer_from_error(error)
-        answers.write(answer)
+        answers.write(_answer(function, arguments))
         answers.flush()
 
 
-def _answer_from_error(error: Exception) -> bytes:
-    text = traceback.format_exc()
+def _answer(function: Callable[..., object], arguments: tuple[object, ...]) -> bytes:
+    """Return the result of a function, what it raises instead, and the traceback of that."""
     try:
-        return pickle.dumps((None, error, text), 5)
-    except Exception:  # noqa: BLE001 - errors of libraries may hold anything
-        return pickle.dumps((None, RuntimeError(repr(error)), text), 5)
+        try:
+            return pickle.dumps((function(*arguments), None, ''), 5)
+        except MemoryError:
+            raise
+        except Exception as error:  # noqa: BLE001 - raised by the one who called
+            text = traceback.format_exc()
+            try:
+                return pickle.dumps((None, error, text), 5)
+            except Exception:  # noqa: BLE001 - errors of libraries may hold anything
+                return pickle.dumps((None, RuntimeError(repr(error)), text), 5)
+    except MemoryError:
+        return _NO_MEMORY
 
 
 def _end_with(life: int) -> None:
     """Have the kernel end this process with the one at the other end of a pipe."""
-    signal.pthread_sigmask(signal.SIG_SETMASK, [])
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGIO, signal.SIG_DFL)
+    signal.pthread_sigmask(signal.SIG_SETMASK, [])
     fcntl.fcntl(life, fcntl.F_SETOWN, os.getpid())
     fcntl.fcntl(life, fcntl.F_SETFL, fcntl.fcntl(life, fcntl.F_GETFL) | os.O_ASYNC)
     if select.select([life], [], [], 0.0)[0]:  # it has ended before

@@ -17,11 +17,11 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from diagnostic_msgs.msg import KeyValue
 from rclpy.node import Node
 
-from sdf_pose_bridge.ros.loaded_scene import LoadedScene
 from sdf_pose_bridge.ros.log_lines import count_in_words
 from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints
 from sdf_pose_bridge.ros.publishers import new_publisher
 from sdf_pose_bridge.ros.publishers import Topic
+from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 
 PERIOD_S = 2.0
 """

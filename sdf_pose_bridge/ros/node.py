@@ -31,10 +31,6 @@ from sdf_pose_bridge.ros.diagnostics import Diagnostics
 from sdf_pose_bridge.ros.diagnostics import PERIOD_S
 from sdf_pose_bridge.ros.given_parameters import add_parameter_services
 from sdf_pose_bridge.ros.given_parameters import changed_settings
-from sdf_pose_bridge.ros.loaded_scene import files_behind_error
-from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
-from sdf_pose_bridge.ros.loaded_scene import LoadedScene
-from sdf_pose_bridge.ros.loaded_scene import may_pass
 from sdf_pose_bridge.ros.log_lines import count_in_words
 from sdf_pose_bridge.ros.log_lines import line_about_detached_models
 from sdf_pose_bridge.ros.log_lines import line_about_joints_at_rest
@@ -45,6 +41,7 @@ from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import TextPublisher
+from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.ros.services import add_services
 from sdf_pose_bridge.ros.services import SERVICE_QOS
 from sdf_pose_bridge.ros.services import set_pose
@@ -52,6 +49,9 @@ from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
 from sdf_pose_bridge.ros.topic_names import PoseTopics
 from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
 from sdf_pose_bridge.sdformat.include.uris import AddressError
+from sdf_pose_bridge.tf.loaded_scene import files_behind_error
+from sdf_pose_bridge.tf.loaded_scene import LoadedScene
+from sdf_pose_bridge.tf.loaded_scene import may_pass
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge_interfaces.srv import SetPose
 
@@ -71,12 +71,15 @@ class SdfPoseBridge:
     :param frames: the frames of the scene, which are published.
     """
 
-    def __init__(self, node: Node, frames: PublishedFrames, loaded: LoadedScene) -> None:
+    def __init__(
+        self, node: Node, frames: PublishedFrames, settings: Settings, loaded: LoadedScene,
+    ) -> None:
         self._node = node
         self._logger = node.get_logger()
         self._frames = frames
-        settings = self._settings = loaded.settings
+        self._settings = settings
         self._loaded = loaded
+        self._reader = SceneReader()
         self._failure: list[str] = []
         # A failure that was not reported yet, because the file may still be being written.
         self._pending_failure: list[str] = []
@@ -122,12 +125,13 @@ class SdfPoseBridge:
         # With the quality of service that it has in robot_state_publisher.
         self._robot_description = TextPublisher(node, 'robot_description')
         self._publish_robot_description()
-        self._visuals = VisualPublisher(node, loaded)
+        self._visuals = VisualPublisher(node, self._reader, loaded)
 
     # Loading
 
     def _load(self, settings: Settings) -> Future:
-        return run_in_thread(self._node, lambda: loaded_scene_from_settings(settings))
+        return run_in_thread(
+            self._node, lambda: self._reader.loaded_scene(settings.load_request))
 
     async def _show(self, loaded: LoadedScene) -> None:
         """Publish a scene, with the topics that the settings ask for."""
@@ -189,7 +193,7 @@ class SdfPoseBridge:
         if line:
             self._logger.info(line)
         line = '' if loaded.tree.moving else line_about_joints_at_rest(
-            loaded.scene, loaded.settings.model)
+            loaded.scene, loaded.request.tf_options.model)
         if line and not self._has_told_of_joints:
             self._has_told_of_joints = True
             self._logger.info(line)
@@ -201,7 +205,8 @@ class SdfPoseBridge:
             await self._show(await self._load(self._settings))
         except Exception as error:  # noqa: BLE001 - includes defects
             self._retry_time = time.monotonic() + RETRY_PERIOD_S if may_pass(error) else math.inf
-            self._watcher.watch_also(files_behind_error(error, self._settings))
+            self._watcher.watch_also(files_behind_error(
+                error, self._settings.load_request))
             return self._lines_from_error(error)
         return []
 
@@ -215,8 +220,8 @@ class SdfPoseBridge:
 
     def _report_failure(self, lines: list[str]) -> None:
         if lines != self._failure:
-            self._logger.error(
-                f'{self._settings.source} is not taken; what was published before stays')
+            source = self._settings.load_request.source
+            self._logger.error(f'{source} is not taken; what was published before stays')
             for line in lines:
                 self._logger.error(line)
         self._failure, self._pending_failure = lines, []
@@ -243,7 +248,7 @@ class SdfPoseBridge:
         loaded = self._loaded
         try:
             answer: SetPose.Response = await run_in_thread(
-                self._node, lambda: set_pose(request, loaded))
+                self._node, lambda: set_pose(request, loaded, self._reader))
             if not request.dry_run:
                 await self._show(await self._load(self._settings))
         except Exception as error:  # noqa: BLE001 - the client must be answered
@@ -334,16 +339,18 @@ class SdfPoseBridge:
                 f'everything takes {1e3 * seconds:.0f} ms', throttle_duration_sec=60.0)
 
 
-async def start_bridge(node: Node, frames: PublishedFrames, loaded: LoadedScene) -> None:
+async def start_bridge(
+    node: Node, frames: PublishedFrames, settings: Settings, loaded: LoadedScene,
+) -> None:
     """
     Publish a scene on all topics that it does not have yet, and serve it.
 
     :param node: the node, with declared parameters and an executor.
     :param frames: the frames of the scene, which are published on ``/tf_static``.
     """
-    frames = await _frames_of_scene(node, loaded, loaded.settings.pose_topics, frames)
+    frames = await _frames_of_scene(node, loaded, settings.pose_topics, frames)
     await frames.publish_topics()
-    SdfPoseBridge(node, frames, loaded)
+    SdfPoseBridge(node, frames, settings, loaded)
 
 
 async def _frames_of_scene(

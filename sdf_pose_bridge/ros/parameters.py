@@ -29,6 +29,7 @@ from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
 from sdf_pose_bridge.tf.tree import AnchorModels
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 from sdf_pose_bridge.tf.tree import TfOptions
@@ -366,14 +367,16 @@ class Settings:
     )
 
     @property
-    def source(self) -> str:
-        """The name of what is published, for people: that of the file or of the parameter."""
-        return self.sdf_file or 'robot_description'
-
-    @property
     def tf_options(self) -> TfOptions:
         """The settings of the TF tree; parameters and options have the same names."""
         return TfOptions(**{name: self.values[name] for name in TfOptions._fields})
+
+    @property
+    def load_request(self) -> LoadRequest:
+        """What is read with these settings."""
+        return LoadRequest(
+            self.sdf_file, self.robot_description, self.resource_paths, self.on_missing_include,
+            self.tf_options, self.unreported_joints)
 
     def needs_load_after(self, before: Settings) -> bool:
         """

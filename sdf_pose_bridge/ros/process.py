@@ -31,7 +31,6 @@ from rclpy.utilities import remove_ros_args
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
 from sdf_pose_bridge.ros.given_parameters import warnings_about_unknown_parameters
-from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
 from sdf_pose_bridge.ros.middleware import use_profile
@@ -39,6 +38,7 @@ from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.sdformat.include.uris import AddressError
+from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
 import sdf_pose_bridge_interfaces  # noqa: F401 - if it is missing, say so before anything else
 
 NODE_NAME = 'sdf_pose_bridge'
@@ -102,7 +102,7 @@ def _exit_code_from_node(node: Node) -> int:
     try:
         settings = settings_from_node(node)
         with _interrupted_by_signals():
-            loaded = loaded_scene_from_settings(settings)
+            loaded = loaded_scene_from_request(settings.load_request)
     except (SdfError, SettingsError, AddressError) as error:
         _log_warnings(node, error.warnings if isinstance(error, SdfError) else ())
         for line in lines_from_error(error):
@@ -115,7 +115,7 @@ def _exit_code_from_node(node: Node) -> int:
     gc.enable()
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    start = executor.create_task(start_bridge, node, frames, loaded)
+    start = executor.create_task(start_bridge, node, frames, settings, loaded)
     _spin_until_signal(executor, node, start)
     executor.shutdown()
     return 0

@@ -6,8 +6,6 @@ from __future__ import annotations
 
 import array
 from collections.abc import Callable
-from collections.abc import Mapping
-import copy
 import traceback
 from typing import Any
 from typing import TypeAlias
@@ -25,15 +23,10 @@ from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.formats import converted_rotation
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_inverse
-from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.rotations import RotationError
-from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
-from sdf_pose_bridge.ros.loaded_scene import LoadedScene
-from sdf_pose_bridge.scene.comparison import names_of_moved
-from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.ros.scene_reader import SceneReader
+from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 from sdf_pose_bridge.tf.lookup import PoseLookup
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge_interfaces.srv import ConvertPoses
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
 from sdf_pose_bridge_interfaces.srv import LookupPose
@@ -123,44 +116,28 @@ def answer_to_lookup_pose(
     return response
 
 
-def set_pose(request: SetPose.Request, loaded: LoadedScene) -> SetPose.Response:
+def set_pose(
+    request: SetPose.Request, loaded: LoadedScene, reader: SceneReader,
+) -> SetPose.Response:
     """
     Write into a file that a frame is where it was measured, unless it is a dry run.
 
     :param loaded: the scene that is published.
+    :param reader: finds what the file must say.
     :return: the answer: what changes. With it the file is valid and can be published.
     :raises SdfError: if the request is no pose, no pose in a file can say it, or the file cannot
         be written.
     """
-    # Imported here because it takes 7 ms, and few nodes write files.
-    from sdf_pose_bridge.scene.pose_setting import pose_change
-    if not loaded.settings.sdf_file:
+    if not loaded.request.sdf_file:
         msg = 'the pose stands in the parameter robot_description, not in a file'
         raise PoseNotSetError(msg, Place(str(loaded.path)))
-    asked, reference = _pose_from_request(request, loaded), request.pose.header.frame_id
-    # A copy: the joints go on moving.
-    positions = copy.deepcopy(loaded.joint_positions)
-
-    def scene_with(texts: Mapping[str, bytes]) -> Scene:
-        return loaded_scene_from_settings(loaded.settings, texts).scene
-
-    def measured(scene: Scene, element: int) -> Pose:
-        tree = tf_tree_from_scene(scene, loaded.settings.tf_options)
-        return PoseLookup(scene, tree, positions).pose_of_element(element, reference)
-
-    scene = loaded.scene
-    element, in_element = loaded.lookup.element(request.frame)
-    asked = pose_product(asked, pose_inverse(in_element))
-    change = pose_change(scene, element, asked, measured, scene_with)
+    change = reader.frame_change(
+        loaded, request.frame, _pose_from_request(request, loaded), request.pose.header.frame_id)
     if not request.dry_run:
         change.file.write()
-    moved = set(names_of_moved(scene, change.scene))
-    elements = loaded.tree.elements.tolist()
     return SetPose.Response(
-        success=True, file=change.file.path, line=change.line, diff=change.file.diff,
-        moved_frames=[
-            frame_id for frame_id, other in zip(loaded.tree.frame_ids, elements, strict=True)
-            if other not in (-1, element) and scene.names[other] in moved])
+        success=True, file=change.file.path, line=change.line, diff=change.diff,
+        moved_frames=list(change.moved_frames))
 
 
 def _pose_from_request(request: SetPose.Request, loaded: LoadedScene) -> Pose:

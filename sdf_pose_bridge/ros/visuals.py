@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-import os
 
 from geometry_msgs.msg import Point
 from geometry_msgs.msg import Pose as PoseMessage
@@ -17,14 +16,14 @@ from std_msgs.msg import Header
 from visualization_msgs.msg import Marker
 from visualization_msgs.msg import MarkerArray
 
+from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.background import run_in_thread
-from sdf_pose_bridge.ros.loaded_scene import LoadedScene
-from sdf_pose_bridge.ros.loaded_scene import scene_with_shapes
+from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
 from sdf_pose_bridge.ros.publishers import new_publisher
 from sdf_pose_bridge.ros.publishers import Topic
-from sdf_pose_bridge.sdformat.include.uris import resource_finder
-from sdf_pose_bridge.tf.visual_markers import visual_markers_from_scene
+from sdf_pose_bridge.ros.scene_reader import SceneReader
+from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 from sdf_pose_bridge.tf.visual_markers import VisualMarker
 
 
@@ -34,10 +33,13 @@ class VisualPublisher:
 
     Shapes are read and markers made when somebody listens for the first time, and again for each
     scene that replaces another one while somebody listens.
+
+    :param reader: reads shapes.
     """
 
-    def __init__(self, node: Node, loaded: LoadedScene) -> None:
+    def __init__(self, node: Node, reader: SceneReader, loaded: LoadedScene) -> None:
         self._node = node
+        self._reader = reader
         self._loaded = loaded
         self._is_up_to_date = False
         self._publisher = new_publisher(
@@ -55,7 +57,8 @@ class VisualPublisher:
             self._node.executor.create_task(self._publish, self._loaded)
 
     async def _publish(self, loaded: LoadedScene) -> None:
-        message, lines = await run_in_thread(self._node, lambda: _message_and_warnings(loaded))
+        message, lines = await run_in_thread(
+            self._node, lambda: _message_and_warnings(loaded, self._reader))
         if loaded is not self._loaded:
             return
         for line in lines:
@@ -64,14 +67,17 @@ class VisualPublisher:
             self._publisher.publish(message)
 
 
-def _message_and_warnings(loaded: LoadedScene) -> tuple[MarkerArray | None, list[str]]:
-    settings = loaded.settings
-    scene = scene_with_shapes(loaded)
-    if scene is None:
+def _message_and_warnings(
+    loaded: LoadedScene, reader: SceneReader,
+) -> tuple[MarkerArray | None, list[str]]:
+    try:
+        found = reader.markers(loaded)
+    except (SdfError, MemoryError) as error:
+        return None, [f'~/visuals stays as it is: {line}' for line in lines_from_error(error)]
+    if found is None:
         return None, [
             f'~/visuals stays as it is: what {loaded.path} includes has changed since it was read']
-    markers, warnings = visual_markers_from_scene(
-        scene, loaded.tree, settings.model, resource_finder(settings.resource_paths, os.environ))
+    markers, warnings = found
     return message_from_markers(markers, loaded.tree.root_frame), lines_from_warnings(warnings)
 
 

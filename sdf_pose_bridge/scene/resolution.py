@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from collections.abc import Sequence
 from itertools import compress
 import math
-from types import MappingProxyType
 from typing import TypeVar
 
 import numpy as np
@@ -66,8 +65,7 @@ def scene_from_graph(
         return new_index[np.asarray(old, dtype=np.intp)[is_kept]].astype(np.int32)
 
     def kept(details: Mapping[int, _Details]) -> Mapping[int, _Details]:
-        return MappingProxyType({
-            new_index_of[index]: each for index, each in details.items() if is_kept[index]})
+        return {new_index_of[index]: each for index, each in details.items() if is_kept[index]}
 
     return Scene(
         path=path,

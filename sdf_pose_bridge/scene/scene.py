@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 import math
+from types import MappingProxyType
+from typing import Any
 from typing import NamedTuple
 
 import numpy as np
@@ -145,9 +147,21 @@ class Scene:
     Where it is ``world``, it is the implicit root here."""
 
     def __post_init__(self) -> None:
-        for value in vars(self).values():
+        for name, value in vars(self).items():
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
+            elif isinstance(value, dict):
+                vars(self)[name] = MappingProxyType(value)
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Mappings that are read-only cannot be pickled.
+        return {
+            name: dict(value) if isinstance(value, MappingProxyType) else value
+            for name, value in vars(self).items()}
+
+    def __setstate__(self, state: Mapping[str, Any]) -> None:
+        vars(self).update(state)
+        self.__post_init__()
 
     def __repr__(self) -> str:
         return f'<Scene of {self.path}: {len(self.names)} elements>'

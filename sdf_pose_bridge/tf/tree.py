@@ -4,10 +4,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from collections.abc import Sequence
 from dataclasses import dataclass
 import enum
 from functools import cached_property
+from typing import Any
 from typing import NamedTuple
 
 import numpy as np
@@ -115,6 +117,10 @@ class TfTree:
         for value in vars(self).values():
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
+
+    def __setstate__(self, state: Mapping[str, Any]) -> None:
+        vars(self).update(state)
+        self.__post_init__()
 
     @cached_property
     def parent_ids(self) -> tuple[str, ...]:

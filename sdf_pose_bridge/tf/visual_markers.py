@@ -4,11 +4,13 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_product
@@ -17,11 +19,16 @@ from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.sdformat.shape_types import Primitive
 from sdf_pose_bridge.sdformat.shapes import Shape
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.tf.loaded_scene import scene_from_text
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import elements_in_model
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfTree
 
 MOST_MARKERS = 10_000
@@ -117,6 +124,33 @@ def visual_markers_from_scene(
             VisualMarker(namespace, frame_id, pose_product(pose, Pose(z=form.z_m)), form, rgba)
             for form in forms]
     return markers, problems.warnings
+
+
+def markers_from_text(
+    text: str | bytes, path: Path, request: LoadRequest, fingerprint: bytes,
+) -> tuple[list[VisualMarker], tuple[SdfWarning, ...]] | None:
+    """
+    Resolve the text of a loaded scene again, with its shapes, and make their markers.
+
+    Shapes are not read with the rest because that would make each load a quarter longer, or more,
+    and few nodes need them.
+
+    :param text: the text of the loaded scene.
+    :param path: its path.
+    :param fingerprint: that of the loaded scene.
+    :return: the markers, and warnings about visuals that cannot be shown; None if a file that it
+        includes has changed, so that it is not valid or has other elements or poses.
+    """
+    try:
+        scene = scene_from_text(text, path, request, shapes=True)
+    except SdfError:
+        return None
+    if fingerprint_of_scene(scene) != fingerprint:
+        return None
+    options = request.tf_options
+    return visual_markers_from_scene(
+        scene, tf_tree_from_scene(scene, options), options.model,
+        resource_finder(request.resource_paths, os.environ))
 
 
 def _forms_from_shape(

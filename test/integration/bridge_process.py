@@ -91,6 +91,11 @@ class LoggedProcess:
             key: value.split()[0] for key, _, value in (
                 line.partition(':') for line in text.splitlines()) if value.strip()}
 
+    def children(self):
+        """Return the ids of the processes that it has started."""
+        tasks = Path(f'/proc/{self.pid}/task').glob('*/children')
+        return [int(pid) for task in tasks for pid in task.read_text(encoding='ascii').split()]
+
     def send(self, number):
         if self._with_children and self._process.poll() is None:
             os.killpg(self.pid, number)

@@ -2,19 +2,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """Faults of disks, clocks and other processes; what was read before is served throughout."""
 
+import contextlib
 import os
 from pathlib import Path
 import resource
+import select
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from bridge_process import LoggedProcess
+from bridge_process import SECONDS
+from bridge_process import STARTED
 from builtin_interfaces.msg import Time
+from changes import BRIDGE
 from changes import listen_to_tf
 from changes import Monitor
 from changes import reload
@@ -22,9 +28,15 @@ from changes import replace
 from changes import wait_for_x
 from changes import world
 from diagnostic_msgs.msg import DiagnosticStatus
+from rcl_interfaces.srv import SetParameters
+from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 from sizes import size
 from slow_file import SlowFile
+
+from sdf_pose_bridge_interfaces.srv import ConvertRotation
+
+LONGEST_WAIT_S = 0.5
 
 LISTENING = """
 import rclpy
@@ -145,14 +157,25 @@ def test_a_config_map_that_is_replaced_is_noticed(start, listener, tmp_path):
     wait_for_x(listener, 2.0)
 
 
-def test_a_change_without_descriptors_is_read_once_there_are_some(start, file, listener):
+def reading_process(bridge, listener):
+    """Return the id of the process that reads files for a bridge."""
+    assert reload(listener).success
+    (pid,) = bridge.children()
+    return pid
+
+
+@pytest.mark.parametrize('without', ['a process', 'descriptors in it'])
+def test_a_change_without_descriptors_is_read_once_there_are_some(start, file, listener, without):
     bridge = start(file)
-    assert reload(listener).success  # nothing has to be imported any more
-    soft, hard = resource.prlimit(bridge.pid, resource.RLIMIT_NOFILE)
-    resource.prlimit(bridge.pid, resource.RLIMIT_NOFILE, (4, hard))
+    reading = reading_process(bridge, listener)
+    limited, limit = (bridge.pid, 4) if without == 'a process' else (reading, 1)
+    soft, hard = resource.prlimit(limited, resource.RLIMIT_NOFILE)
+    resource.prlimit(limited, resource.RLIMIT_NOFILE, (limit, hard))
+    if without == 'a process':
+        os.kill(reading, signal.SIGKILL)
     replace(file, world(2))
     bridge.wait_for_line('Too many open files')
-    resource.prlimit(bridge.pid, resource.RLIMIT_NOFILE, (soft, hard))
+    resource.prlimit(limited, resource.RLIMIT_NOFILE, (soft, hard))
     wait_for_x(listener, 2.0)
     assert not [line for line in bridge.lines if 'internal error' in line]
 
@@ -163,9 +186,21 @@ def address_space(pid):
     return 1024 * int(status.partition('VmSize:')[2].split()[0])
 
 
-def test_without_memory_for_a_change_the_bridge_goes_on_or_ends(start, file, listener):
+def test_a_change_without_memory_is_read_once_there_is_some(start, file, listener):
     bridge = start(file)
-    assert reload(listener).success
+    reading = reading_process(bridge, listener)
+    _, hard = resource.prlimit(reading, resource.RLIMIT_AS)
+    resource.prlimit(reading, resource.RLIMIT_AS, (address_space(reading) + 12_000_000, hard))
+    replace(file, world(2, extra=''.join(
+        f'<model name="m{i}"><link name="l"/></model>' for i in range(60_000))))
+    bridge.wait_for_line('there is not enough memory to read the file')
+    # The next process has no such limit.
+    wait_for_x(listener, 2.0)
+
+
+def test_without_memory_for_what_was_read_the_bridge_goes_on_or_ends(start, file, listener):
+    bridge = start(file)
+    reading_process(bridge, listener)
     _, hard = resource.prlimit(bridge.pid, resource.RLIMIT_AS)
     limit = address_space(bridge.pid) + 12_000_000
     resource.prlimit(bridge.pid, resource.RLIMIT_AS, (limit, hard))
@@ -181,6 +216,96 @@ def test_without_memory_for_a_change_the_bridge_goes_on_or_ends(start, file, lis
     wait_for_x(listener, 2.0)
     bridge.send(signal.SIGTERM)
     assert bridge.wait_for_end() == 0
+
+
+# The process that reads files
+
+
+def test_a_reading_process_that_is_killed_is_an_error_and_replaced(start, tmp_path, listener):
+    slow = SlowFile(tmp_path / 'slow.sdf', world(1))
+    bridge = start(slow.path)
+    reading = reading_process(bridge, listener)
+    slow.hold()
+    os.utime(slow.path)
+    with slow.opened():
+        os.kill(reading, signal.SIGKILL)
+        bridge.wait_for_line('the process that reads files has ended by signal 9')
+        slow.write(world(2))
+    wait_for_x(listener, 2.0)
+
+
+LIMITED = """
+import sys
+from sdf_pose_bridge.limited_process import Allowance
+from sdf_pose_bridge.ros import scene_reader
+from sdf_pose_bridge.ros.bridge import main
+
+scene_reader.ALLOWANCE = Allowance({})
+sys.exit(main())
+"""
+"""The node with smaller limits than those for which the smallest file would be very large."""
+
+
+@pytest.mark.parametrize(('limits', 'message'), [
+    ('memory_bytes=10**9, processor_s=0.5, wall_s=60.0', 'more than 0.5 s of processor time'),
+    ('memory_bytes=10**8, processor_s=60.0, wall_s=60.0', 'more than 100 MB of memory'),
+])
+def test_a_file_that_needs_too_much_keeps_nobody_waiting(
+        ros_domain, file, tmp_path, listener, limits, message):
+    large = tmp_path / 'large.sdf'
+    large.write_text(world(2, extra=''.join(
+        f'<model name="m{i}"><link name="l"/></model>' for i in range(100_000))))
+    bridge = LoggedProcess([
+        sys.executable, '-c', LIMITED.format(limits), '--ros-args', '-p', f'sdf_file:={file}'])
+    try:
+        wait_for_x(listener, 1.0)
+        assert reload(listener).success
+        parameter = Parameter('sdf_file', value=str(large)).to_parameter_msg()
+        client = listener.node.create_client(SetParameters, f'{BRIDGE}/set_parameters')
+        listener.wait(client.service_is_ready, lambda: 'the service')
+        future = client.call_async(SetParameters.Request(parameters=[parameter]))
+        longest = 0.0
+        while not future.done():
+            begin = time.monotonic()
+            assert listener.call(
+                ConvertRotation, f'{BRIDGE}/convert_rotation', ConvertRotation.Request()).success
+            longest = max(longest, time.monotonic() - begin)
+        (result,) = future.result().results
+        assert result.reason == f'{large}: LIMIT: the file needs {message} to be read'
+        assert longest < LONGEST_WAIT_S
+        assert reload(listener).success
+    finally:
+        bridge.end()
+
+
+@pytest.mark.parametrize('number', [signal.SIGKILL, signal.SIGTERM])
+@pytest.mark.parametrize('is_reading', [False, True])
+def test_no_process_outlives_the_bridge(start, tmp_path, listener, number, is_reading):
+    slow = SlowFile(tmp_path / 'slow.sdf', world(1))
+    bridge = start(slow.path)
+    descriptor = os.pidfd_open(reading_process(bridge, listener))
+    slow.hold()
+    if is_reading:
+        os.utime(slow.path)
+    with slow.opened() if is_reading else contextlib.nullcontext():
+        bridge.send(number)
+        bridge.wait_for_end()
+    assert select.select([descriptor], [], [], SECONDS)[0]
+    os.close(descriptor)
+
+
+def test_what_is_read_by_each_way_of_starting(start_bridge, ros_domain, file, start_listener):
+    from ament_index_python.packages import get_package_prefix
+    executable = Path(get_package_prefix('sdf_pose_bridge'), 'lib/sdf_pose_bridge/bridge')
+    parameters = ['--ros-args', '-p', f'sdf_file:={file}']
+    code = 'import sys; from sdf_pose_bridge.ros.bridge import main; sys.exit(main())'
+    for command in ([executable], [sys.executable, executable], [sys.executable, '-c', code]):
+        process = LoggedProcess([*command, *parameters])
+        process.wait_for_line(STARTED)
+        assert reload(start_listener()).success
+        process.send(signal.SIGTERM)
+        assert process.wait_for_end() == 0
+        process.end()
 
 
 def test_a_file_that_a_full_disk_cuts_off_is_reported(

@@ -39,3 +39,12 @@ def finish():
         assert task.done()
         return task.result()
     return run
+
+
+@pytest.fixture
+def reader():
+    """Return a reader of files, whose process ends with the test."""
+    from sdf_pose_bridge.ros.scene_reader import SceneReader
+    found = SceneReader()
+    yield found
+    found.close()

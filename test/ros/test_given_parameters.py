@@ -138,7 +138,8 @@ def test_a_file_and_a_text_together_are_refused(settings):
         changed_settings(settings, [Parameter('robot_description', value='<sdf/>')])
     both = [Parameter('robot_description', value='<sdf/>'), Parameter('sdf_file', value='')]
     changed = changed_settings(settings, both)
-    assert (changed.source, changed.robot_description) == ('robot_description', '<sdf/>')
+    assert changed.load_request.source == 'robot_description'
+    assert changed.robot_description == '<sdf/>'
 
 
 @pytest.mark.parametrize(('name', 'value', 'sentence'), [

@@ -8,10 +8,10 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
-from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.node import SdfPoseBridge
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
+from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
 
 GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
 HALF, LONGER_HALF = GOOD[:40], '\n' + GOOD[:50]
@@ -31,9 +31,9 @@ def make_check_files(make_node, make_executor, finish, file):
     node = make_node('bridge', '-p', f'sdf_file:={file}', '-p', 'watch:=false')
     executor = make_executor(node)
     settings = settings_from_node(node)
-    loaded = loaded_scene_from_settings(settings)
+    loaded = loaded_scene_from_request(settings.load_request)
     frames = PublishedFrames(Publishers(node), loaded.tree, loaded.joint_positions, {})
-    bridge = SdfPoseBridge(node, frames, loaded)
+    bridge = SdfPoseBridge(node, frames, settings, loaded)
     return lambda: finish(executor, bridge._check_files)
 
 

@@ -22,13 +22,14 @@ from sdf_texts import world_file
 from sdf_pose_bridge import load
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
-from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.services import answer_to_convert_poses
 from sdf_pose_bridge.ros.services import answer_to_convert_rotation
 from sdf_pose_bridge.ros.services import answer_to_lookup_pose
 from sdf_pose_bridge.ros.services import never_raising
 from sdf_pose_bridge.ros.services import set_pose
 from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge_interfaces.srv import ConvertPoses
@@ -168,10 +169,10 @@ def make_path(tmp_path):
 
 
 @pytest.fixture(name='ask')
-def make_ask(make_node, path):
+def make_ask(make_node, path, reader):
     settings = settings_from_node(make_node(
         'bridge', '-p', f'sdf_file:={path}', '-p', 'use_joint_states:=true'))
-    loaded = loaded_scene_from_settings(settings)
+    loaded = loaded_scene_from_request(settings.load_request)
     positions = loaded.joint_positions
     positions.update(positions.selection(['turn']), np.array([np.pi / 2]))
 
@@ -182,7 +183,7 @@ def make_ask(make_node, path):
         position.x, position.y, position.z = xyz
         rotation.x, rotation.y, rotation.z, rotation.w = quat_xyzw
         return set_pose(
-            SetPose.Request(frame=frame, pose=pose, dry_run=dry_run), loaded)
+            SetPose.Request(frame=frame, pose=pose, dry_run=dry_run), loaded, reader)
 
     return ask
 
@@ -239,8 +240,7 @@ def test_a_wrong_request_is_refused(ask, path, frame, xyz, quat_xyzw, frame_id, 
     assert path.read_text(encoding='utf-8') == ARM
 
 
-def test_a_text_that_is_no_file_is_refused(make_node):
-    settings = settings_from_node(make_node('text', '-p', f'robot_description:={ARM}'))
+def test_a_text_that_is_no_file_is_refused(reader):
+    loaded = loaded_scene_from_request(LoadRequest('', ARM))
     with pytest.raises(SdfError, match='in the parameter robot_description, not in a file'):
-        set_pose(
-            SetPose.Request(frame='mark'), loaded_scene_from_settings(settings))
+        set_pose(SetPose.Request(frame='mark'), loaded, reader)

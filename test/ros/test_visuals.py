@@ -17,10 +17,10 @@ from visualization_msgs.msg import Marker
 from visualization_msgs.msg import MarkerArray
 
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.ros.given_parameters import settings_from_values
-from sdf_pose_bridge.ros.loaded_scene import loaded_scene_from_settings
 from sdf_pose_bridge.ros.visuals import message_from_markers
 from sdf_pose_bridge.ros.visuals import VisualPublisher
+from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
 from sdf_pose_bridge.tf.visual_markers import Form
 from sdf_pose_bridge.tf.visual_markers import VisualMarker
 
@@ -96,16 +96,16 @@ def test_mesh_without_a_color_keeps_its_own():
 
 
 def test_shapes_that_were_read_too_late_are_not_shown(
-        make_node, make_executor, finish, tmp_path):
+        make_node, make_executor, finish, reader, tmp_path):
     node, listener = make_node('bridge'), make_node('listener')
     scenes = []
     for shape in ('box', 'sphere'):
         path = tmp_path / f'{shape}.sdf'
         path.write_text(SDF.format(shape=shape), encoding='utf-8')
-        scenes.append(loaded_scene_from_settings(settings_from_values({'sdf_file': str(path)})))
+        scenes.append(loaded_scene_from_request(LoadRequest(str(path), '')))
     old, new = scenes
     executor = make_executor(node)
-    visuals = VisualPublisher(node, old)
+    visuals = VisualPublisher(node, reader, old)
     visuals.replace(new)
     for loaded in (new, old):
         finish(executor, visuals._publish, loaded)

@@ -15,9 +15,13 @@ from sdf_pose_bridge.errors import UnknownFrameError
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf import visual_markers
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene
+from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
 from sdf_pose_bridge.tf.tree import AnchorModels
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.visual_markers import markers_from_text
 from sdf_pose_bridge.tf.visual_markers import visual_markers_from_scene
 
 BOX = '<box><size>1 2 3</size></box>'
@@ -241,3 +245,45 @@ def test_only_the_chosen_model_of_the_first_world_is_shown():
         f'<world name="x">{model.format("c")}</world></sdf>')
     assert [each.namespace for each in markers_of(text)] == ['a', 'b']
     assert [each.namespace for each in markers_of(text, model='b')] == ['b']
+
+
+# From the text of a loaded scene
+
+
+WITH_SHAPE = model_file(f'<link name="l">{visual(BOX)}</link>')
+
+
+@pytest.fixture(name='reread')
+def make_reread(tmp_path):
+    """Loads a file, changes what it includes and makes markers; ``reread(text)``."""
+    models = tmp_path / 'models'
+    models.mkdir()
+    included = models / 'included.sdf'
+    included.write_text(WITH_SHAPE, encoding='utf-8')
+    path = tmp_path / 'cell.sdf'
+    path.write_text(world_file('<include><uri>included.sdf</uri></include>'), encoding='utf-8')
+    loaded = loaded_scene_from_request(LoadRequest(str(path), '', (models,)))
+    assert not loaded.scene.shapes
+
+    def reread(text):
+        path.write_text('something else', encoding='utf-8')
+        included.write_text(text, encoding='utf-8')
+        return markers_from_text(
+            loaded.text, loaded.path, loaded.request, fingerprint_of_scene(loaded.scene))
+
+    return reread
+
+
+@pytest.mark.parametrize('text', [
+    '', model_file('<link name="l"><pose relative_to="x"/></link>'),
+    model_file('<link name="k"/>'),
+    WITH_SHAPE.replace('"l">', '"l"><pose>1 0 0 0 0 0</pose>'),
+    WITH_SHAPE.replace('"v"', '"w"'),
+], ids=['empty', 'bad', 'other elements', 'other pose', 'other name'])
+def test_shapes_with_an_include_that_has_changed_are_refused(reread, text):
+    assert reread(text) is None
+
+
+def test_shapes_are_those_of_the_text_that_was_read(reread):
+    (marker,), warnings = reread(WITH_SHAPE)
+    assert (marker.form.type, marker.frame_id, warnings) == ('CUBE', 'm/l', ())

@@ -139,6 +139,8 @@ class MeshReader:
             return Mesh(reason=f'it needs {error} to be read')
         except ProcessEndedError as error:
             return Mesh(reason=str(error))
+        except MemoryError:
+            return Mesh(reason='there is not enough memory to read it')
 
 
 def _mesh_of_shape(shape: Shape, largest_m: float) -> Mesh:

@@ -163,7 +163,7 @@ def test_mesh_that_cannot_be_read(named):
 
 
 def test_small_file_that_needs_much_memory(named):
-    assert 'MB of memory to be read' in named('a.gltf', mesh_texts.gltf(
+    assert 'memory' in named('a.gltf', mesh_texts.gltf(
         mesh_texts.IN_FILE, count=10**9, with_view=False)).reason
     assert not named('b.stl', mesh_texts.STL.format(y=1)).reason
 

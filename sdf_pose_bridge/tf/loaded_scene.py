@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Read the file or the text that the settings name, and make its TF tree."""
+"""Read a file or a text, and make its TF tree."""
 
 from __future__ import annotations
 
@@ -11,14 +11,13 @@ import time
 from typing import NamedTuple
 
 from lxml import etree
-import numpy as np
 
 from sdf_pose_bridge.errors import PassingReadError
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.errors import UriLookupError
-from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import AddressError
 from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
@@ -27,16 +26,35 @@ from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
 from sdf_pose_bridge.tf.tree import TfTree
+
+
+class LoadRequest(NamedTuple):
+    """What is to be read, and how."""
+
+    sdf_file: str
+    """A path or a URI; empty for a text."""
+    robot_description: str
+    """A text, if there is no file."""
+    resource_paths: tuple[Path, ...] = ()
+    on_missing_include: MissingInclude = MissingInclude.ERROR
+    tf_options: TfOptions = TfOptions()
+    unreported_joints: UnreportedJoints = UnreportedJoints.NONE
+
+    @property
+    def source(self) -> str:
+        """The name of what is read, for people: that of the file or of the parameter."""
+        return self.sdf_file or 'robot_description'
 
 
 class LoadedScene(NamedTuple):
     """A file, or a text, that was read."""
 
-    settings: Settings
-    """The settings that it was read with; later ones may differ where that needs no load."""
+    request: LoadRequest
     path: Path
     """The path of the file; of a text, the name of its parameter."""
     text: str | bytes
@@ -57,26 +75,27 @@ class LoadedScene(NamedTuple):
     """How long reading took."""
 
 
-def loaded_scene_from_settings(
-    settings: Settings, texts: Mapping[str, bytes] | None = None,
+def loaded_scene_from_request(
+    request: LoadRequest, texts: Mapping[str, bytes] | None = None,
 ) -> LoadedScene:
     """
-    Read the file or the text that the settings name.
+    Read a file or a text.
 
     :param texts: what to read instead of some files, by their paths.
     :raises AddressError: if ``sdf_file`` is a URI of a file that is not found.
-    :raises SdfError: if it is not valid, or cannot be published with these settings.
+    :raises SdfError: if it is not valid, or cannot be published with these options.
     """
     read_since_ns = time.time_ns()
     begin = time.perf_counter()
-    path, manifests, warnings = _file_from_settings(settings)
-    text = bytes_from_file(str(path), Usage()) if settings.sdf_file else settings.robot_description
-    scene = _scene_from_text(text, path, settings, texts=texts)
-    tree = tf_tree_from_scene(scene, settings.tf_options)
+    path, manifests, warnings = _file_from_request(request)
+    text = bytes_from_file(str(path), Usage()) if request.sdf_file else request.robot_description
+    scene = scene_from_text(text, path, request, texts=texts)
+    options = request.tf_options
+    tree = tf_tree_from_scene(scene, options)
     joint_positions = None if tree.moving is None else JointPositions(
-        scene, tree.moving.dofs, settings.frame_names, settings.model, settings.unreported_joints)
+        scene, tree.moving.dofs, options.frame_names, options.model, request.unreported_joints)
     return LoadedScene(
-        settings=settings,
+        request=request,
         path=path,
         text=text,
         description='' if tree.world else unicode_text(text),
@@ -85,29 +104,18 @@ def loaded_scene_from_settings(
         lookup=PoseLookup(scene, tree, joint_positions),
         joint_positions=joint_positions,
         warnings=(*warnings, *scene.warnings, *tree.warnings),
-        files=(*manifests, *(scene.files if settings.sdf_file else scene.files[1:])),
+        files=(*manifests, *(scene.files if request.sdf_file else scene.files[1:])),
         read_since_ns=read_since_ns,
         seconds=time.perf_counter() - begin,
     )
 
 
-def scene_with_shapes(loaded: LoadedScene) -> Scene | None:
-    """
-    Resolve the text of a loaded scene again, with its shapes.
-
-    Shapes are not read with the rest because that would make each load a quarter longer, or more,
-    and few nodes need them.
-
-    :return: the scene with shapes; None if a file that it includes has changed, so that it is not
-        valid or has other elements or poses.
-    """
-    try:
-        scene = _scene_from_text(loaded.text, loaded.path, loaded.settings, shapes=True)
-    except SdfError:
-        return None
-    is_same = scene.names == loaded.scene.names and np.array_equal(
-        scene.poses, loaded.scene.poses)
-    return scene if is_same else None
+def fingerprint_of_scene(scene: Scene) -> bytes:
+    """Return bytes that are the same for scenes with the same names and poses, and no others."""
+    # Imported here because it takes 3 ms, and few nodes have anything read again.
+    import hashlib
+    return hashlib.blake2b(b'\0'.join([
+        scene.poses.tobytes(), *(name.encode() for name in scene.names)])).digest()
 
 
 def unicode_text(text: str | bytes) -> str:
@@ -125,20 +133,29 @@ def unicode_text(text: str | bytes) -> str:
         return str(etree.tostring(xml_from_bytes(text, '').root, encoding='unicode'))
 
 
-def _scene_from_text(
-    text: str | bytes, path: Path, settings: Settings, *, shapes: bool = False,
+def scene_from_text(
+    text: str | bytes, path: Path, request: LoadRequest, *, shapes: bool = False,
     texts: Mapping[str, bytes] | None = None,
 ) -> Scene:
+    """
+    Resolve every pose in a text.
+
+    :param path: path of its file; for a text without one, the name of its parameter.
+    :param request: how it is read.
+    :param shapes: whether to read the shapes of visuals and collisions too.
+    :param texts: what to read instead of some files, by their paths.
+    :raises SdfError: if it is not valid.
+    """
     return load_text(
-        text, str(path), resource_paths=settings.resource_paths,
-        on_missing_include=settings.on_missing_include, shapes=shapes, texts=texts)
+        text, str(path), resource_paths=request.resource_paths,
+        on_missing_include=request.on_missing_include, shapes=shapes, texts=texts)
 
 
-def files_behind_error(error: Exception, settings: Settings) -> list[str]:
+def files_behind_error(error: Exception, request: LoadRequest) -> list[str]:
     """
     Return the files that have to change before loading can succeed.
 
-    :param error: what :func:`loaded_scene_from_settings` raised.
+    :param error: what :func:`loaded_scene_from_request` raised.
     :return: the files with errors; if something was not found, also the directories in which it
         was looked for.
     """
@@ -146,7 +163,7 @@ def files_behind_error(error: Exception, settings: Settings) -> list[str]:
     files = [each.place.file for each in errors]
     missing = [each for each in errors if isinstance(each, UriLookupError)]
     if missing or isinstance(error, AddressError):
-        finder = resource_finder(settings.resource_paths, os.environ)
+        finder = resource_finder(request.resource_paths, os.environ)
         files += [
             *(str(Path(each.place.file).parent) for each in missing),
             *finder.search_paths, *finder.environment_paths]
@@ -157,24 +174,24 @@ def may_pass(error: Exception) -> bool:
     """
     Return whether reading the same files again may succeed.
 
-    :param error: what :func:`loaded_scene_from_settings` raised.
+    :param error: what :func:`loaded_scene_from_request` raised.
     """
     errors = error.errors if isinstance(error, SdfError) else (error,)
     return any(isinstance(each, MemoryError | PassingReadError) for each in errors)
 
 
-def _file_from_settings(
-    settings: Settings,
+def _file_from_request(
+    request: LoadRequest,
 ) -> tuple[Path, tuple[str, ...], tuple[SdfWarning, ...]]:
     """
     Return the path of the file, and the manifests and warnings met on the way to it.
 
     A text has the name of its parameter for a path.
     """
-    if not settings.sdf_file:
-        return Path(settings.source), (), ()
-    finder = resource_finder(settings.resource_paths, os.environ)
-    path = finder.path_from_address(settings.sdf_file)
+    if not request.sdf_file:
+        return Path(request.source), (), ()
+    finder = resource_finder(request.resource_paths, os.environ)
+    path = finder.path_from_address(request.sdf_file)
     # Path.is_dir raises for a path that is too long; reading the file gives a better message.
     if not os.path.isdir(path):  # noqa: PTH112
         return path, (), ()

@@ -1,0 +1,73 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Find what a file must say so that a frame is where it was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import PoseNotSetError
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import pose_inverse
+from sdf_pose_bridge.geometry.poses import pose_product
+from sdf_pose_bridge.scene.comparison import names_of_moved
+from sdf_pose_bridge.scene.pose_setting import pose_change
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.file_change import FileChange
+from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene
+from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.tf.lookup import PoseLookup
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+
+
+class FrameChange(NamedTuple):
+    """What a file must say."""
+
+    file: FileChange
+    diff: str
+    line: int
+    """The line of the pose, or of the element in which it is inserted."""
+    moved_frames: tuple[str, ...]
+    """The other frames that move."""
+
+
+def frame_change_from_request(
+    request: LoadRequest, fingerprint: bytes, frame: str, asked: Pose, reference: str,
+    positions: JointPositions | None,
+) -> FrameChange:
+    """
+    Find what a file must say so that a frame is where it was measured. Nothing is written.
+
+    :param request: what is published.
+    :param fingerprint: that of the scene that is published.
+    :param asked: the measured pose of the frame.
+    :param reference: the name of the frame in which it was measured; empty for the root frame.
+    :param positions: the positions of the joints meanwhile; None if they do not move.
+    :return: the change; with it the file is valid and can be published.
+    :raises SdfError: if no pose in a file can say it.
+    """
+    loaded = loaded_scene_from_request(request)
+    scene = loaded.scene
+    if fingerprint_of_scene(scene) != fingerprint:
+        msg = 'the file has changed since it was read'
+        raise PoseNotSetError(msg, Place(str(loaded.path)))
+
+    def scene_with(texts: Mapping[str, bytes]) -> Scene:
+        return loaded_scene_from_request(request, texts).scene
+
+    def measured(scene: Scene, element: int) -> Pose:
+        tree = tf_tree_from_scene(scene, request.tf_options)
+        return PoseLookup(scene, tree, positions).pose_of_element(element, reference)
+
+    element, in_element = loaded.lookup.element(frame)
+    asked = pose_product(asked, pose_inverse(in_element))
+    change = pose_change(scene, element, asked, measured, scene_with)
+    moved = set(names_of_moved(scene, change.scene))
+    elements = loaded.tree.elements.tolist()
+    return FrameChange(change.file, change.file.diff, change.line, tuple(
+        frame_id for frame_id, other in zip(loaded.tree.frame_ids, elements, strict=True)
+        if other not in (-1, element) and scene.names[other] in moved))

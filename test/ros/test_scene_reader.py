@@ -1,0 +1,121 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Files that a process of its own reads: its answers, its limits, and what ends it."""
+
+import os
+import signal
+import sys
+import threading
+
+import pytest
+from sdf_texts import model_file
+from sdf_texts import world_file
+
+from sdf_pose_bridge.errors import FileReadError
+from sdf_pose_bridge.errors import LimitError
+from sdf_pose_bridge.errors import PassingReadError
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.limited_process import LimitedProcess
+from sdf_pose_bridge.ros import scene_reader
+from sdf_pose_bridge.sdformat.include.uris import AddressError
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.tf.loaded_scene import may_pass
+
+LINK = """<link name="l"><pose>1 0 0 0 0 0</pose>
+  <visual name="v"><geometry><box/></geometry></visual></link>"""
+
+
+@pytest.fixture(name='path')
+def write_file(tmp_path):
+    path = tmp_path / 'cell.sdf'
+    path.write_text(model_file(LINK), encoding='utf-8')
+    return path
+
+
+@pytest.fixture(name='request_of_file')
+def make_request(path):
+    return LoadRequest(str(path), '')
+
+
+def test_a_scene_comes_from_another_process(reader, request_of_file, path):
+    loaded = reader.loaded_scene(request_of_file)
+    assert loaded.path == path
+    assert loaded.lookup.pose('l').pose == Pose(1.0)
+    assert reader._process.call(os.getpid) != os.getpid()
+
+
+def test_markers_and_changes_come_from_it_too(reader, request_of_file):
+    loaded = reader.loaded_scene(request_of_file)
+    (marker,), _ = reader.markers(loaded)
+    assert marker.form.type == 'CUBE'
+    change = reader.frame_change(loaded, 'l', Pose(2.0), '')
+    assert '+<sdf' in change.diff or '<pose>2 0 0 0 0 0' in change.diff
+    assert change.file.new_text.decode() == model_file(LINK).replace('1 0 0', '2 0 0')
+
+
+def test_a_change_of_a_file_that_has_changed_is_refused(reader, request_of_file, path):
+    loaded = reader.loaded_scene(request_of_file)
+    path.write_text(model_file(LINK.replace('1 0 0', '1 2 0')), encoding='utf-8')
+    with pytest.raises(SdfError, match='the file has changed since it was read'):
+        reader.frame_change(loaded, 'l', Pose(2.0), '')
+
+
+def test_all_errors_of_a_file_arrive(reader, path, request_of_file):
+    path.write_text(world_file('<model name="m"/><frame name="f" attached_to="x"/>'))
+    with pytest.raises(SdfError) as caught:
+        reader.loaded_scene(request_of_file)
+    assert {error.code for error in caught.value.errors} == {
+        'MODEL_WITHOUT_LINK', 'FRAME_ATTACHED_TO_INVALID'}
+    assert {error.place.file for error in caught.value.errors} == {str(path)}
+
+
+def test_a_uri_without_a_file_is_an_error(reader):
+    with pytest.raises(AddressError):
+        reader.loaded_scene(LoadRequest('package://no_such_package/cell.sdf', ''))
+
+
+@pytest.mark.parametrize(('changes', 'message'), [
+    ({'memory_bytes': 1_000_000}, 'the file needs more than 1 MB of memory to be read'),
+    ({'wall_s': 0.0}, 'the file needs more than 0 s to be read'),
+])
+def test_a_file_that_needs_too_much_is_an_error(
+        reader, request_of_file, monkeypatch, changes, message):
+    # To start the process takes longer than the period in which it is looked at.
+    allowance = scene_reader.ALLOWANCE._replace(
+        memory_bytes_per_megabyte=0, seconds_per_megabyte=0.0, **changes)
+    monkeypatch.setattr(reader, '_process', LimitedProcess(allowance))
+    with pytest.raises(LimitError) as caught:
+        reader.loaded_scene(request_of_file)
+    assert str(caught.value) == f'{request_of_file.sdf_file}: LIMIT: {message}'
+    assert not may_pass(caught.value)
+
+
+def test_a_process_that_is_killed_is_an_error_that_passes(reader, request_of_file):
+    pid = reader._process.call(os.getpid)
+    # It has no time to answer.
+    os.kill(pid, signal.SIGSTOP)
+    threading.Timer(0.2, os.kill, (pid, signal.SIGKILL)).start()
+    with pytest.raises(PassingReadError, match='has ended by signal 9') as caught:
+        reader.loaded_scene(request_of_file)
+    assert may_pass(caught.value)
+    assert reader.loaded_scene(request_of_file)
+
+
+def test_a_process_that_crashes_is_an_error_that_stays(reader, request_of_file):
+    pid = reader._process.call(os.getpid)
+    os.kill(pid, signal.SIGSTOP)
+    threading.Timer(0.2, os.kill, (pid, signal.SIGSEGV)).start()
+    threading.Timer(0.3, os.kill, (pid, signal.SIGCONT)).start()
+    with pytest.raises(FileReadError, match='has ended by signal 11') as caught:
+        reader.loaded_scene(request_of_file)
+    assert not may_pass(caught.value)
+
+
+def test_a_process_that_cannot_be_started_is_an_error_that_passes(
+        reader, request_of_file, monkeypatch):
+    monkeypatch.setattr(sys, 'executable', '/none/python')
+    with pytest.raises(PassingReadError, match='cannot be started'):
+        reader.loaded_scene(request_of_file)
+    monkeypatch.undo()
+    assert reader.loaded_scene(request_of_file)

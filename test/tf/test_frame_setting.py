@@ -1,0 +1,66 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a file must say so that a frame is where it was measured, beside joints that move."""
+
+import numpy as np
+import pytest
+from sdf_texts import joint
+from sdf_texts import model_file
+from sdf_texts import posed
+
+from sdf_pose_bridge import load_text
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.tf.frame_setting import frame_change_from_request
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene
+from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.tf.tree import TfOptions
+
+ARM = model_file(
+    '<link name="base"/>' + posed('link', 'tool', '1 0 0 0 0 0')
+    + posed('frame', 'mark', '2 0 0 0 0 0') + posed('frame', 'on_mark', '0 0 1 0 0 0', 'mark')
+    + joint('<pose relative_to="base"/><parent>base</parent><child>tool</child>'
+            '<axis><xyz>0 0 1</xyz></axis>', 'turn', 'revolute'))
+
+
+@pytest.fixture(name='change')
+def make_change(tmp_path):
+    """Finds a change of the arm; ``change(frame, pose, reference, *positions)``."""
+    path = tmp_path / 'arm.sdf'
+    path.write_text(ARM, encoding='utf-8')
+    request = LoadRequest(str(path), '', tf_options=TfOptions(use_joint_states=True))
+    loaded = loaded_scene_from_request(request)
+    fingerprint = fingerprint_of_scene(loaded.scene)
+
+    def change(frame, pose, reference='', position=0.0, published=fingerprint):
+        positions = loaded.joint_positions
+        positions.update(positions.selection(['turn']), np.array([position]))
+        return frame_change_from_request(request, published, frame, pose, reference, positions)
+
+    return change
+
+
+def test_a_change_has_its_line_and_the_frames_that_move(change):
+    found = change('mark', Pose(3.0))
+    assert found.file.new_text.decode() == ARM.replace('2 0 0 0 0 0', '3 0 0 0 0 0')
+    assert (found.line, found.moved_frames) == (1, ('on_mark',))
+    assert found.diff == found.file.diff
+
+
+def test_a_pose_is_taken_where_its_reference_has_moved_to(change):
+    text = change('mark', Pose(0.5), 'tool', np.pi / 2).file.new_text
+    np.testing.assert_allclose(
+        load_text(text).pose('m::mark')[:3], (0.0, 1.5, 0.0), atol=1e-9)
+
+
+@pytest.mark.parametrize(('frame', 'reference', 'message'), [
+    ('marc', '', 'did you mean "mark"'), ('mark', 'tol', 'did you mean "tool"')])
+def test_names_that_do_not_exist(change, frame, reference, message):
+    with pytest.raises(SdfError, match=message):
+        change(frame, Pose(), reference)
+
+
+def test_a_file_that_is_not_what_is_published(change):
+    with pytest.raises(SdfError, match='the file has changed since it was read'):
+        change('mark', Pose(), published=b'other')

@@ -1,0 +1,116 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a load leaves in memory, paths that fail, texts in any encoding, and copies."""
+
+import gc
+import pickle
+
+from lxml import etree
+import numpy as np
+import pytest
+from sdf_texts import joint
+from sdf_texts import model_file
+from sdf_texts import world_file
+
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene
+from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.tf.loaded_scene import unicode_text
+from sdf_pose_bridge.tf.tree import TfOptions
+
+GOOD = '<model name="m"><link name="l"><pose>1 0 0 0 0 0</pose></link><frame name="f"/></model>'
+BAD = GOOD.replace('<pose>', '<pose relative_to="x">')
+TURNING = model_file(
+    '<link name="a"/><link name="b"><sensor name="c" type="camera"/></link>'
+    + joint('<parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis>', 'turn', 'revolute'))
+
+TEXT = '<robot name="größe"/>'
+
+
+@pytest.mark.parametrize('text', [GOOD, BAD], ids=['good', 'bad'])
+def test_nothing_is_left_that_only_a_search_for_garbage_would_free(tmp_path, text):
+    path = tmp_path / 'cell.sdf'
+    path.write_text(world_file(text), encoding='utf-8')
+
+    def load():
+        try:
+            loaded_scene_from_request(LoadRequest(str(path), ''))
+        except SdfError:
+            assert text is BAD
+
+    load()
+    gc.collect()
+    gc.disable()
+    try:
+        load()
+        assert gc.collect() == 0
+    finally:
+        gc.enable()
+
+
+def test_a_path_that_is_too_long_is_said_to_be():
+    with pytest.raises(SdfError, match='File name too long'):
+        loaded_scene_from_request(LoadRequest(f'/{"x" * 1000}', ''))
+
+
+def test_a_text_has_the_name_of_its_parameter_and_no_file():
+    text = world_file(GOOD)
+    loaded = loaded_scene_from_request(LoadRequest('', text))
+    assert (str(loaded.path), loaded.text, loaded.files) == ('robot_description', text, ())
+    with pytest.raises(SdfError, match='robot_description:2: FILE_READ'):
+        loaded_scene_from_request(LoadRequest('', '<sdf>\n<'))
+
+
+@pytest.fixture
+def copied():
+    """A loaded scene with joints that move, and a copy of it as other processes get it."""
+    request = LoadRequest('', TURNING, tf_options=TfOptions(use_joint_states=True))
+    loaded = loaded_scene_from_request(request)
+    return loaded, pickle.loads(pickle.dumps(loaded, 5))
+
+
+def test_a_copy_looks_poses_up_where_its_joints_are(copied):
+    loaded, copy = copied
+    assert copy._replace(**dict.fromkeys(('scene', 'tree', 'lookup', 'joint_positions'))) == (
+        loaded._replace(**dict.fromkeys(('scene', 'tree', 'lookup', 'joint_positions'))))
+    for each in copied:
+        selection = each.joint_positions.selection(['turn'])
+        each.joint_positions.update(selection, np.array([0.5]))
+    for frame in ('b', 'b/c', 'b/c_optical', 'm::b'):
+        assert copy.lookup.pose(frame) == loaded.lookup.pose(frame)
+    assert copy.lookup.pose('b').pose.qz == pytest.approx(np.sin(0.25))
+
+
+def test_a_copy_is_as_read_only_as_what_was_read(copied):
+    for loaded in copied:
+        for each in (loaded.scene, loaded.tree):
+            arrays = [value for value in vars(each).values() if isinstance(value, np.ndarray)]
+            assert len(arrays) > 5
+            assert not any(array.flags.writeable for array in arrays)
+        with pytest.raises(TypeError):
+            loaded.scene.sensors[0] = None
+
+
+def fingerprint(text):
+    return fingerprint_of_scene(loaded_scene_from_request(LoadRequest('', text)).scene)
+
+
+@pytest.mark.parametrize('other', [
+    GOOD.replace('"l"', '"k"'), GOOD.replace('1 0 0', '1 0 1e-300'),
+    GOOD.replace('<frame name="f"/>', ''),
+])
+def test_other_names_and_poses_have_another_fingerprint(other):
+    assert fingerprint(world_file(GOOD)) == fingerprint(world_file(f'<!-- -->{GOOD}'))
+    assert fingerprint(world_file(GOOD)) != fingerprint(world_file(other))
+
+
+@pytest.mark.parametrize('text', [TEXT, TEXT.encode(), TEXT.encode('utf-8-sig')])
+def test_a_text_stays_as_it_is(text):
+    assert unicode_text(text) == TEXT
+
+
+@pytest.mark.parametrize('encoding', ['latin-1', 'utf-16'])
+def test_another_encoding_is_converted(encoding):
+    text = unicode_text(f'<?xml version="1.0" encoding="{encoding}"?>{TEXT}'.encode(encoding))
+    assert etree.fromstring(text).get('name') == 'größe'
