@@ -68,6 +68,7 @@ def load(
     """
     Read a file and resolve every pose in it.
 
+    :param path: an SDFormat or URDF file.
     :param resource_paths: directories in which included models are searched first; then come
         those of the environment variables ``GZ_SIM_RESOURCE_PATH`` and ``SDF_PATH``.
     :param on_missing_include: ``error``, or ``skip`` to leave out includes that are not found.
@@ -116,6 +117,7 @@ def load_text(
     """
     Resolve every pose in SDFormat text, as :func:`load` does for a file.
 
+    :param text: the text of a file; bytes in the encoding that they declare.
     :param name: its name in errors; relative includes are searched beside it. The other arguments
         are those of :func:`load`.
     :raises SdfError: as for :func:`load`.
