@@ -13,6 +13,7 @@ from pathlib import Path
 import sys
 from typing import NamedTuple
 from typing import TextIO
+from typing import TypeVar
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
@@ -22,6 +23,8 @@ from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.tree import TfTree
+
+_Problem = TypeVar('_Problem', bound='SdfError | SdfWarning')
 
 _RED, _YELLOW, _BOLD, _PLAIN = '\x1b[31m', '\x1b[33m', '\x1b[1m', '\x1b[0m'
 
@@ -44,7 +47,7 @@ def print_problems(
     sys.stdout.flush()
     has_colors = is_colored(stream)
     bold, plain = (_BOLD, _PLAIN) if has_colors else ('', '')
-    for problem in problems_in_order(errors, warnings):
+    for problem in in_order(errors, warnings):
         is_error = isinstance(problem, SdfError)
         color = '' if not has_colors else _RED if is_error else _YELLOW
         kind = '' if is_error or problem.code == 'WARNING' else 'WARNING: '
@@ -52,20 +55,17 @@ def print_problems(
         print(f'{bold}{place}:{plain} {color}{kind}{problem.code}:{plain} {message}', file=stream)
 
 
-def problems_in_order(
-    errors: tuple[SdfError, ...], warnings: tuple[SdfWarning, ...],
-) -> list[SdfError | SdfWarning]:
+def in_order(*problems: tuple[_Problem, ...]) -> tuple[_Problem, ...]:
     """
-    Merge the errors and the warnings of a load.
+    Merge errors and warnings.
 
-    :param errors: errors in the order of files and lines.
-    :param warnings: warnings in the same order.
-    :return: both in this order; of one line the errors come first.
+    :param problems: some of them, each in the order of files and lines.
+    :return: all of them in this order; of one line the first argument comes first.
     """
-    both: tuple[Sequence[SdfError | SdfWarning], ...] = errors, warnings
-    files = [problem.place.file for problems in both for problem in problems]
+    files = [problem.place.file for some in problems for problem in some]
     ranks = {file: rank for rank, file in reversed([*enumerate(files)])}
-    return [*merge(*both, key=lambda problem: (ranks[problem.place.file], problem.place.line))]
+    return (*merge(*problems, key=lambda problem: (
+        ranks[problem.place.file], problem.place.line)),)
 
 
 def discard_output() -> None:

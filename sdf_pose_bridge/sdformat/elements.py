@@ -163,6 +163,10 @@ class Elements:
         return self.place(index, int(self.pose_lines[index]), 'pose')
 
 
+_FAR_M = 100.0
+"""A position in a model from which on it may be in millimetres."""
+
+
 class ElementsBuilder:
     """The table while it grows."""
 
@@ -233,7 +237,25 @@ class ElementsBuilder:
                 problems.error(ElementInvalidError(reason, table.place_of_pose(indices[row])))
             for row, reason in result.doubts:
                 problems.warning(reason, table.place_of_pose(indices[row]))
+        self._warn_of_millimetres(table, problems)
         return table
+
+    def _warn_of_millimetres(self, table: Elements, problems: Problems) -> None:
+        """Warn once of positions in models that are far away for metres."""
+        is_far = np.abs(table.poses[:, :3]).max(axis=1, initial=0.0) >= _FAR_M
+        if not is_far.any():
+            return
+        # Lights are often far away.
+        is_in_model = (
+            (table.parents >= 0) & np.isin(table.kinds[table.parents], (Kind.MODEL, Kind.LINK))
+            & (table.kinds != Kind.LIGHT))
+        rows: list[int] = np.flatnonzero(is_far & is_in_model).tolist()
+        if rows:
+            x, y, z = table.poses[rows[0], :3].tolist()
+            more = f', and {len(rows) - 1} more in this file are as far away' if rows[1:] else ''
+            msg = (f'the position {x:g} {y:g} {z:g} of {table.kind(rows[0]).label} '
+                   f'"{table.names[rows[0]]}" is in metres{more}; these look like millimetres')
+            problems.warning(msg, table.place_of_pose(rows[0]))
 
 
 def _indices(column: array[int]) -> Indices:

@@ -19,6 +19,7 @@ from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
+from sdf_pose_bridge.sdformat.specification import Motion
 from sdf_pose_bridge.sdformat.values import numbers_of_child
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import first_child
@@ -158,10 +159,21 @@ def _axis(
     if limit is not None:
         (lower,) = numbers_of_child(limit, 'lower', (lower,))
         (upper,) = numbers_of_child(limit, 'upper', (upper,))
+        joint_type = JOINT_TYPES.get(attribute_of(joint, 'type').lower())
+        if any(map(_may_be_degrees, (lower, upper))) and joint_type is not None and any(
+                dof.motion is Motion.TURN for dof in joint_type.dofs):
+            msg = (f'the limits {lower:g} to {upper:g} of joint "{attribute_of(joint, "name")}" '
+                   'are radians; they look like degrees')
+            sources.warning(limit, msg)
     mimic = first_child(axis, 'mimic')
     return AxisDetails(
         (x, y, z), expressed_in, lower, upper, None if mimic is None else _mimic(mimic, sources),
         _dynamics(axis) if reads_dynamics else NO_DYNAMICS)
+
+
+def _may_be_degrees(limit: float) -> bool:
+    """Return whether a limit is a whole number from four turns in radians to three in degrees."""
+    return 8.0 * math.pi < abs(limit) <= 1080.0 and limit.is_integer()
 
 
 def _dynamics(axis: XmlElement) -> Dynamics:

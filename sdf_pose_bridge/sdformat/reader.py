@@ -159,6 +159,8 @@ class _Reader:
                     Kind.ROOT, ROOT_FRAME, NO_ELEMENT, NO_ELEMENT, self._file_indices[path],
                     self._sources.line(child))
                 self.read(child, child_definition, index, index, path)
+        if not self._builder.names:
+            self._sources.warning(root, 'the file has no world, model, light or actor')
         return self._builder.elements(self._sources.problems)
 
     def _report_second_top(self, xml: XmlElement, first: str) -> None:

@@ -95,3 +95,18 @@ def test_errors_and_warnings_are_in_the_order_of_lines(run_main, files):
       <frame name="g" attached_to="y"/></model></sdf>""")
     lines = run_main('check', 'both.sdf').stdout.splitlines()
     assert [line.split(':')[1] for line in lines] == ['2', '3', '4']
+
+
+def test_missing_mesh_and_impossible_sizes_are_warnings(run_main, files):
+    (files / 'shapes.sdf').write_text("""<sdf version="1.9"><model name="m"><link name="l">
+      <visual name="a"><geometry><mesh><uri>none.stl</uri></mesh></geometry></visual>
+      <visual name="b"><geometry><mesh><uri>good.sdf</uri></mesh></geometry></visual>
+      <collision name="c"><geometry><box><size>0 -1 1</size></box></geometry></collision>
+      <collision name="d"><geometry><box><size>1 1 1</size></box></geometry></collision>
+      </link></model></sdf>""")
+    done = run_main('check', 'shapes.sdf')
+    mesh, box = done.stdout.splitlines()
+    assert mesh.startswith('shapes.sdf:2: WARNING: the mesh "none.stl" is not found: it is not in')
+    assert box == ('shapes.sdf:4: WARNING: a size or the scale of the box is not a positive number '
+                   '(0 -1 1)')
+    assert (done.returncode, run_main('check', '--strict', 'shapes.sdf').returncode) == (0, 1)

@@ -9,6 +9,7 @@ from sdf_texts import only_error
 from sdf_texts import world_file
 
 from sdf_pose_bridge import Kind
+from sdf_pose_bridge import load_text
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
@@ -106,3 +107,24 @@ def test_place_of_a_part_of_an_element(builder, problems):
 ])
 def test_error_has_the_path_of_its_element(text, element):
     assert only_error(text).element == element
+
+
+# Positions that may be in millimetres
+
+def test_positions_far_from_their_model_give_one_warning():
+    scene = load_text(model_file(
+        '<link name="a"><pose>0 350 0 0 0 0</pose></link>'
+        '<frame name="f"><pose>0 0 -1200 0 0 0</pose></frame>'))
+    (warning,) = scene.warnings
+    assert warning.message == (
+        'the position 0 350 0 of link "a" is in metres, and 1 more in this file are as far away; '
+        'these look like millimetres')
+
+
+@pytest.mark.parametrize('text', [
+    world_file('<model name="m"><pose>500 0 0 0 0 0</pose><link name="l"/></model>'),
+    model_file('<link name="l"><pose>99 0 0 0 0 0</pose>'
+               '<light name="k" type="point"><pose>0 0 300 0 0 0</pose></light></link>'),
+])
+def test_what_may_be_far_away_gives_no_warning(text):
+    assert not load_text(text).warnings

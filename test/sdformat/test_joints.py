@@ -163,3 +163,18 @@ def test_axis_has_dynamics(content, dynamics):
 def test_dynamics_are_not_read_unless_they_are_asked_for():
     content = '<dynamics><damping>.1</damping></dynamics>'
     assert dynamics_of(content).damping == 0.0
+
+
+# Limits that may be degrees
+
+@pytest.mark.parametrize(('joint_type', 'limits', 'is_warned'), [
+    ('revolute', (-180, 180), True), ('revolute', (0, 90), True), ('universal', (-45, 45), True),
+    ('revolute', (-12.5, 12.5), False), ('revolute', (-25, 25), False),
+    ('revolute', (-1e16, 1e16), False), ('prismatic', (0, 90), False)])
+def test_limits_in_degrees_are_a_warning(joint_type, limits, is_warned):
+    lower, upper = limits
+    scene = load_text(model_file(TWO_LINKS + joint(
+        '<parent>a</parent><child>b</child><axis><limit>'
+        f'<lower>{lower}</lower><upper>{upper}</upper></limit></axis>', joint_type=joint_type)))
+    assert [w.message for w in scene.warnings] == is_warned * [
+        f'the limits {lower:g} to {upper:g} of joint "j" are radians; they look like degrees']

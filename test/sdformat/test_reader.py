@@ -448,3 +448,9 @@ def test_nearest_type_is_named():
     text = model_file('<link name="a"/><link name="b"/>' + joint(
         '<parent>a</parent><child>b</child>', joint_type='fix'))
     assert only_error(text).message.endswith('universal; did you mean "fixed"?')
+
+
+@pytest.mark.parametrize('text', ['<sdf version="1.9"/>', '<sdf version="1.9"><!-- a --></sdf>'])
+def test_file_with_nothing_in_it_is_a_warning(text):
+    (warning,) = load_text(text).warnings
+    assert warning.message == 'the file has no world, model, light or actor'
