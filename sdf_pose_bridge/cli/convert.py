@@ -20,6 +20,7 @@ from sdf_pose_bridge.geometry.formats import Format
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
+from sdf_pose_bridge.geometry.formats import without_rounding_errors
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 
@@ -160,7 +161,9 @@ def _converted(
     convert = converted_poses if source.name in POSE_FORMATS else converted_rotations
     values = np.array([numbers_from_text(text, source) for text in texts])
     return list(zip(*(
-        convert(values, source.name, target.name).tolist() for target in targets), strict=True))
+        without_rounding_errors(
+            convert(values, source.name, target.name), source, target).tolist()
+        for target in targets), strict=True))
 
 
 def _converted_or_errors(

@@ -34,7 +34,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description='Compare two files: print which elements were added, removed, renamed and '
                     'moved, one per line, with the distance and the angle. The exit code is 1 if '
                     'there is a difference, 2 if a file has an error.')
-    parser.add_argument('old', metavar='OLD', help='an SDFormat file')
+    parser.add_argument('old', metavar='OLD', help='an SDFormat file; - reads the standard input')
     parser.add_argument('new', metavar='NEW', help='the file to compare it with')
     add_loading_arguments(parser)
     add_format_argument(parser, CSV, JSON)

@@ -29,6 +29,9 @@ from sdf_pose_bridge.tf.tree import TfOptions
 SHOWN_KINDS = tuple(kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD))
 """The kinds that ``--kinds`` takes."""
 
+STANDARD_INPUT = '-'
+"""The argument that stands for the standard input."""
+
 _SHOWN_BY_NAME = {kind.label: kind for kind in SHOWN_KINDS}
 _KIND_NAMES = ', '.join(_SHOWN_BY_NAME)
 
@@ -49,7 +52,8 @@ def add_file_arguments(parser: argparse.ArgumentParser, *, takes_many: bool = Tr
     :param takes_many: whether the command takes several files.
     """
     parser.add_argument(
-        'files', metavar='FILE', nargs='+' if takes_many else 1, help='an SDFormat file')
+        'files', metavar='FILE', nargs='+' if takes_many else 1,
+        help='an SDFormat file; - reads the standard input')
     add_loading_arguments(parser)
 
 
@@ -71,11 +75,15 @@ def scene_from_file(
     """
     Load a file, or what a pipe such as that of the shell's ``<(command)`` holds.
 
+    :param path: path of the file; ``-`` for the standard input, beside which includes are searched
+        in the working directory.
     :param texts: what to read instead of some files, by their paths.
     :raises SdfError: if the file is not valid.
     """
+    is_input = path == STANDARD_INPUT
+    text = bytes_from_file('/dev/stdin' if is_input else path, Usage(), allows_pipe=True)
     return load_text(
-        bytes_from_file(path, Usage(), allows_pipe=True), path,
+        text, '<stdin>' if is_input else path,
         resource_paths=options.resource_paths, shapes=shapes, texts=texts,
         on_missing_include='skip' if options.skip_missing else 'error')
 

@@ -13,6 +13,8 @@ from sdf_pose_bridge.cli.convert import numbers_from_text
 from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import scene_from_file
 from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.loading import STANDARD_INPUT
+from sdf_pose_bridge.cli.printing import CommandError
 from sdf_pose_bridge.cli.printing import discard_output
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import converted_poses
@@ -68,9 +70,13 @@ def run(options: argparse.Namespace) -> int:
     Set a pose.
 
     :return: exit code: 0.
+    :raises CommandError: for the standard input.
     :raises PoseFormatError: if the numbers are wrong.
     :raises SdfError: if the file cannot say this, or cannot be written.
     """
+    if options.files[0] == STANDARD_INPUT:
+        msg = 'the standard input cannot be changed; name a file'
+        raise CommandError(msg)
     numbers = numbers_from_text(
         ' '.join(options.numbers), {**POSE_FORMATS, **ROTATION_FORMATS}[options.format])
     scene = scene_of(options.files[0], options)

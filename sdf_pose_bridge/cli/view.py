@@ -24,6 +24,7 @@ from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import add_frame_arguments
 from sdf_pose_bridge.cli.loading import scene_from_file
 from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.loading import STANDARD_INPUT
 from sdf_pose_bridge.cli.loading import tf_options_from_arguments
 from sdf_pose_bridge.cli.printing import add_output_argument
 from sdf_pose_bridge.cli.printing import CommandError
@@ -78,6 +79,10 @@ def run(options: argparse.Namespace) -> int:
     :return: exit code: 0.
     :raises CommandError: if it cannot be shown or written.
     """
+    is_input = options.files[0] == STANDARD_INPUT
+    if is_input and options.edit:
+        msg = 'the standard input cannot be changed, as --edit would; name a file'
+        raise CommandError(msg)
     viewer = _viewer()
     # Else a browser that draws a picture would outlive this process.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -94,7 +99,8 @@ def run(options: argparse.Namespace) -> int:
         if options.output is None:
             _open(page.address)
             watcher = FileWatcher()
-            watcher.watch(scene.files, read_since_ns)
+            # The standard input cannot be read again.
+            watcher.watch(() if is_input else scene.files, read_since_ns)
             _follow(page, watcher, options)
         else:
             html = page.html(path)

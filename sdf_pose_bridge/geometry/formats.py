@@ -34,7 +34,9 @@ from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
 from sdf_pose_bridge.geometry.rotations import near_gimbal_lock
 from sdf_pose_bridge.geometry.rotations import Quaternion
 from sdf_pose_bridge.geometry.rotations import quaternion_from_matrix
+from sdf_pose_bridge.geometry.rotations import quaternion_from_rotation_vector
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
+from sdf_pose_bridge.geometry.rotations import rotation_vector_from_quaternion
 from sdf_pose_bridge.geometry.rotations import RotationError
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.geometry.rotations import Triple
@@ -62,6 +64,10 @@ class Format(NamedTuple):
     """Converts the common representation to rows (n, row_length)."""
     half_turn: float | None = None
     """Half a turn in the unit of the last three numbers, if these are roll, pitch and yaw."""
+    unit: float = 1.0
+    """The largest number of a rotation in the format, unless it has roll, pitch and yaw."""
+    position: tuple[int, ...] = ()
+    """The indices of x, y and z of a pose."""
 
 
 class Given(enum.IntEnum):
@@ -116,6 +122,23 @@ def converted_rotations(
     :raises PoseFormatError: as :func:`converted_poses`.
     """
     return _converted(values, from_format, to_format, ROTATION_FORMATS, 'rotation')
+
+
+def without_rounding_errors(values: Floats, source: Format, target: Format) -> Floats:
+    """
+    Replace rounding errors of a conversion by zero, for people who read the numbers.
+
+    :param values: rows in the target format, shape (n, row_length).
+    :return: a copy in which numbers of a rotation are zero that are below four units of rounding
+        of the largest number; between formats with roll, pitch and yaw, which are exact, a copy.
+    """
+    shown: Floats = values.copy()
+    if source is not target and not (source.half_turn and target.half_turn):
+        largest = target.half_turn or target.unit
+        is_error = np.abs(values) < 4.0 * np.finfo(float).eps * largest
+        is_error[:, list(target.position)] = False
+        shown[is_error] = 0.0
+    return shown
 
 
 def converted_rotation(
@@ -289,35 +312,42 @@ POSE_FORMATS = _registry(
         'sdf_rpy', 6, 'x y z in metres, roll pitch yaw in radians',
         lambda row: _pose(row[:, :3], quaternion_from_rpy(row[:, 3:])),
         lambda pose: _pose(pose[:, :3], rpy_from_quaternion(pose[:, 3:])),
-        half_turn=math.pi,
+        half_turn=math.pi, position=(0, 1, 2),
     ),
     Format(
         'sdf_rpy_degrees', 6, 'x y z in metres, roll pitch yaw in degrees',
         lambda row: _pose(row[:, :3], _quaternion_from_degrees(row[:, 3:])),
         lambda pose: _pose(pose[:, :3], _degrees_from_quaternion(pose[:, 3:])),
-        half_turn=180.0,
+        half_turn=180.0, position=(0, 1, 2),
     ),
     Format(
         'sdf_quat_xyzw', 7, 'x y z in metres, quaternion x y z w of any norm but 0',
         lambda row: _pose(row[:, :3], canonical_quaternion(row[:, 3:])),
-        np.copy,
+        np.copy, position=(0, 1, 2),
     ),
     Format(
         'matrix_row_major', 16, '4 x 4 matrix row after row, in metres',
         lambda row: _poses_from_matrices(row.reshape(-1, 4, 4)),
-        lambda pose: _matrices_from_poses(pose).reshape(-1, 16),
+        lambda pose: _matrices_from_poses(pose).reshape(-1, 16), position=(3, 7, 11),
     ),
     Format(
         'franka_matrix', 16, '4 x 4 matrix column after column, in metres',
         lambda row: _poses_from_matrices(row.reshape(-1, 4, 4).swapaxes(1, 2)),
         lambda pose: _matrices_from_poses(pose).swapaxes(1, 2).reshape(-1, 16),
+        position=(12, 13, 14),
     ),
     Format(
         'franka_measured', 6,
         "x y z in millimetres, rotations x y z in degrees (z-y'-x'': x is roll, z is yaw)",
         lambda row: _pose(row[:, :3] / 1000.0, _quaternion_from_degrees(row[:, 3:])),
         lambda pose: _pose(pose[:, :3] * 1000.0, _degrees_from_quaternion(pose[:, 3:])),
-        half_turn=180.0,
+        half_turn=180.0, position=(0, 1, 2),
+    ),
+    Format(
+        'ur_pose', 6, 'x y z in metres, rotation vector (axis times angle) in radians',
+        lambda row: _pose(row[:, :3], quaternion_from_rotation_vector(row[:, 3:])),
+        lambda pose: _pose(pose[:, :3], rotation_vector_from_quaternion(pose[:, 3:])),
+        unit=math.pi, position=(0, 1, 2),
     ),
 )
 """All formats of poses by name; their common representation has shape (n, 7)."""
@@ -342,6 +372,15 @@ ROTATION_FORMATS = _registry(
         'matrix', 9, '3 x 3 matrix row after row',
         lambda row: quaternion_from_matrix(row.reshape(-1, 3, 3)),
         lambda quat: matrix_from_quaternion(quat).reshape(-1, 9),
+    ),
+    Format(
+        'rotation_vector', 3, 'axis times angle in radians',
+        quaternion_from_rotation_vector, rotation_vector_from_quaternion, unit=math.pi,
+    ),
+    Format(
+        'rotation_vector_degrees', 3, 'axis times angle in degrees',
+        lambda row: quaternion_from_rotation_vector(np.radians(row)),
+        lambda quat: degrees_from_radians(rotation_vector_from_quaternion(quat)), unit=180.0,
     ),
 )
 """All formats of rotations by name; their common representation has shape (n, 4)."""

@@ -240,6 +240,32 @@ def matrix_from_rpy(xp: Any, roll: Component, pitch: Component, yaw: Component) 
         (0.0 - sin_p, cos_p * sin_r + 0.0, cos_p * cos_r + 0.0))
 
 
+def quaternion_from_rotation_vector(
+    xp: Any, x: Component, y: Component, z: Component,
+) -> Quaternion:
+    """Return the canonical quaternion of an axis times an angle in radians."""
+    square = x * x + y * y + z * z
+    _check(xp, square < LARGEST_SQUARE)
+    is_usual = square > SMALLEST_SQUARE
+    angle = xp.where(is_usual, xp.sqrt(square), 1.0)
+    # Of a tiny angle, the sine of its half is its half.
+    factor = xp.where(is_usual, xp.sin(0.5 * angle) / angle, 0.5)
+    cosine = xp.where(is_usual, xp.cos(0.5 * angle), 1.0)
+    return _corrected(xp, x * factor, y * factor, z * factor, cosine)
+
+
+def rotation_vector_from_quaternion(
+    xp: Any, x: Component, y: Component, z: Component, w: Component,
+) -> Triple:
+    """Return the axis times the angle of a quaternion, which is at most half a turn."""
+    x, y, z, w = canonical_quaternion(xp, x, y, z, w)
+    square = x * x + y * y + z * z
+    is_usual = square > SMALLEST_SQUARE
+    sine = xp.where(is_usual, xp.sqrt(square), 1.0)
+    factor = xp.where(is_usual, 2.0 * xp.arctan2(sine, w) / sine, 2.0)
+    return x * factor, y * factor, z * factor
+
+
 def canonical_quaternion(
     xp: Any, x: Component, y: Component, z: Component, w: Component,
 ) -> Quaternion:

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Convert rotations between roll-pitch-yaw, quaternions and matrices, one or many at a time.
+Convert rotations between roll-pitch-yaw, quaternions, rotation vectors and matrices.
 
 Conventions:
 
@@ -123,6 +123,40 @@ def quaternion_from_matrix(matrix: Any) -> Any:
 
 
 @overload
+def quaternion_from_rotation_vector(rotation_vector_rad: One) -> Quaternion: ...
+@overload
+def quaternion_from_rotation_vector(rotation_vector_rad: Many) -> Floats: ...
+def quaternion_from_rotation_vector(rotation_vector_rad: Any) -> Any:
+    """
+    Convert a rotation vector, an axis times an angle, to a quaternion.
+
+    :param rotation_vector_rad: x, y, z; its length is the angle in radians, below 1e70; shape
+        (3,) or (..., 3).
+    :return: x, y, z, w; unit, w >= 0; shape (4,) or (..., 4).
+    :raises RotationError: wrong shape, not finite or too long.
+    """
+    return _converted(
+        formulas.quaternion_from_rotation_vector, rotation_vector_rad, _ROTATION_VECTOR, (4,))
+
+
+@overload
+def rotation_vector_from_quaternion(quat_xyzw: One) -> Triple: ...
+@overload
+def rotation_vector_from_quaternion(quat_xyzw: Many) -> Floats: ...
+def rotation_vector_from_quaternion(quat_xyzw: Any) -> Any:
+    """
+    Convert a quaternion to a rotation vector, an axis times an angle.
+
+    :param quat_xyzw: x, y, z, w of any norm but zero; shape (4,) or (..., 4).
+    :return: x, y, z; its length is the angle in radians, in [0, pi]; of half a turn the first
+        component that is not 0 is positive; shape (3,) or (..., 3).
+    :raises RotationError: wrong shape, not finite or zero.
+    """
+    return _converted(
+        formulas.rotation_vector_from_quaternion, quat_xyzw, _QUATERNION, (3,))
+
+
+@overload
 def matrix_from_rpy(rpy_rad: One) -> Matrix: ...
 @overload
 def matrix_from_rpy(rpy_rad: Many) -> Floats: ...
@@ -194,6 +228,10 @@ def _rpy_message(*rpy: float) -> str:
     return f'roll, pitch, yaw {rpy} are not finite'
 
 
+def _rotation_vector_message(*rotation_vector_rad: float) -> str:
+    return f'rotation vector {rotation_vector_rad} is not finite, or longer than 1e70'
+
+
 def _quaternion_message(*quat_xyzw: float) -> str:
     if all(map(math.isfinite, quat_xyzw)):
         return f'quaternion {quat_xyzw} is zero, which is not a rotation'
@@ -225,6 +263,7 @@ class _Representation(NamedTuple):
 
 _RPY = _Representation('roll, pitch, yaw', (3,), _rpy_message)
 _QUATERNION = _Representation('quaternion', (4,), _quaternion_message)
+_ROTATION_VECTOR = _Representation('rotation vector', (3,), _rotation_vector_message)
 _MATRIX = _Representation('rotation matrix', (3, 3), _matrix_message)
 
 

@@ -107,6 +107,6 @@ def test_missing_mesh_and_impossible_sizes_are_warnings(run_main, files):
     done = run_main('check', 'shapes.sdf')
     mesh, box = done.stdout.splitlines()
     assert mesh.startswith('shapes.sdf:2: WARNING: the mesh "none.stl" is not found: it is not in')
-    assert box == ('shapes.sdf:4: WARNING: a size or the scale of the box is not a positive number '
-                   '(0 -1 1)')
+    assert box == (
+        'shapes.sdf:4: WARNING: a size or the scale of the box is not a positive number (0 -1 1)')
     assert (done.returncode, run_main('check', '--strict', 'shapes.sdf').returncode) == (0, 1)

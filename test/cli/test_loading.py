@@ -51,3 +51,27 @@ def test_an_unknown_kind_names_those_that_exist(options, capsys):
     with pytest.raises(SystemExit):
         options('--kinds', 'lnk', 'good.sdf')
     assert '"lnk" is not a kind of element; known are model' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('command', [
+    ('check', '-'), ('poses', '-'), ('tree', '-'), ('graph', '-'), ('diff', '-', 'good.sdf')])
+def test_standard_input_is_read(sdf_pose_in_shell, command):
+    done = sdf_pose_in_shell(f'{" ".join(command)} < good.sdf')
+    assert (done.returncode, done.stderr) == (0, '')
+
+
+def test_errors_of_the_standard_input_name_it(sdf_pose_in_shell):
+    assert sdf_pose_in_shell('check - < bad.sdf').stdout.startswith('<stdin>:3: ELEMENT_INVALID: ')
+
+
+def test_includes_of_the_standard_input_are_searched_in_the_working_directory(sdf_pose_in_shell):
+    done = sdf_pose_in_shell(
+        'check - <<EOF\n<sdf version="1.9"><include><uri>box.sdf</uri></include></sdf>\nEOF')
+    assert '"box.sdf" cannot be included: it is not in "."; ' in done.stdout
+
+
+@pytest.mark.parametrize('command', ['set - f 1 2 3 0 0 0', 'view --edit -'])
+def test_standard_input_cannot_be_changed(sdf_pose_in_shell, command):
+    done = sdf_pose_in_shell(f'{command} < good.sdf')
+    assert done.returncode == 1
+    assert 'the standard input cannot be changed' in done.stderr

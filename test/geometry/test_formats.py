@@ -22,11 +22,12 @@ from sdf_pose_bridge.geometry.formats import converted_rotations
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
+from sdf_pose_bridge.geometry.formats import without_rounding_errors
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 
 LENGTHS = {
     'sdf_rpy': 6, 'sdf_rpy_degrees': 6, 'sdf_quat_xyzw': 7,
-    'matrix_row_major': 16, 'franka_matrix': 16, 'franka_measured': 6,
+    'matrix_row_major': 16, 'franka_matrix': 16, 'franka_measured': 6, 'ur_pose': 6,
 }
 IDENTITY_MATRIX = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 GOOD = {
@@ -36,6 +37,7 @@ GOOD = {
     'matrix_row_major': IDENTITY_MATRIX,
     'franka_matrix': IDENTITY_MATRIX,
     'franka_measured': (1000.0, 2000.0, 3000.0, 10.0, 20.0, 30.0),
+    'ur_pose': (1.0, 2.0, 3.0, 0.1, 0.2, 0.3),
 }
 
 every_format = pytest.mark.parametrize('name', LENGTHS)
@@ -166,6 +168,8 @@ def test_the_formats_and_their_lengths():
 def test_one_pose_in_all_formats(name):
     # 90 degrees of yaw, then 30 degrees of roll on the child's own x: by hand.
     half, root = 0.5, math.sqrt(0.75)
+    angle = 2.0 * math.acos(math.sqrt(half) * math.cos(math.pi / 12))
+    factor = angle * math.sqrt(half) / math.sin(angle / 2.0)
     same = {
         'sdf_rpy': (1, 2, 3, math.pi / 6, 0, math.pi / 2),
         'sdf_rpy_degrees': (1, 2, 3, 30, 0, 90),
@@ -173,6 +177,10 @@ def test_one_pose_in_all_formats(name):
             1, 2, 3,
             math.sqrt(half) * math.sin(math.pi / 12), math.sqrt(half) * math.sin(math.pi / 12),
             math.sqrt(half) * math.cos(math.pi / 12), math.sqrt(half) * math.cos(math.pi / 12),
+        ),
+        'ur_pose': (
+            1, 2, 3, factor * math.sin(math.pi / 12), factor * math.sin(math.pi / 12),
+            factor * math.cos(math.pi / 12),
         ),
         'matrix_row_major': (
             0, -root, half, 1,
@@ -349,6 +357,8 @@ def test_rotations_convert_between_all_formats(source, target):
         'quaternion': (0, 0, math.sqrt(0.5), math.sqrt(0.5)),
         'quaternion_wxyz': (math.sqrt(0.5), 0, 0, math.sqrt(0.5)),
         'matrix': (0, -1, 0, 1, 0, 0, 0, 0, 1),
+        'rotation_vector': (0, 0, math.pi / 2),
+        'rotation_vector_degrees': (0, 0, 90),
     }
     answer = converted_rotations(quarter[source], source, target)
     assert answer == pytest.approx(quarter[target], abs=3e-14)
@@ -357,3 +367,22 @@ def test_rotations_convert_between_all_formats(source, target):
 def test_rotations_do_not_convert_to_poses():
     with pytest.raises(PoseFormatError, match="no rotation format 'sdf_rpy'; known are rpy"):
         converted_rotations((0.0, 0.0, 0.0), 'rpy', 'sdf_rpy')
+
+
+# Rounding errors
+
+def test_rounding_errors_are_zero_where_people_read_them():
+    source, target = POSE_FORMATS['sdf_rpy'], POSE_FORMATS['matrix_row_major']
+    rows = converted_poses([[1e-17, 0.0, 3.0, math.pi / 2, 0.0, 0.0]], source.name, target.name)
+    assert rows[0, 5] != 0.0
+    shown = without_rounding_errors(rows, source, target)
+    assert shown[0].tolist() == [
+        1.0, 0.0, 0.0, 1e-17, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0, 0.0, 3.0, 0.0, 0.0, 0.0, 1.0]
+    assert rows[0, 5] != 0.0
+
+
+@pytest.mark.parametrize(('source', 'target'), [('rpy', 'rpy'), ('rpy', 'rpy_degrees')])
+def test_digits_that_a_conversion_keeps_are_shown(source, target):
+    formats = ROTATION_FORMATS[source], ROTATION_FORMATS[target]
+    rows = converted_rotations([[1e-20, 0.0, 1.0]], source, target)
+    assert np.array_equal(without_rounding_errors(rows, *formats), rows)

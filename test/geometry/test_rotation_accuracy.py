@@ -153,3 +153,13 @@ def test_very_many_matrices_survive_a_round_trip():
     quats = random_quaternions(size(20_000, 1_000_000))
     again = rotations.quaternion_from_matrix(rotations.matrix_from_quaternion(quats))
     assert largest_angle(quats, again) <= MAX_ANGLE
+
+
+@all_sets
+def test_rotation_vectors_survive_a_round_trip(rpy_set):
+    quats = rotations.quaternion_from_rpy(rpy_set(2000))
+    vectors = rotations.rotation_vector_from_quaternion(quats)
+    assert largest_angle(rotations.quaternion_from_rotation_vector(vectors), quats) <= MAX_ANGLE
+    for quat, vector in zip(sample(quats), sample(vectors), strict=True):
+        assert exact_angle(rotations.quaternion_from_rotation_vector(tuple(vector)), quat) <= (
+            MAX_ANGLE)

@@ -72,6 +72,15 @@ def test_scipy_agrees_on_matrices():
     assert largest_angle(rotations.quaternion_from_matrix(theirs), again) <= ROTATION_LIMIT
 
 
+def test_scipy_agrees_on_rotation_vectors():
+    spatial = pytest.importorskip('scipy.spatial.transform')
+    quats = difficult_quaternions(2000)
+    ours = rotations.rotation_vector_from_quaternion(quats)
+    theirs = spatial.Rotation.from_rotvec(ours).as_quat()
+    assert largest_angle(quats, theirs) <= ROTATION_LIMIT
+    assert largest_angle(rotations.quaternion_from_rotation_vector(ours), theirs) <= ROTATION_LIMIT
+
+
 def test_scipy_composes_poses_the_same_way():
     spatial = pytest.importorskip('scipy.spatial.transform')
     a, b = random_quaternions(500, seed=1), random_quaternions(500, seed=2)

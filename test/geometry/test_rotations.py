@@ -21,6 +21,7 @@ from sdf_pose_bridge.geometry import rotations
 from sdf_pose_bridge.geometry.rotations import RotationError
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
+H = math.sqrt(0.5)
 EYE = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 FROM_RPY = (rotations.quaternion_from_rpy, rotations.matrix_from_rpy)
 FROM_QUATERNION = (
@@ -332,3 +333,39 @@ def test_the_rotation_nearest_to_a_disturbed_matrix_is_returned():
     assert np.allclose(rotations.matrix_from_quaternion(answer), nearest, rtol=0.0, atol=1e-14)
     for matrix, expected in zip(disturbed[::9].tolist(), answer[::9], strict=False):
         assert rotations.quaternion_from_matrix(matrix) == pytest.approx(expected, abs=1e-15)
+
+
+# Rotation vectors
+
+@pytest.mark.parametrize('bad', [(math.nan, 0, 0), (0, math.inf, 0), (0, 0, 1e80), (1e200, 0, 0)])
+def test_rotation_vector_must_be_finite(bad):
+    with pytest.raises(RotationError, match=r'rotation vector .* is not finite, or longer than'):
+        rotations.quaternion_from_rotation_vector(bad)
+    with pytest.raises(RotationError, match='row 1: rotation vector '):
+        rotations.quaternion_from_rotation_vector([(0, 0, 1), bad])
+
+
+@pytest.mark.parametrize(('vector', 'quat'), [
+    ((0, 0, 0), IDENTITY), ((1e-200, 0, 0), (5e-201, 0, 0, 1)),
+    ((math.pi, 0, 0), (1, 0, 0, 0)), ((0, 0, -math.pi / 2), (0, 0, -H, H)),
+    ((0, 3 * math.pi / 2, 0), (0, -H, 0, H)), ((0, 0, 2 * math.pi), IDENTITY),
+])
+def test_rotation_vector_is_an_axis_times_an_angle(vector, quat):
+    assert rotations.quaternion_from_rotation_vector(vector) == pytest.approx(quat, abs=3e-16)
+
+
+def test_rotation_vector_of_more_than_half_a_turn_becomes_shorter():
+    quat = rotations.quaternion_from_rotation_vector((0, 0, 4.0))
+    assert rotations.rotation_vector_from_quaternion(quat) == pytest.approx(
+        (0, 0, 4.0 - 2 * math.pi), abs=1e-15)
+
+
+def test_rotation_vector_of_half_a_turn_has_a_positive_first_component():
+    assert rotations.rotation_vector_from_quaternion((-1, 1, 0, 0)) == pytest.approx(
+        (math.pi * H, -math.pi * H, 0))
+
+
+@given(rpys)
+def test_rotation_vector_is_at_most_half_a_turn_long(rpy):
+    vector = rotations.rotation_vector_from_quaternion(rotations.quaternion_from_rpy(rpy))
+    assert math.hypot(*vector) <= math.pi * (1 + 1e-15)

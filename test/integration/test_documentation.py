@@ -126,6 +126,8 @@ def shown_after(page, command):
 @pytest.mark.parametrize(('page', 'command'), [
     ('concepts.md', 'sdf_pose tree docs/pictures/arm.sdf'),
     ('pose_formats.md', 'sdf_pose convert --from rpy_degrees --to quaternion 0 0 90'),
+    ('pose_formats.md',
+     'sdf_pose convert --from rpy_degrees --to rotation_vector_degrees 180 0 0'),
 ])
 def test_outputs(page, command, folder, capsys):
     main(shlex.split(command)[1:])
