@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from collections.abc import Iterator
 from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Set
 import contextlib
 import enum
 import gc
@@ -80,25 +80,28 @@ def load(
     :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
     """
     on_missing_include = MissingInclude(on_missing_include)
-    gazebo_errors: Sequence[SdfError] = ()
+    gazebo_errors: list[SdfError] = []
+    gazebo_faults: Set[int] | None = frozenset()
     while True:
         sources = Sources(limits, texts)
         problems = sources.problems
         for error in gazebo_errors:
             problems.warning(
-                f'{error.message}; so what <gazebo> elements hold is left out', error.place,
-                error.code, is_for_gazebo=True)
+                f'{error.message}; so {"this part" if gazebo_faults else "all"} of '
+                '<gazebo> elements is left out', error.place, error.code, is_for_gazebo=True)
         try:
             document = document_from_file(
-                os.fspath(path), sources, reads_gazebo_elements=not gazebo_errors)
+                os.fspath(path), sources, gazebo_faults=gazebo_faults)
             try:
                 return _scene(document, sources, resource_paths, on_missing_include, shapes=shapes)
             except LoadError as error:
-                if gazebo_errors or not document.has_gazebo_elements:
+                if gazebo_faults is None or not document.has_gazebo_elements:
                     raise
                 # ROS does not read what <gazebo> elements hold, so that must not keep a robot from
-                # being read.
-                gazebo_errors = error.errors
+                # being read. What has an error is left out, and if that is not enough, all.
+                gazebo_errors += error.errors
+                gazebo_faults = None if gazebo_faults else {
+                    each.line for each in error.errors if each.file == document.path} or None
         except LimitError as error:
             # It ends a load at once, behind the errors found so far.
             raise LoadError([*problems.errors, error], problems.warnings) from None

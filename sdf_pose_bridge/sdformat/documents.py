@@ -5,10 +5,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from collections.abc import Set
 from pathlib import Path
 import re
 import shlex
 from typing import NamedTuple
+
+from lxml import etree
 
 from sdf_pose_bridge.errors import AttributeInvalidError
 from sdf_pose_bridge.errors import FileReadError
@@ -47,7 +50,8 @@ class Document(NamedTuple):
 
 
 def document_from_file(
-    path: str, sources: Sources, *, is_included: bool = False, reads_gazebo_elements: bool = True,
+    path: str, sources: Sources, *, is_included: bool = False,
+    gazebo_faults: Set[int] | None = frozenset(),
 ) -> Document:
     """
     Read a file.
@@ -57,7 +61,8 @@ def document_from_file(
         not keep it from being read.
     :param is_included: whether another file includes it, so that URDF is converted as libsdformat
         does it.
-    :param reads_gazebo_elements: whether to read what is SDFormat in URDF.
+    :param gazebo_faults: lines of errors in a file that is URDF. What ``<gazebo>`` elements hold
+        is left out if it has any of them, and for None all of it.
     :return: the file, in the newest version.
     :raises FileReadError: if it is missing, unreadable or not XML, or declares no version.
     :raises LimitError: if it is too large.
@@ -77,9 +82,13 @@ def document_from_file(
         # Most files are not URDF and need not wait for this import.
         from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
         gazebo_elements = root.findall('gazebo')
-        if not reads_gazebo_elements:
-            for element in gazebo_elements:
+        for element in gazebo_elements:
+            if gazebo_faults is None:
                 root.remove(element)
+                continue
+            for child in list(child_elements(element)) if gazebo_faults else ():
+                if not gazebo_faults.isdisjoint(map(sources.line, child.iter(etree.Element))):
+                    element.remove(child)
         root, root_link = sdf_from_urdf(root, sources, is_included=is_included)
         if not is_included:
             urdf_root = root_link

@@ -329,7 +329,24 @@ def test_wrong_gazebo_elements_are_left_out_for_ros_with_a_warning():
     assert 'r::a::s' not in scene.names
     (warning,) = scene.warnings
     assert warning.code == 'DUPLICATE_NAME'
-    assert warning.message.endswith('what <gazebo> elements hold is left out')
+    assert warning.message.endswith('so this part of <gazebo> elements is left out')
+
+
+def test_only_what_is_wrong_in_gazebo_elements_is_left_out():
+    other = SENSOR.format('').replace('"s"', '"t"')
+    text = robot(TWO + FIXED + gazebo(SENSOR.format('') + '\n' + SENSOR.format('') + '\n' + other,
+                                      'b') + '\n' + gazebo(other, 'a'))
+    scene = load_text(text)
+    assert [name for name in scene.names if name.endswith(('::s', '::t'))] == [
+        'r::a::t', 'r::b::s', 'r::b::t']
+    assert [warning.code for warning in scene.warnings] == ['DUPLICATE_NAME']
+
+
+def test_all_of_gazebo_elements_is_left_out_where_that_is_not_enough():
+    wrong = SENSOR.format('\n<pose relative_to="q"/>')
+    double = wrong.replace('imu', 'nose')
+    scene = load_text(robot(TWO + FIXED + gazebo(double + '\n' + double, 'a')))
+    assert not [name for name in scene.names if name.endswith('::s')]
 
 
 def test_an_error_outside_gazebo_elements_is_reported_once():
