@@ -3,7 +3,8 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test_long run lint bench differential fuzz growth soak licenses audit docs pictures clean
+.PHONY: help setup demo test test_long run lint bench differential fuzz growth soak licenses audit docs pictures \
+  wheel_check release_check release clean
 
 # The distribution of ROS 2, versions of other packages, and a folder with another rclpy, also for
 # the scripts in underlay.
@@ -41,6 +42,9 @@ help:
 	@echo 'make audit          known vulnerabilities of it, by pip-audit; needs the network'
 	@echo 'make docs           the documentation, into docs/_build/html'
 	@echo 'make pictures       the pictures in the documentation but rviz.png; needs Chromium and Graphviz'
+	@echo 'make wheel_check    wheel and sdist in clean environments of each Python that is here'
+	@echo 'make release_check  a release in a scratch clone, tried as users and release tools do'
+	@echo 'make release        VERSION=1.0.0: commit, tags and branch of a release; see docs/releasing.md'
 	@echo 'make setup          only the environment in .underlay, which all of these share'
 	@echo 'make clean          remove the environment and everything that was built'
 	@echo ''
@@ -117,6 +121,16 @@ pictures: setup
 	  && python -m sdf_pose_bridge view docs/pictures/arm.sdf -o docs/pictures/view.png \
 	  && python -m sdf_pose_bridge view docs/pictures/tutorial/cell.sdf -o docs/pictures/tutorial.png \
 	  && exec python -m sdf_pose_bridge graph docs/pictures/arm.sdf -o docs/pictures/graph.svg
+
+# What they need is fetched into .underlay-release at first; then they use no network.
+wheel_check: setup
+	@$(in_shell) python release/check.py --only-installs
+
+release_check: setup
+	@$(in_shell) python release/check.py
+
+release: setup
+	@$(in_shell) python release/make_release.py '$(VERSION)'
 
 clean:
 	@rm -rf .underlay build install log .underlay-* build-* install-* log-*

@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parent
 PACKAGE = 'sdf_pose_bridge'
 MANIFEST = ET.parse(ROOT / 'package.xml').getroot()
 VERSION = MANIFEST.findtext('version')
-URL = MANIFEST.findtext('url[@type="repository"]')
+URL = MANIFEST.findtext('url')
 LICENSE = MANIFEST.findtext('license')
 SHARE = f'share/{PACKAGE}'
 NOT_INSTALLED = ('__pycache__', '.pytest_cache', '.mypy_cache', '.ruff_cache')

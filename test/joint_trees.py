@@ -11,9 +11,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from hypothesis import strategies as st
 from matrices import matrix_from_degrees
 import numpy as np
+import pytest
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import strategies as st
 
 TYPES = ('revolute', 'continuous', 'prismatic', 'screw', 'universal', 'revolute2', 'gearbox',
          'ball', 'fixed')

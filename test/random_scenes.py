@@ -13,9 +13,12 @@ from dataclasses import dataclass
 from dataclasses import field
 from xml.sax.saxutils import quoteattr
 
-from hypothesis import strategies as st
 from matrices import matrix_from_degrees
 import numpy as np
+import pytest
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import strategies as st
 
 LENGTHS = st.integers(-40, 40).map(lambda value: value / 8)
 ANGLES = st.integers(-24, 24).map(lambda value: value * 15)

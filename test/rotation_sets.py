@@ -5,8 +5,11 @@
 import itertools
 import math
 
-import mpmath
 import numpy as np
+import pytest
+
+pytest.importorskip('mpmath', reason='needs mpmath')
+import mpmath
 
 MAX_ANGLE = 3 * 4e-16
 """

@@ -8,6 +8,9 @@ The package against libsdformat: a fixed share of the random scenes, and the exa
 
 from pathlib import Path
 
+import pytest
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
 from differential.batches import compare_scenes
 from differential.comparison import difference_between
 from differential.comparison import own_answer
@@ -17,7 +20,6 @@ from differential.reference import CRASH
 from differential.reference import ReferenceMissingError
 from differential.scene_parts import Feature
 from differential.scene_parts import features_of_release
-import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = sorted((ROOT / 'examples').rglob('*.sdf'))

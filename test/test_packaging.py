@@ -127,7 +127,7 @@ def test_the_address_of_the_repository_stands_in_one_place():
         file for pattern in ('*.*', '.github/**/*.*', 'docs/*.*', 'sdf_pose_bridge_*/*.*')
         for file in ROOT.glob(pattern) if file.is_file()]
     assert [file.name for file in files if re.search(
-        r'github\.com/[^/\s]+/sdf_pose_bridge\b', file.read_text(errors='replace'))] == [
+        r'github\.com/[^/\s]+/sdf_pose_bridge(?![-\w])', file.read_text(errors='replace'))] == [
             'package.xml']
 
 
@@ -221,3 +221,23 @@ def test_license_is_the_whole_apache_license():
     text = (ROOT / 'LICENSE').read_text()
     assert 'Version 2.0, January 2004' in text
     assert 'END OF TERMS AND CONDITIONS' in text
+
+
+def test_example_packages_are_ignored_where_they_are():
+    assert {path.name for path in (ROOT / 'examples/cpp_client').glob('*_IGNORE')} == {
+        'AMENT_IGNORE', 'COLCON_IGNORE'}
+
+
+def test_tests_are_collected_where_modules_are_missing():
+    missing = [
+        'catkin_pkg', 'collada', 'hypothesis', 'mpmath', 'rclpy', 'scipy', 'setuptools', 'trimesh',
+        'viser', 'yaml']
+    code = (
+        f'import pytest, sys; sys.modules.update(dict.fromkeys({missing})); '
+        'sys.exit(pytest.main(["--collect-only", "--quiet", "-p", "no:cacheprovider"]))')
+    done = subprocess.run(
+        [sys.executable, '-c', code], cwd=ROOT, capture_output=True, text=True, check=False,
+        timeout=120, env={**os.environ, 'PYTEST_DISABLE_PLUGIN_AUTOLOAD': '1'})
+    assert done.returncode == 0, done.stdout
+    assert 'needs hypothesis' in done.stdout
+    assert 'needs mpmath' in done.stdout

@@ -3,10 +3,10 @@
 //
 // Subscribes to the pose of a frame. When the pose arrives or changes, asks the bridge for the pose
 // relative to another frame, and converts its rotation. python_client.py does the same in Python.
-// To build and run it, in the root of the repository:
+// To build and run it, copy this folder into a workspace, where colcon shall not ignore it:
 //
-//     colcon build --base-paths . sdf_pose_bridge_interfaces examples/cpp_client
-//     . install/setup.bash
+//     cp -r examples/cpp_client ~/ws/src && rm ~/ws/src/cpp_client/*_IGNORE && cd ~/ws
+//     colcon build && . install/setup.bash
 //     ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=examples/work_cell.sdf &
 //     ros2 run sdf_pose_bridge_cpp_client client --ros-args -p frame:=fixture
 

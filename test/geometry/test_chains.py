@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Chains of pointers: their ends, their cycles, and the poses along them."""
 
-from hypothesis import given
-from hypothesis import strategies as st
 import numpy as np
 import pytest
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import given
+from hypothesis import strategies as st
 
 from sdf_pose_bridge.geometry.chains import cycles_from_pointers
 from sdf_pose_bridge.geometry.chains import ends_from_pointers

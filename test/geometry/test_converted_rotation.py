@@ -4,10 +4,12 @@
 
 import math
 
-from hypothesis import given
-from hypothesis import strategies as st
 import pytest
 from rotation_sets import exact_angle
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import given
+from hypothesis import strategies as st
 
 from sdf_pose_bridge.geometry.formats import converted_rotation
 from sdf_pose_bridge.geometry.formats import Given

@@ -7,8 +7,6 @@ import itertools
 import math
 import re
 
-from hypothesis import given
-from hypothesis import strategies as st
 import numpy as np
 import pytest
 from rotation_sets import half_turns
@@ -16,6 +14,10 @@ from rotation_sets import largest_angle
 from rotation_sets import lock_rpy
 from rotation_sets import MAX_ANGLE
 from rotation_sets import random_quaternions
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import given
+from hypothesis import strategies as st
 
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.formats import converted_rotations

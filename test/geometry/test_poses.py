@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Composing and inverting poses: laws of a group, and many give the same as one by one."""
 
-from hypothesis import given
-from hypothesis import settings
-from hypothesis import strategies as st
 from matrices import matrix_from_pose
 import numpy as np
 import pytest
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import given
+from hypothesis import settings
+from hypothesis import strategies as st
 
 from sdf_pose_bridge import Pose
 from sdf_pose_bridge.geometry.poses import canonical_poses

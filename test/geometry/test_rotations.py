@@ -4,8 +4,6 @@
 
 import math
 
-from hypothesis import given
-from hypothesis import strategies as st
 import numpy as np
 import pytest
 from rotation_sets import exact_angle
@@ -16,6 +14,10 @@ from rotation_sets import lock_rpy
 from rotation_sets import MAX_ANGLE
 from rotation_sets import random_quaternions
 from rotation_sets import random_rpy
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import given
+from hypothesis import strategies as st
 
 from sdf_pose_bridge.geometry import rotations
 from sdf_pose_bridge.geometry.rotations import RotationError

@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Screw motions, against exponentials of matrices."""
 
-from hypothesis import given
-from hypothesis import strategies as st
 from joint_trees import exponential
 from matrices import assert_same_pose
 from matrices import matrix_from_pose
 import numpy as np
+import pytest
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import given
+from hypothesis import strategies as st
 
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy

@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What tests do to a running bridge, and what they see of it."""
 
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
 from diagnostic_msgs.msg import DiagnosticArray
 from diagnostic_msgs.msg import DiagnosticStatus
 from listener import latched

@@ -6,10 +6,12 @@ import array
 import math
 import sys
 
+import pytest
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import settings
 from hypothesis import strategies as st
-import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 

@@ -11,10 +11,12 @@ import struct
 import sys
 import tracemalloc
 
-from hypothesis import given
-from hypothesis import strategies as st
 import numpy as np
 import pytest
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import given
+from hypothesis import strategies as st
 
 from sdf_pose_bridge.ros.cdr import joint_state_from_bytes
 from sdf_pose_bridge.ros.cdr import MOST_BYTES

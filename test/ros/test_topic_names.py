@@ -4,9 +4,11 @@
 
 import re
 
+import pytest
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
-import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 

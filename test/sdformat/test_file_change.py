@@ -4,9 +4,11 @@
 
 import difflib
 
+import pytest
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
-import pytest
 
 from sdf_pose_bridge.errors import FileWriteError
 from sdf_pose_bridge.sdformat.file_change import FileChange

@@ -4,13 +4,15 @@
 
 import math
 
-from hypothesis import given
-from hypothesis import strategies as st
 import numpy as np
 import pytest
 from sdf_texts import codes_of
 from sdf_texts import link_with
 from sdf_texts import model_file
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import given
+from hypothesis import strategies as st
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.inertials import Inertial

@@ -4,11 +4,13 @@
 
 import math
 
+import pytest
+from sdf_texts import model_file
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import example
 from hypothesis import given
 from hypothesis import strategies as st
-import pytest
-from sdf_texts import model_file
 
 from sdf_pose_bridge import Pose
 from sdf_pose_bridge.errors import PoseNotSetError

@@ -5,14 +5,16 @@
 import math
 import re
 
-from hypothesis import given
-from hypothesis import strategies as st
 from matrices import assert_same_pose
 from matrices import matrix_from_degrees
 from matrices import matrix_from_pose
 from matrices import matrix_from_rpy
 import numpy as np
 import pytest
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import given
+from hypothesis import strategies as st
 
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.sdformat.poses import pose_from_text

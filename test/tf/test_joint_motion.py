@@ -4,9 +4,6 @@
 
 import dataclasses
 
-from hypothesis import given
-from hypothesis import settings
-from hypothesis import strategies as st
 from joint_trees import link_matrices
 from joint_trees import model_text
 from joint_trees import pose_text
@@ -20,6 +17,11 @@ import numpy as np
 import pytest
 from sdf_texts import model_file
 from sdf_texts import world_file
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import given
+from hypothesis import settings
+from hypothesis import strategies as st
 
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.joint_motion import JointMotion

@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The frames of a tree that joints move, and their transforms."""
 
-from hypothesis import given
-from hypothesis import strategies as st
 from joint_trees import model_text
 from joint_trees import POSES
 from joint_trees import POSITIONS
@@ -13,6 +11,10 @@ import pytest
 from sdf_texts import fixed_joint
 from sdf_texts import joint
 from sdf_texts import model_file
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import given
+from hypothesis import strategies as st
 
 from sdf_pose_bridge import Kind
 from sdf_pose_bridge.geometry.poses import pose_products

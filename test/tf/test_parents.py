@@ -2,14 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parents in TF: what a frame is fixed to, or what a joint connects it to."""
 
-from hypothesis import given
-from hypothesis import strategies as st
 import pytest
 from sdf_texts import element
 from sdf_texts import fixed_joint
 from sdf_texts import model_file
 from sdf_texts import posed
 from sdf_texts import world_file
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import given
+from hypothesis import strategies as st
 
 import sdf_pose_bridge
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene

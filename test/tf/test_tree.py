@@ -4,10 +4,6 @@
 
 from pathlib import Path
 
-from hypothesis import given
-from hypothesis import HealthCheck
-from hypothesis import settings
-from hypothesis import strategies as st
 from matrices import assert_same_pose
 from matrices import matrix_from_pose
 import numpy as np
@@ -25,6 +21,12 @@ from tf_checks import pose_of
 from tf_checks import tree_errors_of
 from tf_checks import tree_of
 import urdf_texts as urdf
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import given
+from hypothesis import HealthCheck
+from hypothesis import settings
+from hypothesis import strategies as st
 
 import sdf_pose_bridge
 from sdf_pose_bridge import Kind

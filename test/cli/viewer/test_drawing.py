@@ -6,6 +6,8 @@ import mesh_texts
 import numpy as np
 import pytest
 
+pytest.importorskip('trimesh', reason='needs trimesh')
+pytest.importorskip('viser', reason='needs viser')
 from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.viewer import drawing
 from sdf_pose_bridge.cli.viewer.drawing import bounds_of_scene

@@ -4,11 +4,13 @@
 
 import math
 
-from hypothesis import given
-from hypothesis import strategies as st
 from lxml import etree
 import numpy as np
 import pytest
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
+from hypothesis import given
+from hypothesis import strategies as st
 
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import matrix_from_rpy
