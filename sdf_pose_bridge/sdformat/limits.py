@@ -41,9 +41,6 @@ BYTES_OF_STEP = 4
 STEPS_OF_INCLUDE = 100
 """Steps of work that each include counts for, without what it copies; one that merges twice."""
 
-STEPS_OF_DIRECTORY = 5
-"""Further steps of each include for each directory in which it may be looked for."""
-
 STEPS_OF_MERGE = 500
 """Further steps for an include that merges a model, which is checked by itself."""
 

@@ -21,6 +21,7 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.sdformat.counted import copy_of
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
 from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_PLACE
@@ -226,9 +227,16 @@ class Sources:
             self._places[xml] = place
         return place
 
-    def copy_of(self, xml: XmlElement) -> XmlElement:
-        """Copy an element with all that it holds into a tree of its own, written where it was."""
-        result = copy.deepcopy(xml)
+    def copy_of(
+        self, xml: XmlElement, user: XmlElement, steps: int | None = None,
+    ) -> XmlElement:
+        """
+        Copy an element with all that it holds into a tree of its own, written where it was.
+
+        :param user: the element that asks for it.
+        :param steps: as for :func:`~sdf_pose_bridge.sdformat.counted.copy_of`.
+        """
+        result = copy_of(xml, self.usage, lambda: self.place(user), steps)
         if xml.getroottree().getroot() in self.composed_trees:
             for old, new in zip(xml.iter(), result.iter(), strict=True):
                 if old in self._origins:

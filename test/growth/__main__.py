@@ -32,6 +32,7 @@ from growth.families import CONTENTS
 from growth.families import FAMILIES
 from growth.families import Files
 from growth.families import included_contents
+from growth.families import Link
 from growth.families import merged_contents
 from growth.families import model
 
@@ -67,12 +68,16 @@ def measured(files: Files) -> Load:
     with tempfile.TemporaryDirectory(prefix='growth_') as folder:
         for path, text in files.items():
             file = Path(folder, path)
-            file.parent.mkdir(exist_ok=True)
-            file.write_bytes(text.encode(errors='surrogateescape'))
+            file.parent.mkdir(exist_ok=True, parents=True)
+            if isinstance(text, Link):
+                file.symlink_to(text.target)
+            else:
+                file.write_bytes(text.encode(errors='surrogateescape'))
         limit = (LONGEST_RUN_S, LONGEST_RUN_S)
         process = subprocess.run(
             [sys.executable, '-m', 'growth.measurement', str(Path(folder, 'scene.sdf'))],
             check=False, capture_output=True, text=True,
+            env={**os.environ, 'GZ_FUEL_CACHE_PATH': str(Path(folder, 'fuel'))},
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, limit))
     if process.returncode:
         reason = process.stderr.strip().rpartition('\n')[2] or f'exit code {process.returncode}'
@@ -83,7 +88,9 @@ def measured(files: Files) -> Load:
 
 def size_of(files: Files) -> int:
     """Return how many bytes files have together."""
-    return sum(map(len, files.values()))
+    return sum(
+        len(text.target if isinstance(text, Link) else text.encode(errors='surrogateescape'))
+        for text in files.values())
 
 
 def largest_n(family: Callable[[int], Files], most_bytes: int) -> int:

@@ -10,9 +10,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from collections.abc import Mapping
+from typing import NamedTuple
 
-Files = Mapping[str, str]
-"""Texts by path; ``scene.sdf`` is loaded."""
+
+class Link(NamedTuple):
+    """A symbolic link."""
+
+    target: str
+
+
+Files = Mapping[str, str | Link]
+"""Texts and links by path; ``scene.sdf`` is loaded, and ``fuel`` is the cache of Gazebo Fuel."""
 
 Content = Callable[[int], str]
 """Makes the content of a model, of about n parts."""
@@ -715,6 +723,163 @@ def world_joints(n: int) -> Files:
     return {'scene.sdf': world(each(
         n, '<model name="m#"><link name="l"/></model><joint name="j#" type="fixed">'
         '<parent>world</parent><child>m#</child></joint>'))}
+
+
+# Lengths of names, alphabets, texts behind elements, links, name spaces and directories
+
+NAMED_FRAME = '<frame name="ß#"/>'
+
+
+@content
+def names_beyond_ascii(n: int) -> str:
+    unknown = each(50, '<frame name="r#" attached_to="λ#"/>')
+    return f'<model name="{"Ω" * 370}"><link name="l"/>{each(n, NAMED_FRAME)}{unknown}</model>'
+
+
+@content
+def long_names_beyond_ascii(n: int) -> str:
+    return each(50, f'<frame name="b#" attached_to="{"λ" * 190}#"/>') + each(
+        max(n // 10, 1), f'<frame name="{"Λ" * 190}é#"/>')
+
+
+@family
+def urdf_long_name_of_a_link_with_unnamed_visuals(n: int) -> Files:
+    visual = '<visual><geometry><sphere radius="1"/></geometry></visual>'
+    link = f'<link name="{"x" * 27 * n}">{visual * n}</link>'
+    return {'scene.sdf': f'<robot name="r">{link}</robot>'}
+
+
+@family
+def urdf_long_name_of_a_link_with_many_joints(n: int) -> Files:
+    text = robot(each(n, f'<link name="s#">{INERTIAL}</link><joint name="j#" type="continuous">'
+                      '<parent link="l0"/><child link="s#"/></joint>'))
+    return {'scene.sdf': text['scene.sdf'].replace('l0', 'x' * 10 * n)}
+
+
+@family
+def text_behind_an_included_model(n: int) -> Files:
+    return {'scene.sdf': world(each(n, include('<name>m#</name>'))),
+            'part.sdf': model('').replace('</sdf>', f'{"text " * 10 * n}</sdf>')}
+
+
+@family
+def verbatim_text_behind_an_included_model(n: int) -> Files:
+    text = f'<![CDATA[{"text " * 10 * n}]]>'
+    return {'scene.sdf': world(each(n, include('<name>m#</name>'))),
+            'part.sdf': model('').replace('</sdf>', f'{text}</sdf>')}
+
+
+@family
+def text_behind_the_pose_of_a_merged_model(n: int) -> Files:
+    pose = f'<pose>1 0 0 0 0 0</pose>{"text " * 10 * n}'
+    return {'scene.sdf': model(each(n, include('<name>n#</name>', MERGE))),
+            'part.sdf': model(pose)}
+
+
+@family
+def old_axis_with_many_flags(n: int) -> Files:
+    flags = '<use_parent_model_frame/>' * n
+    return {'scene.sdf': model(
+        '<link name="c"/><joint name="j" type="revolute"><parent>base</parent><child>c</child>'
+        f'<axis><xyz>0 0 1</xyz>{flags}</axis></joint>', version='1.6')}
+
+
+@family
+def old_name_of_many_scopes(n: int) -> Files:
+    scopes = 'a::' * min(n // 10, 240)
+    return {'scene.sdf': world(
+        f'<model name="m"><link name="b"/><link name="{scopes}l">{"<a/>" * n}</link></model>'
+        ).replace('1.10', '1.7')}
+
+
+@family
+def old_name_of_very_many_scopes(n: int) -> Files:
+    return {'scene.sdf': world(
+        f'<model name="m"><link name="b"/><link name="{"a::" * n}l"/></model>'
+        ).replace('1.10', '1.7')}
+
+
+@family
+def name_spaces_of_an_included_model(n: int) -> Files:
+    spaces = each(n, ' xmlns:p#="u"')
+    return {'scene.sdf': world(each(20, include('<name>m#</name>'))),
+            'part.sdf': model(each(n, '<p#:x/>')).replace('<sdf', f'<sdf{spaces}')}
+
+
+@family
+def name_spaces_in_an_included_model(n: int) -> Files:
+    spaces = each(n, ' xmlns:p#="u"')
+    return {'scene.sdf': world(each(20, include('<name>m#</name>'))),
+            'part.sdf': model(each(n, '<p#:x p0:a=""/>'), spaces)}
+
+
+@family
+def long_references_into_missing_includes(n: int) -> Files:
+    missing = '<include><name>none</name><uri>none.sdf</uri></include>'
+    return {'scene.sdf': model(missing + each(
+        max(n // 40, 1), f'<frame name="f#" attached_to="{"a::" * 300}x"/>'))}
+
+
+def linked(n: int, links: Mapping[str, Link], uri: str) -> Files:
+    """Return a world that includes a file by links; each ``#`` in the URI is a number."""
+    return {'scene.sdf': world(each(n, include('<name>m#</name>', uri=uri))),
+            'real.sdf': model(''), 'd/nothing': '', **links}
+
+
+LONG_WAY = 'd/../' * 800
+
+
+@family
+def includes_by_a_long_link(n: int) -> Files:
+    return linked(n, {'part.sdf': Link(f'{LONG_WAY}real.sdf')}, 'part.sdf')
+
+
+@family
+def includes_by_long_links_in_many_ways(n: int) -> Files:
+    links = {f'l{number}': Link(f'{LONG_WAY}l{number + 1}') for number in range(30)}
+    ways = [f'{"./" * (number % 40)}{"d/../" * (number // 40)}l0' for number in range(n // 2)]
+    return {'scene.sdf': world(''.join(
+        include(f'<name>m{number}</name>', uri=uri) for number, uri in enumerate(ways))),
+        'real.sdf': model(''), 'd/nothing': '', **links, 'l30': Link('real.sdf')}
+
+
+def fuel_uri(number: int, owner: str = 'Owner') -> str:
+    """Return the URI of a model of Gazebo Fuel."""
+    return f'https://fuel.gazebosim.org/1.0/{owner}/models/M{number}'
+
+
+def fuel_model(number: int, version: int = 1) -> Files:
+    """Return a model in the cache of Fuel."""
+    folder = f'fuel/fuel.gazebosim.org/owner/models/m{number}/{version}'
+    return {f'{folder}/model.config': '<model><sdf version="1.9">model.sdf</sdf></model>',
+            f'{folder}/model.sdf': model('')}
+
+
+@family
+def includes_of_many_models_of_fuel(n: int) -> Files:
+    count = max(n // 3, 1)
+    models: dict[str, str | Link] = {}
+    for number in range(count):
+        models.update(fuel_model(number))
+    return {'scene.sdf': world(''.join(
+        include(f'<name>m{number}</name>', uri=fuel_uri(number)) for number in range(count))),
+        **models}
+
+
+@family
+def includes_of_a_model_of_fuel_with_many_versions(n: int) -> Files:
+    models: dict[str, str | Link] = {}
+    for version in range(1, max(n // 5, 2)):
+        models.update(fuel_model(0, version))
+    return {'scene.sdf': world(each(n, include('<name>m#</name>', uri=fuel_uri(0)))), **models}
+
+
+@family
+def includes_that_the_cache_of_fuel_does_not_have(n: int) -> Files:
+    empty = {f'fuel/fuel.gazebosim.org/owner/models/x{number}/1/nothing': ''
+             for number in range(n // 5)}
+    return {'scene.sdf': world(''.join(
+        include(f'<name>m{number}</name>', uri=fuel_uri(number)) for number in range(n))), **empty}
 
 
 def included_contents(name: str, n: int) -> Files:

@@ -113,7 +113,7 @@ def test_included_pipe_is_refused(tmp_path):
 def test_error_about_a_limit_follows_the_other_errors(tmp_path):
     write_files(tmp_path, main=world_file(
         '<include/><include><uri>leaf.sdf</uri></include>'), leaf=model_file(LINK))
-    errors = errors_of_file(tmp_path / 'main.sdf', limits=Limits(work=100))
+    errors = errors_of_file(tmp_path / 'main.sdf', limits=Limits(work=120))
     assert [error.code for error in errors] == ['ATTRIBUTE_MISSING', 'LIMIT']
 
 

@@ -10,9 +10,7 @@ is not found or not valid is reported and stays in the tree, so that no error fo
 from __future__ import annotations
 
 from collections.abc import Callable
-import copy
 from functools import cache
-import os
 from pathlib import Path
 
 from lxml import etree
@@ -32,6 +30,10 @@ from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import UriLookupError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.sdformat.counted import copy_of
+from sdf_pose_bridge.sdformat.counted import file_lookups
+from sdf_pose_bridge.sdformat.counted import FileLookups
+from sdf_pose_bridge.sdformat.counted import steps_of_copy
 from sdf_pose_bridge.sdformat.documents import Document
 from sdf_pose_bridge.sdformat.documents import document_from_file
 from sdf_pose_bridge.sdformat.grammar import Definition
@@ -42,13 +44,9 @@ from sdf_pose_bridge.sdformat.include.params import apply_params
 from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
 from sdf_pose_bridge.sdformat.include.uris import ModelFile
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
-from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_DIRECTORY
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_INCLUDE
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_MERGE
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_MOVED_CHILD
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_NAMED_ELEMENT
 from sdf_pose_bridge.sdformat.reader import check_element
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
@@ -66,12 +64,6 @@ _MOST_TOPS_SHOWN = 5
 
 _TOP_TAGS = ('model', 'actor', 'light')
 """What can be included, in the order of preference."""
-
-_COUNTS = tuple(etree.XPath(f'count({path})') for path in (
-    'descendant-or-self::*', 'descendant-or-self::*[@name]', 'descendant::node()',
-    'descendant-or-self::*/@*'))
-"""Count the elements, those with a name, the nodes and the attributes of what is copied."""
-
 
 class IncludeExpansion:
     """
@@ -91,14 +83,13 @@ class IncludeExpansion:
         model_by_itself: Callable[[XmlElement], ModelByItself | None],
     ) -> None:
         self._finder = finder
-        self._steps_of_directories = STEPS_OF_DIRECTORY * (
-            len(finder.search_paths) + len(finder.environment_paths))
+        self._lookups = file_lookups(sources.usage)
         self._sources = sources
         self._skips_missing = skips_missing
         self._model_by_itself = model_by_itself
         self._files: dict[str, Document | None] = {}
         self._model_files: dict[str, ModelFile | str] = {}
-        self._steps_of_copy = cache(_steps_of_copy)
+        self._steps_of_copy = cache(steps_of_copy)
         self._missing_uris: set[str] = set()
         self._merged_models: dict[tuple[XmlElement, str, bytes], ModelByItself | None] = {}
         self._undefined = UndefinedReporter(sources)
@@ -109,7 +100,9 @@ class IncludeExpansion:
 
         :param document: the file, in the newest version; it is changed in place.
         """
-        self._expand_in(document.root, (os.path.realpath(document.path),))
+        lookups = self._lookups._replace(place=Place(document.path))
+        self._expand_in(
+            document.root, (lookups.real_path(document.path) or document.path,))
 
     def _expand_in(self, root: XmlElement, files: tuple[str, ...]) -> None:
         """Replace the includes in a tree; ``files`` led to it, each included by the one before."""
@@ -132,7 +125,7 @@ class IncludeExpansion:
         self._sources.set_origin(include, missing=(name, uri))
 
     def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
-        self._sources.count_work(STEPS_OF_INCLUDE + self._steps_of_directories, include)
+        self._sources.count_work(STEPS_OF_INCLUDE, include)
         is_merge = self._is_merge(include)
         self._undefined.report_content(include, definition_of('include'))
         for plugin in child_elements(include, 'plugin'):
@@ -150,8 +143,7 @@ class IncludeExpansion:
         chosen = self._top(include, found)
         if chosen is None or is_merge is None:
             return
-        self._sources.count_work(self._steps_of_copy(chosen), include)
-        top = self._sources.copy_of(chosen)
+        top = self._sources.copy_of(chosen, include, self._steps_of_copy(chosen))
         self._sources.set_origin(top, include=place)
         self._override(include, top)
         for added in apply_params(include, top, self._sources):
@@ -177,15 +169,16 @@ class IncludeExpansion:
         self, place: Place, uri: str, files: tuple[str, ...],
     ) -> Document | str | None:
         """Return a file; the reason why it is not found; or None if it cannot be read."""
-        path = self._finder.path_from_uri(uri, place.file)
+        lookups = self._lookups._replace(place=place)
+        path = self._finder.path_from_uri(uri, place.file, lookups)
         if path is None:
             return self._finder.reason_not_found(uri, place.file)
-        if os.path.isdir(path):  # noqa: PTH112
-            chosen = self._model_file(path)
+        if lookups.is_directory(path):
+            chosen = self._model_file(path, lookups)
             if isinstance(chosen, str):
                 return chosen
             path = chosen.path
-        real_path = os.path.realpath(path)
+        real_path = lookups.real_path(path) or path
         if real_path in files:
             cycle = [*files[files.index(real_path):], real_path]
             names = ' -> '.join(Path(file).name for file in cycle)
@@ -197,9 +190,9 @@ class IncludeExpansion:
             self._files[real_path] = self._read(path, (*files, real_path))
         return self._files[real_path]
 
-    def _model_file(self, directory: str) -> ModelFile | str:
+    def _model_file(self, directory: str, lookups: FileLookups) -> ModelFile | str:
         """Return the file that a directory offers, or why there is none; each is read once."""
-        key = os.path.realpath(directory)
+        key = lookups.real_path(directory) or directory
         chosen = self._model_files.get(key)
         if chosen is None:
             try:
@@ -298,7 +291,7 @@ class IncludeExpansion:
         if new is None:
             return False
         old = first_child(top, tag)
-        replacement = copy.deepcopy(new)
+        replacement = copy_of(new, self._sources.usage, lambda: self._sources.place(include))
         if old is None:
             top.insert(0, replacement)
         else:
@@ -337,7 +330,7 @@ class IncludeExpansion:
 
         def model_by_itself(root: XmlElement) -> ModelByItself | None:
             if key not in self._merged_models:
-                self._sources.count_work(STEPS_OF_MERGE + _steps_of_copy(root), include)
+                self._sources.count_work(STEPS_OF_MERGE + steps_of_copy(root), include)
                 self._merged_models[key] = self._model_by_itself(root)
             return self._merged_models[key]
 
@@ -354,16 +347,6 @@ class IncludeExpansion:
             parent.remove(include)
         else:
             parent.replace(include, top)
-
-
-def _steps_of_copy(top: XmlElement) -> int:
-    """Return the work of copying an element and reading the copy."""
-    elements, named, nodes, attributes = (int(count(top)) for count in _COUNTS)
-    # Mostly the first is the largest: few elements have long texts, or comments between them.
-    return max(
-        STEPS_OF_ELEMENT * elements + STEPS_OF_NAMED_ELEMENT * named,
-        STEPS_OF_ELEMENT * (nodes + attributes),
-        len(etree.tostring(top, with_tail=False)) // CHARACTERS_OF_STEP)
 
 
 def _definition_in_tree(xml: XmlElement) -> Definition | None:

@@ -12,7 +12,6 @@ the proxy frame. Source: ``insertIncludedElement`` in libsdformat's ``parser.cc`
 from __future__ import annotations
 
 from collections.abc import Callable
-import copy
 from typing import NamedTuple
 
 from lxml import etree
@@ -23,6 +22,7 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.sdformat.counted import copy_of
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.poses import text_from_pose
 from sdf_pose_bridge.sdformat.sources import Sources
@@ -82,7 +82,7 @@ def _proxy_frame(
     pose = first_child(model, 'pose')
     proxy_pose = etree.Element('pose')
     if pose is not None:
-        proxy_pose = copy.deepcopy(pose)
+        proxy_pose = copy_of(pose, sources.usage, lambda: sources.place(include))
         sources.set_source(proxy_pose, pose)
         # By itself, the model has nothing to be relative to.
         pose.attrib.pop('relative_to', None)

@@ -10,8 +10,6 @@ of it: of the whole element, or of its children one by one. Source: libsdformat'
 
 from __future__ import annotations
 
-import copy
-
 from lxml import etree
 
 from sdf_pose_bridge.errors import AttributeInvalidError
@@ -20,6 +18,7 @@ from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.sdformat.counted import copy_of
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.element_ids import element_by_id
@@ -140,8 +139,7 @@ class _Changer:
 
     def _new_element(self, xml: XmlElement) -> XmlElement:
         """Copy an element without attributes that are not defined, as libsdformat does."""
-        element = copy.deepcopy(xml)
-        element.tail = None
+        element = copy_of(xml, self._sources.usage, lambda: self._sources.place(xml))
         definition = _definition_of_parameter(xml)
         attributes = element.keys()
         for attribute in attributes:

@@ -25,6 +25,8 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.sdformat.counted import file_lookups
+from sdf_pose_bridge.sdformat.counted import FileLookups
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.versions import NEWEST
 from sdf_pose_bridge.sdformat.versions import version_numbers
@@ -59,7 +61,9 @@ class ResourceFinder(NamedTuple):
     fuel_cache: str
     """Directory in which Gazebo keeps the models that it downloaded."""
 
-    def path_from_uri(self, uri: str, including_file: str) -> str | None:
+    def path_from_uri(
+        self, uri: str, including_file: str, lookups: FileLookups | None = None,
+    ) -> str | None:
         """
         Find a file or directory; return its path, or None.
 
@@ -69,11 +73,13 @@ class ResourceFinder(NamedTuple):
 
         :param uri: such as ``model://box``, ``package://pkg/models/box`` or ``box.sdf``.
         :param including_file: path of the file that holds the include.
+        :param lookups: those of the load; by default those of one of its own.
         """
-        # Unlike Path.exists, this returns False for a name that is too long.
+        if lookups is None:
+            lookups = file_lookups()
         found = (
-            str(Path(path)) for path in self._candidates(uri, including_file)
-            if os.path.exists(path))  # noqa: PTH110
+            str(Path(path)) for path in self._candidates(uri, including_file, lookups)
+            if lookups.real_path(path) is not None)
         return next(found, None)
 
     def file_from_uri(self, uri: str, naming_file: str) -> str | None:
@@ -146,12 +152,14 @@ class ResourceFinder(NamedTuple):
         return (f'{packages or "it is "}not in {quoted_names(directories, _MOST_SHOWN)}; the '
                 'variable GZ_SIM_RESOURCE_PATH and the resource paths add directories')
 
-    def _candidates(self, uri: str, including_file: str) -> Iterator[str | Path]:
+    def _candidates(
+        self, uri: str, including_file: str, lookups: FileLookups,
+    ) -> Iterator[str]:
         scheme = _SCHEME.match(uri)
         name = uri[scheme.end():] if scheme else uri
         scheme_name = scheme[1].lower() if scheme else ''
         if scheme_name in ('http', 'https'):
-            yield from self._paths_in_fuel_cache(uri)
+            yield from self._paths_in_fuel_cache(uri, lookups)
             return
         if not name:
             return
@@ -163,7 +171,7 @@ class ResourceFinder(NamedTuple):
         if scheme_name == 'package':
             package, _, rest = relative.partition('/')
             for share in self._package_shares(package):
-                yield share / rest
+                yield str(share / rest)
         if scheme_name in ('', 'file'):
             yield os.path.join(os.path.dirname(including_file), name)  # noqa: PTH118, PTH120
         for directory in self.environment_paths:
@@ -177,7 +185,7 @@ class ResourceFinder(NamedTuple):
             if package and os.path.exists(marker):  # noqa: PTH110
                 yield Path(prefix, 'share', package)
 
-    def _paths_in_fuel_cache(self, uri: str) -> Iterator[Path]:
+    def _paths_in_fuel_cache(self, uri: str, lookups: FileLookups) -> Iterator[str]:
         """
         Find a Fuel model in the cache.
 
@@ -195,15 +203,17 @@ class ResourceFinder(NamedTuple):
                 map(_is_file_name, (parts.netloc, *steps))):
             return
         version, rest = (steps[3] if len(steps) > 3 else 'tip'), steps[4:]
-        model = Path(self.fuel_cache, parts.netloc)
+        model = f'{self.fuel_cache}/{parts.netloc}'
         for part in steps[:3]:
-            model = _entry_in_any_case(model, part)
+            model = _entry_in_any_case(model, part, lookups)
         versions = [version]
         if version == 'tip':
-            numbers = [name for name in _names_in(model) if name.isascii() and name.isdecimal()]
+            numbers = [
+                name for name in lookups.entries(model) if name.isascii() and name.isdecimal()]
             versions = sorted(numbers, key=int, reverse=True)
+            lookups.usage.add('work', len(versions), lookups.place)
         for candidate in versions:
-            yield model.joinpath(candidate, *(rest[1:] if rest[:1] == ['files'] else rest))
+            yield '/'.join([model, candidate, *(rest[1:] if rest[:1] == ['files'] else rest)])
 
 
 def resource_finder(
@@ -228,26 +238,17 @@ def resource_finder(
     )
 
 
-def _entry_in_any_case(directory: Path, name: str) -> Path:
+def _entry_in_any_case(directory: str, name: str, lookups: FileLookups) -> str:
     """Return the entry of a name; Gazebo writes owners and models in lower case."""
-    plain = directory / name
-    if os.path.exists(plain):  # noqa: PTH110
+    plain = f'{directory}/{name}'
+    if lookups.real_path(plain) is not None:
         return plain
-    same = (entry for entry in _names_in(directory) if entry.lower() == name.lower())
-    return directory / next(same, name)
+    return f'{directory}/{lookups.entries(directory).get(name.lower(), name)}'
 
 
 def _is_file_name(name: str) -> bool:
     """Return whether a part of a URI, without its per cent escapes, is the name of one file."""
     return name not in ('', '.', '..') and not {'/', '\0'}.intersection(name)
-
-
-def _names_in(directory: Path) -> list[str]:
-    """Return what is in a directory; nothing if it does not exist or may not be read."""
-    try:
-        return os.listdir(directory)  # noqa: PTH208
-    except (OSError, ValueError):  # ValueError: a zero character
-        return []
 
 
 # Directories of models

@@ -1,0 +1,178 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Do what can take longer than to read what asks for it, and count it against the limits of a load.
+
+Trees are copied, links followed and directories listed nowhere else, which ``make lint`` checks.
+So a file that asks for them again and again reaches a limit, in whichever way it does so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from collections.abc import Mapping
+import copy
+import errno
+from itertools import chain
+import os
+from typing import NamedTuple
+
+from lxml import etree
+
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_NAMED_ELEMENT
+from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+_COUNTS = tuple(etree.XPath(f'count({path})') for path in (
+    'descendant-or-self::*', 'descendant-or-self::*[@name]', 'descendant::node()',
+    'descendant-or-self::*/@*'))
+"""Count the elements, those with a name, the nodes and the attributes of what is copied."""
+
+_MOST_LINKS = 40
+"""How many links may lead to one another; Linux follows no more."""
+
+_CHARACTERS_OF_WALK = 16
+"""How many characters of a path count for one step of a walk over its parts."""
+
+_STEPS_OF_LOOK = 2
+"""Steps to look at a file or directory for the first time."""
+
+_CHARACTERS_OF_LOOK = 64
+"""How many characters of its path count for one step more, as the system walks over it too."""
+
+
+def steps_of_copy(xml: XmlElement) -> int:
+    """Return the work of copying an element with all that it holds, and of reading the copy."""
+    if not len(xml):
+        # Such as a pose, which many includes have.
+        characters = len(xml.text or '') + sum(map(len, chain(xml.keys(), xml.values())))
+        return STEPS_OF_ELEMENT * (1 + len(xml.attrib)) + characters // CHARACTERS_OF_STEP
+    elements, named, nodes, attributes = (int(count(xml)) for count in _COUNTS)
+    # Mostly the first is the largest: few elements have long texts, or comments between them.
+    return max(
+        STEPS_OF_ELEMENT * elements + STEPS_OF_NAMED_ELEMENT * named,
+        STEPS_OF_ELEMENT * (nodes + attributes),
+        len(etree.tostring(xml, with_tail=False)) // CHARACTERS_OF_STEP)
+
+
+def copy_of(
+    xml: XmlElement, usage: Usage, place: Place | Callable[[], Place], steps: int | None = None,
+) -> XmlElement:
+    """
+    Copy an element with all that it holds, without the text behind it.
+
+    :param place: where the copy is asked for.
+    :param steps: what :func:`steps_of_copy` returns for it, where that is known.
+    :raises LimitError: if that is more work than the load may do.
+    """
+    usage.add('work', steps_of_copy(xml) if steps is None else steps, place)
+    # A copy has the text behind the element too, which can be longer, and means nothing.
+    xml.tail = None
+    return copy.deepcopy(xml)
+
+
+class _TooManyLinksError(Exception):
+    """More links lead to one another than are followed."""
+
+
+class FileLookups(NamedTuple):
+    """
+    Looks at the file system for one load, at each file, link and directory once.
+
+    Paths are as long as a file writes them, and lead over links that can be longer. So each is
+    followed here, and not by the system, which does not tell how far it had to go.
+    """
+
+    usage: Usage
+    place: Place
+    """Where the looks are asked for."""
+    paths: dict[str, str | None]
+    """By paths: their :meth:`real_path`."""
+    steps: dict[str, str | None]
+    """The same by paths of which all but the last part has no link."""
+    directories: dict[str, bool]
+    """By real paths: whether they are directories."""
+    lists: dict[str, Mapping[str, str]]
+    """By directories: their :meth:`entries`."""
+
+    def real_path(self, path: str) -> str | None:
+        """Return the path of a file or directory without links; None if it does not exist."""
+        self.usage.add('work', 1, self.place)
+        try:
+            return self._followed(
+                path if path.startswith('/') else f'{os.getcwd()}/{path}', 0)  # noqa: PTH109
+        except (FileNotFoundError, _TooManyLinksError):
+            return None
+
+    def is_directory(self, path: str) -> bool:
+        """Return whether something is a directory."""
+        real_path = self.real_path(path)
+        return real_path is not None and self._is_directory(real_path)
+
+    def entries(self, directory: str) -> Mapping[str, str]:
+        """Return the names in a directory by these in lower case; nothing if it cannot be read."""
+        if directory not in self.lists:
+            try:
+                names = os.listdir(directory)  # noqa: PTH208
+            except (OSError, ValueError):  # ValueError: a zero character
+                names = []
+            self.usage.add('work', len(names), self.place)
+            # Of names that differ in case alone the first one counts.
+            self.lists[directory] = {name.lower(): name for name in reversed(names)}
+        return self.lists[directory]
+
+    def _followed(self, path: str, link_count: int) -> str | None:
+        if path not in self.paths:
+            self.usage.add('work', len(path) // _CHARACTERS_OF_WALK, self.place)
+            self.paths[path] = self._walked(path, link_count)
+        return self.paths[path]
+
+    def _walked(self, path: str, link_count: int) -> str | None:
+        real_path = ''
+        for name in path.split('/'):
+            if name in ('', '.', '..'):
+                if not self._is_directory(real_path or '/'):
+                    return None
+                if name == '..':
+                    real_path = real_path.rpartition('/')[0]
+                continue
+            step = f'{real_path}/{name}'
+            if step not in self.steps:
+                self.steps[step] = self._end_of_step(step, link_count)
+            end = self.steps[step]
+            if end is None:
+                return None
+            real_path = end.rstrip('/')
+        return real_path or '/'
+
+    def _end_of_step(self, step: str, link_count: int) -> str | None:
+        self._count_look(step)
+        try:
+            target = os.readlink(step)  # noqa: PTH115
+        except OSError as error:
+            return step if error.errno == errno.EINVAL else None  # EINVAL: it is no link
+        except ValueError:  # a zero character
+            return None
+        if link_count == _MOST_LINKS:
+            # Nothing of this way is remembered, as the end of it may exist.
+            raise _TooManyLinksError
+        folder = step.rpartition('/')[0]
+        return self._followed(
+            target if target.startswith('/') else f'{folder}/{target}', link_count + 1)
+
+    def _count_look(self, path: str) -> None:
+        self.usage.add('work', _STEPS_OF_LOOK + len(path) // _CHARACTERS_OF_LOOK, self.place)
+
+    def _is_directory(self, path: str) -> bool:
+        if path not in self.directories:
+            self._count_look(path)
+            self.directories[path] = os.path.isdir(path)  # noqa: PTH112
+        return self.directories[path]
+
+
+def file_lookups(usage: Usage | None = None, place: Place = Place('')) -> FileLookups:  # noqa: B008
+    """Return lookups that have looked at nothing yet, which count as work of a load."""
+    return FileLookups(Usage() if usage is None else usage, place, {}, {}, {}, {})
