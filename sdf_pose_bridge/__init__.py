@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from sdf_pose_bridge.sdformat.grammar import Kind as Kind
     from sdf_pose_bridge.sdformat.limits import Limits as Limits
     from sdf_pose_bridge.tf.joint_positions import scene_at_positions as scene_at_positions
+    from sdf_pose_bridge.tf.urdf_text import urdf_from_scene as urdf_from_scene
 
 _HOMES = {
     'Kind': 'sdformat.grammar',
@@ -41,6 +42,7 @@ _HOMES = {
     'load': 'scene.loading',
     'load_text': 'scene.loading',
     'scene_at_positions': 'tf.joint_positions',
+    'urdf_from_scene': 'tf.urdf_text',
 }
 
 __all__ = list(_HOMES)

@@ -276,6 +276,12 @@ class PoseNotSetError(SdfError):
     code = 'POSE_NOT_SET'
 
 
+class UrdfNotMadeError(SdfError):
+    """No URDF can be made of a file."""
+
+    code = 'URDF_NOT_MADE'
+
+
 class FileWriteError(SdfError):
     """A file cannot be written; it is as before."""
 

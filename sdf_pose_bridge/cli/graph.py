@@ -25,6 +25,7 @@ from sdf_pose_bridge.cli.loading import add_model_argument
 from sdf_pose_bridge.cli.loading import scene_of
 from sdf_pose_bridge.cli.printing import add_output_argument
 from sdf_pose_bridge.cli.printing import CommandError
+from sdf_pose_bridge.cli.printing import write_text
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.scene import Scene
@@ -158,11 +159,7 @@ def _escaped(name: str) -> str:
 def _write(text: str, path: Path) -> None:
     """Write a graph in the format that the path says."""
     if path.suffix.lower() == '.dot':
-        try:
-            path.write_text(text, encoding='utf-8')
-        except OSError as error:
-            msg = f'cannot write {path}: {error.strerror}'
-            raise CommandError(msg) from error
+        write_text(text, path)
         return
     if shutil.which('dot') is None:
         msg = ('the program dot is not installed; install the package graphviz, or write a file '

@@ -136,11 +136,7 @@ def add_frame_arguments(parser: argparse.ArgumentParser) -> None:
     """
     add_kinds_argument(parser, 'show frames of', DEFAULT_KINDS)
     add_model_argument(parser)
-    parser.add_argument(
-        '--frame-names', choices=[names.value for names in FrameNames],
-        default=FrameNames.AUTO.value,
-        help='scoped: the names of all models around an element are in its frame id; relative: '
-             'all but that of the top-level model; auto: relative for a model file')
+    add_naming_argument(parser)
     parser.add_argument(
         '--degrees', dest='angle_unit', action='store_const', const=DEGREES, default=RADIANS,
         help='angles in degrees, not radians')
@@ -149,10 +145,23 @@ def add_frame_arguments(parser: argparse.ArgumentParser) -> None:
         help='lengths in millimetres, not metres')
 
 
-def add_model_argument(parser: argparse.ArgumentParser) -> None:
-    """Add the argument ``--model``."""
+def add_model_argument(parser: argparse.ArgumentParser, verb: str = 'show') -> None:
+    """
+    Add the argument ``--model``.
+
+    :param verb: what the command does with the model.
+    """
     parser.add_argument(
-        '--model', metavar='NAME', default='', help='show only this model, such as robot::arm')
+        '--model', metavar='NAME', default='', help=f'{verb} only this model, such as robot::arm')
+
+
+def add_naming_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the argument ``--frame-names``."""
+    parser.add_argument(
+        '--frame-names', choices=[names.value for names in FrameNames],
+        default=FrameNames.AUTO.value,
+        help='scoped: the names of all models around an element are in its frame id; relative: '
+             'all but that of the top-level model; auto: relative for a model file')
 
 
 def tf_options_from_arguments(options: argparse.Namespace) -> TfOptions:

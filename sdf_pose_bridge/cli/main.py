@@ -21,6 +21,7 @@ from sdf_pose_bridge.cli import graph
 from sdf_pose_bridge.cli import poses
 from sdf_pose_bridge.cli import set as set_command
 from sdf_pose_bridge.cli import tree
+from sdf_pose_bridge.cli import urdf
 from sdf_pose_bridge.cli import view
 from sdf_pose_bridge.cli.printing import CommandError
 from sdf_pose_bridge.cli.printing import discard_output
@@ -84,7 +85,7 @@ def _parser() -> argparse.ArgumentParser:
         description='Poses and frames of SDFormat files, exactly as libsdformat resolves them.')
     parser.add_argument('--version', action='store_true', help='show the version and exit')
     subparsers = parser.add_subparsers(dest='command', metavar='COMMAND', title='commands')
-    for command in (check, poses, tree, graph, view, convert, diff, set_command):
+    for command in (check, poses, tree, graph, view, urdf, convert, diff, set_command):
         command.add_parser(subparsers)
     if '_ARGCOMPLETE' in os.environ:
         # The shell asks how a command line goes on. As for ros2, this works where it is installed.

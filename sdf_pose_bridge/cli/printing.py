@@ -77,6 +77,19 @@ class CommandError(Exception):
     """The reason, in a sentence, why a command fails."""
 
 
+def write_text(text: str, path: Path) -> None:
+    """
+    Write a file.
+
+    :raises CommandError: if it cannot be written.
+    """
+    try:
+        path.write_text(text, encoding='utf-8')
+    except OSError as error:
+        msg = f'cannot write {path}: {error.strerror}'
+        raise CommandError(msg) from error
+
+
 class Unit(NamedTuple):
     """A unit of lengths or angles, and how many digits of it are shown."""
 

@@ -35,8 +35,10 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 DEFAULT_DENSITY_KG_M3 = 1000.0
 """Density of a collision where neither it nor the inertial has one: that of water."""
 
-_DEFAULTS = {
-    'mass': 1.0, 'ixx': 1.0, 'iyy': 1.0, 'izz': 1.0, 'ixy': 0.0, 'ixz': 0.0, 'iyz': 0.0}
+MOMENTS = ('ixx', 'iyy', 'izz', 'ixy', 'ixz', 'iyz')
+"""The tags of the moments of an :class:`Inertial`, in their order."""
+
+_DEFAULTS = dict(zip(('mass', *MOMENTS), (1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0), strict=True))
 _TOLERANCE = 10.0 * sys.float_info.epsilon
 """Of gz-math: by which part of half their sum moments may break a rule."""
 
@@ -46,7 +48,7 @@ class Inertial(NamedTuple):
 
     mass_kg: float
     moments_kg_m2: tuple[float, ...]
-    """``ixx``, ``iyy``, ``izz``, ``ixy``, ``ixz`` and ``iyz`` in that frame."""
+    """Those of :data:`MOMENTS` in that frame."""
 
     @property
     def is_valid(self) -> bool:

@@ -319,7 +319,7 @@ def _model_details(xml: XmlElement) -> ModelDetails:
         boolean_from_text(child_value(xml, 'static')) is True,
         frame_of_attribute(xml, 'canonical_link'), frame_of_attribute(xml, 'placement_frame'),
         tuple(
-            etree.tostring(child, encoding='unicode', with_tail=False)
+            etree.tostring(child, encoding='unicode', pretty_print=True, with_tail=False).rstrip()
             for child in child_elements(xml, *URDF_TAGS)))
 
 

@@ -31,6 +31,7 @@ from sdf_pose_bridge.sdformat.xml_tree import child_value
 from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
+_GRAY = (0.7, 0.7, 0.7, 1.0)
 _UP = (0.0, 0.0, 1.0)
 
 
@@ -66,6 +67,16 @@ class Shape(NamedTuple):
         """Return the color of its material, or else another one, as transparent as it is."""
         red, green, blue, alpha = self.rgba or other
         return red, green, blue, alpha * self.opacity
+
+    @property
+    def drawn_rgba(self) -> tuple[float, ...] | None:
+        """Its color for RViz: gray where it has none; None for the materials of a mesh itself."""
+        # STL has none, and a mesh without a color would be black. RViz cannot make them
+        # transparent.
+        has_materials = (
+            self.type == 'mesh' and self.rgba is None and self.opacity == 1.0
+            and not self.mesh_uri.lower().endswith(('.stl', '.stlb')))
+        return None if has_materials else self.rgba_or(_GRAY)
 
     @property
     def has_extent(self) -> bool:

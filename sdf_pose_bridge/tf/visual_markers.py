@@ -37,7 +37,6 @@ MOST_MARKERS = 10_000
 MOST_POINTS = 150_000
 """How many corners of triangles all markers may have together; to send these takes as long."""
 
-_GRAY = (0.7, 0.7, 0.7, 1.0)
 _NO_POINTS = np.zeros((0, 3))
 _MARKER_TYPES = {
     Primitive.BOX: 'CUBE', Primitive.CYLINDER: 'CYLINDER', Primitive.ELLIPSOID: 'SPHERE'}
@@ -119,9 +118,9 @@ def visual_markers_from_scene(
         frame_id, reference = (tree.root_frame, 0) if frame < 0 else (
             tree.frame_ids[frame], int(tree.elements[frame]))
         pose = scene.relative_pose_of(element, reference)
-        rgba = None if _has_materials_that_rviz_shows(shape) else shape.rgba_or(_GRAY)
         markers += [
-            VisualMarker(namespace, frame_id, pose_product(pose, Pose(z=form.z_m)), form, rgba)
+            VisualMarker(
+                namespace, frame_id, pose_product(pose, Pose(z=form.z_m)), form, shape.drawn_rgba)
             for form in forms]
     return markers, problems.warnings
 
@@ -169,19 +168,8 @@ def _forms_from_shape(
         Form(_MARKER_TYPES[part.primitive], part.extent_m, part.z_m) for part in parts)
 
 
-def _has_materials_that_rviz_shows(shape: Shape) -> bool:
-    # STL has none, and a mesh without a color would be black. RViz cannot make them transparent.
-    return (
-        shape.type == 'mesh' and shape.rgba is None and shape.opacity == 1.0
-        and not shape.mesh_uri.lower().endswith(('.stl', '.stlb')))
-
-
 def _form_of_mesh(shape: Shape, file: str, finder: ResourceFinder) -> tuple[Form] | str:
-    uri = shape.mesh_uri
-    # RViz may run on another machine, where the package is elsewhere. It knows no third slash.
-    if not uri.startswith('package://') or uri.startswith('package:///'):
-        path = finder.file_from_uri(uri, file)
-        if path is None:
-            return f'the mesh "{shortened(uri)}" is not found'
-        uri = Path(path).absolute().as_uri()
+    uri = finder.uri_for_others(shape.mesh_uri, file)
+    if uri is None:
+        return f'the mesh "{shortened(shape.mesh_uri)}" is not found'
     return (Form('MESH_RESOURCE', shape.mesh_scale, mesh_resource=uri),)

@@ -431,8 +431,9 @@ def test_sensor_of_the_type_of_a_camera(sensor_type, is_camera):
 
 # What is URDF
 
-def test_elements_of_urdf_are_kept_as_they_are_written():
-    transmission = '<transmission name="t"><!-- a --><joint name="j">\n</joint></transmission>'
+def test_elements_of_urdf_are_kept():
+    transmission = (
+        '<transmission name="t">\n  <!-- a -->\n  <joint name="j"> b\n</joint>\n</transmission>')
     scene = load_text(model_file(
         f'{LINK}<ros2_control name="c"/>\n{transmission} <model name="n">{LINK}</model>'))
     assert dict(scene.urdf_texts) == {

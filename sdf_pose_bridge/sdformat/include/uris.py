@@ -87,6 +87,19 @@ class ResourceFinder(NamedTuple):
         path = self.path_from_uri(uri, naming_file)
         return path if path is not None and os.path.isfile(path) else None  # noqa: PTH113
 
+    def uri_for_others(self, uri: str, naming_file: str) -> str | None:
+        """
+        Return the URI of a file, such as a mesh, for programs that do not look for files as here.
+
+        :return: ``package://`` as it is, since a program on another machine finds the package
+            elsewhere; else ``file://`` with an absolute path. None if there is no such file.
+        """
+        # ROS knows no third slash.
+        if uri.startswith('package://') and not uri.startswith('package:///'):
+            return uri
+        path = self.file_from_uri(uri, naming_file)
+        return None if path is None else Path(path).absolute().as_uri()
+
     def path_from_address(self, address: str) -> Path:
         """
         Return the path that a user's address of a file means.

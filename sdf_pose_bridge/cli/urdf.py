@@ -1,0 +1,71 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``sdf_pose urdf``: write a model as URDF."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+import sys
+
+from sdf_pose_bridge.cli.loading import add_file_arguments
+from sdf_pose_bridge.cli.loading import add_kinds_argument
+from sdf_pose_bridge.cli.loading import add_model_argument
+from sdf_pose_bridge.cli.loading import add_naming_argument
+from sdf_pose_bridge.cli.loading import scene_of
+from sdf_pose_bridge.cli.printing import print_problems
+from sdf_pose_bridge.cli.printing import write_text
+from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
+from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command."""
+    parser = subparsers.add_parser(
+        'urdf', help='write a model as URDF, whose links are the frames of TF',
+        description='Write a model as URDF, for RViz, MoveIt, ros2_control and whoever else reads '
+                    'robot_description. Its links are the frames that the node publishes for the '
+                    'model, at every position of its joints. What URDF cannot say is left out, '
+                    'with a warning.')
+    add_file_arguments(parser, takes_many=False)
+    parser.add_argument(
+        '-o', dest='output', metavar='PATH', type=Path, help='where to write it, instead of here')
+    add_kinds_argument(parser, 'make links of', DEFAULT_KINDS)
+    add_model_argument(parser, 'write')
+    add_naming_argument(parser)
+    parser.add_argument(
+        '--frame-separator', metavar='TEXT', type=_separator_from_text, default='/',
+        help='what stands for "::" in the names of links, instead of /')
+    parser.add_argument(
+        '--capsules', action='store_true',
+        help='write <capsule>, which URDF has since version 1.2, instead of a cylinder and two '
+             'spheres')
+    parser.set_defaults(run=run)
+
+
+def _separator_from_text(text: str) -> str:
+    if not text:
+        msg = 'it must have at least one character, or names run together'
+        raise argparse.ArgumentTypeError(msg)
+    return text
+
+
+def run(options: argparse.Namespace) -> int:
+    """
+    Write a model of a file as URDF.
+
+    :return: exit code: 0.
+    :raises CommandError: if it cannot be written.
+    :raises SdfError: if the file is not valid, or no URDF can be made of it.
+    """
+    scene = scene_of(options.files[0], options, shapes=True)
+    urdf = urdf_from_scene(
+        scene, model=options.model, kinds=options.kinds, frame_names=options.frame_names,
+        frame_separator=options.frame_separator, resource_paths=options.resource_paths,
+        has_capsules=options.capsules)
+    print_problems((), urdf.warnings, sys.stderr)
+    if options.output is None:
+        print(urdf.text, end='')
+    else:
+        write_text(urdf.text, options.output)
+    return 0

@@ -1,0 +1,301 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Make a tree of links and joints, as URDF has it, from the frames of a model in TF.
+
+Each frame becomes a link. A joint of URDF is where its child link is. So where a joint of SDFormat
+is not at the link that it moves, a link without a mass is put there, named after the joint, and
+the moved link is fixed to it. A joint with several degrees of freedom becomes a chain of joints
+with one each.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from collections.abc import Sequence
+from itertools import count
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.errors import UrdfNotMadeError
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import pose_inverse
+from sdf_pose_bridge.geometry.poses import pose_product
+from sdf_pose_bridge.geometry.poses import relative_pose
+from sdf_pose_bridge.names import quoted_names
+from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.scene.scene import JointAxis
+from sdf_pose_bridge.scene.scene import Mimic
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.frame_ids import FrameNaming
+from sdf_pose_bridge.tf.joint_motion import dofs_from_joint
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
+from sdf_pose_bridge.tf.parents import tf_parents_from_scene
+from sdf_pose_bridge.tf.tree import AnchorModels
+from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
+from sdf_pose_bridge.tf.tree import elements_in_model
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
+
+NO_LIMIT = 1e16
+"""How users of URDF and Gazebo write a limit that is none."""
+
+_SAME_PLACE = 1e-12
+"""Two frames that differ by less, in metres and halves of radians, are one."""
+_MOST_NAMES_SHOWN = 10
+
+
+class UrdfMimic(NamedTuple):
+    """The joint that a joint follows: ``multiplier * position + offset``."""
+
+    joint: str
+    multiplier: float
+    offset: float
+
+
+class UrdfJoint(NamedTuple):
+    """A joint of URDF."""
+
+    name: str
+    type: str
+    """``fixed``, ``revolute``, ``continuous`` or ``prismatic``."""
+    parent: str
+    """The name of its parent link."""
+    origin: Pose
+    """Its pose, which is that of its child link at zero, in its parent link."""
+    axis: JointAxis | None = None
+    """Its axis with limits and dynamics; None for a fixed joint."""
+    mimic: UrdfMimic | None = None
+
+
+class UrdfLink(NamedTuple):
+    """A link of URDF, with the joint to it."""
+
+    name: str
+    element: int
+    """The link of the scene that it is; -1 if it is another frame."""
+    joint: UrdfJoint | None
+    """None for the first link."""
+
+
+class UrdfRobot(NamedTuple):
+    """A tree of links and joints."""
+
+    name: str
+    elements: frozenset[int]
+    """The elements of the scene in its model."""
+    links: tuple[UrdfLink, ...]
+    """Each after its parent, and before links that are not below it."""
+    warnings: tuple[SdfWarning, ...]
+
+
+def robot_from_scene(scene: Scene, options: TfOptions) -> UrdfRobot:
+    """
+    Make the links and joints of a model.
+
+    :param options: the model, which may be left out if the file has only one, and which elements
+        become links, with which names. Links do in any case. Names have no prefix.
+    :raises SdfError: if the file is URDF, if there is no such model, or none is named where there
+        are several, or if its frames cannot have these names.
+    """
+    if scene.urdf_root is not None:
+        msg = 'the file is URDF already'
+        raise UrdfNotMadeError(msg, Place(scene.path))
+    model = _model(scene, options.model)
+    kinds = DEFAULT_KINDS if options.kinds is None else options.kinds
+    return _RobotMaker(scene, model, options._replace(
+        model=scene.names[model], kinds=kinds | {Kind.LINK}, frame_prefix='',
+        pose_frame='', anchor_models=AnchorModels.ALL, use_joint_states=False)).robot()
+
+
+def _model(scene: Scene, name: str) -> int:
+    if name:
+        return int(np.flatnonzero(elements_in_model(scene, name))[0])
+    models = np.flatnonzero((scene.kinds == Kind.MODEL) & (scene.parents == 0)).tolist()
+    if len(models) != 1:
+        names = [scene.names[model] for model in models]
+        msg = 'URDF describes one robot, and the file has ' + (
+            f'the models {quoted_names(names, _MOST_NAMES_SHOWN)}; name one of them' if names
+            else 'no model')
+        raise UrdfNotMadeError(msg, Place(scene.path))
+    return int(models[0])
+
+
+class _Names:
+    """Names that are used once each."""
+
+    def __init__(self, used: set[str]) -> None:
+        self._used = used
+
+    def new(self, name: str) -> str:
+        """Return a name, with a number if it is used already."""
+        candidates = (f'{name}_{number}' if number else name for number in count())
+        unused = next(each for each in candidates if each not in self._used)
+        self._used.add(unused)
+        return unused
+
+
+class _Step(NamedTuple):
+    """A joint of URDF that is made from a degree of freedom."""
+
+    name: str
+    type: str
+    axis: JointAxis
+
+
+class _RobotMaker:
+
+    def __init__(self, scene: Scene, model: int, options: TfOptions) -> None:
+        self._scene = scene
+        self._model = model
+        self._problems = Problems(scene.files)
+        self._tree = tf_tree_from_scene(scene, options)
+        self._elements: list[int] = self._tree.elements.tolist()
+        self._published = frozenset(self._elements)
+        self._tf_parents = tf_parents_from_scene(scene)
+        self._names_of_joints = _names_of_joints(scene, FrameNaming(options.frame_names))
+        self._link_names = _Names({self._tree.root_frame, *self._tree.frame_ids})
+        self._joint_names = _Names(set())
+        self._dofs: dict[tuple[int, int | None], tuple[str, Mimic | None]] = {}
+        """For each degree of freedom the name of its joint, and what it follows."""
+        self._children: defaultdict[str, list[UrdfLink]] = defaultdict(list)
+
+    def robot(self) -> UrdfRobot:
+        scene, tree = self._scene, self._tree
+        first, root = self._first_link()
+        # The joints that move take their names first, since joint_states has them too.
+        steps = [self._steps(element) for element in self._elements]
+        ids = (*tree.frame_ids, '', first)
+        for frame, parent in enumerate(tree.parents.tolist()):
+            if frame != root:
+                self._add_frame(frame, ids[parent], steps[frame])
+        return UrdfRobot(
+            scene.own_name(self._model),
+            frozenset(np.flatnonzero(elements_in_model(scene, scene.names[self._model])).tolist()),
+            tuple(self._in_order(UrdfLink(first, self._link_of(root), None))),
+            (*tree.warnings, *self._problems.warnings))
+
+    def _first_link(self) -> tuple[str, int]:
+        """Return the name of the link that has no parent, and its frame; -1 for the root."""
+        scene, tree = self._scene, self._tree
+        tops = np.flatnonzero(tree.parents == ROOT_IS_PARENT).tolist()
+        free = [frame for frame in tops if not self._is_anchored(self._elements[frame])]
+        if len(tops) == 1 and free:
+            return tree.frame_ids[tops[0]], tops[0]
+        for frame in free:
+            name = tree.frame_ids[frame]
+            self._problems.warning(
+                f'"{name}" is fixed to "{tree.root_frame}" in URDF, since nothing else holds it '
+                'and URDF has only one tree', scene.place(self._elements[frame]))
+        return tree.root_frame, -1
+
+    def _is_anchored(self, element: int) -> bool:
+        """Return whether an element at the top is static, or a joint holds it."""
+        parent = self._tf_parents.parents[element]
+        return self._is_static(element) or (
+            element in self._tf_parents.joints and self._scene.parents.item(parent) < 0)
+
+    def _is_static(self, element: int) -> bool:
+        scene = self._scene
+        return not scene.static_models.isdisjoint(scene.with_ancestors(element))
+
+    def _link_of(self, frame: int) -> int:
+        element = -1 if frame < 0 else self._elements[frame]
+        return element if element >= 0 and self._scene.kinds[element] == Kind.LINK else -1
+
+    def _in_order(self, first: UrdfLink) -> Iterator[UrdfLink]:
+        waiting = [first]
+        while waiting:
+            link = waiting.pop()
+            yield link
+            waiting += reversed(self._children[link.name])
+
+    # Joints
+
+    def _steps(self, element: int) -> list[_Step]:
+        """List the joints with one degree of freedom each that lead to an element."""
+        joint = self._tf_parents.joints.get(element)
+        if joint is None or self._is_static(element):
+            return []
+        parent = int(self._tf_parents.parents[element])
+        if parent not in self._published and self._scene.parents[parent] >= 0:
+            return []
+        is_reversed = element in self._tf_parents.reversed_bodies
+        dofs = dofs_from_joint(joint)
+        steps: list[_Step] = []
+        for dof in reversed(dofs) if is_reversed else dofs:
+            x, y, z = dof.axis.xyz
+            axis = dof.axis._replace(xyz=(-x, -y, -z)) if is_reversed else dof.axis
+            name = self._joint_names.new(self._names_of_joints[joint.element] + dof.suffix)
+            self._dofs[joint.element, dof.number] = name, axis.mimic
+            if dof.rad_per_unit:
+                has_limit = axis.lower > -NO_LIMIT or axis.upper < NO_LIMIT
+                steps.append(_Step(name, 'revolute' if has_limit else 'continuous', axis))
+            if dof.m_per_unit and not dof.rad_per_unit:
+                steps.append(_Step(name, 'prismatic', axis))
+            elif dof.m_per_unit and dof.number is not None:
+                # What turns in a thread slides, too.
+                follows = Mimic(joint.element, dof.number, dof.m_per_unit, 0.0, 0.0)
+                steps.append(_Step(
+                    self._joint_names.new(f'{name}_slide'), 'prismatic',
+                    JointAxis(axis.xyz, mimic=follows)))
+        return steps
+
+    def _add_frame(self, frame: int, parent: str, steps: Sequence[_Step]) -> None:
+        tree, name = self._tree, self._tree.frame_ids[frame]
+        link, transform = self._link_of(frame), Pose(*tree.transforms[frame].tolist())
+        if not steps:
+            joint = self._tf_parents.joints.get(self._elements[frame])
+            self._add(name, link, UrdfJoint(
+                self._joint_names.new(
+                    f'{name}_fixed' if joint is None else self._names_of_joints[joint.element]),
+                'fixed', parent, transform))
+            return
+        element = self._elements[frame]
+        joint_pose = self._scene.pose_of(self._tf_parents.joints[element].element)
+        in_joint = relative_pose(joint_pose, Pose(*tree.poses[frame].tolist()))
+        is_at_joint = math.dist(in_joint[:6], Pose()[:6]) < _SAME_PLACE
+        origin = transform if is_at_joint else pose_product(transform, pose_inverse(in_joint))
+        for step in steps:
+            is_last = is_at_joint and step is steps[-1]
+            child = name if is_last else self._link_names.new(f'{step.name}_frame')
+            self._add(child, link if is_last else -1, UrdfJoint(
+                step.name, step.type, parent, origin, step.axis, self._mimic(step, element)))
+            parent, origin = child, Pose()
+        if not is_at_joint:
+            self._add(name, link, UrdfJoint(
+                self._joint_names.new(f'{name}_fixed'), 'fixed', parent, in_joint))
+
+    def _add(self, name: str, element: int, joint: UrdfJoint) -> None:
+        self._children[joint.parent].append(UrdfLink(name, element, joint))
+
+    def _mimic(self, step: _Step, element: int) -> UrdfMimic | None:
+        """Return the joint that a joint follows in the end, as not all readers follow several."""
+        follows, leader, factor, offset = step.axis.mimic, '', 1.0, 0.0
+        passed = {step.name}
+        while follows is not None:
+            offset += factor * (follows.offset - follows.multiplier * follows.reference)
+            factor *= follows.multiplier
+            leader, next_follows = self._dofs.get((follows.joint, follows.axis), ('', None))
+            if not leader or leader in passed:
+                self._problems.warning(
+                    f'joint "{step.name}" mimics nothing in URDF: '
+                    f'"{self._scene.names[follows.joint]}" '
+                    f'{"follows it in turn" if leader else "does not move"}',
+                    self._scene.place(self._tf_parents.joints[element].element))
+                return None
+            passed.add(leader)
+            follows = next_follows
+        return UrdfMimic(leader, factor, offset) if leader else None
+
+
+def _names_of_joints(scene: Scene, naming: FrameNaming) -> dict[int, str]:
+    elements = [joint.element for joint in scene.joints]
+    names = naming.frame_ids_from_scene(scene, np.array(elements, np.int32))
+    return dict(zip(elements, names, strict=True))

@@ -1,0 +1,281 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Write a model of a scene as URDF (https://wiki.ros.org/urdf/XML)."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Collection
+from collections.abc import Iterable
+from collections.abc import Sequence
+import os
+from typing import NamedTuple
+
+from lxml import etree
+
+from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.geometry.poses import canonical_relative_pose
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import pose_product
+from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
+from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.include.uris import resource_finder
+from sdf_pose_bridge.sdformat.inertials import MOMENTS
+from sdf_pose_bridge.sdformat.shape_types import Part
+from sdf_pose_bridge.sdformat.shape_types import Primitive
+from sdf_pose_bridge.sdformat.shapes import Shape
+from sdf_pose_bridge.sdformat.urdf.values import text_from_numbers
+from sdf_pose_bridge.tf.frame_ids import FrameNames
+from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
+from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.urdf_robot import NO_LIMIT
+from sdf_pose_bridge.tf.urdf_robot import robot_from_scene
+from sdf_pose_bridge.tf.urdf_robot import UrdfJoint
+from sdf_pose_bridge.tf.urdf_robot import UrdfRobot
+
+_DIGITS = 15
+"""So many digits, and decimals of poses, are written: they leave out what arithmetic rounds."""
+
+
+class Urdf(NamedTuple):
+    """A robot as URDF."""
+
+    text: str
+    warnings: tuple[SdfWarning, ...]
+    """What URDF cannot say of the model."""
+
+    def __str__(self) -> str:
+        return self.text
+
+
+class _Geometry(NamedTuple):
+    """A shape as URDF has it."""
+
+    tag: str
+    attributes: dict[str, str]
+    z_m: float = 0.0
+    """Where it is on the z axis of the shape that it is part of."""
+
+
+def urdf_from_scene(
+    scene: Scene,
+    *,
+    model: str = '',
+    kinds: Collection[Kind] = DEFAULT_KINDS,
+    frame_names: FrameNames | str = FrameNames.AUTO,
+    frame_separator: str = '/',
+    optical_frames: bool = True,
+    root_frame: str = 'world',
+    resource_paths: Iterable[str | os.PathLike[str]] = (),
+    has_capsules: bool = False,
+) -> Urdf:
+    """
+    Write a model as URDF whose links are the frames that the model has in TF.
+
+    Every link is where TF has the frame of that name, at every position of the joints.
+
+    :param scene: the scene, loaded with ``shapes=True``.
+    :param model: scoped name of the model; may be empty if there is only one.
+    :param kinds: the kinds of element that become links. Links do in any case.
+    :param frame_names: how links and joints are named: ``auto``, ``scoped`` or ``relative``.
+    :param frame_separator: replaces ``::`` in names of links.
+    :param optical_frames: whether each camera gets an optical frame besides its own.
+    :param root_frame: the name of the first link of a model that is fixed in the world.
+    :param resource_paths: directories in which meshes are searched, as for ``load``.
+    :param has_capsules: whether to write ``<capsule>``, which needs a reader of URDF 1.2, and not
+        a cylinder and two spheres.
+    :raises SdfError: if the file is URDF, if there is no such model, or none is named where there
+        are several, or if its frames cannot have these names.
+    :raises ValueError: if the scene was loaded without shapes.
+    """
+    if not scene.has_shapes:
+        msg = 'the scene has no shapes; load it with shapes=True'
+        raise ValueError(msg)
+    robot = robot_from_scene(scene, TfOptions(
+        root_frame=root_frame, model=model, frame_names=FrameNames(frame_names),
+        frame_separator=frame_separator, kinds=frozenset(kinds), optical_frames=optical_frames))
+    return _Writer(scene, robot, resource_paths, has_capsules=has_capsules).urdf()
+
+
+class _Writer:
+
+    def __init__(
+        self, scene: Scene, robot: UrdfRobot, resource_paths: Iterable[str | os.PathLike[str]],
+        *, has_capsules: bool,
+    ) -> None:
+        self._scene = scene
+        self._robot = robot
+        self._finder = resource_finder(resource_paths, os.environ)
+        self._has_capsules = has_capsules
+        self._problems = Problems(scene.files)
+        self._parts: defaultdict[int, list[int]] = defaultdict(list)
+        """For each link its inertial, visuals and collisions."""
+        for element in sorted({*scene.shapes, *scene.inertials}):
+            self._parts[int(scene.parents[element])].append(element)
+        self._root = etree.Element('robot', name=robot.name)
+        if has_capsules:
+            self._root.set('version', '1.2')
+
+    def urdf(self) -> Urdf:
+        scene, robot = self._scene, self._robot
+        self._add_comment(f'Made by sdf_pose urdf from {scene.path}. Change that file instead.')
+        file = scene.path
+        for link in robot.links:
+            if link.element >= 0 and scene.place(link.element).file != file:
+                file = scene.place(link.element).file
+                self._add_comment(f'From {file}')
+            self._add_link(link.name, link.element)
+            if link.joint is not None:
+                self._add_joint(link.joint, link.name)
+        etree.indent(self._root)
+        text = etree.tostring(self._root, encoding='unicode')
+        texts = [
+            f'{each}\n' for model in sorted(robot.elements & scene.urdf_texts.keys())
+            for each in scene.urdf_texts[model]]
+        end = '</robot>'
+        return Urdf(
+            f'<?xml version="1.0"?>\n{text.removesuffix(end)}{"".join(texts)}{end}\n',
+            (*robot.warnings, *self._problems.warnings))
+
+    def _add_comment(self, text: str) -> None:
+        # XML allows no two hyphens in a row, nor one at the end, in a comment.
+        self._root.append(etree.Comment(f' {text.replace("--", "- -")} '))
+
+    def _warn(self, element: int, what: str, reason: str) -> None:
+        name = self._scene.names[element]
+        self._problems.warning(
+            f'{what} "{name}" {reason}', self._scene.place(element))
+
+    # Joints
+
+    def _add_joint(self, joint: UrdfJoint, child: str) -> None:
+        xml = etree.SubElement(self._root, 'joint', name=joint.name, type=joint.type)
+        _add_origin(xml, joint.origin)
+        etree.SubElement(xml, 'parent', link=joint.parent)
+        etree.SubElement(xml, 'child', link=child)
+        axis = joint.axis
+        if axis is None:
+            return
+        etree.SubElement(xml, 'axis', xyz=_numbers(_rounded(axis.xyz)))
+        effort, velocity, damping, friction = axis.dynamics
+        limits = {'lower': axis.lower, 'upper': axis.upper}
+        if joint.type == 'continuous':
+            limits = {}
+        if limits or min(effort, velocity) < NO_LIMIT:
+            limits |= {'effort': effort, 'velocity': velocity}
+            etree.SubElement(xml, 'limit', {
+                name: _numbers([_limited(limit)]) for name, limit in limits.items()})
+        if damping or friction:
+            etree.SubElement(
+                xml, 'dynamics', damping=_numbers([damping]), friction=_numbers([friction]))
+        if joint.mimic is not None:
+            name, multiplier, offset = joint.mimic
+            etree.SubElement(
+                xml, 'mimic', joint=name, multiplier=_numbers([multiplier]),
+                offset=_numbers([offset]))
+
+    # Links
+
+    def _add_link(self, name: str, element: int) -> None:
+        xml = etree.SubElement(self._root, 'link', name=name)
+        for part in self._parts[element] if element >= 0 else ():
+            pose = canonical_relative_pose(
+                self._scene.pose_of(element), self._scene.pose_of(part))
+            if part in self._scene.inertials:
+                self._add_inertial(xml, part, pose)
+            else:
+                self._add_shape(xml, part, pose)
+
+    def _add_inertial(self, link: etree._Element, element: int, pose: Pose) -> None:
+        inertial = self._scene.inertials[element]
+        if not inertial.is_valid:
+            self._warn(element, 'the inertial', 'is left out: no body can have its moments')
+            return
+        xml = etree.SubElement(link, 'inertial')
+        _add_origin(xml, pose)
+        etree.SubElement(xml, 'mass', value=_numbers([inertial.mass_kg]))
+        # In the order that is usual in URDF.
+        moments = dict(zip(MOMENTS, inertial.moments_kg_m2, strict=True))
+        etree.SubElement(xml, 'inertia', {
+            name: _numbers([moments[name]]) for name in sorted(moments)})
+
+    def _add_shape(self, link: etree._Element, element: int, pose: Pose) -> None:
+        kind = Kind(self._scene.kinds[element]).label
+        shape = self._scene.shapes[element]
+        geometries = self._geometries(shape, element)
+        if isinstance(geometries, str):
+            self._warn(element, f'the {kind}', f'is left out: {geometries}')
+            return
+        name = self._scene.own_name(element)
+        for number, geometry in enumerate(geometries):
+            xml = etree.SubElement(link, kind, name=f'{name}_{number}' if number else name)
+            _add_origin(xml, pose_product(pose, Pose(z=geometry.z_m)))
+            etree.SubElement(
+                etree.SubElement(xml, 'geometry'), geometry.tag, geometry.attributes)
+            if kind == Kind.VISUAL.label and shape.drawn_rgba is not None:
+                text = _numbers(shape.drawn_rgba)
+                material = etree.SubElement(
+                    xml, 'material', name=f'rgba_{text.replace(" ", "_")}')
+                etree.SubElement(material, 'color', rgba=text)
+
+    def _geometries(self, shape: Shape, element: int) -> list[_Geometry] | str:
+        """Return a shape as URDF has it, or why it does not."""
+        if shape.type == 'mesh':
+            return self._mesh(shape, element)
+        if shape.reason_without_surface:
+            return shape.reason_without_surface
+        if shape.type == 'capsule' and self._has_capsules and len(shape.parts) > 1:
+            radius, length = shape.sizes_m
+            return [_Geometry(
+                'capsule', {'radius': _numbers([radius]), 'length': _numbers([length])})]
+        geometries = [_geometry_from_part(part) for part in shape.parts]
+        found = [geometry for geometry in geometries if geometry is not None]
+        return found if found and len(found) == len(geometries) else f'URDF has no {shape.type}'
+
+    def _mesh(self, shape: Shape, element: int) -> list[_Geometry] | str:
+        uri = self._finder.uri_for_others(shape.mesh_uri, self._scene.place(element).file)
+        if uri is None:
+            return f'the mesh "{shortened(shape.mesh_uri)}" is not found'
+        if shape.submesh:
+            self._problems.warning(
+                f'all of the mesh "{shortened(shape.mesh_uri)}" is meant in URDF instead of its '
+                f'part "{shortened(shape.submesh)}", because URDF cannot name a part',
+                self._scene.place(element))
+        has_scale = shape.mesh_scale != (1.0, 1.0, 1.0)
+        scale = {'scale': _numbers(shape.mesh_scale)} if has_scale else {}
+        return [_Geometry('mesh', {'filename': uri, **scale})]
+
+
+def _geometry_from_part(part: Part) -> _Geometry | None:
+    """Return a body as URDF has it; None for an ellipsoid that is no sphere."""
+    x_m, y_m, z_m = part.extent_m
+    radius = {'radius': _numbers([0.5 * x_m])}
+    elements = {
+        Primitive.BOX: ('box', {'size': _numbers(part.extent_m)}),
+        Primitive.CYLINDER: ('cylinder', {**radius, 'length': _numbers([z_m])}),
+        Primitive.ELLIPSOID: ('sphere', radius) if x_m == y_m == z_m else None}
+    element = elements[part.primitive]
+    return None if element is None else _Geometry(*element, part.z_m)
+
+
+def _add_origin(xml: etree._Element, pose: Pose) -> None:
+    """Add the pose of an element, unless it is the identity."""
+    numbers = _rounded((*pose[:3], *rpy_from_quaternion(pose[3:])))
+    if any(numbers):
+        etree.SubElement(xml, 'origin', xyz=_numbers(numbers[:3]), rpy=_numbers(numbers[3:]))
+
+
+def _limited(limit: float) -> float:
+    return max(-NO_LIMIT, min(limit, NO_LIMIT))
+
+
+def _rounded(numbers: Sequence[float]) -> list[float]:
+    # To add zero leaves no negative zeros.
+    return [round(number, _DIGITS) + 0.0 for number in numbers]
+
+
+def _numbers(numbers: Sequence[float]) -> str:
+    return text_from_numbers(numbers, _DIGITS)

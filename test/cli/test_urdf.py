@@ -1,0 +1,73 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""``sdf_pose urdf``: what is written where, and what is wrong."""
+
+import pytest
+from sdf_texts import model_file
+from sdf_texts import world_file
+
+ARM = model_file(
+    '<link name="base"><visual name="v"><geometry><plane/></geometry></visual></link>'
+    '<link name="hand"/><frame name="tip" attached_to="hand"/>'
+    '<joint name="elbow" type="revolute"><parent>base</parent><child>hand</child></joint>')
+CELL = world_file(''.join(
+    f'<model name="{name}"><link name="l"/></model>' for name in ('table', 'robot')))
+
+
+@pytest.fixture
+def arm(files):
+    """The folder has an arm and a cell with two models."""
+    (files / 'arm.sdf').write_text(ARM)
+    (files / 'cell.sdf').write_text(CELL)
+
+
+@pytest.mark.usefixtures('arm')
+@pytest.mark.parametrize(('arguments', 'reason'), [
+    (['bad.sdf'], 'bad.sdf:3: ELEMENT_INVALID'),
+    (['none.sdf'], 'FILE_READ'),
+    (['cell.sdf'], 'the file has the models "table", "robot"; name one of them'),
+    (['cell.sdf', '--model', 'rubot'], 'there is no model "rubot" to publish; did you mean'),
+    (['arm.sdf', '-o', 'none/arm.urdf'],
+     'sdf_pose urdf: cannot write none/arm.urdf: No such file or directory'),
+])
+def test_wrong_input_gives_one_error(run_main, arguments, reason):
+    result = run_main('urdf', *arguments)
+    assert result.returncode == 1
+    assert reason in result.stderr
+    assert result.stdout == ''
+
+
+@pytest.mark.usefixtures('arm')
+def test_separator_must_not_be_empty(run_main):
+    result = run_main('urdf', 'arm.sdf', '--frame-separator', '')
+    assert result.returncode == 2
+    assert 'at least one character' in result.stderr
+
+
+@pytest.mark.usefixtures('arm')
+def test_urdf_is_printed_and_warnings_beside_it(sdf_pose):
+    result = sdf_pose('urdf', 'arm.sdf')
+    assert result.returncode == 0
+    assert result.stdout.startswith('<?xml version="1.0"?>\n<robot name="m">\n')
+    assert 'joint name="elbow" type="continuous"' in result.stdout
+    assert 'the visual "m::base::v" is left out: URDF has no plane' in result.stderr
+
+
+@pytest.mark.usefixtures('arm')
+def test_urdf_is_written_to_a_file(run_main, files):
+    printed = run_main('urdf', 'arm.sdf').stdout
+    assert run_main('urdf', 'arm.sdf', '-o', 'arm.urdf').stdout == ''
+    assert (files / 'arm.urdf').read_text() == printed
+
+
+@pytest.mark.usefixtures('arm')
+def test_kinds_and_names(run_main):
+    text = run_main('urdf', 'arm.sdf', '--kinds', 'frame', '--frame-names', 'scoped',
+                    '--frame-separator', '_').stdout
+    assert 'link name="m_tip"' in text
+    assert 'link name="m"' not in text
+
+
+@pytest.mark.usefixtures('arm')
+def test_model_of_a_world(run_main):
+    assert '<robot name="table">' in run_main('urdf', 'cell.sdf', '--model', 'table').stdout

@@ -1,0 +1,324 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Links and joints of URDF: their names, types and places, and what cannot be one tree."""
+
+import math
+
+from hypothesis import assume
+from hypothesis import given
+from hypothesis import settings
+from hypothesis import strategies as st
+from joint_trees import model_text
+from joint_trees import pose_text
+from joint_trees import POSES
+from joint_trees import POSITIONS
+from joint_trees import random_joints
+from matrices import matrix_from_pose
+import numpy as np
+import pytest
+from random_scenes import random_scenes
+from sdf_texts import LINK
+from sdf_texts import model_file
+from sdf_texts import world_file
+
+from sdf_pose_bridge import Kind
+from sdf_pose_bridge import load_text
+from sdf_pose_bridge import scene_at_positions
+from sdf_pose_bridge import SdfError
+from sdf_pose_bridge import UnknownFrameError
+from sdf_pose_bridge.errors import UrdfNotMadeError
+from sdf_pose_bridge.tf.tree import AnchorModels
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.urdf_robot import robot_from_scene
+from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
+
+MODEL = f'<model name="{{}}">{LINK}</model>'
+TWO_LINKS = '<link name="a"/><link name="b"><pose>1 0 0 0 0 0</pose></link>'
+
+
+def robot_of(text, **options):
+    return robot_from_scene(load_text(text, shapes=True), TfOptions(**options))
+
+
+def joint(joint_type, content='', name='j', parent='a', child='b', pose=''):
+    pose = f'<pose>{pose}</pose>' if pose else ''
+    return (f'<joint name="{name}" type="{joint_type}">{pose}<parent>{parent}</parent>'
+            f'<child>{child}</child>{content}</joint>')
+
+
+def axis(content='', tag='axis', xyz='0 0 1'):
+    return f'<{tag}><xyz>{xyz}</xyz>{content}</{tag}>'
+
+
+def joints_of(text, **options):
+    """Return all joints of a robot by their names."""
+    links = robot_of(text, **options).links
+    return {link.joint.name: link.joint for link in links if link.joint is not None}
+
+
+def tree_of(text, **options):
+    """Return the parent of each link, with the joint between them."""
+    return {
+        link.name: link.joint and (link.joint.parent, link.joint.name)
+        for link in robot_of(text, **options).links}
+
+
+# What is refused
+
+@pytest.mark.parametrize(('content', 'reason'), [
+    ('', 'the file has no model'),
+    (MODEL.format('a') + MODEL.format('b'), 'the file has the models "a", "b"; name one'),
+])
+def test_world_without_one_model_is_refused(content, reason):
+    with pytest.raises(UrdfNotMadeError, match=reason):
+        robot_of(world_file(content))
+
+
+def test_unknown_model_is_refused():
+    with pytest.raises(UnknownFrameError, match='no model "c"'):
+        robot_of(world_file(MODEL.format('a')), model='c')
+
+
+def test_two_links_with_one_name_are_refused():
+    text = model_file(f'<link name="a/b"/><model name="a"><link name="b"/>{LINK}</model>')
+    with pytest.raises(SdfError, match='DUPLICATE_NAME'):
+        robot_of(text)
+
+
+def test_urdf_is_refused():
+    with pytest.raises(UrdfNotMadeError, match='is URDF already'):
+        robot_of('<robot name="r"><link name="l"/></robot>')
+
+
+# One tree
+
+def test_first_link_is_the_canonical_link():
+    assert tree_of(model_file(TWO_LINKS)) == {
+        'a': None, 'm': ('a', 'm_fixed'), 'b': ('a', 'b_fixed')}
+
+
+def test_links_stand_before_all_that_are_not_below_them():
+    text = model_file(
+        '<link name="a"/><frame name="f"/><link name="b"/><frame name="g" attached_to="b"/>')
+    assert list(tree_of(text)) == ['a', 'm', 'f', 'b', 'g']
+
+
+def test_static_model_is_fixed_to_the_world():
+    links = tree_of(model_file(f'<static>1</static>{TWO_LINKS}{joint("revolute")}'))
+    assert links['a'] == ('world', 'a_fixed')
+    assert links['b'] == ('a', 'j')
+
+
+def test_joint_to_the_world_begins_at_the_world():
+    links = tree_of(model_file(f'{LINK}{joint("prismatic", parent="world", child="l")}'))
+    assert links == {'world': None, 'l': ('world', 'j'), 'm': ('l', 'm_fixed')}
+
+
+def test_second_tree_is_fixed_to_the_world_with_a_warning():
+    robot = robot_of(model_file(f'{TWO_LINKS}{joint("revolute", parent="world")}'))
+    (warning,) = robot.warnings
+    assert '"a" is fixed to "world" in URDF' in warning.message
+    assert {link.name for link in robot.links if link.joint and link.joint.parent == 'world'} == {
+        'a', 'b'}
+
+
+def test_root_frame_is_the_first_link_of_a_static_model():
+    assert 'map' in tree_of(model_file(f'<static>1</static>{LINK}'), root_frame='map')
+
+
+def test_model_of_a_world():
+    text = world_file(MODEL.format('a') + MODEL.format('b'))
+    assert tree_of(text, model='b') == {'b/l': None, 'b': ('b/l', 'b_fixed')}
+
+
+def test_only_model_of_a_world_need_not_be_named():
+    assert list(tree_of(world_file(MODEL.format('a')))) == ['a/l', 'a']
+
+
+def test_nested_model_begins_at_its_own_canonical_link():
+    text = model_file(f'{LINK}{joint("revolute", parent="l", child="n::l")}{MODEL.format("n")}')
+    assert tree_of(text, model='m::n') == {'n/l': None, 'n': ('n/l', 'n_fixed')}
+
+
+def test_loop_is_cut_with_a_warning():
+    robot = robot_of(model_file(
+        TWO_LINKS + joint('revolute') + joint('revolute', name='k')))
+    assert 'closes a loop' in robot.warnings[0].message
+    assert [link.joint.name for link in robot.links if link.joint] == ['m_fixed', 'j']
+
+
+# Names
+
+def test_links_are_there_whatever_the_kinds_are():
+    assert list(tree_of(model_file(TWO_LINKS), kinds=frozenset({Kind.FRAME}))) == ['a', 'b']
+
+
+def test_names_are_those_of_tf_and_of_joint_states():
+    moving = joint('revolute', pose='1 0 0 0 0 0')
+    text = model_file(f'<model name="n">{TWO_LINKS}{moving}</model>')
+    links = tree_of(text, frame_separator='_', kinds=frozenset({Kind.LINK}))
+    assert links == {
+        'n_a': None, 'n/j_frame': ('n_a', 'n/j'), 'n_b': ('n/j_frame', 'n_b_fixed')}
+
+
+def test_prefix_of_frames_is_left_out():
+    assert list(tree_of(model_file(LINK), frame_prefix='r/')) == ['l', 'm']
+
+
+def test_joint_that_is_a_frame_is_a_link_too():
+    links = tree_of(
+        model_file(TWO_LINKS + joint('revolute', pose='1 0 0 0 0 0')),
+        kinds=frozenset({Kind.LINK, Kind.JOINT}))
+    assert links['j'] == ('b', 'j_fixed')
+    assert links['j_frame'] == ('a', 'j')
+
+
+def test_names_that_are_made_are_not_those_of_others():
+    links = tree_of(model_file(
+        TWO_LINKS + joint('revolute', pose='1 0 0 0 0 0') + '<frame name="j_frame"/>'
+        + joint('fixed', name='m_fixed', child='c') + '<link name="c"/>'))
+    assert links['b'] == ('j_frame_1', 'b_fixed')
+    assert {links['c'][1], links['m'][1]} == {'m_fixed', 'm_fixed_1'}
+
+
+# Joints
+
+@pytest.mark.parametrize(('joint_type', 'content', 'types'), [
+    ('fixed', '', {'j': 'fixed'}),
+    ('revolute', axis(), {'j': 'continuous'}),
+    ('continuous', axis(), {'j': 'continuous'}),
+    ('revolute', axis('<limit><lower>-1e16</lower><upper>1e16</upper></limit>'),
+     {'j': 'continuous'}),
+    ('revolute', axis('<limit><lower>-1</lower></limit>'), {'j': 'revolute'}),
+    ('revolute', axis('<limit><lower>-1</lower><upper>1</upper></limit>'), {'j': 'revolute'}),
+    ('gearbox', axis(), {'j': 'continuous'}),
+    ('prismatic', axis(), {'j': 'prismatic'}),
+    ('universal', axis() + axis(tag='axis2'), {'j': 'continuous', 'j_axis2': 'continuous'}),
+    ('revolute2', axis() + axis('<limit><upper>1</upper></limit>', 'axis2'),
+     {'j': 'continuous', 'j_axis2': 'revolute'}),
+    ('ball', '', {'j_yaw': 'continuous', 'j_pitch': 'continuous', 'j_roll': 'continuous'}),
+    ('screw', axis() + '<screw_thread_pitch>2</screw_thread_pitch>',
+     {'j': 'continuous', 'j_slide': 'prismatic'}),
+])
+def test_types_of_joints(joint_type, content, types):
+    joints = joints_of(model_file(TWO_LINKS + joint(joint_type, content), version='1.11'))
+    del joints['m_fixed']
+    assert {name: each.type for name, each in joints.items()} == types
+
+
+def test_joint_is_where_its_link_is():
+    joints = joints_of(model_file(TWO_LINKS + joint('revolute', axis())))
+    assert joints['j'][2:4] == ('a', (1, 0, 0, 0, 0, 0, 1))
+
+
+def test_link_away_from_its_joint_is_fixed_to_a_link_at_the_joint():
+    joints = joints_of(model_file(TWO_LINKS + joint('revolute', axis(), pose='0 2 0 0 0 0')))
+    assert joints['j'][2:4] == ('a', (1, 2, 0, 0, 0, 0, 1))
+    assert joints['b_fixed'][1:4] == ('fixed', 'j_frame', (0, -2, 0, 0, 0, 0, 1))
+
+
+def test_joint_from_child_to_parent_turns_the_other_way():
+    text = model_file(
+        TWO_LINKS + joint('revolute', axis(xyz='0 1 0'), parent='b', child='a'))
+    assert joints_of(text)['j'].axis.xyz == (0, -1, 0)
+
+
+def test_thread_follows_what_turns():
+    text = model_file(TWO_LINKS + joint(
+        'screw', axis('<limit><lower>-9</lower></limit>')
+        + '<screw_thread_pitch>2</screw_thread_pitch>'), version='1.11')
+    joints = joints_of(text)
+    assert joints['j_slide'].mimic == ('j', pytest.approx(1 / math.pi), 0)
+    assert (joints['j'].axis.lower, joints['j_slide'].axis.lower) == (-9, -math.inf)
+
+
+def followers(*mimics, extra=''):
+    """Write joints j0, j1, ... in a row, each with a mimic or none."""
+    links = ''.join(f'<link name="l{number}"/>' for number in range(len(mimics) + 1))
+    return model_file(links + extra + ''.join(
+        joint('revolute', axis(mimic), f'j{number}', f'l{number}', f'l{number + 1}')
+        for number, mimic in enumerate(mimics)), version='1.11')
+
+
+def mimic(leader, multiplier, offset=0, reference=0):
+    return (f'<mimic joint="{leader}"><multiplier>{multiplier}</multiplier>'
+            f'<offset>{offset}</offset><reference>{reference}</reference></mimic>')
+
+
+def test_mimic_has_no_reference_in_urdf():
+    joints = joints_of(followers('', mimic('j0', 2, 5, 1)))
+    assert joints['j1'].mimic == ('j0', 2, 3)
+
+
+def test_follower_of_a_follower_follows_its_leader():
+    joints = joints_of(followers('', mimic('j0', 2, 5, 1), mimic('j1', 10, 1)))
+    assert joints['j2'].mimic == ('j0', 20, 31)
+
+
+def test_joints_that_follow_one_another_follow_nothing():
+    robot = robot_of(followers(mimic('j1', 1), mimic('j0', 1)))
+    assert [link.joint.mimic for link in robot.links if link.joint] == [None] * 3
+    assert [warning.message for warning in robot.warnings] == [
+        'joint "j0" mimics nothing in URDF: "m::j0" follows it in turn',
+        'joint "j1" mimics nothing in URDF: "m::j1" follows it in turn']
+
+
+def test_follower_of_a_joint_that_does_not_move_follows_nothing():
+    text = followers('', mimic('f', 1), extra=(
+        '<link name="x"/>' + joint('fixed', axis(), 'f', 'l0', 'x')))
+    robot = robot_of(text)
+    assert 'joint "j1" mimics nothing in URDF: "m::f" does not move' in str(robot.warnings[-1])
+
+
+def test_second_axis_can_be_followed():
+    follower = axis('<mimic joint="j" axis="axis2"><multiplier>3</multiplier></mimic>')
+    text = model_file(
+        '<link name="a"/><link name="b"/><link name="c"/>'
+        + joint('universal', axis() + axis(tag='axis2'))
+        + joint('revolute', follower, 'k', 'b', 'c'), version='1.11')
+    assert joints_of(text)['k'].mimic == ('j_axis2', 3, 0)
+
+
+# Every link is where TF has the frame, at every position of the joints
+
+def assert_same_frames(text, positions, **options):
+    scene = load_text(text, shapes=True)
+    robot = robot_from_scene(scene, TfOptions(**options))
+    urdf = load_text(urdf_from_scene(scene, **options).text, 'robot.urdf')
+    moved, moved_urdf = (scene_at_positions(each, positions) for each in (scene, urdf))
+    tree = tf_tree_from_scene(moved, TfOptions(anchor_models=AnchorModels.ALL, **options))
+    expected = dict(zip(tree.frame_ids, tree.poses.tolist(), strict=True))
+    places = {link.name: matrix_from_pose(moved_urdf.pose(f'{urdf.own_name(1)}::{link.name}'))
+              for link in robot.links if link.name in expected}
+    assert places.keys() == expected.keys()
+    first = robot.links[0].name
+    to_root = np.eye(4)
+    if first in expected:
+        to_root = matrix_from_pose(expected[first]) @ np.linalg.inv(places[first])
+    for name, matrix in places.items():
+        np.testing.assert_allclose(
+            to_root @ matrix, matrix_from_pose(expected[name]), atol=1e-9, err_msg=name)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.data(), st.integers(2, 5))
+def test_frames_of_random_trees_of_joints(data, count):
+    link_poses = data.draw(st.lists(POSES, min_size=count, max_size=count))
+    joints = data.draw(random_joints(count))
+    extra = f'<frame name="f" attached_to="l{count - 1}">{pose_text(data.draw(POSES))}</frame>'
+    positions = {
+        name: data.draw(POSITIONS) for each in joints for name in each.position_names}
+    assert_same_frames(model_text(link_poses, joints, extra), positions)
+
+
+@settings(max_examples=40, deadline=None)
+@given(random_scenes(), st.sets(st.sampled_from([Kind.FRAME, Kind.JOINT, Kind.SENSOR])))
+def test_frames_of_random_scenes(drawn, kinds):
+    text = drawn.text()
+    model = drawn.models[0].scoped_name
+    try:
+        robot_of(text, model=model, kinds=frozenset({*kinds, Kind.LINK}))
+    except SdfError:
+        assume(False)
+    assert_same_frames(text, {}, model=model, kinds=frozenset({*kinds, Kind.LINK}))
