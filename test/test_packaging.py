@@ -147,10 +147,11 @@ def test_libraries_of_view_are_those_that_it_names_in_its_errors():
 
 
 @pytest.mark.parametrize(('command', 'node'), [
-    ('install', 'bridge'), ('develop', 'bridge'), ('bdist_wheel', 'sdf_pose_bridge')])
-def test_the_node_is_called_bridge_in_a_ros_workspace_only(command, node):
+    ('install', {'bridge', 'robot_state_publisher'}),
+    ('develop', {'bridge', 'robot_state_publisher'}), ('bdist_wheel', {'sdf_pose_bridge'})])
+def test_names_of_other_programs_are_used_in_a_ros_workspace_only(command, node):
     scripts = arguments_of_setup(command)['entry_points']['console_scripts']
-    assert {script.split(' = ')[0] for script in scripts} == {'sdf_pose', node}
+    assert {script.split(' = ')[0] for script in scripts} == {'sdf_pose', *node}
 
 
 def test_scripts_go_where_ros2_run_looks():
@@ -160,18 +161,20 @@ def test_scripts_go_where_ros2_run_looks():
         '$base/lib/sdf_pose_bridge'}
 
 
-@pytest.mark.parametrize('name', ['bridge', 'sdf_pose'])
-def test_scripts_import_what_they_call(name, tmp_path):
+@pytest.mark.parametrize(('name', 'function'), [
+    ('bridge', 'main'), ('robot_state_publisher', 'robot_state_publisher'), ('sdf_pose', 'main')])
+def test_scripts_import_what_they_call(name, function, tmp_path):
     run_setup('egg_info', '--egg-base', tmp_path, 'install_scripts', '--install-dir', tmp_path)
     first, mark, guard, *lines = map(str.strip, (tmp_path / name).read_text().splitlines())
     assert first.startswith('#!')
     assert mark == '# PYTHON_ARGCOMPLETE_OK'
     assert guard == "if __name__ == '__main__':"
-    if name == 'bridge':  # signals come first
+    if name != 'sdf_pose':  # signals come first
         import_signal, block, *lines = lines
         assert import_signal == 'import signal'
         assert block.startswith('signal.pthread_sigmask(signal.SIG_BLOCK, ')
-    assert [line.split()[0] for line in lines] == ['import', 'from', 'sys.exit(main())']
+    assert [line.split()[0] for line in lines] == [
+        'import', 'from', f'sys.exit({function}())']
 
 
 @pytest.mark.parametrize('verb', COLCON_VERBS)

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The executable ``bridge``; it handles signals before it imports ROS, which takes a while."""
+"""The executables of the node; they handle signals before they import ROS, which takes a while."""
 
 from __future__ import annotations
 
@@ -27,11 +27,17 @@ MISSING_MODULE = (
 """What to do if another module is missing that the node imports."""
 
 
-def main(args: Sequence[str] | None = None) -> int:
+def robot_state_publisher() -> int:
+    """Run the node with the name and the defaults of robot_state_publisher."""
+    return main(program='robot_state_publisher')
+
+
+def main(args: Sequence[str] | None = None, program: str = 'bridge') -> int:
     """
     Run the node until a signal ends it.
 
     :param args: the command line with the program's name first; that of the process if None.
+    :param program: the name of the executable.
     :return: exit code: 0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -47,7 +53,7 @@ def main(args: Sequence[str] | None = None) -> int:
     sys.setdlopenflags(os.RTLD_LAZY)
     try:
         from sdf_pose_bridge.ros.process import run
-        return run(list(sys.argv if args is None else args))
+        return run(list(sys.argv if args is None else args), program)
     except ImportError as error:
         print(f'sdf_pose_bridge: {sentence_from_import_error(error)}', file=sys.stderr)
         return 1

@@ -16,6 +16,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from diagnostic_msgs.msg import DiagnosticStatus
 from diagnostic_msgs.msg import KeyValue
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 
 from sdf_pose_bridge.ros.log_lines import count_in_words
 from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints
@@ -36,16 +37,27 @@ class Diagnostics:
     """
     The publisher of the diagnostics of a node.
 
+    The topic exists once it is switched on.
+
     :param unreported_joints: returns the names of the joints whose positions are missing.
     """
 
     def __init__(self, node: Node, unreported_joints: Callable[[], Sequence[str]]) -> None:
         self._node = node
+        self._publisher: Publisher | None = None
         self._unreported_joints = unreported_joints
         self._last: tuple[LoadedScene, Sequence[str]] | None = None
-        self._publisher = new_publisher(
-            node, Topic('/diagnostics', DiagnosticArray, depth=10, is_latched=False))
         self._message = DiagnosticArray()
+
+    def switch(self, *, on: bool) -> None:
+        """Publish from now on, or no more."""
+        if on and self._publisher is None:
+            self._publisher = new_publisher(
+                self._node, Topic('/diagnostics', DiagnosticArray, depth=10, is_latched=False))
+            self.publish()
+        elif not on and self._publisher is not None:
+            self._node.destroy_publisher(self._publisher)
+            self._publisher = None
 
     def update(self, loaded: LoadedScene, failure: Sequence[str] = ()) -> None:
         """
@@ -58,7 +70,9 @@ class Diagnostics:
         self.publish()
 
     def publish(self) -> None:
-        """Publish the status."""
+        """Publish the status, if there is one and it is switched on."""
+        if self._publisher is None:
+            return
         if self._last is not None:
             name = self._node.get_fully_qualified_name().lstrip('/')
             self._message.status = [

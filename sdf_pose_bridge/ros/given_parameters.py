@@ -7,6 +7,7 @@ from __future__ import annotations
 import array
 from collections.abc import Awaitable
 from collections.abc import Callable
+from collections.abc import Container
 from collections.abc import Iterable
 from collections.abc import Mapping
 from collections.abc import Sequence
@@ -34,9 +35,13 @@ from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
-from sdf_pose_bridge.ros.parameters import MOST_VALUES
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.ros.parameters import Value
+from sdf_pose_bridge.ros.setting_rules import MOST_VALUES
+
+QOS_OVERRIDES = 'qos_overrides.'
+"""How names of parameters begin that other nodes have for the quality of service of a topic."""
 
 _NAMES_OF_TYPES = {
     Parameter.Type.STRING: 'a string', Parameter.Type.BOOL: 'true or false',
@@ -48,13 +53,21 @@ _NAMES_OF_TYPES = {
 }
 
 
-def settings_from_node(node: Node) -> Settings:
+def settings_from_node(
+    node: Node, defaults: Mapping[str, Value] | None = None, file: str = '',
+) -> Settings:
     """
     Declare all parameters on a node with the values that it was given, and convert these.
 
+    :param defaults: defaults of parameters, where they differ from those of their declarations.
+    :param file: the file to publish, unless parameters say what to publish.
     :raises SettingsError: if a value has the wrong type or is not allowed.
     """
-    parameters = _parameters_at_start(_given_parameters(node))
+    given = _given_parameters(node)
+    defaults = dict(defaults or {})
+    if not {'sdf_file', 'robot_description'}.intersection(given):
+        defaults['sdf_file'] = file
+    parameters = _parameters_at_start(given, defaults)
     settings = changed_settings(Settings({}), parameters, shows_command_line=True)
     for parameter in parameters:
         _declare(node, parameter)
@@ -69,7 +82,7 @@ def settings_from_values(values: Mapping[str, Any]) -> Settings:
     :raises SettingsError: if a value has the wrong type or is not allowed.
     """
     given = {name: Parameter(name, value=value) for name, value in values.items()}
-    return changed_settings(Settings({}), _parameters_at_start(given))
+    return changed_settings(Settings({}), _parameters_at_start(given, {}))
 
 
 def changed_settings(
@@ -106,12 +119,22 @@ def changed_settings(
     return Settings(values)
 
 
-def warnings_about_unknown_parameters(node: Node) -> list[str]:
-    """Find parameters that were given when the node was started, but that it does not have."""
+def warnings_about_unknown_parameters(
+    node: Node, known_elsewhere: Container[str] = (), *, only_misspelt: bool = False,
+) -> list[str]:
+    """
+    Find parameters that were given when the node was started, but that it does not have.
+
+    :param known_elsewhere: names that mean nothing here, and need no warning.
+    :param only_misspelt: whether to leave out those that are not like the name of a parameter.
+    """
+    hints = {
+        name: hint_from_names(name, DECLARATIONS) for name in _given_parameters(node)
+        if name not in DECLARATIONS and not node.has_parameter(name)
+        and not name.startswith(QOS_OVERRIDES) and name not in known_elsewhere}
     return [
-        f'there is no parameter "{name}", so it has no effect{hint_from_names(name, DECLARATIONS)}'
-        for name in _given_parameters(node)
-        if name not in DECLARATIONS and not node.has_parameter(name)]
+        f'there is no parameter "{name}", so it has no effect{hint}'
+        for name, hint in hints.items() if hint or not only_misspelt]
 
 
 def add_parameter_services(
@@ -246,11 +269,13 @@ def _given_declared_parameters(node: Node) -> Mapping[str, Parameter]:
     return values
 
 
-def _parameters_at_start(given: Mapping[str, Parameter]) -> list[Parameter]:
+def _parameters_at_start(
+    given: Mapping[str, Parameter], defaults: Mapping[str, Value],
+) -> list[Parameter]:
     """Return all parameters with the values that they are given, or with their defaults."""
     parameters = []
     for name, declaration in DECLARATIONS.items():
-        type_, value = declaration.type_, declaration.default
+        type_, value = declaration.type_, defaults.get(name, declaration.default)
         parameter = given.get(name)
         if parameter is not None and parameter.type_ is not Parameter.Type.NOT_SET:
             type_, value = parameter.type_, parameter.value

@@ -99,10 +99,17 @@ class JointStates:
 
     :param frequency: how often each transform is published on ``/tf`` at most, in Hz; 0.0 for
         each message.
+    :param ignores_stamps: whether to publish each message, also one with the last one's stamp.
     """
 
-    def __init__(self, node: Node, frames: PublishedMovingFrames, frequency: float) -> None:
-        self.frequency = frequency
+    def __init__(
+        self, node: Node, frames: PublishedMovingFrames, frequency: float, *,
+        ignores_stamps: bool = False,
+    ) -> None:
+        self.rule = frequency, ignores_stamps
+        """These parameters."""
+        frequency = 0.0 if ignores_stamps else frequency
+        self._ignores_stamps = ignores_stamps
         self._node = node
         self._logger = node.get_logger()
         self._frames = frames
@@ -230,7 +237,7 @@ class JointStates:
             self._logger.info(f'following {self._subscription.topic_name}')
         self._frames.stamp = stamp
         # TF takes one transform for each time, and complains about a second one.
-        plan.is_waiting |= plan.stamp != stamp
+        plan.is_waiting |= self._ignores_stamps or plan.stamp != stamp
         plan.stamp = stamp
         if self._gate.is_open:
             self._publish()

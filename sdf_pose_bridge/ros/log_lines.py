@@ -7,6 +7,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import compress
 
+import numpy as np
+
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import quoted_names
@@ -79,16 +81,31 @@ def lines_about_lost_frames(before: TfTree, after: TfTree) -> list[str]:
 
 
 def line_about_detached_models(tree: TfTree, scene: Scene) -> str:
-    """Name the models without a transform from the root frame; return '' if there are none."""
-    elements = tree.elements[tree.parents == NO_PARENT].tolist()
-    models = dict.fromkeys(
-        scene.names[top_level_model] for element in elements if element >= 0
-        for *_, top_level_model, _ in [scene.with_ancestors(element)])
-    if not models:
+    """Name the roots of trees below no other frame; return '' if there are none."""
+    is_parent = np.isin(np.arange(len(tree.parents)), tree.parents)
+    roots: dict[int, list[int]] = {}
+    for frame in np.flatnonzero(tree.parents == NO_PARENT).tolist():
+        roots.setdefault(_top_level_element(frame, tree, scene), []).append(frame)
+    # Frames beside the root of a model have no parent where their links are not published.
+    names = [
+        tree.frame_ids[frame] for frames in roots.values()
+        for frame in [each for each in frames if is_parent[each]] or frames[:1]]
+    if not names:
+        return ''
+    what = 'the root of its tree' if len(names) == 1 else 'the roots of their trees'
+    return (
+        f'no transform to {names_in_line(names)}, {what}: odometry or localization can publish '
+        f'one, or this node from "{tree.root_frame}" with anchor_models "all"')
+
+
+def line_about_gazebo(count: int) -> str:
+    """Count warnings about what only Gazebo would do; return '' if there are none."""
+    if not count:
         return ''
     return (
-        f'no transform from "{tree.root_frame}" to {names_in_line(tuple(models))}: odometry or '
-        'localization can publish one, or this node with anchor_models "all"')
+        f'{count_in_words(count, "warning")} about what only Gazebo would do with this URDF '
+        f'{"is" if count == 1 else "are"} not shown; "sdf_pose check" shows '
+        f'{"it" if count == 1 else "them"}')
 
 
 def line_about_unreported_joints(names: Sequence[str]) -> str:
@@ -122,6 +139,14 @@ def line_about_joints_at_rest(scene: Scene, model: str) -> str:
 def count_in_words(number: int, what: str) -> str:
     """Return a number with a noun in the singular or the plural."""
     return f'{number} {what}' if number == 1 else f'{number} {what}s'
+
+
+def _top_level_element(frame: int, tree: TfTree, scene: Scene) -> int:
+    """Return the element below the root that a frame is in; -1 for an optical frame."""
+    element = int(tree.elements[frame])
+    if element < 0:
+        return element
+    return [element, *scene.with_ancestors(element)][-2]
 
 
 def _children(tree: TfTree) -> set[str]:

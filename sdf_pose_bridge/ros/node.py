@@ -33,6 +33,7 @@ from sdf_pose_bridge.ros.given_parameters import add_parameter_services
 from sdf_pose_bridge.ros.given_parameters import changed_settings
 from sdf_pose_bridge.ros.log_lines import count_in_words
 from sdf_pose_bridge.ros.log_lines import line_about_detached_models
+from sdf_pose_bridge.ros.log_lines import line_about_gazebo
 from sdf_pose_bridge.ros.log_lines import line_about_joints_at_rest
 from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
 from sdf_pose_bridge.ros.log_lines import lines_from_error
@@ -126,6 +127,7 @@ class SdfPoseBridge:
         self._robot_description = TextPublisher(node, 'robot_description')
         self._publish_robot_description()
         self._visuals = VisualPublisher(node, self._reader, loaded)
+        self._follow_switches()
 
     # Loading
 
@@ -135,8 +137,7 @@ class SdfPoseBridge:
 
     async def _show(self, loaded: LoadedScene) -> None:
         """Publish a scene, with the topics that the settings ask for."""
-        frames = await _frames_of_scene(
-            self._node, loaded, self._settings.pose_topics, self._frames)
+        frames = await _frames_of_scene(self._node, loaded, self._settings, self._frames)
         async with self._publishing:
             before, self._loaded, self._frames = self._loaded, loaded, frames
             self._follow_joints()
@@ -152,9 +153,9 @@ class SdfPoseBridge:
 
     def _follow_joints(self) -> None:
         """Let ``joint_states`` move the frames, if joints follow it."""
-        moving, frequency = self._frames.moving, self._settings.publish_frequency
-        current = self._joint_states
-        if current is not None and current.frequency == frequency and moving:
+        moving, current = self._frames.moving, self._joint_states
+        rule = self._settings.publish_frequency, self._settings.ignore_timestamp
+        if current is not None and current.rule == rule and moving:
             current.replace(moving)
             return
         if current is not None:
@@ -163,7 +164,8 @@ class SdfPoseBridge:
         if moving is not None:
             # Imported here because it takes 8 ms, and most often joints do not move.
             from sdf_pose_bridge.ros.joint_states import JointStates
-            self._joint_states = JointStates(self._node, moving, frequency)
+            self._joint_states = JointStates(
+                self._node, moving, rule[0], ignores_stamps=rule[1])
 
     def _current_lookup(self) -> PoseLookup:
         """Return what poses are looked up in, with the positions of all messages so far."""
@@ -173,6 +175,10 @@ class SdfPoseBridge:
 
     def _unreported_joints(self) -> Sequence[str]:
         return () if self._joint_states is None else self._joint_states.unreported
+
+    def _follow_switches(self) -> None:
+        self._diagnostics.switch(on=self._settings.publish_diagnostics)
+        self._visuals.switch(on=self._settings.publish_visuals)
 
     def _publish_robot_description(self) -> None:
         self._robot_description.publish(
@@ -189,13 +195,13 @@ class SdfPoseBridge:
             f'publishing {count_in_words(len(loaded.tree.frame_ids), "frame")} of {loaded.path} '
             f'with {count_in_words(loaded.tree.transform_count, "transform")}, root frame '
             f'"{loaded.tree.root_frame}" (read in {1e3 * loaded.seconds:.0f} ms)')
-        line = line_about_detached_models(loaded.tree, loaded.scene)
-        if line:
-            self._logger.info(line)
-        line = '' if loaded.tree.moving else line_about_joints_at_rest(
-            loaded.scene, loaded.request.tf_options.model)
-        if line and not self._has_told_of_joints:
-            self._has_told_of_joints = True
+        lines = [
+            line_about_gazebo(loaded.gazebo_warning_count),
+            line_about_detached_models(loaded.tree, loaded.scene)]
+        if not loaded.tree.moving and not self._has_told_of_joints:
+            lines.append(line_about_joints_at_rest(loaded.scene, loaded.request.tf_options.model))
+            self._has_told_of_joints = bool(lines[-1])
+        for line in filter(None, lines):
             self._logger.info(line)
         self._diagnostics.update(loaded)
 
@@ -306,9 +312,12 @@ class SdfPoseBridge:
         before, self._settings = self._settings, settings
         if settings.publish_rate != before.publish_rate:
             self._publish_again_at(settings.publish_rate)
-        if loaded is not self._loaded or settings.pose_topics != before.pose_topics:
+        if loaded is not self._loaded or (
+                settings.pose_topics, settings.publish_transforms) != (
+                    before.pose_topics, before.publish_transforms):
             await self._show(loaded)
         self._follow_joints()
+        self._follow_switches()
         if settings.publish_robot_description != before.publish_robot_description:
             self._publish_robot_description()
 
@@ -348,21 +357,22 @@ async def start_bridge(
     :param node: the node, with declared parameters and an executor.
     :param frames: the frames of the scene, which are published on ``/tf_static``.
     """
-    frames = await _frames_of_scene(node, loaded, settings.pose_topics, frames)
+    frames = await _frames_of_scene(node, loaded, settings, frames)
     await frames.publish_topics()
     SdfPoseBridge(node, frames, settings, loaded)
 
 
 async def _frames_of_scene(
-    node: Node, loaded: LoadedScene, patterns: Sequence[str], before: PublishedFrames,
+    node: Node, loaded: LoadedScene, settings: Settings, before: PublishedFrames,
 ) -> PublishedFrames:
     """Return the frames of a scene, with their topics, which are not published yet."""
     topics: PoseTopics = await run_in_thread(node, lambda: pose_topics_from_patterns(
-        loaded.tree.frame_ids, patterns, node.get_fully_qualified_name()))
+        loaded.tree.frame_ids, settings.pose_topics, node.get_fully_qualified_name()))
     if topics.warning:
         node.get_logger().warning(topics.warning)
     if node.get_logger().is_enabled_for(LoggingSeverity.DEBUG):
         for frame_id, name in topics.names.items():
             node.get_logger().debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
     return PublishedFrames(
-        before.publishers, loaded.tree, loaded.joint_positions, topics.names, before)
+        before.publishers, loaded.tree, loaded.joint_positions, topics.names, before,
+        has_transforms=settings.publish_transforms)

@@ -3,9 +3,7 @@
 """
 The parameters of the node, and the values that they can have.
 
-Each parameter is declared once, as an attribute of :class:`Settings`. A function
-``<rule>_setting`` makes the setting of a value. If the value is not allowed, it raises ValueError
-with the words that follow "parameter <name>" in a sentence.
+Each parameter is declared once, as an attribute of :class:`Settings`.
 """
 
 from __future__ import annotations
@@ -16,17 +14,26 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from dataclasses import field
 import enum
-from pathlib import Path
 from typing import Any
 from typing import Generic
 from typing import TypeVar
 
 from rclpy.parameter import Parameter
 
-from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.ros.setting_rules import AUTO_KINDS
+from sdf_pose_bridge.ros.setting_rules import directories_setting
+from sdf_pose_bridge.ros.setting_rules import HIGHEST_FREQUENCY
+from sdf_pose_bridge.ros.setting_rules import HIGHEST_RATE
+from sdf_pose_bridge.ros.setting_rules import kinds_setting
+from sdf_pose_bridge.ros.setting_rules import LOWEST_RATE
+from sdf_pose_bridge.ros.setting_rules import path_setting
+from sdf_pose_bridge.ros.setting_rules import patterns_setting
+from sdf_pose_bridge.ros.setting_rules import prefix_setting
+from sdf_pose_bridge.ros.setting_rules import PUBLISHED_KINDS
+from sdf_pose_bridge.ros.setting_rules import refusal
+from sdf_pose_bridge.ros.setting_rules import root_frame_setting
+from sdf_pose_bridge.ros.setting_rules import separator_setting
 from sdf_pose_bridge.scene.loading import MissingInclude
-from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
 from sdf_pose_bridge.tf.loaded_scene import LoadRequest
@@ -37,33 +44,6 @@ from sdf_pose_bridge.tf.tree import TfOptions
 Value = str | bool | float | list[str]
 Setting = TypeVar('Setting')
 Choice = TypeVar('Choice', bound=enum.Enum)
-
-PUBLISHED_KINDS = {
-    kind.label: kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD, Kind.ACTOR)}
-"""The kinds of element that can become frames, by their names."""
-
-LOWEST_RATE = 0.001
-"""The lowest rate in Hz that a parameter can have, but for 0.0."""
-
-HIGHEST_RATE = 100.0
-"""The limit of ``publish_rate`` in Hz."""
-
-HIGHEST_FREQUENCY = 1000.0
-"""The limit of ``publish_frequency`` in Hz, as in robot_state_publisher."""
-
-MOST_VALUES = 1000
-"""How many patterns or directories a parameter may have. Each pattern is compared with each frame,
-and each directory is looked into for each include."""
-
-MOST_CHARACTERS = 255
-"""How long a name or a pattern may be; a prefix is a part of every frame id."""
-
-MOST_CHARACTERS_OF_PATH = 4096
-"""How long a path may be, as in Linux."""
-
-MOST_CHARACTERS_OF_SEPARATOR = 8
-"""How long a separator may be, which stands many times in a frame id."""
-
 
 class SettingsError(ValueError):
     """
@@ -113,82 +93,6 @@ class Declaration(Generic[Setting]):
         return setting
 
 
-def root_frame_setting(value: str) -> str:
-    """Refuse what cannot be the frame id of the root."""
-    if not value:
-        raise _refusal(value, 'a frame id, which is not empty')
-    return prefix_setting(value)
-
-
-def prefix_setting(value: str) -> str:
-    """Refuse what frame ids cannot begin with."""
-    if value.startswith('/'):
-        raise _refusal(value, 'without a leading slash, which TF does not allow')
-    return _name_setting(value, MOST_CHARACTERS)
-
-
-def separator_setting(value: str) -> str:
-    """Refuse what cannot separate the parts of frame ids."""
-    if not value:
-        raise _refusal(value, 'at least one character, or names run together')
-    return _name_setting(value, MOST_CHARACTERS_OF_SEPARATOR)
-
-
-def kinds_setting(values: Sequence[str]) -> frozenset[Kind]:
-    """Make kinds of element of their names."""
-    known = ', '.join(PUBLISHED_KINDS)
-    if not values:
-        raise _refusal([], f'at least one of {known}')
-    for value in values:
-        if value not in PUBLISHED_KINDS:
-            raise _refusal(value, f'made of {known}')
-    return frozenset(PUBLISHED_KINDS[value] for value in values)
-
-
-def patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
-    """Refuse too many patterns, and long ones."""
-    _check_count(values, 'patterns')
-    for value in values:
-        _check_length(value, MOST_CHARACTERS)
-    return tuple(values)
-
-
-def path_setting(value: str) -> str:
-    """Refuse what is too long for a path."""
-    _check_length(value, MOST_CHARACTERS_OF_PATH)
-    return value
-
-
-def directories_setting(values: Sequence[str]) -> tuple[Path, ...]:
-    """Make paths, without those that are empty; refuse too many, and long ones."""
-    _check_count(values, 'directories')
-    return tuple(Path(path_setting(value)).expanduser() for value in values if value)
-
-
-def _check_count(values: Sequence[str], what: str) -> None:
-    if len(values) > MOST_VALUES:
-        msg = f'has {len(values)} {what}; it must have at most {MOST_VALUES}'
-        raise ValueError(msg)
-
-
-def _check_length(value: str, most: int) -> None:
-    if len(value) > most:
-        msg = f'has a value of {len(value)} characters; it must have at most {most}'
-        raise ValueError(msg)
-
-
-def _name_setting(value: str, most: int) -> str:
-    _check_length(value, most)
-    if not value.isprintable():
-        raise _refusal(value, 'without control characters')
-    return value
-
-
-def _refusal(value: object, rule: str) -> ValueError:
-    shown = f'"{printable(shortened(value))}"' if isinstance(value, str) else value
-    return ValueError(f'is {shown}; it must be {rule}')
-
-
 def _switch(
     default: bool, description: str, *, needs_load: bool = True,  # noqa: FBT001
 ) -> Declaration[bool]:
@@ -202,7 +106,7 @@ def _choice(default: Choice, description: str) -> Declaration[Choice]:
 
     def setting(value: str) -> Choice:
         if value not in known:
-            raise _refusal(value, rule)
+            raise refusal(value, rule)
         return type(default)(value)
 
     return Declaration(default.value, description, rule, setting)
@@ -221,7 +125,7 @@ def _rate(
     def setting(value: float) -> float:
         # What is not a number is out of any range.
         if value and not LOWEST_RATE <= value <= highest:
-            raise _refusal(value, rule)
+            raise refusal(value, rule)
         return value
 
     return Declaration(
@@ -253,6 +157,16 @@ class Settings:
         'Publishes the text of sdf_file, or that of robot_description, on the topic '
         'robot_description, unless it is a world.',
         needs_load=False,
+    )
+    publish_transforms = _switch(
+        True, 'Publishes all transforms one by one on ~/transforms.', needs_load=False,
+    )
+    publish_visuals = _switch(
+        True, 'Publishes what the links look like on ~/visuals, while somebody listens.',
+        needs_load=False,
+    )
+    publish_diagnostics = _switch(
+        True, 'Publishes on /diagnostics what is served, and what was wrong.', needs_load=False,
     )
     root_frame = Declaration(
         'world',
@@ -294,8 +208,9 @@ class Settings:
     )
     kinds = Declaration(
         [name for name, kind in PUBLISHED_KINDS.items() if kind in DEFAULT_KINDS],
-        'Which kinds of element become frames.',
-        f'some of {", ".join(PUBLISHED_KINDS)}',
+        'Which kinds of element become frames; "auto" is link for URDF, and model, link, frame '
+        'and sensor for SDFormat.',
+        f'{AUTO_KINDS}, or some of {", ".join(PUBLISHED_KINDS)}',
         kinds_setting,
     )
     pose_frame = Declaration(
@@ -339,6 +254,12 @@ class Settings:
         'How often a transform that joints move is published on /tf at most, in Hz; 0.0 for each '
         'message on joint_states.',
         'for each message', HIGHEST_FREQUENCY,
+    )
+    ignore_timestamp = _switch(
+        False,
+        'Publishes each message on joint_states, also one with the stamp of the last one, and '
+        'whatever publish_frequency is.',
+        needs_load=False,
     )
     publish_rate = _rate(
         'How often everything that joints do not move is published again, in Hz, for listeners '

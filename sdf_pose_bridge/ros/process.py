@@ -35,53 +35,55 @@ from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
 from sdf_pose_bridge.ros.middleware import use_profile
 from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.ros.programs import Program
+from sdf_pose_bridge.ros.programs import PROGRAMS
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.sdformat.include.uris import AddressError
 from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
 import sdf_pose_bridge_interfaces  # noqa: F401 - if it is missing, say so before anything else
 
-NODE_NAME = 'sdf_pose_bridge'
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 LONGEST_STOP_S = 10.0
 """How long what is being done may go on after a signal, before the process is ended."""
 
-USAGE = """\
-Publish every frame of an SDFormat file on TF and on topics.
 
-usage: ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=cell.sdf [-p name:=value ...]
-
-"ros2 param describe /sdf_pose_bridge <name>" explains each parameter of the running node."""
-
-
-def run(args: Sequence[str]) -> int:
+def run(args: Sequence[str], program_name: str) -> int:
     """
     Run the node until a signal ends it.
 
     :param args: the command line with the program's name first.
+    :param program_name: which of :data:`PROGRAMS` it is.
     :return: exit code: 0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
     # From now on a signal waits until it is unblocked or asked for, and a second one is ignored.
     # Threads that are started later inherit this.
     signal.pthread_sigmask(signal.SIG_BLOCK, STOP_SIGNALS)
+    program = PROGRAMS[program_name]
     sentence_about_profile = use_profile(os.environ)
     try:
         rclpy.init(args=list(args), signal_handler_options=SignalHandlerOptions.NO)
         words = remove_ros_args(args)[1:]
-        if words:
-            return _exit_code_from_words(words)
-        node = Node(NODE_NAME, start_parameter_services=False)
+        if {'-h', '--help'}.intersection(words):
+            print(program.usage)
+            return 0
+        if len(words) > program.takes_file:
+            _complain(
+                program, f'the argument "{words[program.takes_file]}" is not understood\n\n'
+                f'{program.usage}')
+            return 1
+        node = Node(program.node_name, start_parameter_services=False)
     except InvalidParameterTypeException as error:
         # Of one that rclpy itself declares, such as use_sim_time. Its name comes last again.
-        _complain(str(error).rpartition(': ')[0])
+        _complain(program, str(error).rpartition(': ')[0])
         return 1
     except RuntimeError as error:
-        _complain(_sentence_from_ros_error(error))
+        _complain(program, _sentence_from_ros_error(error))
         return 1
     node.get_logger().debug(sentence_about_profile)
     try:
-        exit_code = _exit_code_from_node(node)
+        exit_code = _exit_code_from_node(node, program, *words)
     except KeyboardInterrupt:
         exit_code = 0
     node.destroy_node()
@@ -89,22 +91,17 @@ def run(args: Sequence[str]) -> int:
     return exit_code
 
 
-def _exit_code_from_words(words: Sequence[str]) -> int:
-    if words[0] in ('-h', '--help'):
-        print(USAGE)
-        return 0
-    _complain(f'the argument "{words[0]}" is not understood\n\n{USAGE}')
-    return 1
-
-
-def _exit_code_from_node(node: Node) -> int:
-    _log_warnings(node, warnings_about_unknown_parameters(node))
+def _exit_code_from_node(node: Node, program: Program, file: str = '') -> int:
+    _log_warnings(node, warnings_about_unknown_parameters(
+        node, program.known_elsewhere, only_misspelt=bool(program.known_elsewhere)))
     try:
-        settings = settings_from_node(node)
+        settings = settings_from_node(node, program.defaults, file)
         with _interrupted_by_signals():
             loaded = loaded_scene_from_request(settings.load_request)
     except (SdfError, SettingsError, AddressError) as error:
-        _log_warnings(node, error.warnings if isinstance(error, SdfError) else ())
+        _log_warnings(node, [
+            warning for warning in (error.warnings if isinstance(error, SdfError) else ())
+            if not warning.is_for_gazebo])
         for line in lines_from_error(error):
             node.get_logger().fatal(line)
         return 1
@@ -176,5 +173,5 @@ def _sentence_from_ros_error(error: RuntimeError) -> str:
     return str(error).partition(', at /')[0]
 
 
-def _complain(sentence: str) -> None:
-    print(f'{NODE_NAME}: {sentence}', file=sys.stderr)
+def _complain(program: Program, sentence: str) -> None:
+    print(f'{program.node_name}: {sentence}', file=sys.stderr)

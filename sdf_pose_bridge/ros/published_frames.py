@@ -47,6 +47,7 @@ class PublishedFrames:
         are kept, if these frames have the topics too.
     :param positions: the positions of its joints; None if joints move nothing.
     :param pose_topics: the names of the topics of poses, by frame id.
+    :param has_transforms: whether to publish on ``~/transforms``.
     :param before: the frames that these ones replace. Joints with the same names continue where
         they are; the stamp stays if the tree does.
     """
@@ -54,13 +55,15 @@ class PublishedFrames:
     def __init__(
         self, publishers: Publishers, tree: TfTree, positions: JointPositions | None,
         pose_topics: Mapping[str, str], before: PublishedFrames | None = None,
+        *, has_transforms: bool = True,
     ) -> None:
         self.publishers = publishers
         self.tree = tree
         self.stamp: Stamp = publishers.now() if before is None or before.tree is not tree else (
             before.stamp)
         self._tf_static = publishers.opened(TF_STATIC)
-        self._transforms_topic = _transforms_topic(len(tree.fixed_indices), 'fixed')
+        self._transforms_topics = [
+            _transforms_topic(len(tree.fixed_indices), 'fixed')] if has_transforms else []
         self._pose_topics = {
             frame_id: Topic(f'~/poses/{name}', PoseStamped)
             for frame_id, name in pose_topics.items()}
@@ -79,11 +82,14 @@ class PublishedFrames:
 
     async def publish_topics(self) -> None:
         """Publish all frames on all other topics; fixed ones with the stamp of ``/tf_static``."""
-        topics = [TF_STATIC, self._transforms_topic, *self._pose_topics.values()]
+        topics = [TF_STATIC, *self._transforms_topics, *self._pose_topics.values()]
         if self.moving is not None:
-            topics += [TF, self.moving.transforms_topic]
+            topics.append(TF)
+            if self._transforms_topics:
+                topics.append(self.moving.transforms_topic)
         # All publishers of poses may take a second.
-        self.publishers.opened(self._transforms_topic)
+        for topic in self._transforms_topics:
+            self.publishers.opened(topic)
         await self._send(self._fixed_transforms)
         await self.publishers.replace(dict.fromkeys(topics))
         await self._send(self._fixed_poses)
@@ -111,9 +117,9 @@ class PublishedFrames:
 
     @cached_property
     def _fixed_transforms(self) -> tuple[Sequence[Topic], StampedMessages]:
-        indices = self.tree.fixed_indices
+        indices = self.tree.fixed_indices if self._transforms_topics else np.array([], np.intp)
         messages = stamped_messages(*_transforms(self.tree, indices))
-        return [self._transforms_topic] * len(indices), messages
+        return self._transforms_topics * len(indices), messages
 
     @cached_property
     def _fixed_poses(self) -> tuple[Sequence[Topic], StampedMessages]:

@@ -11,6 +11,7 @@ from geometry_msgs.msg import Pose as PoseMessage
 from geometry_msgs.msg import Quaternion
 from geometry_msgs.msg import Vector3
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from std_msgs.msg import ColorRGBA
 from std_msgs.msg import Header
 from visualization_msgs.msg import Marker
@@ -31,8 +32,8 @@ class VisualPublisher:
     """
     Publishes ``~/visuals``.
 
-    Shapes are read and markers made when somebody listens for the first time, and again for each
-    scene that replaces another one while somebody listens.
+    The topic exists once it is switched on. Shapes are read and markers made when somebody listens
+    for the first time, and again for each scene that replaces another one while somebody listens.
 
     :param reader: reads shapes.
     """
@@ -42,8 +43,18 @@ class VisualPublisher:
         self._reader = reader
         self._loaded = loaded
         self._is_up_to_date = False
-        self._publisher = new_publisher(
-            node, Topic('~/visuals', MarkerArray), lambda _: self._publish_to_listeners())
+        self._publisher: Publisher | None = None
+
+    def switch(self, *, on: bool) -> None:
+        """Publish from now on, or no more."""
+        if on and self._publisher is None:
+            self._publisher = new_publisher(
+                self._node, Topic('~/visuals', MarkerArray),
+                lambda _: self._publish_to_listeners())
+        elif not on and self._publisher is not None:
+            self._node.destroy_publisher(self._publisher)
+            self._publisher = None
+            self._is_up_to_date = False
 
     def replace(self, loaded: LoadedScene) -> None:
         """Show another scene from now on."""
@@ -52,7 +63,8 @@ class VisualPublisher:
         self._publish_to_listeners()
 
     def _publish_to_listeners(self) -> None:
-        if not self._is_up_to_date and self._publisher.get_subscription_count() > 0:
+        if (not self._is_up_to_date and self._publisher is not None
+                and self._publisher.get_subscription_count() > 0):
             self._is_up_to_date = True
             self._node.executor.create_task(self._publish, self._loaded)
 
@@ -63,7 +75,7 @@ class VisualPublisher:
             return
         for line in lines:
             self._node.get_logger().warning(line)
-        if message is not None:
+        if message is not None and self._publisher is not None:
             self._publisher.publish(message)
 
 

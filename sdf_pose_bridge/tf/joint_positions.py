@@ -96,10 +96,7 @@ class JointPositions:
         """The position of each degree of freedom, in radians or metres."""
         self.is_reported = np.zeros(len(dofs), np.bool_)
         """Whether each has been given a position, or follows from one that has."""
-        self.is_known = (
-            self.is_reported if unreported is UnreportedJoints.NONE
-            else np.ones(len(dofs), np.bool_))
-        """Whether the position of each counts."""
+        self._unreported = unreported
         self.dofs = tuple(dofs)
         joints = np.array([each.joint.element for each in dofs], np.int32)
         names = FrameNaming(frame_names).frame_ids_from_scene(scene, joints)
@@ -108,6 +105,13 @@ class JointPositions:
         """The name of each degree of freedom."""
         self._indices = _indices_from_names(self.names, scene, dofs, model)
         self._followers = _followers(dofs)
+
+    @property
+    def is_known(self) -> NDArray[np.bool_]:
+        """Whether the position of each counts."""
+        if self._unreported is UnreportedJoints.NONE:
+            return self.is_reported
+        return np.ones(len(self.dofs), np.bool_)
 
     @property
     def missing(self) -> tuple[str, ...]:

@@ -67,6 +67,9 @@ class LoadedScene(NamedTuple):
     joint_positions: JointPositions | None
     """The positions of its joints; None if joints do not follow ``joint_states``."""
     warnings: tuple[SdfWarning, ...]
+    """Without those about what only Gazebo would do."""
+    gazebo_warning_count: int
+    """How many those are."""
     files: tuple[str, ...]
     """All files that were read."""
     read_since_ns: int
@@ -94,6 +97,7 @@ def loaded_scene_from_request(
     tree = tf_tree_from_scene(scene, options)
     joint_positions = None if tree.moving is None else JointPositions(
         scene, tree.moving.dofs, options.frame_names, options.model, request.unreported_joints)
+    found = (*warnings, *scene.warnings, *tree.warnings)
     return LoadedScene(
         request=request,
         path=path,
@@ -103,7 +107,8 @@ def loaded_scene_from_request(
         tree=tree,
         lookup=PoseLookup(scene, tree, joint_positions),
         joint_positions=joint_positions,
-        warnings=(*warnings, *scene.warnings, *tree.warnings),
+        warnings=tuple(warning for warning in found if not warning.is_for_gazebo),
+        gazebo_warning_count=sum(warning.is_for_gazebo for warning in found),
         files=(*manifests, *(scene.files if request.sdf_file else scene.files[1:])),
         read_since_ns=read_since_ns,
         seconds=time.perf_counter() - begin,

@@ -126,11 +126,12 @@ class BridgeProcess(LoggedProcess):
     A running bridge.
 
     :param arguments: what follows the executable on the command line.
+    :param program: the name of the executable.
     """
 
-    def __init__(self, *arguments):
+    def __init__(self, *arguments, program='bridge'):
         from command_line import executable_of_workspace
-        super().__init__([executable_of_workspace('bridge'), *arguments])
+        super().__init__([executable_of_workspace(program), *arguments])
 
     def wait_until_started(self):
         self.wait_for_line(STARTED)

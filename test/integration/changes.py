@@ -48,10 +48,10 @@ def wait_for_x(listener, x, frame='crate/body'):
     listener.wait(lambda: last_x(listener, frame) == x, lambda: f'x = {x}')
 
 
-def set_parameters(listener, **values):
+def set_parameters(listener, node=BRIDGE, **values):
     request = SetParameters.Request(parameters=[
         Parameter(name, value=value).to_parameter_msg() for name, value in values.items()])
-    return listener.call(SetParameters, f'{BRIDGE}/set_parameters', request).results
+    return listener.call(SetParameters, f'{node}/set_parameters', request).results
 
 
 def reload(listener):

@@ -7,6 +7,7 @@ Tests of a module that only read share a bridge and a listener.
 """
 
 import contextlib
+from functools import partial
 
 from bridge_process import BridgeProcess
 import pytest
@@ -37,6 +38,13 @@ def listener_in(domain):
 def start_bridge(ros_domain):
     """Starts the installed executable; ``start_bridge(*arguments)``."""
     with ended_later(BridgeProcess) as start:
+        yield start
+
+
+@pytest.fixture
+def start_robot_state_publisher(ros_domain):
+    """Starts the executable of that name; ``start_robot_state_publisher(*arguments)``."""
+    with ended_later(partial(BridgeProcess, program='robot_state_publisher')) as start:
         yield start
 
 

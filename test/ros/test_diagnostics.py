@@ -76,9 +76,21 @@ def test_the_values_describe_what_is_served_and_what_is_wrong(status_of, tmp_pat
         'first joint not reported': ''}
 
 
+def test_the_topic_is_there_while_it_is_switched_on(make_node):
+    node = make_node('bridge')
+    diagnostics = Diagnostics(node, tuple)
+    topics = []
+    for on in (False, True, True, False, True):
+        diagnostics.switch(on=on)
+        diagnostics.publish()
+        topics.append([each.topic_name for each in node.publishers].count('/diagnostics'))
+    assert topics == [0, 1, 1, 0, 1]
+
+
 def test_each_message_has_the_time_of_the_node(make_node):
     node = make_node('bridge')
     diagnostics = Diagnostics(node, tuple)
+    diagnostics.switch(on=True)
     before = node.get_clock().now().to_msg()
     diagnostics.publish()
     assert diagnostics._message.header.stamp.sec >= before.sec > 0

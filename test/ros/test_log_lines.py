@@ -10,12 +10,14 @@ from sdf_texts import fixed_joint
 from sdf_texts import joint
 from sdf_texts import world_file
 from tf_checks import tree_of
+import urdf_texts as urdf
 
 from sdf_pose_bridge.errors import LoadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros.log_lines import line_about_detached_models
+from sdf_pose_bridge.ros.log_lines import line_about_gazebo
 from sdf_pose_bridge.ros.log_lines import line_about_joints_at_rest
 from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints
 from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
@@ -124,7 +126,38 @@ def test_models_without_a_transform_from_the_root_are_named():
 
     arm = '<model name="arm"><link name="l"/><model name="hand"><link name="l"/></model></model>'
     assert line(world_file(arm)) == ''
-    assert 'no transform from "map" to "arm":' in line(f'<sdf version="1.10">{arm}</sdf>')
-    assert '"arm", "b":' in line(
+    assert line(f'<sdf version="1.10">{arm}</sdf>') == (
+        'no transform to "l", the root of its tree: odometry or localization can publish one, or '
+        'this node from "map" with anchor_models "all"')
+    assert '"arm/l", "b/l", the roots of their trees:' in line(
         world_file(f'{arm}<model name="b"><link name="l"/></model>'),
         anchor_models=AnchorModels.STATIC)
+
+
+def test_a_leaf_beside_the_root_is_not_named():
+    scene = load_text(
+        '<sdf version="1.10"><model name="m"><link name="a"/><link name="b"/><frame name="f"/>'
+        '<frame name="g" attached_to="f"/></model></sdf>')
+    tree = tf_tree_from_scene(scene, TfOptions(kinds=frozenset({Kind.FRAME})))
+    assert tree.parent_ids == ('', 'f')
+    assert 'no transform to "f", the root' in line_about_detached_models(tree, scene)
+    tree = tf_tree_from_scene(scene, TfOptions(frame_prefix='r/'))
+    assert 'no transform to "r/a", the root' in line_about_detached_models(tree, scene)
+
+
+def test_the_line_about_a_urdf_names_its_root_and_its_link_world():
+    links = '<robot name="r"><link name="{}"/><link name="a"/>' + urdf.joint('j', '{}', 'a')
+    for root in ('base', 'world'):
+        scene = load_text(links.format(root, root) + '</robot>')
+        tree = tf_tree_from_scene(scene, TfOptions(frame_prefix='r/'))
+        assert f'no transform to "r/{root}", the root' in line_about_detached_models(tree, scene)
+
+
+@pytest.mark.parametrize(('count', 'begin', 'end'), [
+    (1, '1 warning about what only Gazebo would do with this URDF is', 'check" shows it'),
+    (7, '7 warnings about what only Gazebo would do with this URDF are', 'check" shows them')])
+def test_warnings_for_gazebo_are_counted(count, begin, end):
+    line = line_about_gazebo(count)
+    assert line.startswith(begin)
+    assert line.endswith(end)
+    assert line_about_gazebo(0) == ''

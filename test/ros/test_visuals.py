@@ -106,6 +106,7 @@ def test_shapes_that_were_read_too_late_are_not_shown(
     old, new = scenes
     executor = make_executor(node)
     visuals = VisualPublisher(node, reader, old)
+    visuals.switch(on=True)
     visuals.replace(new)
     for loaded in (new, old):
         finish(executor, visuals._publish, loaded)

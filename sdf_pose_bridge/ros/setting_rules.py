@@ -1,0 +1,131 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The rules for values of parameters.
+
+A function ``<rule>_setting`` makes the setting of a value. If the value is not allowed, it raises
+ValueError with the words that follow "parameter <name>" in a sentence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.sdformat.grammar import Kind
+
+PUBLISHED_KINDS = {
+    kind.label: kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD, Kind.ACTOR)}
+"""The kinds of element that can become frames, by their names."""
+
+AUTO_KINDS = 'auto'
+"""The name for the kinds that the format of the file decides."""
+
+LOWEST_RATE = 0.001
+"""The lowest rate in Hz that a parameter can have, but for 0.0."""
+
+HIGHEST_RATE = 100.0
+"""The limit of ``publish_rate`` in Hz."""
+
+HIGHEST_FREQUENCY = 1000.0
+"""The limit of ``publish_frequency`` in Hz, as in robot_state_publisher."""
+
+MOST_VALUES = 1000
+"""How many patterns or directories a parameter may have. Each pattern is compared with each frame,
+and each directory is looked into for each include."""
+
+MOST_CHARACTERS = 255
+"""How long a name or a pattern may be; a prefix is a part of every frame id."""
+
+MOST_CHARACTERS_OF_PATH = 4096
+"""How long a path may be, as in Linux."""
+
+MOST_CHARACTERS_OF_SEPARATOR = 8
+"""How long a separator may be, which stands many times in a frame id."""
+
+
+def root_frame_setting(value: str) -> str:
+    """Refuse what cannot be the frame id of the root."""
+    if not value:
+        raise refusal(value, 'a frame id, which is not empty')
+    return prefix_setting(value)
+
+
+def prefix_setting(value: str) -> str:
+    """Refuse what frame ids cannot begin with."""
+    if value.startswith('/'):
+        raise refusal(value, 'without a leading slash, which TF does not allow')
+    return _name_setting(value, MOST_CHARACTERS)
+
+
+def separator_setting(value: str) -> str:
+    """Refuse what cannot separate the parts of frame ids."""
+    if not value:
+        raise refusal(value, 'at least one character, or names run together')
+    return _name_setting(value, MOST_CHARACTERS_OF_SEPARATOR)
+
+
+def kinds_setting(values: Sequence[str]) -> frozenset[Kind] | None:
+    """Make kinds of element of their names; None of ``auto`` alone."""
+    known = ', '.join(PUBLISHED_KINDS)
+    if list(values) == [AUTO_KINDS]:
+        return None
+    if AUTO_KINDS in values:
+        raise refusal(list(values), f'"{AUTO_KINDS}" alone, or made of {known}')
+    if not values:
+        raise refusal([], f'at least one of {known}')
+    for value in values:
+        if value not in PUBLISHED_KINDS:
+            raise refusal(value, f'made of {known}')
+    return frozenset(PUBLISHED_KINDS[value] for value in values)
+
+
+def patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
+    """Refuse too many patterns, and long ones."""
+    _check_count(values, 'patterns')
+    for value in values:
+        _check_length(value, MOST_CHARACTERS)
+    return tuple(values)
+
+
+def path_setting(value: str) -> str:
+    """Refuse what is too long for a path."""
+    _check_length(value, MOST_CHARACTERS_OF_PATH)
+    return value
+
+
+def directories_setting(values: Sequence[str]) -> tuple[Path, ...]:
+    """Make paths, without those that are empty; refuse too many, and long ones."""
+    _check_count(values, 'directories')
+    return tuple(Path(path_setting(value)).expanduser() for value in values if value)
+
+
+def _check_count(values: Sequence[str], what: str) -> None:
+    if len(values) > MOST_VALUES:
+        msg = f'has {len(values)} {what}; it must have at most {MOST_VALUES}'
+        raise ValueError(msg)
+
+
+def _check_length(value: str, most: int) -> None:
+    if len(value) > most:
+        msg = f'has a value of {len(value)} characters; it must have at most {most}'
+        raise ValueError(msg)
+
+
+def _name_setting(value: str, most: int) -> str:
+    _check_length(value, most)
+    if not value.isprintable():
+        raise refusal(value, 'without control characters')
+    return value
+
+
+def refusal(value: object, rule: str) -> ValueError:
+    """
+    Return the error about a value that is not allowed.
+
+    :param rule: what follows "it must be".
+    """
+    shown = f'"{printable(shortened(value))}"' if isinstance(value, str) else value
+    return ValueError(f'is {shown}; it must be {rule}')

@@ -1,0 +1,78 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Rules refuse a value with the words that a sentence ends with, or make the setting of it."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from sdf_pose_bridge.ros import setting_rules as rules
+from sdf_pose_bridge.ros.parameters import DECLARATIONS
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.tree import AnchorModels
+
+PUBLISH_RATE = DECLARATIONS['publish_rate'].convert
+PUBLISH_FREQUENCY = DECLARATIONS['publish_frequency'].convert
+
+
+@pytest.mark.parametrize(('rule', 'value', 'words'), [
+    (rules.root_frame_setting, '', 'is ""; it must be a frame id'),
+    (rules.root_frame_setting, '/map', 'is "/map"; it must be without a leading slash'),
+    (rules.root_frame_setting, 'ma\np', 'it must be without control characters'),
+    (rules.prefix_setting, '/r1', 'is "/r1"; it must be without a leading slash'),
+    (rules.prefix_setting, 'r\x001', 'it must be without control characters'),
+    (rules.separator_setting, '', 'is ""; it must be at least one character'),
+    (rules.separator_setting, '\t', 'it must be without control characters'),
+    (rules.root_frame_setting, 'x' * 256, 'has a value of 256 characters; it must have at'),
+    (rules.prefix_setting, 'x' * 256, 'has a value of 256 characters; it must have at most 255'),
+    (rules.separator_setting, '_' * 9, 'has a value of 9 characters; it must have at most 8'),
+    (PUBLISH_RATE, 0.0009, 'is 0.0009; it must be 0.0 for never, or from 0.001 to 100.0'),
+    (PUBLISH_RATE, 100.1, 'is 100.1; it must be 0.0 for never'),
+    (PUBLISH_RATE, -1.0, 'is -1.0; it must be 0.0 for never'),
+    (PUBLISH_RATE, math.nan, 'is nan; it must be 0.0 for never'),
+    (PUBLISH_FREQUENCY, 1000.1, 'it must be 0.0 for each message, or from 0.001 to 1000.0'),
+    (DECLARATIONS['anchor_models'].convert, 'ALL', 'is "ALL"; it must be one of '),
+    (rules.kinds_setting, [], 'is []; it must be at least one of model, '),
+    (rules.kinds_setting, ['auto', 'link'], 'it must be "auto" alone, or made of model, '),
+    (rules.kinds_setting, ['link', 'links'], 'is "links"; it must be made of model, '),
+    (rules.kinds_setting, ['world'], 'is "world"; it must be made of model, '),
+    (rules.patterns_setting, ['a'] * 1001, 'has 1001 patterns; it must have at most 1000'),
+    (rules.path_setting, 'x' * 4097, 'has a value of 4097 characters; it must have at'),
+    (rules.patterns_setting, ['*', 'x' * 256], 'has a value of 256 characters; it must have at'),
+    (rules.directories_setting, ['a'] * 1001, 'has 1001 directories; it must have at most 1000'),
+    (rules.directories_setting, ['x' * 4097], 'has a value of 4097 characters; it must have at'),
+])
+def test_refused(rule, value, words):
+    with pytest.raises(ValueError, match=r'it must|is not set') as refusal:
+        rule(value)
+    assert words in str(refusal.value)
+    assert str(refusal.value).isprintable()
+
+
+@pytest.mark.parametrize(('rule', 'value', 'setting'), [
+    (rules.root_frame_setting, 'map', 'map'),
+    (rules.prefix_setting, '', ''),
+    (rules.prefix_setting, 'r1/', 'r1/'),
+    (rules.prefix_setting, 'x' * 255, 'x' * 255),
+    (rules.separator_setting, '::', '::'),
+    (PUBLISH_RATE, 0.0, 0.0),
+    (PUBLISH_RATE, 0.001, 0.001),
+    (PUBLISH_RATE, 100.0, 100.0),
+    (PUBLISH_FREQUENCY, 1000.0, 1000.0),
+    (DECLARATIONS['anchor_models'].convert, 'static', AnchorModels.STATIC),
+    (rules.kinds_setting, ['link', 'light', 'link'], frozenset({Kind.LINK, Kind.LIGHT})),
+    (rules.kinds_setting, ['auto'], None),
+    (rules.patterns_setting, ['*'] * 1000, ('*',) * 1000),
+    (rules.patterns_setting, [], ()),
+    (rules.directories_setting, ['', 'models', ''], (Path('models'),)),
+])
+def test_taken(rule, value, setting):
+    assert rule(value) == setting
+
+
+def test_directories_may_begin_with_that_of_the_user(monkeypatch):
+    monkeypatch.setenv('HOME', '/home/me')
+    assert rules.directories_setting(['~/models']) == (Path('/home/me/models'),)
