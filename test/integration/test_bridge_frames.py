@@ -179,7 +179,7 @@ def test_topics_are_reliable_and_latched(late_listener, topic):
 def test_models_that_are_not_anchored_still_have_poses(start_bridge, start_listener, sdf_file):
     bridge = start_bridge(
         '--ros-args', '-p', f'sdf_file:={sdf_file}', '-p', 'anchor_models:=static')
-    bridge.wait_for_line('no transform from "world" to "robot"')
+    bridge.wait_for_line('no transform to "robot/base", the root of its tree')
     listener = start_listener()
     listener.listen_to_frames()
     listener.listen_to_poses(TOPICS.values())
