@@ -15,6 +15,7 @@ from typing import NamedTuple
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import JointChildError
 from sdf_pose_bridge.errors import JointParentError
+from sdf_pose_bridge.errors import MimicError
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.sdformat.sources import Sources
@@ -165,9 +166,8 @@ def _axis(
             msg = (f'the limits {lower:g} to {upper:g} of joint "{attribute_of(joint, "name")}" '
                    'are radians; they look like degrees')
             sources.warning(limit, msg)
-    mimic = first_child(axis, 'mimic')
     return AxisDetails(
-        (x, y, z), expressed_in, lower, upper, None if mimic is None else _mimic(mimic, sources),
+        (x, y, z), expressed_in, lower, upper, _mimic(joint, axis, tag, sources),
         _dynamics(axis) if reads_dynamics else NO_DYNAMICS)
 
 
@@ -189,13 +189,27 @@ def _dynamics(axis: XmlElement) -> Dynamics:
     return Dynamics(**values)
 
 
-def _mimic(xml: XmlElement, sources: Sources) -> MimicDetails:
+def _mimic(
+    joint: XmlElement, axis: XmlElement, tag: str, sources: Sources,
+) -> MimicDetails | None:
+    xml = first_child(axis, 'mimic')
+    if xml is None:
+        return None
     (multiplier,) = numbers_of_child(xml, 'multiplier', (1.0,))
     (offset,) = numbers_of_child(xml, 'offset', (0.0,))
     (reference,) = numbers_of_child(xml, 'reference', (0.0,))
+    leader = attribute_of(xml, 'joint')
+    leader_tag = attribute_of(xml, 'axis') or AXIS_TAGS[0]
+    msg = ''
+    if leader_tag not in AXIS_TAGS:
+        msg = f'mimic axis="{leader_tag}" must be one of {", ".join(AXIS_TAGS)}'
+    elif leader and (leader, leader_tag) == (attribute_of(joint, 'name'), tag):
+        msg = 'an axis cannot mimic itself'
+    if msg:
+        sources.error(MimicError, xml, msg)
+        return None
     return MimicDetails(
-        Reference(attribute_of(xml, 'joint'), sources.line(xml)),
-        attribute_of(xml, 'axis') or AXIS_TAGS[0], multiplier, offset, reference)
+        Reference(leader, sources.line(xml)), leader_tag, multiplier, offset, reference)
 
 
 def _screw_pitch_m(joint: XmlElement) -> float:

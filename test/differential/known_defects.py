@@ -104,6 +104,9 @@ KNOWN_DEFECTS = (
         'names with :: in files of version 1.7 and before', '', Remedy.NOT_DRAWN,
         'models are made of them by a rule that also takes names which only begin alike'),
     KnownDefect(
+        'axis in a joint with :: in its name in files of version 1.4 and before', '',
+        Remedy.NOT_DRAWN, 'it crashes where it makes models of such names'),
+    KnownDefect(
         'static model without links as the first nested model of a model without links', '',
         Remedy.NOT_DRAWN,
         'the outer model then has no canonical link, though it has to have one'),

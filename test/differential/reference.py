@@ -16,8 +16,9 @@ from typing import NamedTuple
 from typing import TypeAlias
 
 SOURCE = Path(__file__).with_name('print_poses.cpp')
-RELEASES = ('sdformat14', 'sdformat15', 'sdformat16', 'sdformat13', 'sdformat12')
-"""Names by which pkg-config may know libsdformat; the first that is found is used."""
+RELEASES = ('sdformat14', 'sdformat15', 'sdformat', 'sdformat13', 'sdformat12')
+"""Names by which pkg-config may know libsdformat, which has no number from 16 on; the first that
+is found is used."""
 
 CRASH = 'CRASH'
 

@@ -35,17 +35,23 @@ class Feature(enum.Enum):
     URDF = 'urdf'
     DEFECTS = 'defects'
     ODD_VALUES = 'odd-values'
+    CHAINS = 'chains'
+    POSES_SET = 'poses-set'
+    STATES_OF_1_12 = 'states-of-1.12'
+    OLD_STATES = 'old-states'
 
 
 _SINCE_14 = frozenset({
-    Feature.AUTOMATIC_INERTIALS, Feature.MERGED_OVERRIDES, Feature.NESTED_JOINTS,
-    Feature.ODD_VALUES, Feature.URDF, Feature.XML_ODDITIES})
+    Feature.AUTOMATIC_INERTIALS, Feature.CHAINS, Feature.MERGED_OVERRIDES, Feature.NESTED_JOINTS,
+    Feature.ODD_VALUES, Feature.POSES_SET, Feature.URDF, Feature.XML_ODDITIES})
 
 
 def features_of_release(version):
     """Return the features that a release of libsdformat reads as the package does."""
-    is_older = int(version.split('.')[0]) < 14
-    return frozenset(Feature) - (_SINCE_14 if is_older else set())
+    release = int(version.split('.')[0])
+    # Each grammar knows the parts of a state by one of two names.
+    states = {Feature.STATES_OF_1_12} if release < 15 else {Feature.OLD_STATES}
+    return frozenset(Feature) - states - (_SINCE_14 if release < 14 else set())
 
 
 class Visible(NamedTuple):
@@ -66,6 +72,8 @@ class SceneFiles:
     """What is in it that comparing has to know of."""
     defect: str = ''
     """What is wrong with it, or nothing."""
+    asked: tuple[tuple[str, str, str], tuple[float, ...]] | None = None
+    """World, kind and name of an element that was put somewhere, and its pose in the root."""
 
 
 @dataclass

@@ -16,6 +16,7 @@ from xml.etree import ElementTree
 
 from hypothesis import strategies as st
 
+from differential.scene_chains import chain_scene
 from differential.scene_defects import add_defect
 from differential.scene_links import joint_body
 from differential.scene_links import LinkBuilder
@@ -29,6 +30,7 @@ from differential.scene_parts import SCENE
 from differential.scene_parts import SceneFiles
 from differential.scene_parts import Visible
 from differential.scene_parts import WORLD
+from differential.scene_setting import with_pose_set
 from differential.scene_text import BOOLEANS
 from differential.scene_text import Draw
 from differential.scene_text import new_name
@@ -435,7 +437,11 @@ def scenes(draw: Draw, features: frozenset[Feature] = frozenset(Feature)) -> Sce
     """
     builder = SceneBuilder(draw, features)
     if Feature.ODD_VALUES in features and builder.chance(4):
-        return odd_scene(Random(builder.draw(SEEDS)))
+        return odd_scene(Random(builder.draw(SEEDS)), features)
+    if Feature.CHAINS in features and builder.chance(3):
+        scene = chain_scene(Random(builder.draw(SEEDS)))
+        is_set = Feature.POSES_SET in features and builder.chance(3)
+        return with_pose_set(scene, Random(builder.draw(SEEDS))) if is_set else scene
     content = [builder.scene()]
     if Feature.WORLDS in features and content[0].tag == 'world' and builder.chance(8):
         content.append(builder.world(content[0].get('name', '') + ' too'))

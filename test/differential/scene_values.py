@@ -12,6 +12,7 @@ from functools import cache
 from random import Random
 from xml.etree import ElementTree
 
+from differential.scene_parts import Feature
 from differential.scene_parts import SceneFiles
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
@@ -41,23 +42,32 @@ TYPES = {
     'atmosphere': 'adiabatic', 'physics': 'ode', 'shader': 'pixel', 'noise': 'none'}
 ENDS = {'parent': 'l', 'child': 'k'}
 NOT_READ = frozenset({
-    ('actor', 'link'), ('actor', 'joint'), ('population', 'model'), ('noise', '@type')})
+    ('population', 'model'), ('noise', '@type')})
 """What the package does not read as a part of its own, as no frame depends on it."""
+SINCE_1_12 = frozenset({
+    'model_state', 'link_state', 'light_state', 'joint_state', 'collision_state', 'frame_id',
+    'angular_velocity', 'linear_velocity', 'angular_acceleration', 'linear_acceleration', 'torque',
+    'force'})
+"""Elements that version 1.12 brought; some have others of that tag elsewhere."""
+UNTIL_1_11 = frozenset({'model', 'link', 'light', 'joint', 'collision'})
+"""Elements in a state that have other names since."""
 
 
-def odd_scene(dice: Random) -> SceneFiles:
+def odd_scene(dice: Random, features: frozenset[Feature]) -> SceneFiles:
     """
     Draw a file.
 
     :param dice: what is drawn.
+    :param features: say which names of states there are.
     :return: the file; its defect names the elements and their values.
     """
     root = ElementTree.Element('sdf', version=dice.choice(('1.7', '1.9', '1.11')))
-    place = dice.choice(_paths())
+    paths = [place for place in _paths() if _is_known(place[0], features)]
+    place = dice.choice(paths)
     defects = [_add_odd_value(dice, root, place)]
     if dice.random() < 0.3:
         # Two elements at the top of a file would exclude each other.
-        places = [other for other in _paths() if other[0][0] == place[0][0]]
+        places = [other for other in paths if other[0][0] == place[0][0]]
         defects.append(_add_odd_value(dice, root, dice.choice(places)))
     _complete(root)
     ElementTree.indent(root)
@@ -72,6 +82,18 @@ def _paths() -> list[tuple[tuple[str, ...], str]]:
     found: list[tuple[tuple[str, ...], str]] = []
     _add_paths(definition_of('sdf', has_frames=True), (), found)
     return found
+
+
+def _is_known(path: tuple[str, ...], features: frozenset[Feature]) -> bool:
+    is_of_state = 'state' in path
+    if Feature.STATES_OF_1_12 not in features and (
+            SINCE_1_12 & set(path) if is_of_state else 'model_state' in path):
+        return False
+    is_inserted = 'insertions' in path
+    if is_inserted and path[3:4] == ('joint',):
+        return Feature.STATES_OF_1_12 in features
+    return Feature.OLD_STATES in features or not is_of_state or is_inserted or not (
+        UNTIL_1_11 & set(path))
 
 
 def _add_paths(

@@ -138,6 +138,14 @@ def test_axis_that_mimics_nothing_is_refused(file_with, joint, axis, words):
     assert words in error.message
 
 
+@at_every_depth
+@pytest.mark.parametrize(('joint', 'axis'), [('k', 'axis'), ('j', 'axis3')])
+def test_axis_of_the_leader_is_checked_at_every_depth(file_with, joint, axis):
+    leader = fixed_joint('j', 'a', 'b', '<axis><xyz>1 0 0</xyz></axis>')
+    (error,) = errors_of(file_with(leader + following(joint, axis)))
+    assert error.code == 'JOINT_AXIS_MIMIC_INVALID'
+
+
 @where_libsdformat_checks
 def test_axis_can_mimic_another_one(file_with):
     leader = fixed_joint('j', 'a', 'b', '<axis><xyz>1 0 0</xyz></axis>')

@@ -1,0 +1,55 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Set a pose in a random scene, so that libsdformat can tell whether the element is there then."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from random import Random
+import tempfile
+
+from differential.scene_parts import SCENE
+from differential.scene_parts import SceneFiles
+import sdf_pose_bridge
+from sdf_pose_bridge.scene.pose_setting import pose_change
+from sdf_pose_bridge.scene.scene import Scene
+
+
+def with_pose_set(scene: SceneFiles, dice: Random) -> SceneFiles:
+    """
+    Set the pose of one element, in the root.
+
+    :param scene: a scene.
+    :param dice: what is drawn.
+    :return: the scene with the changed file, and what was asked for; the same scene if it is not
+        valid, or no pose in it can be set so.
+    """
+    with tempfile.TemporaryDirectory(prefix='differential-') as name:
+        folder = Path(name).resolve()
+        for path, text in scene.files.items():
+            target = folder / 'scene' / path
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(text.replace(SCENE, 'scene').encode(errors='surrogateescape'))
+
+        def load(texts: Mapping[str, bytes]) -> Scene:
+            return sdf_pose_bridge.load(
+                folder / 'scene' / 'scene.sdf', resource_paths=[folder], texts=texts)
+
+        pose = sdf_pose_bridge.Pose(
+            *(dice.randint(-90, 90) / 10 for _ in range(3)), 0.0, 0.6, 0.0, 0.8)
+        try:
+            before = load({})
+            element = dice.randrange(len(before.names))
+            change = pose_change(
+                before, element, pose, lambda scene, index: scene.pose_of(index), load)
+        except sdf_pose_bridge.SdfError:
+            return scene
+        path = str(Path(change.file.path).resolve().relative_to(folder / 'scene'))
+        text = change.file.new_text.decode(errors='surrogateescape').replace('scene/', f'{SCENE}/')
+        key = (before.world_of(element), before.kinds[element], before.names[element])
+    kind = sdf_pose_bridge.Kind(int(key[1])).label
+    return replace(
+        scene, files={**scene.files, path: text}, traits=scene.traits | {'pose-set'},
+        asked=((key[0], kind, key[2]), tuple(pose)))
