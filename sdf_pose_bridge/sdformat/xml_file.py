@@ -55,7 +55,9 @@ _FAULTS = {
 """What messages of libxml2 mean, by regular expressions for them."""
 
 _IGNORED_ERRORS = frozenset({
-    'NS_ERR_UNDEFINED_NAMESPACE', 'NS_ERR_QNAME', 'NS_ERR_COLON', 'DTD_ID_REDEFINED'})
+    'NS_ERR_ATTRIBUTE_REDEFINED', 'NS_ERR_COLON', 'NS_ERR_EMPTY', 'NS_ERR_QNAME',
+    'NS_ERR_UNDEFINED_NAMESPACE', 'NS_ERR_XML_NAMESPACE', 'WAR_NS_COLUMN', 'WAR_NS_URI',
+    'WAR_NS_URI_RELATIVE', 'DTD_ID_REDEFINED'})
 """SDFormat has prefixes without namespaces, and ``xml:id`` has no meaning in it."""
 
 _MOST_ERRORS = 100
@@ -72,6 +74,9 @@ START_TAG = re.compile(
 _NOT_TAGS_AND_BREAKS = bytes(set(range(256)) - set(b'<>\t\n'))
 _BREAK_IN_TAG = re.compile(rb'<[^/!?<>][^<>\t\n]*[\t\n]')
 """The beginning of a start tag over several lines, or with a tab, if no value before holds ">"."""
+
+_NAME_SPACE = re.compile(rb'"[^"]*"|\'[^\']*\'|(?<=\s)(xmlns)(?=[\s:=])')
+"""What declares a name space in a start tag, as group 1, or a value that may look like it."""
 
 _NAME = re.compile(rb'(?<=\s)name\s*=\s*("[^"]*"|\'[^\']*\')')
 _BREAKS = {'\n': 'a line break', '\t': 'a tab'}
@@ -177,7 +182,7 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
         _check_with_expat(text, path)
     _check_instructions(root, path)
     if b'xmlns' in text:
-        _remove_default_namespaces(root)
+        root = _parsed(_without_name_spaces(text), path)
     lines, warnings = _lines_and_warnings(root, text, path)
     warnings += [
         SdfWarning('WARNING', f'this is not well-formed XML: {fault}', Place(path, line))
@@ -257,11 +262,24 @@ def _check_with_expat(text: bytes, path: str) -> None:
             raise FileReadError(msg, Place(path, skipped + error.lineno)) from error
 
 
-def _remove_default_namespaces(root: XmlElement) -> None:
-    for element in root.iter(etree.Element):
-        tag = str(element.tag)
-        if tag.startswith('{') and not element.prefix:
-            element.tag = tag[tag.index('}') + 1:]
+def _without_name_spaces(text: bytes) -> bytes:
+    """
+    Return text of the same length and meaning, in which no prefix has a name space.
+
+    SDFormat has none, and to copy an element libxml2 searches that of its prefix among all.
+
+    :param text: well-formed XML.
+    """
+    last = text.rfind(b'xmlns')
+    parts, position = [], 0
+    for tag in START_TAG.finditer(text):
+        if tag.start() > last:
+            break
+        if tag[1] and b'xmlns' in tag[1]:
+            parts += [text[position:tag.start()], _NAME_SPACE.sub(
+                lambda match: match[0] if match[1] is None else b'xm:ns', tag[0])]
+            position = tag.end()
+    return b''.join([*parts, text[position:]])
 
 
 def _lines_and_warnings(

@@ -5,7 +5,9 @@
 from concurrent.futures import ThreadPoolExecutor
 import os
 import socket
+import time
 
+from lxml import etree
 import pytest
 from sdf_texts import assert_at
 from sdf_texts import codes_of
@@ -14,7 +16,10 @@ from sdf_texts import link_with
 from sdf_texts import model_file
 from sdf_texts import names_of
 from sdf_texts import only_error
+from sdf_texts import world_file
+from sdf_texts import write_files
 
+from sdf_pose_bridge import load
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge import SdfError
 from sdf_pose_bridge.errors import FileReadError
@@ -255,6 +260,8 @@ def test_long_runs_beyond_the_last_line_of_libxml2_are_refused(content):
     model_file(LINK + '<d:link xmlns:d="http://d" name="k"><d:pose>no</d:pose></d:link>'),
     model_file('<x:link name="l"/>' + LINK + '<x:frame name="f"/>'),
     model_file('<x:link xmlns:x="http://x" name="l"/>' + LINK),
+    model_file(LINK, attributes='xmlns:a="x y" xmlns:b="" xmlns:xml="c"'),
+    model_file(LINK, attributes='xmlns:a="x" xmlns:b="x" a:c="" b:c=""'),
     model_file(LINK + '<x:y><link name="k"/></x:y>'),
 ])
 def test_elements_and_attributes_with_a_prefix_are_skipped(text):
@@ -278,6 +285,37 @@ def test_many_undeclared_prefixes_in_another_encoding_are_accepted(encoding):
 ])
 def test_default_namespace_is_ignored(text):
     assert_at(load_text(text), 'm::l', (1, 2, 3))
+
+
+@pytest.mark.parametrize('text', [
+    '<sdf xmlns="u" xmlns:a = "v"><a:b\n\txmlns:c=\'w\' c:d="" xmlns\n="u"/><e/></sdf>',
+    '<x:sdf xmlns:x="u"><!-- <a xmlns="b"> --><x:a xmlns:x="v" b="<c xmlns=d>"/></x:sdf>',
+])
+def test_no_element_has_a_name_space(text):
+    root = xml_from_bytes(text.encode(), 'file.sdf').root
+    assert {element.prefix for element in root.iter(etree.Element)} == {None}
+    assert not any(element.nsmap for element in root.iter(etree.Element))
+
+
+def test_what_looks_like_a_name_space_stays():
+    name = ' xmlns:a=b xmlns='
+    text = model_file(f'<link name="{name}"/><!-- <a xmlns="b"> -->').replace(
+        '<sdf', '<sdf xmlns:x="u"')
+    assert names_in(text) == ['m', f'm::{name.strip()}']
+
+
+def test_many_name_spaces_of_what_is_included_take_no_long_time(tmp_path):
+    spaces = ''.join(f' xmlns:p{number}="u"' for number in range(5000))
+    elements = ''.join(f'<p{number}:x/>' for number in range(5000))
+    write_files(
+        tmp_path, part=model_file(LINK + elements, attributes=spaces),
+        main=world_file(''.join(
+            f'<include><uri>part.sdf</uri><name>m{number}</name></include>'
+            for number in range(10))))
+    begin = time.thread_time()
+    load(tmp_path / 'main.sdf')
+    # 3 s where each prefix of each copy is searched.
+    assert time.thread_time() - begin < 1.0
 
 
 @pytest.mark.parametrize('rest', ['<sdf version="1.9"/>', '<a/><b/>', '</a>'])
