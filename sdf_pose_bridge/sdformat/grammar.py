@@ -134,8 +134,9 @@ class Kind(enum.IntEnum):
 
 
 _ITEM = re.compile(
-    r'(?P<attribute>@?)(?P<name>[\w*]*)(?P<required>[!+]?)(?:=(?P<identifier>\w+(?:/\w+)?))?'
-    r'(?P<value>:(?P<type>\w+)(?:\[(?P<minimum>[^,]*),(?P<maximum>.*)\])?)?')
+    r'(?P<attribute>@(?=\w))?(?P<name>\w+|\*|(?=:))(?P<required>[!+]?)'
+    r'(?:=(?P<identifier>\w+(?:/\w+)?))?'
+    r'(?P<value>:(?P<type>\w+)(?:\[(?P<minimum>[^,\]]*),(?P<maximum>[^,\]]*)\])?)?')
 _KINDS = {kind.label: kind for kind in Kind}
 _UNREAD = frozenset({'model_state', 'population', 'road', 'state'})
 """Elements of which libsdformat makes no objects."""
@@ -152,6 +153,28 @@ class Attribute(NamedTuple):
     """What the value can be, of a choice; None for an element that is not read."""
 
 
+@cache
+def _item(text: str) -> Mapping[str, str]:
+    """
+    Read an item of the content of an element.
+
+    :raises ValueError: if it is not written as this module describes, or has an unknown type.
+    """
+    match = _ITEM.fullmatch(text)
+    if match is None:
+        msg = f'"{text}" is not an item of a definition'
+        raise ValueError(msg)
+    item = match.groupdict('')
+    if item['type'] and item['type'] not in _VALUE_TYPES:
+        msg = f'"{item["type"]}" in the definition "{text}" is not a type of values'
+        raise ValueError(msg)
+    if item['identifier'] and item['identifier'] not in ELEMENTS and (
+            item['identifier'] not in _KINDS):
+        msg = f'"{item["identifier"]}" in the definition "{text}" is not the name of a definition'
+        raise ValueError(msg)
+    return item
+
+
 class Definition:
     """
     Definition of an element in the element that holds it.
@@ -161,6 +184,7 @@ class Definition:
     :param has_frames: whether kinds of elements are frames here. Otherwise they are parts of what
         libsdformat compares with the specification, but does not read, such as a state.
     :param is_required: whether the value may not be blank.
+    :raises ValueError: if the content is not written as this module describes.
     """
 
     def __init__(
@@ -172,7 +196,7 @@ class Definition:
         self.kind = _KINDS.get(identifier) if has_frames else None
         """The kind of the element; None for an element that is no frame."""
         self.has_frames = has_frames
-        items = [item.groupdict('') for item in map(_ITEM.fullmatch, content.split()) if item]
+        items = [*map(_item, content.split())]
         value = next((item for item in items if not item['name']), {})
         self.value_type = _VALUE_TYPES.get(value.get('type', ''))
         """Type of the value; None for an element that holds others."""
@@ -241,3 +265,17 @@ def definition_of(
     kind = _KINDS.get(identifier)
     content = ELEMENTS[identifier] if kind is None else kind.content
     return Definition(identifier, content, has_frames=has_frames, is_required=is_required)
+
+
+def _check_definitions() -> None:
+    """
+    Check the content of all elements, also of those that few files have.
+
+    :raises ValueError: if one is not written as this module describes.
+    """
+    for content in (*ELEMENTS.values(), *(kind.content for kind in Kind)):
+        for text in content.split():
+            _item(text)
+
+
+_check_definitions()

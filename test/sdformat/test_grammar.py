@@ -5,6 +5,7 @@
 import json
 import os
 from pathlib import Path
+import re
 import shutil
 import subprocess
 import sys
@@ -20,11 +21,34 @@ from sdf_texts import world_file
 
 from sdf_pose_bridge import Kind
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.specification import CHOICES
 
 PACKAGE = Path(__file__).resolve().parents[2] / 'sdf_pose_bridge'
+
+
+# Definitions
+
+@pytest.mark.parametrize('item', [
+    'mass::double', 'depth:doubel', '@name:', '@', 'name!!', 'x:double[0', 'x:double[0,]]', '*:',
+    '**', 'x=', 'x=y=z', 'link!=lnk', 'x;y'])
+def test_item_of_a_definition_that_is_misspelt_is_an_error(item):
+    with pytest.raises(ValueError, match=re.escape(f'"{item}"')):
+        Definition('box', f'size:vector3 {item}')
+
+
+def test_misspelt_definition_is_an_error_when_the_grammar_is_imported(tmp_path):
+    shutil.copytree(PACKAGE, tmp_path / PACKAGE.name)
+    specification = tmp_path / PACKAGE.name / 'sdformat/specification.py'
+    text = specification.read_text()
+    assert text.count("'audio': 'device!'") == 1
+    specification.write_text(text.replace("'device!'", "'device!:strng'"))
+    done = subprocess.run(
+        [sys.executable, '-c', f'import {PACKAGE.name}.sdformat.grammar'], cwd=tmp_path, capture_output=True,
+        text=True, env={**os.environ, 'PYTHONPATH': str(tmp_path)}, check=False)
+    assert '"strng" in the definition "device!:strng" is not a type of values' in done.stderr
 
 
 # Kinds
