@@ -39,7 +39,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     :return: exit code: 0 for success, 1 if a file or a value is wrong, 2 if the arguments are, 130
         after Ctrl-C.
     """
-    parser = _parser()
+    parser = new_parser()
     options = parser.parse_args(arguments)
     if sys.stdout is None:
         # The caller has closed it. What is printed must fail, as it does where a disk is full.
@@ -79,7 +79,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return code
 
 
-def _parser() -> argparse.ArgumentParser:
+def new_parser() -> argparse.ArgumentParser:
+    """Return the parser of all commands."""
     parser = argparse.ArgumentParser(
         prog='sdf_pose',
         description='Poses and frames of SDFormat files, exactly as libsdformat resolves them.')

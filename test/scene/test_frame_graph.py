@@ -217,7 +217,8 @@ def test_unknown_canonical_link_is_refused(name):
 
 
 def test_unknown_canonical_link_of_a_static_model_is_accepted():
-    load_text(model_file('<static>1</static>' + A, attributes='canonical_link="zzz"'))
+    scene = load_text(model_file('<static>1</static>' + A, attributes='canonical_link="zzz"'))
+    assert name_at(scene, scene.canonical_links, 'm') == 'm::a'
 
 
 @pytest.mark.parametrize(('content', 'canonical', 'link'), [

@@ -7,7 +7,6 @@ from sdf_texts import codes_of
 from sdf_texts import errors_of
 from sdf_texts import fixed_joint
 from sdf_texts import model_file
-from sdf_texts import names_of
 from sdf_texts import only_error
 from sdf_texts import TWO_LINKS
 from sdf_texts import world_file
@@ -169,24 +168,32 @@ def test_leader_in_a_model_whose_name_holds_the_separator_is_not_found(model, is
         assert codes_of(text) == ['JOINT_AXIS_MIMIC_INVALID']
 
 
+def ends_of_joints(text):
+    """Return the names of the frames that each joint joins, without scopes: parent, child."""
+    scene = sdf_pose_bridge.load_text(text)
+    return [tuple('world' if scene.parents[end] < 0 else scene.own_name(end)
+                  for end in (joint.parent, joint.child)) for joint in scene.joints]
+
+
 @at_every_depth
-@pytest.mark.parametrize('ends', [
-    ('a', 'b'), ('world', 'a'), ('on_a', 'b'), ('b', 'also_on_a'), ('a', 'n'), ('n::k', 'b'),
-    ('n::__model__', 'b'), ('world', 'n::__model__'),
+@pytest.mark.parametrize(('parent', 'child', 'found'), [
+    ('a', 'b', ('a', 'b')), ('world', 'a', ('world', 'a')), ('on_a', 'b', ('on_a', 'b')),
+    ('b', 'also_on_a', ('b', 'also_on_a')), ('a', 'n', ('a', 'n')), ('n::k', 'b', ('k', 'b')),
+    ('n::__model__', 'b', ('n', 'b')), ('world', 'n::__model__', ('world', 'n')),
 ])
-def test_parent_and_child_on_two_bodies(file_with, ends):
-    scene = sdf_pose_bridge.load_text(file_with(fixed_joint('j', *ends)))
-    assert any(name.endswith('j') for name in names_of(scene))
+def test_parent_and_child_on_two_bodies(file_with, parent, child, found):
+    assert ends_of_joints(file_with(fixed_joint('j', parent, child))) == [found]
 
 
-@pytest.mark.parametrize('ends', [('__model__', 'b'), ('b', '__model__')])
-def test_model_frame_can_be_an_end(ends):
-    sdf_pose_bridge.load_text(in_top_model(fixed_joint('j', *ends)))
+@pytest.mark.parametrize(('parent', 'child', 'found'), [
+    ('__model__', 'b', ('m', 'b')), ('b', '__model__', ('b', 'm'))])
+def test_model_frame_can_be_an_end(parent, child, found):
+    assert ends_of_joints(in_top_model(fixed_joint('j', parent, child))) == [found]
 
 
 def test_joint_can_be_the_parent_of_another():
-    sdf_pose_bridge.load_text(in_top_model(
-        fixed_joint('j', 'a', 'b') + fixed_joint('k', 'j', 'n')))
+    assert ends_of_joints(in_top_model(
+        fixed_joint('j', 'a', 'b') + fixed_joint('k', 'j', 'n'))) == [('a', 'b'), ('j', 'n')]
 
 
 def test_frame_of_the_world_as_the_child_is_refused():
@@ -196,14 +203,16 @@ def test_frame_of_the_world_as_the_child_is_refused():
 
 
 def test_frame_of_the_world_can_be_the_parent():
-    sdf_pose_bridge.load_text(world_file(
-        '<model name="a"><link name="l"/></model><frame name="f"/>' + fixed_joint('j', 'f', 'a')))
+    assert ends_of_joints(world_file(
+        '<model name="a"><link name="l"/></model><frame name="f"/>'
+        + fixed_joint('j', 'f', 'a'))) == [('f', 'a')]
 
 
 def test_static_model_can_be_the_child():
-    sdf_pose_bridge.load_text(world_file(
+    assert ends_of_joints(world_file(
         '<model name="a"><link name="l"/></model>'
-        '<model name="s"><static>1</static><link name="l"/></model>' + fixed_joint('j', 'a', 's')))
+        '<model name="s"><static>1</static><link name="l"/></model>'
+        + fixed_joint('j', 'a', 's'))) == [('a', 's')]
 
 
 @pytest.mark.parametrize(('joint', 'code'), [

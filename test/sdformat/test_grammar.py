@@ -46,8 +46,9 @@ def test_misspelt_definition_is_an_error_when_the_grammar_is_imported(tmp_path):
     assert text.count("'audio': 'device!'") == 1
     specification.write_text(text.replace("'device!'", "'device!:strng'"))
     done = subprocess.run(
-        [sys.executable, '-c', f'import {PACKAGE.name}.sdformat.grammar'], cwd=tmp_path, capture_output=True,
-        text=True, env={**os.environ, 'PYTHONPATH': str(tmp_path)}, check=False)
+        [sys.executable, '-c', f'import {PACKAGE.name}.sdformat.grammar'], cwd=tmp_path,
+        capture_output=True, text=True, check=False,
+        env={**os.environ, 'PYTHONPATH': str(tmp_path)})
     assert '"strng" in the definition "device!:strng" is not a type of values' in done.stderr
 
 

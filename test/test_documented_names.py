@@ -1,0 +1,108 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Each name that users type or read has its place in the page of the documentation about it."""
+
+from pathlib import Path
+import re
+import xml.etree.ElementTree as ET
+
+import pytest
+
+from sdf_pose_bridge.cli.main import new_parser
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.formats import POSE_FORMATS
+from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
+from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def names_in(page):
+    """Return the words between back quotes, also those of commands: the first two."""
+    text = (ROOT / 'docs' / page).read_text(encoding='utf-8')
+    return {*re.findall(r'`([^`\n]+)`', text), *re.findall(r'`(\S+)[^`\n]*`', text)}
+
+
+def subcommands():
+    (action,) = new_parser()._subparsers._group_actions
+    return action.choices
+
+
+def names_of_policy(tag):
+    root = ET.parse(ROOT / 'config/sros2_policy.xml').getroot()
+    return {element.text for element in root.iter(tag)}
+
+
+COMMANDS = subcommands()
+SERVICES = sorted(
+    name for name in names_of_policy('service') if not re.search('parameter|type_desc', name))
+TOPICS = sorted(names_of_policy('topic') - {'/rosout', '/parameter_events', '/clock'})
+
+
+def all_errors(error):
+    return {error.code}.union(*map(all_errors, error.__subclasses__()))
+
+
+@pytest.mark.parametrize('command', COMMANDS)
+def test_command(command):
+    text = (ROOT / 'docs/command_line.md').read_text(encoding='utf-8')
+    assert f'sdf_pose {command} ' in text
+
+
+@pytest.mark.parametrize(('command', 'option'), [
+    (command, option) for command, parser in COMMANDS.items()
+    for option in parser._option_string_actions if option.startswith('--') and option != '--help'])
+def test_option(command, option):
+    text = (ROOT / 'docs/command_line.md').read_text(encoding='utf-8')
+    assert option in text, f'{option} of {command}'
+
+
+@pytest.mark.parametrize('topic', TOPICS)
+def test_topic(topic):
+    assert topic.replace('*', '<frame>') in names_in('ros_interface.md')
+
+
+@pytest.mark.parametrize('service', SERVICES)
+def test_service(service):
+    assert service in names_in('ros_interface.md')
+
+
+@pytest.mark.parametrize('name', [*POSE_FORMATS, *ROTATION_FORMATS])
+def test_format(name):
+    assert name in names_in('pose_formats.md')
+
+
+@pytest.mark.parametrize('name', POSE_FORMATS)
+def test_format_of_the_service(name):
+    text = (ROOT / 'sdf_pose_bridge_interfaces/srv/ConvertPoses.srv').read_text(encoding='utf-8')
+    assert re.search(rf'^#   {name} ', text, re.MULTILINE)
+
+
+@pytest.mark.parametrize('name', JOINT_TYPES)
+def test_joint_type(name):
+    assert name in names_in('joints.md')
+
+
+@pytest.mark.parametrize('name', SHAPE_TYPES)
+def test_shape_type(name):
+    assert name in names_in('what_is_read.md')
+
+
+@pytest.mark.parametrize('kind', [
+    kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD, Kind.ACTOR)])
+def test_kind(kind):
+    text = (ROOT / 'docs/ros_interface.md').read_text(encoding='utf-8')
+    assert kind.label in next(line for line in text.splitlines() if line.startswith('| `kinds`'))
+
+
+@pytest.mark.parametrize('code', sorted(all_errors(SdfError) - {'ERROR'}))
+def test_code_of_an_error(code):
+    assert code in names_in('errors.md')
+
+
+def test_parameter():
+    pytest.importorskip('rclpy', reason='needs ROS 2')
+    from sdf_pose_bridge.ros.parameters import DECLARATIONS
+    assert DECLARATIONS.keys() <= names_in('ros_interface.md')
