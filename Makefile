@@ -3,7 +3,7 @@
 
 SHELL := bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test_long run lint bench differential fuzz growth soak licenses audit docs pictures \
+.PHONY: help setup demo test test_core test_long run lint bench differential fuzz growth soak licenses audit docs pictures \
   wheel_check release_check release clean
 
 # The distribution of ROS 2, versions of other packages, and a folder with another rclpy, also for
@@ -30,6 +30,7 @@ in_shell := . underlay/setup.bash && exec
 help:
 	@echo 'make demo           the node on an example, and what a listener receives from it'
 	@echo 'make test           all tests; ARGS="-k name" hands arguments to pytest'
+	@echo 'make test_core      the tests of reading and geometry alone, in half a minute'
 	@echo 'make test_long      all tests, some with many more calls, frames or rotations'
 	@echo 'make run FILE=...   the node on an SDFormat file; ARGS="-p name:=value" sets parameters'
 	@echo 'make lint           ruff, mypy and import-linter'
@@ -63,6 +64,10 @@ demo: setup
 
 test: setup
 	@$(in_shell) python -m pytest --numprocesses auto --dist worksteal $(ARGS)
+
+# What needs no ROS and starts no other program.
+test_core: setup
+	@$(in_shell) python -m pytest --numprocesses auto --dist worksteal test/geometry test/sdformat test/scene test/tf $(ARGS)
 
 # One after the other, as each of them loads the machine.
 test_long: setup

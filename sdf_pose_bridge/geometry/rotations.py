@@ -32,10 +32,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from collections.abc import Sequence
 import math
-from typing import Any
 from typing import NamedTuple
 from typing import overload
 from typing import TypeAlias
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +52,9 @@ OneMatrix: TypeAlias = Sequence[Sequence[float]]
 Many: TypeAlias = Floats | Sequence[Sequence[float]]
 ManyMatrices: TypeAlias = Floats | Sequence[Sequence[Sequence[float]]]
 
+_Values: TypeAlias = One | OneMatrix | Many | ManyMatrices
+_Result = TypeVar('_Result', Triple, Quaternion, Matrix)
+
 LOCK_TOLERANCE = 1e-15
 """Of gz-math: at gimbal lock the sine of pitch differs from 1 or -1 by less than this."""
 
@@ -64,7 +67,7 @@ class RotationError(ValueError):
 def quaternion_from_rpy(rpy_rad: One) -> Quaternion: ...
 @overload
 def quaternion_from_rpy(rpy_rad: Many) -> Floats: ...
-def quaternion_from_rpy(rpy_rad: Any) -> Any:
+def quaternion_from_rpy(rpy_rad: One | Many) -> Quaternion | Floats:
     """
     Convert roll, pitch, yaw to a quaternion.
 
@@ -79,7 +82,7 @@ def quaternion_from_rpy(rpy_rad: Any) -> Any:
 def rpy_from_quaternion(quat_xyzw: One) -> Triple: ...
 @overload
 def rpy_from_quaternion(quat_xyzw: Many) -> Floats: ...
-def rpy_from_quaternion(quat_xyzw: Any) -> Any:
+def rpy_from_quaternion(quat_xyzw: One | Many) -> Triple | Floats:
     """
     Convert a quaternion to roll, pitch, yaw.
 
@@ -95,7 +98,7 @@ def rpy_from_quaternion(quat_xyzw: Any) -> Any:
 def matrix_from_quaternion(quat_xyzw: One) -> Matrix: ...
 @overload
 def matrix_from_quaternion(quat_xyzw: Many) -> Floats: ...
-def matrix_from_quaternion(quat_xyzw: Any) -> Any:
+def matrix_from_quaternion(quat_xyzw: One | Many) -> Matrix | Floats:
     """
     Convert a quaternion to a rotation matrix.
 
@@ -110,7 +113,7 @@ def matrix_from_quaternion(quat_xyzw: Any) -> Any:
 def quaternion_from_matrix(matrix: OneMatrix) -> Quaternion: ...
 @overload
 def quaternion_from_matrix(matrix: ManyMatrices) -> Floats: ...
-def quaternion_from_matrix(matrix: Any) -> Any:
+def quaternion_from_matrix(matrix: OneMatrix | ManyMatrices) -> Quaternion | Floats:
     """
     Convert a rotation matrix to a quaternion.
 
@@ -126,7 +129,7 @@ def quaternion_from_matrix(matrix: Any) -> Any:
 def quaternion_from_rotation_vector(rotation_vector_rad: One) -> Quaternion: ...
 @overload
 def quaternion_from_rotation_vector(rotation_vector_rad: Many) -> Floats: ...
-def quaternion_from_rotation_vector(rotation_vector_rad: Any) -> Any:
+def quaternion_from_rotation_vector(rotation_vector_rad: One | Many) -> Quaternion | Floats:
     """
     Convert a rotation vector, an axis times an angle, to a quaternion.
 
@@ -143,7 +146,7 @@ def quaternion_from_rotation_vector(rotation_vector_rad: Any) -> Any:
 def rotation_vector_from_quaternion(quat_xyzw: One) -> Triple: ...
 @overload
 def rotation_vector_from_quaternion(quat_xyzw: Many) -> Floats: ...
-def rotation_vector_from_quaternion(quat_xyzw: Any) -> Any:
+def rotation_vector_from_quaternion(quat_xyzw: One | Many) -> Triple | Floats:
     """
     Convert a quaternion to a rotation vector, an axis times an angle.
 
@@ -160,7 +163,7 @@ def rotation_vector_from_quaternion(quat_xyzw: Any) -> Any:
 def matrix_from_rpy(rpy_rad: One) -> Matrix: ...
 @overload
 def matrix_from_rpy(rpy_rad: Many) -> Floats: ...
-def matrix_from_rpy(rpy_rad: Any) -> Any:
+def matrix_from_rpy(rpy_rad: One | Many) -> Matrix | Floats:
     """
     Convert roll, pitch, yaw to a rotation matrix.
 
@@ -175,7 +178,7 @@ def matrix_from_rpy(rpy_rad: Any) -> Any:
 def rpy_from_matrix(matrix: OneMatrix) -> Triple: ...
 @overload
 def rpy_from_matrix(matrix: ManyMatrices) -> Floats: ...
-def rpy_from_matrix(matrix: Any) -> Any:
+def rpy_from_matrix(matrix: OneMatrix | ManyMatrices) -> Triple | Floats:
     """
     Convert a rotation matrix to roll, pitch, yaw.
 
@@ -192,7 +195,7 @@ def rpy_from_matrix(matrix: Any) -> Any:
 def canonical_quaternion(quat_xyzw: One) -> Quaternion: ...
 @overload
 def canonical_quaternion(quat_xyzw: Many) -> Floats: ...
-def canonical_quaternion(quat_xyzw: Any) -> Any:
+def canonical_quaternion(quat_xyzw: One | Many) -> Quaternion | Floats:
     """
     Return the canonical one of the two unit quaternions of a rotation.
 
@@ -208,7 +211,7 @@ def canonical_quaternion(quat_xyzw: Any) -> Any:
 def near_gimbal_lock(quat_xyzw: One) -> bool: ...
 @overload
 def near_gimbal_lock(quat_xyzw: Many) -> NDArray[np.bool_]: ...
-def near_gimbal_lock(quat_xyzw: Any) -> Any:
+def near_gimbal_lock(quat_xyzw: One | Many) -> bool | NDArray[np.bool_]:
     """
     Return whether roll and yaw are practically undefined one without the other.
 
@@ -238,7 +241,7 @@ def _quaternion_message(*quat_xyzw: float) -> str:
     return f'quaternion {quat_xyzw} (x, y, z, w) is not finite'
 
 
-def _matrix_message(*matrix: Any) -> str:
+def _matrix_message(*matrix: Triple) -> str:
     rows = tuple(map(tuple, matrix))
     if not np.isfinite(matrix).all():
         return f'rotation matrix {rows} is not finite'
@@ -268,9 +271,9 @@ _MATRIX = _Representation('rotation matrix', (3, 3), _matrix_message)
 
 
 def _converted(
-    formula: Callable[..., tuple[Any, ...]], values: Any, given: _Representation,
+    formula: Callable[..., _Result], values: _Values, given: _Representation,
     shape: tuple[int, ...],
-) -> Any:
+) -> _Result | Floats:
     """
     Evaluate a formula for one rotation, or for all of an array.
 
@@ -301,7 +304,7 @@ def _converted(
     return results.reshape(leading + shape)
 
 
-def _array(values: Any, given: _Representation) -> Floats:
+def _array(values: _Values, given: _Representation) -> Floats:
     try:
         array = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
