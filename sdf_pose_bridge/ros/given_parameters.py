@@ -43,6 +43,16 @@ from sdf_pose_bridge.ros.setting_rules import MOST_VALUES
 QOS_OVERRIDES = 'qos_overrides.'
 """How names of parameters begin that other nodes have for the quality of service of a topic."""
 
+MOST_REASONS = 20
+"""How many results of a call that sets parameters have the reason why none is set."""
+
+MOST_CHARACTERS_OF_REPEATED = 1_000_000
+"""How long the values may be together in an answer that has some of them several times."""
+
+WARNING_PERIOD_S = 10.0
+
+_KINDS_OF_LISTS = ('byte', 'bool', 'integer', 'double', 'string')
+
 _NAMES_OF_TYPES = {
     Parameter.Type.STRING: 'a string', Parameter.Type.BOOL: 'true or false',
     Parameter.Type.INTEGER: 'an integer', Parameter.Type.DOUBLE: 'a number',
@@ -148,6 +158,8 @@ def add_parameter_services(
     file would be read for each of them, in states that nobody asked for, while no other callback
     runs.
 
+    Calls are refused by their size before anything is done for them.
+
     :param group: callback group of the services that set parameters.
     :param set_parameters: sets declared parameters, and returns what the services answer.
     """
@@ -161,7 +173,13 @@ def add_parameter_services(
     async def answer(
         request: SetParameters.Request, response: SetParameters.Response,
     ) -> SetParameters.Response:
-        response.results = [await result(request.parameters)] * len(request.parameters)
+        count = len(request.parameters)
+        found = await result(request.parameters)
+        response.results = [found] * min(count, MOST_REASONS)
+        if MOST_REASONS < count <= MOST_VALUES:
+            other = found if found.successful else SetParametersResult(
+                successful=False, reason='the first result of this answer says why')
+            response.results += [other] * (count - MOST_REASONS)
         return response
 
     async def answer_atomically(
@@ -182,36 +200,57 @@ def add_parameter_services(
 
 def _reading_services(node: Node) -> list[tuple[type, str, Callable[[Any, Any], Any]]]:
     """Return types, names and callbacks of the services that show parameters, as rclpy's do."""
+    def has_too_much(names: Sequence[str], values: Sequence[object] = ()) -> bool:
+        """Return whether an answer would be too large; it has no place for the reason then."""
+        reason = ''
+        if len(names) > MOST_VALUES:
+            reason = f'{len(names)} names; it can have at most {MOST_VALUES}'
+        elif len(set(names)) < len(names):
+            size = sum(len(value) for value in values if isinstance(value, str))
+            if size > MOST_CHARACTERS_OF_REPEATED:
+                reason = f'names again and again, whose values have {size} characters together'
+        if reason:
+            node.get_logger().warning(
+                f'a call that reads parameters is not answered: it has {reason}',
+                throttle_duration_sec=WARNING_PERIOD_S)
+        return bool(reason)
+
     # Of names that are not declared, or have no value, these services return nothing at all.
     def describe(
         request: DescribeParameters.Request, response: DescribeParameters.Response,
     ) -> DescribeParameters.Response:
-        with contextlib.suppress(ParameterNotDeclaredException):
-            response.descriptors = node.describe_parameters(request.names)
+        if not has_too_much(request.names):
+            with contextlib.suppress(ParameterNotDeclaredException):
+                response.descriptors = node.describe_parameters(request.names)
         return response
 
     def values(
         request: GetParameters.Request, response: GetParameters.Response,
     ) -> GetParameters.Response:
+        if has_too_much(request.names):
+            return response
         with contextlib.suppress(ParameterNotDeclaredException, ParameterUninitializedException):
-            response.values = [
-                parameter.get_parameter_value()
-                for parameter in node.get_parameters(request.names)]
+            parameters = node.get_parameters(request.names)
+            if not has_too_much(request.names, [parameter.value for parameter in parameters]):
+                response.values = [parameter.get_parameter_value() for parameter in parameters]
         return response
 
     def types(
         request: GetParameterTypes.Request, response: GetParameterTypes.Response,
     ) -> GetParameterTypes.Response:
-        with contextlib.suppress(ParameterNotDeclaredException):
-            response.types = [
-                Parameter.Type(type_).value for type_ in node.get_parameter_types(request.names)]
+        if not has_too_much(request.names):
+            with contextlib.suppress(ParameterNotDeclaredException):
+                response.types = [
+                    Parameter.Type(type_).value
+                    for type_ in node.get_parameter_types(request.names)]
         return response
 
     def names(
         request: ListParameters.Request, response: ListParameters.Response,
     ) -> ListParameters.Response:
-        with contextlib.suppress(TypeError, ValueError):
-            response.result = node.list_parameters(request.prefixes, request.depth)
+        if not has_too_much(request.prefixes):
+            with contextlib.suppress(TypeError, ValueError):
+                response.result = node.list_parameters(request.prefixes, request.depth)
         return response
 
     return [
@@ -229,7 +268,8 @@ def _parameters_from_messages(
 
     :return: the parameters, without read-only ones that keep their values, which "ros2 param load"
         of a dump sets too.
-    :raises ValueError: if there is no such parameter, or no such type, or if there are too many.
+    :raises ValueError: if there is no such parameter, or no such type, or if there are too many
+        parameters or values.
     """
     if len(messages) > MOST_VALUES:
         msg = f'a call can set at most {MOST_VALUES} parameters, and this one has {len(messages)}'
@@ -240,6 +280,12 @@ def _parameters_from_messages(
             msg = (f'there is no parameter "{printable(shortened(message.name))}"'
                    f'{hint_from_names(message.name, DECLARATIONS)}')
             raise ValueError(msg)
+        for kind in _KINDS_OF_LISTS:
+            count = len(getattr(message.value, f'{kind}_array_value'))
+            if count > MOST_VALUES:
+                msg = (f'parameter {message.name} is a list of {count} values; a list can have at '
+                       f'most {MOST_VALUES}')
+                raise ValueError(msg)
         parameter = Parameter.from_parameter_msg(message)
         if message.name in DECLARATIONS:
             parameter = parameter_with_type(parameter, DECLARATIONS[message.name].type_)
@@ -356,5 +402,6 @@ def hint_about_command_line(given: Parameter, wanted: Parameter.Type) -> str:
     return ''
 
 
-def _shown_value(given: Parameter) -> object:
-    return list(given.value) if isinstance(given.value, array.array) else given.value
+def _shown_value(given: Parameter) -> str:
+    value = list(given.value) if isinstance(given.value, array.array) else given.value
+    return printable(shortened(str(value)))

@@ -15,7 +15,10 @@ everything that is done with a message.
 from __future__ import annotations
 
 from collections.abc import Callable
+from collections.abc import Sequence
+import contextlib
 from dataclasses import dataclass
+import threading
 import time
 
 import numpy as np
@@ -39,6 +42,7 @@ from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.publishers import Stamp
+from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION
 from sdf_pose_bridge.tf.joint_positions import Selection
 
@@ -116,6 +120,8 @@ class JointStates:
         self._plans: dict[tuple[str, ...], _Plan] = {}
         self._last_message: JointStateBytes | None = None
         self._topics_due = 0.0
+        # When names that mean nothing are logged again.
+        self._unknown_due = 0.0
         self._are_topics_behind = False
         self._published_at = 0.0
         self._is_grace_over = False
@@ -246,10 +252,7 @@ class JointStates:
         positions = self._frames.positions
         selection = positions.selection(message.names)
         if selection.unknown:
-            self._logger.warning(
-                f'{self._subscription.topic_name} has {names_in_line(selection.unknown)}, not the '
-                f'name of one moving joint{positions.hint(selection.unknown[0])}',
-                throttle_duration_sec=_WARNING_PERIOD_S)
+            self._warn_about_unknown(selection.unknown, positions)
         if len(self._plans) == _MOST_PLANS:
             self._publish_tf()
             self._plans.clear()
@@ -261,6 +264,21 @@ class JointStates:
         plan = _Plan(selection, rows, self._frames.tf_message(rows))
         self._plans[message.names] = plan
         return plan
+
+    def _warn_about_unknown(self, names: Sequence[str], positions: JointPositions) -> None:
+        now = time.monotonic()
+        if now < self._unknown_due:
+            return
+        self._unknown_due = now + _WARNING_PERIOD_S
+
+        def warn() -> None:
+            self._logger.warning(
+                f'{self._subscription.topic_name} has {names_in_line(names)}, not the name of one '
+                f'moving joint{positions.hint(names[0])}')
+
+        # To find the name that was probably meant takes long where there are many.
+        with contextlib.suppress(RuntimeError):  # there is no room for another thread
+            threading.Thread(target=warn, name='hint', daemon=True).start()
 
     def _publish(self) -> None:
         """Publish what messages have changed, and let those that follow wait."""

@@ -366,8 +366,14 @@ async def _frames_of_scene(
     node: Node, loaded: LoadedScene, settings: Settings, before: PublishedFrames,
 ) -> PublishedFrames:
     """Return the frames of a scene, with their topics, which are not published yet."""
-    topics: PoseTopics = await run_in_thread(node, lambda: pose_topics_from_patterns(
-        loaded.tree.frame_ids, settings.pose_topics, node.get_fully_qualified_name()))
+    name = node.get_fully_qualified_name()
+
+    def prepared_topics() -> PoseTopics:
+        # The first look for a name makes the index of all names.
+        loaded.scene.has('')
+        return pose_topics_from_patterns(loaded.tree.frame_ids, settings.pose_topics, name)
+
+    topics: PoseTopics = await run_in_thread(node, prepared_topics)
     if topics.warning:
         node.get_logger().warning(topics.warning)
     if node.get_logger().is_enabled_for(LoggingSeverity.DEBUG):

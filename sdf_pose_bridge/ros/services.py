@@ -11,6 +11,7 @@ from typing import Any
 from typing import TypeAlias
 
 import numpy as np
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.clock import Clock
 from rclpy.node import Node
 from rclpy.qos import qos_profile_parameters
@@ -24,6 +25,8 @@ from sdf_pose_bridge.geometry.formats import converted_rotation
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import RotationError
+from sdf_pose_bridge.ros.background import CoroutineLock
+from sdf_pose_bridge.ros.background import run_in_thread
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -39,25 +42,62 @@ SERVICE_QOS = qos_profile_parameters
 """Keeps a thousand requests; the default keeps ten, and more callers at once would lose theirs."""
 
 
+MOST_NUMBERS = 1_000_000
+"""How many numbers a call of ``~/convert_poses`` may have."""
+
+_FEW_NUMBERS = 10_000
+"""How many are converted at once, in a fraction of a millisecond."""
+
+
 def add_services(node: Node, lookup: Callable[[], PoseLookup]) -> None:
     """
     Offer ``~/convert_rotation``, ``~/convert_poses`` and ``~/lookup_pose``.
 
     :param lookup: returns what poses are looked up in.
     """
-    def answer_to_lookup(
-        request: LookupPose.Request, response: LookupPose.Response,
-    ) -> LookupPose.Response:
-        return answer_to_lookup_pose(request, response, lookup(), node.get_clock())
+    logger, clock, group = node.get_logger(), node.get_clock(), ReentrantCallbackGroup()
+    # Requests that take longer are answered beside the callbacks, one after the other.
+    turn = CoroutineLock(node)
 
-    logger = node.get_logger()
-    for service_type, name, answer in (
-        (ConvertRotation, '~/convert_rotation', answer_to_convert_rotation),
-        (ConvertPoses, '~/convert_poses', answer_to_convert_poses),
-        (LookupPose, '~/lookup_pose', answer_to_lookup),
+    async def answered(answer: Answer, request: Any, response: Any, *, is_quick: bool) -> Any:
+        answer = never_raising(answer, logger.error)
+        if is_quick:
+            return answer(request, response)
+        async with turn:
+            try:
+                return await run_in_thread(node, lambda: answer(request, response))
+            except MemoryError as error:
+                response.message = str(error)
+                return response
+
+    async def convert_rotation(
+        request: ConvertRotation.Request, response: ConvertRotation.Response,
+    ) -> Any:
+        return await answered(answer_to_convert_rotation, request, response, is_quick=True)
+
+    async def convert_poses(
+        request: ConvertPoses.Request, response: ConvertPoses.Response,
+    ) -> Any:
+        return await answered(
+            answer_to_convert_poses, request, response,
+            is_quick=len(request.values) <= _FEW_NUMBERS or len(request.values) > MOST_NUMBERS)
+
+    async def lookup_pose(request: LookupPose.Request, response: LookupPose.Response) -> Any:
+        current = lookup()
+        reference = request.relative_to
+        # To find the name that was probably meant takes long where there are many.
+        return await answered(
+            lambda request, response: answer_to_lookup_pose(request, response, current, clock),
+            request, response,
+            is_quick=current.knows(request.frame) and (not reference or current.knows(reference)))
+
+    for service_type, callback in (
+        (ConvertRotation, convert_rotation), (ConvertPoses, convert_poses),
+        (LookupPose, lookup_pose),
     ):
         node.create_service(
-            service_type, name, never_raising(answer, logger.error), qos_profile=SERVICE_QOS)
+            service_type, f'~/{callback.__name__}', callback, qos_profile=SERVICE_QOS,
+            callback_group=group)
 
 
 def answer_to_convert_rotation(
@@ -83,7 +123,11 @@ def answer_to_convert_rotation(
 def answer_to_convert_poses(
     request: ConvertPoses.Request, response: ConvertPoses.Response,
 ) -> ConvertPoses.Response:
-    """Convert any number of poses."""
+    """Convert poses, ``MOST_NUMBERS`` numbers at most."""
+    if len(request.values) > MOST_NUMBERS:
+        response.message = (
+            f'values has {len(request.values)} numbers; a call can have at most {MOST_NUMBERS}')
+        return response
     try:
         converted = converted_poses(
             np.asarray(request.values), request.from_format, request.to_format)

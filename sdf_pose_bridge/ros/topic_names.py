@@ -45,6 +45,12 @@ SHORTEST_LIMIT = 48
 MOST_BY_DEFAULT = 1000
 """Largest number of topics that are made by default; each takes time and memory."""
 
+MOST_STEPS = 1_000_000_000
+"""The characters of all patterns with wildcards times those of all frame ids. To compare so many
+takes some seconds in the worst case, beside all else."""
+
+_WILDCARD = re.compile(r'[*?[]')
+
 _ESCAPED = re.compile(r"""
     \A[0-9_][^A-Za-z0-9]*                             # a digit or underscores at the beginning
     | _*[^A-Za-z0-9_][^A-Za-z0-9]*                    # others, with the underscores beside them
@@ -106,11 +112,23 @@ def pose_topics_from_patterns(
             {},
             'no ~/poses/... topics: the name of the node and its namespace are so long that '
             'the names of topics would be longer than the middleware allows')
+    with_wildcards = [pattern for pattern in patterns if _WILDCARD.search(pattern)]
+    steps = sum(map(len, with_wildcards)) * sum(map(len, frame_ids))
+    if steps > MOST_STEPS:
+        return PoseTopics(
+            {},
+            f'no ~/poses/... topics: to compare {len(with_wildcards)} patterns with '
+            f'{len(frame_ids)} frame ids takes too long; name frames without wildcards in '
+            'pose_topics, or use fewer patterns')
     chosen: set[str] = set()
     unmatched = []
+    known = set(frame_ids)
     for pattern in dict.fromkeys(patterns):
-        found = [frame_id for frame_id in frame_ids if fnmatchcase(frame_id, pattern)]
-        chosen.update(found)
+        if _WILDCARD.search(pattern):
+            found = {frame_id for frame_id in frame_ids if fnmatchcase(frame_id, pattern)}
+        else:
+            found = known & {pattern}
+        chosen |= found
         if not found and pattern not in ('', '*'):
             unmatched.append(pattern)
     names = {

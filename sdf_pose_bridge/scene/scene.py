@@ -262,13 +262,19 @@ class Scene:
         if found:
             kinds = ', '.join(
                 f'a {Kind(self.kinds[i]).label} in {self.world_of(i) or "the file"}'
-                for i in found)
+                for i in found[:_MOST_NAMED])
+            if len(found) > _MOST_NAMED:
+                kinds += f' and {len(found) - _MOST_NAMED} more'
             msg = f'"{name}" is the name of more than one element: {kinds}'
         else:
             where = f'world "{world}"' if world else 'the file'
-            msg = f'"{name}" names nothing in {where}{hint_from_names(name, self._indices)}'
+            hint = '' if name in self._indices else hint_from_names(name, self._indices)
+            msg = f'"{name}" names nothing in {where}{hint}'
         return UnknownFrameError(msg, place)
 
+
+_MOST_NAMED = 10
+"""How many of the elements that have the same name are named in a message."""
 
 _FRAMES_AND_ROOTS = frozenset(
     kind for kind in Kind if kind.is_frame or kind in (Kind.WORLD, Kind.ROOT))

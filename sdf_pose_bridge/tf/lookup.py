@@ -66,6 +66,10 @@ class PoseLookup:
         self._check_positions(last, last_of_reference)
         return FoundPose(canonical_relative_pose(reference, pose), frame_id)
 
+    def knows(self, name: str) -> bool:
+        """Return whether a name is that of a frame, of an element or of the root frame."""
+        return name == self._tree.root_frame or name in self._indices or self._scene.has(name)
+
     def pose_of_element(self, element: int, relative_to: str = '') -> Pose:
         """
         Look up the pose of an element of the scene in a frame.

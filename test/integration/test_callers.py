@@ -5,6 +5,7 @@
 import array
 import math
 import sys
+import time
 
 import pytest
 
@@ -16,6 +17,7 @@ from hypothesis import strategies as st
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from bridge_process import LoggedProcess
+from bridge_process import SECONDS
 from changes import BRIDGE
 from changes import reload
 from changes import world
@@ -41,9 +43,12 @@ from sdf_pose_bridge_interfaces.srv import ConvertPoses
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
 from sdf_pose_bridge_interfaces.srv import LookupPose
 
+LONGEST_WAIT_S = 1.0
+"""Half of that is promised; tests may run beside others."""
+LONG_NAME = 'abcdefghijklmnopqrstuvwxyz' * 7
 CALLS = size(200, 100_000)
 CLIENTS = size(50, 100)
-NUMBERS = size(16_000, 10_000_000)
+NUMBERS = size(16_000, 1_000_000)
 
 # Messages hold UTF-8, which has no surrogates.
 TEXTS = st.text(st.characters(exclude_categories=['Cs']), max_size=20) | st.sampled_from(
@@ -178,3 +183,146 @@ def test_many_numbers_in_one_call_are_converted(bridge, start_listener):
     assert answer.success, answer.message
     assert answer.values == array.array('d', [0.5, 2.0, -3.0, 0.0, 0.0, 0.0, 1.0]) * (
         NUMBERS // len(row))
+
+
+def test_more_numbers_than_a_call_can_have_are_refused(bridge, start_listener):
+    request = ConvertPoses.Request(
+        from_format='sdf_rpy', to_format='sdf_quat_xyzw',
+        values=array.array('d', [0.0]) * 7_000_000)
+    answer = start_listener().call(ConvertPoses, f'{BRIDGE}/convert_poses', request)
+    assert not answer.success
+    assert answer.message == 'values has 7000000 numbers; a call can have at most 1000000'
+
+
+# Calls that ask for much with few bytes, or repeat themselves
+
+
+class Waiting:
+    """Asks for something small again and again, and knows how long that has taken at most."""
+
+    def __init__(self, listener):
+        self._listener = listener
+        self._ask()
+
+    def _ask(self):
+        assert self._listener.call(
+            ConvertRotation, f'{BRIDGE}/convert_rotation', ConvertRotation.Request()).success
+
+    def longest_until(self, is_done):
+        longest, deadline = 0.0, time.monotonic() + SECONDS
+        while not is_done():
+            begin = time.monotonic()
+            assert begin < deadline
+            self._ask()
+            longest = max(longest, time.monotonic() - begin)
+        return longest
+
+
+def asked(listener, service_type, name, request):
+    client = listener.node.create_client(service_type, f'{BRIDGE}/{name}')
+    listener.wait(client.service_is_ready, lambda: name)
+    return client.call_async(request)
+
+
+def value_of(**fields):
+    return ParameterValue(
+        type=getattr(ParameterType, f'PARAMETER_{next(iter(fields)).rpartition("_")[0].upper()}'),
+        **fields)
+
+
+def test_a_million_values_for_a_parameter_are_refused_in_one_sentence(bridge, start_listener):
+    listener = start_listener()
+    parameters = [Parameter(
+        name='sdf_file', value=value_of(integer_array_value=array.array('q', [7]) * 1_000_000))]
+    parameters += [
+        Parameter(name='publish_rate', value=value_of(double_value=0.0)) for _ in range(999)]
+    waiting = Waiting(listener)
+    future = asked(listener, SetParameters, 'set_parameters', SetParameters.Request(
+        parameters=parameters))
+    assert waiting.longest_until(future.done) < LONGEST_WAIT_S
+    results = future.result().results
+    assert len(results) == 1000
+    assert not any(result.successful for result in results)
+    assert results[0].reason == (
+        'parameter sdf_file is a list of 1000000 values; a list can have at most 1000')
+    assert sum(len(result.reason) for result in results) < 100_000
+
+
+def test_a_value_of_the_wrong_type_is_shown_shortened(bridge, start_listener):
+    parameters = [Parameter(
+        name='sdf_file', value=value_of(integer_array_value=array.array('q', range(1000))))]
+    (result,) = start_listener().call(
+        SetParameters, f'{BRIDGE}/set_parameters', SetParameters.Request(parameters=parameters)
+    ).results
+    assert result.reason.endswith('which is a list of integers; it must be a string')
+    assert len(result.reason) < 200
+
+
+def test_more_parameters_than_a_call_can_set_get_few_results(bridge, start_listener):
+    parameters = [Parameter(name='watch', value=value_of(bool_value=True)) for _ in range(20_000)]
+    answer = start_listener().call(
+        SetParameters, f'{BRIDGE}/set_parameters', SetParameters.Request(parameters=parameters))
+    assert answer.results[0].reason == (
+        'a call can set at most 1000 parameters, and this one has 20000')
+    assert len(answer.results) < 100
+
+
+def test_a_large_value_is_not_repeated(start_bridge, start_listener, tmp_path):
+    text = f'<robot name="r"><link name="l"/><!-- {"x" * 1_000_000} --></robot>'
+    path = tmp_path / 'parameters.yaml'
+    path.write_text(f"/**: {{ros__parameters: {{robot_description: '{text}'}}}}")
+    bridge = start_bridge('--ros-args', '--params-file', path).wait_until_started()
+    listener = start_listener()
+    name = 'robot_description'
+    (value,) = listener.call(
+        GetParameters, f'{BRIDGE}/get_parameters', GetParameters.Request(names=[name])).values
+    assert value.string_value == text
+    waiting = Waiting(listener)
+    future = asked(
+        listener, GetParameters, 'get_parameters', GetParameters.Request(names=[name] * 1000))
+    assert waiting.longest_until(future.done) < LONGEST_WAIT_S
+    assert future.result().values == []
+    assert 'is not answered: it has names again and again' in bridge.wait_for_line(
+        'a call that reads parameters')
+
+
+@pytest.mark.parametrize(('service', 'name', 'field'), [
+    (GetParameters, 'get_parameters', 'values'),
+    (GetParameterTypes, 'get_parameter_types', 'types'),
+    (DescribeParameters, 'describe_parameters', 'descriptors')])
+def test_more_names_than_a_call_can_have_are_not_answered(
+        bridge, start_listener, service, name, field):
+    listener = start_listener()
+    for count, found in ((1000, 1000), (1001, 0)):
+        answer = listener.call(
+            service, f'{BRIDGE}/{name}', service.Request(names=['watch'] * count))
+        assert len(getattr(answer, field)) == found
+    bridge.wait_for_line('it has 1001 names; it can have at most 1000')
+
+
+@pytest.fixture(name='large_bridge')
+def bridge_on_long_names(start_bridge, tmp_path):
+    path = tmp_path / 'large.sdf'
+    frames = ''.join(f'<frame name="{LONG_NAME}{number}"/>' for number in range(40_000))
+    path.write_text(f'<sdf version="1.10"><world name="w">{frames}</world></sdf>')
+    return start_bridge('--ros-args', '-p', f'sdf_file:={path}').wait_until_started()
+
+
+def test_a_name_that_was_probably_meant_is_searched_beside(large_bridge, start_listener):
+    listener = start_listener()
+    waiting = Waiting(listener)
+    future = asked(
+        listener, LookupPose, 'lookup_pose', LookupPose.Request(frame=f'{LONG_NAME}x'))
+    assert waiting.longest_until(future.done) < LONGEST_WAIT_S
+    assert 'is the name of nothing; did you mean' in future.result().message
+
+
+def test_many_patterns_for_many_frames_are_answered(large_bridge, start_listener):
+    listener = start_listener()
+    patterns = [f'*{number}{"a" * 200}b' for number in range(1000)]
+    waiting = Waiting(listener)
+    future = asked(listener, SetParameters, 'set_parameters', SetParameters.Request(parameters=[
+        Parameter(name='pose_topics', value=value_of(string_array_value=patterns))]))
+    assert waiting.longest_until(future.done) < LONGEST_WAIT_S
+    assert future.result().results[0].successful
+    large_bridge.wait_for_line('takes too long')

@@ -7,6 +7,7 @@ from math import nan
 from math import pi
 import signal
 import sys
+import time
 
 import pytest
 
@@ -26,8 +27,12 @@ from slow_file import SlowFile
 from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 
+from sdf_pose_bridge_interfaces.srv import ConvertRotation
 from sdf_pose_bridge_interfaces.srv import LookupPose
 
+LONGEST_WAIT_S = 1.0
+"""Half of that is promised; tests may run beside others."""
+LONG_NAME = 'abcdefghijklmnopqrstuvwxyz' * 14
 ARM = """<sdf version="1.11"><model name="arm">
 <link name="base"/><link name="upper"><pose>0 0 1 0 0 0</pose></link>
 <link name="slide"><pose>0 0 2 0 0 0</pose></link><link name="finger"/>
@@ -438,3 +443,31 @@ def test_following_can_be_switched_off_and_on(start, file, joints, tf):
     result, = set_parameters(tf.listener, use_joint_states=True)
     assert result.successful, result.reason
     assert tf.wait_for('slide', joints.send({'lift': 0.7})).translation.z == 1.7
+
+
+def test_new_unknown_names_in_each_message_keep_nobody_waiting(
+        start_bridge, start_listener, tmp_path):
+    joints = ''.join(
+        f'<link name="l{i}"/><joint name="{LONG_NAME}{i}" type="revolute"><parent>base</parent>'
+        f'<child>l{i}</child><axis><xyz>0 0 1</xyz></axis></joint>' for i in range(10_000))
+    path = tmp_path / 'arm.sdf'
+    path.write_text(
+        f'<sdf version="1.10"><model name="m"><link name="base"/>{joints}</model></sdf>')
+    bridge = start_bridge(
+        '--ros-args', '-p', f'sdf_file:={path}', '-p', 'use_joint_states:=true',
+        '-p', 'pose_topics:=[""]').wait_until_started()
+    listener, publisher = start_listener(), JointPublisher()
+    longest = 0.0
+    try:
+        for number in range(12):
+            for row in range(5):
+                publisher.send({f'{LONG_NAME}x{number}_{row}_{i}': 0.0 for i in range(2500)})
+            begin = time.monotonic()
+            assert listener.call(
+                ConvertRotation, f'{BRIDGE}/convert_rotation', ConvertRotation.Request()).success
+            if number:  # the first call has to find the service
+                longest = max(longest, time.monotonic() - begin)
+    finally:
+        publisher.end()
+    bridge.wait_for_line('not the name of one moving joint')
+    assert longest < LONGEST_WAIT_S

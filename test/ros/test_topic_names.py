@@ -3,6 +3,7 @@
 """Names of topics: legal, visible, readable where they can be, and never shared."""
 
 import re
+import time
 
 import pytest
 
@@ -171,3 +172,29 @@ def test_a_node_whose_name_leaves_no_room_has_no_topics():
     topics = pose_topics_from_patterns(['a'], ['*'], '/n' * 100)
     assert topics.names == {}
     assert 'longer than the middleware allows' in topics.warning
+
+
+def test_patterns_that_would_take_too_long_are_refused():
+    frame_ids = [f'{number}/{"a" * 300}' for number in range(40_000)]
+    begin = time.process_time()
+    topics = pose_topics_from_patterns(frame_ids, [f'*{n}{"a" * 200}b' for n in range(1000)], '/n')
+    assert topics.names == {}
+    assert 'to compare 1000 patterns with 40000 frame ids takes too long' in topics.warning
+    assert time.process_time() - begin < 0.5
+
+
+def test_many_names_without_wildcards_are_found_at_once():
+    frame_ids = [f'{number}/{"a" * 300}' for number in range(40_000)]
+    begin = time.process_time()
+    topics = pose_topics_from_patterns(frame_ids, [*frame_ids[:999], 'none'], '/n')
+    assert list(topics.names) == frame_ids[:999]
+    assert '"none"' in topics.warning
+    assert time.process_time() - begin < 0.5
+
+
+def test_as_many_patterns_as_are_taken_do_not_take_long():
+    frame_ids = [f'{number}/{"a" * 300}' for number in range(10_000)]
+    begin = time.process_time()
+    topics = pose_topics_from_patterns(frame_ids, [f'*{"a" * 250}b'], '/n')
+    assert 'no frame id matches' in topics.warning
+    assert time.process_time() - begin < 10.0
