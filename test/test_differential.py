@@ -7,19 +7,26 @@ The package against libsdformat: a fixed share of the random scenes, and the exa
 """
 
 from pathlib import Path
+from random import Random
 
 import pytest
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
 from differential.batches import compare_scenes
+from differential.batches import difference_from_asked
+from differential.batches import write_scene
 from differential.comparison import difference_between
 from differential.comparison import own_answer
 from differential.reference import Answer
 from differential.reference import built_reference
 from differential.reference import CRASH
 from differential.reference import ReferenceMissingError
+from differential.scene_chains import chain_scene
+from differential.scene_chains import FAMILIES
+from differential.scene_chains import text_of
 from differential.scene_parts import Feature
 from differential.scene_parts import features_of_release
+from differential.scene_setting import with_pose_set
 
 ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = sorted((ROOT / 'examples').rglob('*.sdf'))
@@ -46,6 +53,26 @@ def test_random_scenes_are_resolved_as_by_libsdformat(reference):
     *_, tally = compare_scenes(reference, SCENES, 20260101, PLAIN)
     assert tally.scenes == SCENES
     assert [(name, difference.text) for name, _, difference in tally.differences] == []
+
+
+@pytest.mark.parametrize('family', sorted(set(FAMILIES), key=lambda family: family.__name__))
+def test_odd_scene_is_resolved_or_refused(family, tmp_path):
+    for number in range(8):
+        files = {path: text_of(root) for path, root in family(Random(number)).items()}
+        path = write_scene(files, tmp_path, f'scene_{number}')
+        answer = own_answer(path, tmp_path)
+        assert CRASH not in answer.codes, (number, answer.message)
+        assert answer.accepted == (not answer.codes)
+
+
+def test_pose_is_set_in_a_random_scene(tmp_path):
+    dice = Random(1)
+    scenes = [with_pose_set(chain_scene(dice), dice) for _ in range(12)]
+    asked = [scene for scene in scenes if scene.asked is not None]
+    assert len(asked) > 1
+    for number, scene in enumerate(asked):
+        answer = own_answer(write_scene(scene.files, tmp_path, f'scene_{number}'), tmp_path)
+        assert difference_from_asked(*scene.asked, answer) is None
 
 
 def test_libsdformat_judges_random_scenes_as_they_are_meant(reference):

@@ -41,7 +41,7 @@ def chain_scene(dice: Random) -> SceneFiles:
     :return: the scene; its defect names the family.
     """
     family = dice.choice(FAMILIES)
-    files = {path: _text(root) for path, root in family(dice).items()}
+    files = {path: text_of(root) for path, root in family(dice).items()}
     # Merged poses are written with six digits by releases before 14.
     return SceneFiles(
         files, frozenset({ODD_VALUES, 'merge-placement', family.__name__}), family.__name__)
@@ -319,6 +319,7 @@ def _sdf(dice: Random, top: Element, versions: tuple[str, ...] = VERSIONS) -> El
     return root
 
 
-def _text(root: Element) -> str:
+def text_of(root: Element) -> str:
+    """Return the text of a file; its parameters have a prefix there."""
     text = ElementTree.tostring(root, encoding='unicode')
     return text.replace('experimental_params', 'experimental:params')
