@@ -36,6 +36,7 @@ from sdf_pose_bridge.ros.setting_rules import separator_setting
 from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
+from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat
 from sdf_pose_bridge.tf.loaded_scene import LoadRequest
 from sdf_pose_bridge.tf.tree import AnchorModels
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
@@ -157,6 +158,12 @@ class Settings:
         'Publishes the text of sdf_file, or that of robot_description, on the topic '
         'robot_description, unless it is a world.',
         needs_load=False,
+    )
+    description_format = _choice(
+        DescriptionFormat.AS_GIVEN,
+        'What the topic robot_description has: "as_given" is the text of a model or URDF as it '
+        'is; with "urdf" it is URDF made of the model that is published, whose links are its '
+        'frames, also where that is one of a world.',
     )
     publish_transforms = _switch(
         True, 'Publishes all transforms one by one on ~/transforms.', needs_load=False,
@@ -297,7 +304,7 @@ class Settings:
         """What is read with these settings."""
         return LoadRequest(
             self.sdf_file, self.robot_description, self.resource_paths, self.on_missing_include,
-            self.tf_options, self.unreported_joints)
+            self.tf_options, self.unreported_joints, self.description_format)
 
     def needs_load_after(self, before: Settings) -> bool:
         """

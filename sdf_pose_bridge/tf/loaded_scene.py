@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+import enum
 import os
 from pathlib import Path
 import time
@@ -33,6 +34,15 @@ from sdf_pose_bridge.tf.tree import TfOptions
 from sdf_pose_bridge.tf.tree import TfTree
 
 
+class DescriptionFormat(enum.Enum):
+    """What the topic ``robot_description`` has."""
+
+    AS_GIVEN = 'as_given'
+    """The text that was read, unless it is a world."""
+    URDF = 'urdf'
+    """URDF made of the model that is published; URDF that was read as it is."""
+
+
 class LoadRequest(NamedTuple):
     """What is to be read, and how."""
 
@@ -44,6 +54,7 @@ class LoadRequest(NamedTuple):
     on_missing_include: MissingInclude = MissingInclude.ERROR
     tf_options: TfOptions = TfOptions()
     unreported_joints: UnreportedJoints = UnreportedJoints.NONE
+    description_format: DescriptionFormat = DescriptionFormat.AS_GIVEN
 
     @property
     def source(self) -> str:
@@ -60,7 +71,8 @@ class LoadedScene(NamedTuple):
     text: str | bytes
     """What was read; bytes are in the encoding that they declare."""
     description: str
-    """The text for the topic ``robot_description``; empty for a world."""
+    """The text for the topic ``robot_description``; empty for a world, and for what cannot be
+    made URDF."""
     scene: Scene
     tree: TfTree
     lookup: PoseLookup
@@ -92,17 +104,22 @@ def loaded_scene_from_request(
     begin = time.perf_counter()
     path, manifests, warnings = _file_from_request(request)
     text = bytes_from_file(str(path), Usage()) if request.sdf_file else request.robot_description
-    scene = scene_from_text(text, path, request, texts=texts)
+    is_made_urdf = request.description_format is DescriptionFormat.URDF
+    scene = scene_from_text(text, path, request, shapes=is_made_urdf, texts=texts)
     options = request.tf_options
     tree = tf_tree_from_scene(scene, options)
     joint_positions = None if tree.moving is None else JointPositions(
         scene, tree.moving.dofs, options.frame_names, options.model, request.unreported_joints)
-    found = (*warnings, *scene.warnings, *tree.warnings)
+    description = '' if tree.world else unicode_text(text)
+    warnings_of_urdf: tuple[SdfWarning, ...] = ()
+    if is_made_urdf and scene.urdf_root is None:
+        description, warnings_of_urdf = _urdf(scene, request)
+    found = (*warnings, *warnings_of_urdf, *scene.warnings, *tree.warnings)
     return LoadedScene(
         request=request,
         path=path,
         text=text,
-        description='' if tree.world else unicode_text(text),
+        description=description,
         scene=scene,
         tree=tree,
         lookup=PoseLookup(scene, tree, joint_positions),
@@ -113,6 +130,22 @@ def loaded_scene_from_request(
         read_since_ns=read_since_ns,
         seconds=time.perf_counter() - begin,
     )
+
+
+def _urdf(scene: Scene, request: LoadRequest) -> tuple[str, tuple[SdfWarning, ...]]:
+    """Return URDF with warnings, or an empty text with a warning that says why there is none."""
+    # Imported here because it takes 2 ms, and most nodes make no URDF.
+    from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
+    options = request.tf_options
+    try:
+        return urdf_from_scene(
+            scene, model=options.model, kinds=options.kinds, frame_names=options.frame_names,
+            frame_separator=options.frame_separator, optical_frames=options.optical_frames,
+            root_frame=options.root_frame, resource_paths=request.resource_paths)
+    except SdfError as error:
+        first = error.errors[0]
+        msg = f'there is no robot_description, because no URDF can be made: {first.message}'
+        return '', (SdfWarning(first.code, msg, first.place),)
 
 
 def fingerprint_of_scene(scene: Scene) -> bytes:

@@ -108,7 +108,7 @@ def robot_from_scene(scene: Scene, options: TfOptions) -> UrdfRobot:
         msg = 'the file is URDF already'
         raise UrdfNotMadeError(msg, Place(scene.path))
     model = _model(scene, options.model)
-    kinds = DEFAULT_KINDS if options.kinds is None else options.kinds
+    kinds = options.kinds or DEFAULT_KINDS
     return _RobotMaker(scene, model, options._replace(
         model=scene.names[model], kinds=kinds | {Kind.LINK}, frame_prefix='',
         pose_frame='', anchor_models=AnchorModels.ALL, use_joint_states=False)).robot()

@@ -64,7 +64,7 @@ def urdf_from_scene(
     scene: Scene,
     *,
     model: str = '',
-    kinds: Collection[Kind] = DEFAULT_KINDS,
+    kinds: Collection[Kind] | None = None,
     frame_names: FrameNames | str = FrameNames.AUTO,
     frame_separator: str = '/',
     optical_frames: bool = True,
@@ -79,7 +79,8 @@ def urdf_from_scene(
 
     :param scene: the scene, loaded with ``shapes=True``.
     :param model: scoped name of the model; may be empty if there is only one.
-    :param kinds: the kinds of element that become links. Links do in any case.
+    :param kinds: the kinds of element that become links: models, links, frames and sensors
+        unless others are given. Links do in any case.
     :param frame_names: how links and joints are named: ``auto``, ``scoped`` or ``relative``.
     :param frame_separator: replaces ``::`` in names of links.
     :param optical_frames: whether each camera gets an optical frame besides its own.
@@ -96,7 +97,8 @@ def urdf_from_scene(
         raise ValueError(msg)
     robot = robot_from_scene(scene, TfOptions(
         root_frame=root_frame, model=model, frame_names=FrameNames(frame_names),
-        frame_separator=frame_separator, kinds=frozenset(kinds), optical_frames=optical_frames))
+        frame_separator=frame_separator, optical_frames=optical_frames,
+        kinds=DEFAULT_KINDS if kinds is None else frozenset(kinds)))
     return _Writer(scene, robot, resource_paths, has_capsules=has_capsules).urdf()
 
 

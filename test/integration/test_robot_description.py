@@ -122,3 +122,25 @@ def test_there_is_no_topic_for_a_world_or_if_it_is_switched_off(
     listener.wait(has_topic, lambda: topics_of(listener))
     replace(file, world(1))
     listener.wait(lambda: not has_topic(), lambda: topics_of(listener))
+
+
+def test_urdf_is_made_of_the_model_and_again_after_each_change(
+        start_bridge, start_listener, file):
+    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={file}')
+    listener = start_listener()
+    texts = texts_of(listener)
+    wait_for_text(listener, texts, model(1))
+    set_parameters(listener, description_format='urdf')
+    listener.wait(lambda: '<origin xyz="1 0 0" rpy="0 0 0"/>' in texts[-1], lambda: texts)
+    assert texts[-1].startswith('<?xml version="1.0"?>\n<robot name="crate">')
+    replace(file, model(2))
+    listener.wait(lambda: '<origin xyz="2 0 0" rpy="0 0 0"/>' in texts[-1], lambda: texts)
+    # What cannot be URDF has no topic, and its frames are published all the same.
+    listen_to_tf(listener)
+    replace(file, world(3).replace('</world>', '<model name="n"><link name="l"/></model></world>'))
+    bridge.wait_for_line('there is no robot_description, because no URDF can be made')
+    wait_for_x(listener, 3.0)
+    late = start_listener()
+    late_texts = texts_of(late)
+    set_parameters(listener, model='n')
+    late.wait(lambda: late_texts and '<robot name="n">' in late_texts[-1], lambda: late_texts)

@@ -13,6 +13,7 @@ from sdf_texts import model_file
 from sdf_texts import world_file
 
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat
 from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene
 from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
 from sdf_pose_bridge.tf.loaded_scene import LoadRequest
@@ -114,3 +115,41 @@ def test_a_text_stays_as_it_is(text):
 def test_another_encoding_is_converted(encoding):
     text = unicode_text(f'<?xml version="1.0" encoding="{encoding}"?>{TEXT}'.encode(encoding))
     assert etree.fromstring(text).get('name') == 'größe'
+
+
+# URDF
+
+def described(text, **options):
+    """Return the description of a text as URDF, and all warnings."""
+    loaded = loaded_scene_from_request(LoadRequest(
+        '', text, tf_options=TfOptions(**options), description_format=DescriptionFormat.URDF))
+    return loaded.description, [str(warning) for warning in loaded.warnings]
+
+
+def test_a_world_of_several_models_has_no_urdf():
+    description, (warning,) = described(world_file(GOOD + GOOD.replace('"m"', '"n"')))
+    assert description == ''
+    assert warning == (
+        'robot_description: URDF_NOT_MADE: there is no robot_description, because no URDF can be '
+        'made: URDF describes one robot, and the file has the models "m", "n"; name one of them')
+
+
+def test_urdf_is_that_of_the_model_that_is_published():
+    description, warnings = described(
+        world_file(GOOD + GOOD.replace('"m"', '"n"')), model='n', frame_separator='-',
+        frame_prefix='r/', root_frame='map', optical_frames=False)
+    assert warnings == []
+    assert '<robot name="n">' in description
+    assert [name for name in ('n-l', 'n-f', 'n') if f'<link name="{name}"/>' in description] == [
+        'n-l', 'n-f', 'n']
+
+
+def test_urdf_has_shapes():
+    box = '<visual name="v"><geometry><box/></geometry></visual>'
+    description, _ = described(model_file(f'<link name="l">{box}</link>'))
+    assert '<box size="1 1 1"/>' in description
+
+
+def test_urdf_stays_as_it_is():
+    text = '<robot name="r"><!-- mine --><link name="l"/></robot>'
+    assert described(text)[0] == text
