@@ -14,7 +14,7 @@ from typing import NamedTuple
 from lxml import etree
 
 from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.geometry.poses import canonical_relative_pose
+from sdf_pose_bridge.geometry.poses import canonical_relative_poses
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
@@ -113,10 +113,13 @@ class _Writer:
         self._finder = resource_finder(resource_paths, os.environ)
         self._has_capsules = has_capsules
         self._problems = Problems(scene.files)
-        self._parts: defaultdict[int, list[int]] = defaultdict(list)
-        """For each link its inertial, visuals and collisions."""
-        for element in sorted({*scene.shapes, *scene.inertials}):
-            self._parts[int(scene.parents[element])].append(element)
+        self._parts: defaultdict[int, list[tuple[int, Pose]]] = defaultdict(list)
+        """For each link its inertial, visuals and collisions, with their poses in it."""
+        elements = sorted({*scene.shapes, *scene.inertials} & robot.elements)
+        links = scene.parents[elements]
+        poses = canonical_relative_poses(scene.poses[links], scene.poses[elements])
+        for element, link, pose in zip(elements, links.tolist(), poses.tolist(), strict=True):
+            self._parts[link].append((element, Pose(*pose)))
         self._root = etree.Element('robot', name=robot.name)
         if has_capsules:
             self._root.set('version', '1.2')
@@ -183,9 +186,7 @@ class _Writer:
 
     def _add_link(self, name: str, element: int) -> None:
         xml = etree.SubElement(self._root, 'link', name=name)
-        for part in self._parts[element] if element >= 0 else ():
-            pose = canonical_relative_pose(
-                self._scene.pose_of(element), self._scene.pose_of(part))
+        for part, pose in self._parts[element]:
             if part in self._scene.inertials:
                 self._add_inertial(xml, part, pose)
             else:
@@ -265,6 +266,8 @@ def _geometry_from_part(part: Part) -> _Geometry | None:
 
 def _add_origin(xml: etree._Element, pose: Pose) -> None:
     """Add the pose of an element, unless it is the identity."""
+    if not any(pose[:6]):
+        return
     numbers = _rounded((*pose[:3], *rpy_from_quaternion(pose[3:])))
     if any(numbers):
         etree.SubElement(xml, 'origin', xyz=_numbers(numbers[:3]), rpy=_numbers(numbers[3:]))
