@@ -4,6 +4,13 @@
 
 import math
 
+import numpy as np
+import pytest
+from sdf_texts import LINK
+from sdf_texts import model_file
+from sdf_texts import world_file
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import assume
 from hypothesis import given
 from hypothesis import settings
@@ -14,12 +21,7 @@ from joint_trees import POSES
 from joint_trees import POSITIONS
 from joint_trees import random_joints
 from matrices import matrix_from_pose
-import numpy as np
-import pytest
 from random_scenes import random_scenes
-from sdf_texts import LINK
-from sdf_texts import model_file
-from sdf_texts import world_file
 
 from sdf_pose_bridge import Kind
 from sdf_pose_bridge import load_text
