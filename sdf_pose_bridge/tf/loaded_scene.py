@@ -114,7 +114,8 @@ def loaded_scene_from_request(
     warnings_of_urdf: tuple[SdfWarning, ...] = ()
     if is_made_urdf and scene.urdf_root is None:
         description, warnings_of_urdf = _urdf(scene, request)
-    found = (*warnings, *warnings_of_urdf, *scene.warnings, *tree.warnings)
+    # Those of the tree may be those of URDF too.
+    found = dict.fromkeys((*warnings, *warnings_of_urdf, *scene.warnings, *tree.warnings))
     return LoadedScene(
         request=request,
         path=path,

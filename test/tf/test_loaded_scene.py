@@ -153,3 +153,10 @@ def test_urdf_has_shapes():
 def test_urdf_stays_as_it_is():
     text = '<robot name="r"><!-- mine --><link name="l"/></robot>'
     assert described(text)[0] == text
+
+
+def test_warning_about_a_loop_is_given_once():
+    ends = '<parent>a</parent><child>b</child>'
+    _, warnings = described(model_file(
+        '<link name="a"/><link name="b"/>' + joint(ends, 'j') + joint(ends, 'k')))
+    assert len(warnings) == 1
