@@ -4,7 +4,7 @@
 SHELL := bash
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test test_core test_long run lint bench differential fuzz growth soak licenses audit docs pictures \
-  wheel_check release_check release clean
+  coverage wheel_check release_check release clean
 
 # The distribution of ROS 2, versions of other packages, and a folder with another rclpy, also for
 # the scripts in underlay.
@@ -33,6 +33,7 @@ help:
 	@echo 'make test_core      the tests of reading and geometry alone, in half a minute'
 	@echo 'make test_long      all tests, some with many more calls, frames or rotations'
 	@echo 'make run FILE=...   the node on an SDFormat file; ARGS="-p name:=value" sets parameters'
+	@echo 'make coverage       lines and branches that all tests run, with those of processes'
 	@echo 'make lint           ruff, mypy and import-linter'
 	@echo 'make bench          benchmarks; ARGS="..." hands arguments to them'
 	@echo 'make differential   random scenes against libsdformat; ARGS="--scenes 100" for fewer'
@@ -78,6 +79,14 @@ run: export CALLER := $(PWD)
 run: export FILE := $(FILE)
 run: setup
 	@$(in_shell) python underlay/run.py "$$CALLER" "$$FILE" $(ARGS)
+
+# The node ends by os._exit, or by a signal.
+coverage: export COVERAGE_FILE = $(CURDIR)/.underlay/coverage/data
+coverage: setup
+	@. underlay/setup.bash && python -m pip install --quiet 'coverage==7.17.3' \
+	  && rm -rf .underlay/coverage && mkdir -p .underlay/coverage \
+	  && { python -m coverage run -m pytest --numprocesses auto --dist worksteal $(ARGS); \
+	    python -m coverage combine --quiet && python -m coverage report --skip-covered; }
 
 lint: setup
 	@. underlay/setup.bash && ruff check && mypy && exec lint-imports --no-logo --no-cache
