@@ -48,7 +48,8 @@ PARAMETERS = {
     'sdf_file': 'SDFormat file to publish: a path, or a file://, package:// or model:// URI.',
     'frame_prefix': 'Precedes every frame id but that of root_frame, such as robot1/.',
     'root_frame': "TF frame of the SDF world, or of a model file's root.",
-    'anchor_models': 'Which models get a transform from root_frame: auto, all, static or none.',
+    'anchor_models': 'Which models get a transform from root_frame: auto, all, static, none, or '
+                     'patterns of their names such as table*,fence.',
 }
 """Arguments that set the parameter of the same name."""
 

@@ -20,6 +20,7 @@ from typing import TypeVar
 
 from rclpy.parameter import Parameter
 
+from sdf_pose_bridge.ros.setting_rules import anchors_setting
 from sdf_pose_bridge.ros.setting_rules import AUTO_KINDS
 from sdf_pose_bridge.ros.setting_rules import directories_setting
 from sdf_pose_bridge.ros.setting_rules import HIGHEST_FREQUENCY
@@ -34,11 +35,11 @@ from sdf_pose_bridge.ros.setting_rules import refusal
 from sdf_pose_bridge.ros.setting_rules import root_frame_setting
 from sdf_pose_bridge.ros.setting_rules import separator_setting
 from sdf_pose_bridge.scene.loading import MissingInclude
+from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
 from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat
 from sdf_pose_bridge.tf.loaded_scene import LoadRequest
-from sdf_pose_bridge.tf.tree import AnchorModels
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 from sdf_pose_bridge.tf.tree import TfOptions
 
@@ -181,11 +182,14 @@ class Settings:
         'not empty, no leading slash, at most 255 characters',
         root_frame_setting,
     )
-    anchor_models = _choice(
-        AnchorModels.AUTO,
+    anchor_models = Declaration(
+        AnchorModels.AUTO.value,
         'Which top-level models get a transform from root_frame; odometry or localization can '
         'publish that of the others. "auto" is "static" for a model file or URDF, and "all" for a '
         'world.',
+        'one of auto, all, static, none, or glob patterns of the names of models, separated by '
+        'commas, such as table*,fence; static may be one of them',
+        anchors_setting,
     )
     model = Declaration(
         '',

@@ -15,6 +15,9 @@ from pathlib import Path
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.anchors import AnchorModels
+from sdf_pose_bridge.tf.anchors import AnchorPatterns
+from sdf_pose_bridge.tf.anchors import anchors_from_text
 
 PUBLISHED_KINDS = {
     kind.label: kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD, Kind.ACTOR)}
@@ -88,6 +91,16 @@ def patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
     for value in values:
         _check_length(value, MOST_CHARACTERS)
     return tuple(values)
+
+
+def anchors_setting(value: str) -> AnchorModels | AnchorPatterns:
+    """Refuse what is neither a word nor patterns."""
+    _check_count(value.split(','), 'patterns')
+    _check_length(value, MOST_CHARACTERS_OF_PATH)
+    try:
+        return anchors_from_text(value)
+    except ValueError as error:
+        raise refusal(value, str(error)) from None
 
 
 def path_setting(value: str) -> str:

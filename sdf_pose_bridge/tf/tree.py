@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from collections.abc import Sequence
 from dataclasses import dataclass
-import enum
 from functools import cached_property
 from typing import Any
 from typing import NamedTuple
@@ -30,6 +29,9 @@ from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.anchors import AnchorModels
+from sdf_pose_bridge.tf.anchors import AnchorPatterns
+from sdf_pose_bridge.tf.anchors import detached_bodies
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.frame_ids import optical_frames_of_cameras
@@ -45,23 +47,12 @@ DEFAULT_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.FRAME, Kind.SENSOR})
 """The kinds of element that become frames unless the options say otherwise."""
 
 
-class AnchorModels(enum.Enum):
-    """Which top-level models get a transform from the root frame."""
-
-    AUTO = 'auto'
-    """All models of a world; those of a model file, or of URDF, like ``STATIC``."""
-    ALL = 'all'
-    STATIC = 'static'
-    """Static models, and models that a joint connects to the world."""
-    NONE = 'none'
-
-
 class TfOptions(NamedTuple):
     """Which elements become frames, and how the frames are named."""
 
     root_frame: str = 'world'
     """The frame id of the world, or of a model file's implicit root."""
-    anchor_models: AnchorModels = AnchorModels.AUTO
+    anchor_models: AnchorModels | AnchorPatterns = AnchorModels.AUTO
     """Which top-level models get a transform from the root frame."""
     model: str = ''
     """The scoped name of the only model to publish; empty for everything."""
@@ -186,7 +177,9 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         problems.warning(msg, scene.place(joint.element))
     problems.raise_errors()
     nearest_frames, parents_of_elements = _nearest_frames_and_parents(
-        scene, tf_parents, options.anchor_models, elements)
+        scene, tf_parents, elements,
+        detached_bodies(scene, tf_parents, options.anchor_models, problems),
+        is_world_anchored=options.anchor_models is AnchorModels.ALL)
     parents = np.concatenate([
         parents_of_elements, np.array([frame.parent for frame in optical_frames], np.int32)])
     poses = np.concatenate([
@@ -329,32 +322,23 @@ def _description(scene: Scene, element: int) -> str:
 
 
 def _nearest_frames_and_parents(
-    scene: Scene, tf_parents: TfParents, anchor_models: AnchorModels, elements: Indices,
+    scene: Scene, tf_parents: TfParents, elements: Indices, is_detached: NDArray[np.bool_], *,
+    is_world_anchored: bool,
 ) -> tuple[Indices, Indices]:
     """
     Find the frame that each element is in, and the parent of each frame.
 
     The parent is the nearest TF ancestor of the frame's element that has a frame.
 
-    :param anchor_models: which top-level models get a transform from the root frame.
     :param elements: the elements that have a frame.
+    :param is_detached: for each element whether it has no parent, although that is the root.
+    :param is_world_anchored: whether the link "world" of a URDF gets a transform.
     :return: for each element of the scene the index of the frame of the nearest element, itself
         included, that has one; for each frame the index of its parent. Instead of an index both
         may be :data:`ROOT_IS_PARENT` or :data:`NO_PARENT`.
     """
     is_root = scene.parents < 0
     is_world_link = (elements == 0)
-    is_detached = np.zeros(len(is_root), np.bool_)
-    if anchor_models is AnchorModels.AUTO:
-        anchor_models = AnchorModels.ALL if 0 in scene.world_names else AnchorModels.STATIC
-    if anchor_models is not AnchorModels.ALL:
-        is_body = np.isin(scene.kinds, (Kind.LINK, Kind.MODEL))
-        for body in np.flatnonzero(is_body & is_root[tf_parents.parents]).tolist():
-            *_, top_level_model, _ = scene.with_ancestors(body)
-            # What hangs on the link "world" of a URDF keeps its parent.
-            is_detached[body] = (
-                anchor_models is AnchorModels.NONE and scene.urdf_root != WORLD_FRAME) or (
-                    body in tf_parents.free_bodies and top_level_model not in scene.static_models)
     frames = np.full(len(is_root), NO_PARENT, np.int32)
     frames[is_root] = ROOT_IS_PARENT
     frames[elements] = np.arange(len(elements))
@@ -364,6 +348,5 @@ def _nearest_frames_and_parents(
         np.where(ends_here, -1, tf_parents.parents))]
     parents: Indices = nearest_frames[tf_parents.parents[elements]]
     parents[is_detached[elements]] = NO_PARENT
-    parents[is_world_link] = (
-        ROOT_IS_PARENT if anchor_models is AnchorModels.ALL else NO_PARENT)
+    parents[is_world_link] = ROOT_IS_PARENT if is_world_anchored else NO_PARENT
     return nearest_frames, parents

@@ -33,11 +33,11 @@ from sdf_pose_bridge.scene.scene import JointAxis
 from sdf_pose_bridge.scene.scene import Mimic
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.joint_motion import dofs_from_joint
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
-from sdf_pose_bridge.tf.tree import AnchorModels
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 from sdf_pose_bridge.tf.tree import elements_in_model
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene

@@ -90,8 +90,8 @@ def test_a_bad_file_has_a_line_for_each_error(start_bridge, write_file):
     (['-p', 'sdf_file:=missing.sdf'], 'missing.sdf: FILE_READ: '),
     ([], 'parameter sdf_file is not set'),
     (['-p', 'sdf_file:=42'], 'parameter sdf_file is 42, which is an integer'),
-    (['-p', 'sdf_file:=a.sdf', '-p', 'anchor_models:=many'],
-     'parameter anchor_models is "many"; it must be one of auto, all, static, none'),
+    (['-p', 'sdf_file:=a.sdf', '-p', 'anchor_models:=a,,b'],
+     'parameter anchor_models is "a,,b"; it must be one of auto, all, static, none'),
     (['-p', 'sdf_file:=package://no_such_package/a.sdf'], 'the package "no_such_package"'),
 ])
 def test_what_prevents_the_start_is_one_line(start_bridge, arguments, text):

@@ -23,7 +23,7 @@ from tf2_ros import LookupException
 from tf2_ros import TransformListener
 
 import sdf_pose_bridge
-from sdf_pose_bridge.tf.tree import AnchorModels
+from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
 

@@ -31,8 +31,8 @@ from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
-from sdf_pose_bridge.tf.tree import AnchorModels
 from sdf_pose_bridge.tf.tree import TfOptions
 
 TYPE = Parameter.Type
@@ -59,7 +59,7 @@ def default_settings(make_node):
     ('publish_frequency', 'fast', 'is fast, which is a string; it must be a number'),
     ('publish_frequency', '1001', 'is 1001.0; it must be 0.0 for each message, or from 0.001'),
     ('publish_rate', '.nan', 'is nan; it must be 0.0 for never, or from 0.001 to 100.0'),
-    ('anchor_models', 'some', 'is "some"; it must be one of auto, all, static, none'),
+    ('anchor_models', 'some,all', 'is "some,all"; it must be one of auto, all, static, none'),
     ('kinds', '[]', 'is []; it must be at least one of'),
 ])
 def test_a_wrong_value_on_the_command_line_is_named_once(make_node, name, value, sentence):
@@ -129,8 +129,8 @@ def test_settings_of_values_without_a_node(settings):
     expected = changed_settings(
         settings, [Parameter('publish_rate', value=2.0), Parameter('kinds', value=['link'])])
     assert found.values == expected.values
-    with pytest.raises(SettingsError, match='anchor_models is "some"'):
-        settings_from_values({'sdf_file': 'cell.sdf', 'anchor_models': 'some'})
+    with pytest.raises(SettingsError, match='anchor_models is "some,"'):
+        settings_from_values({'sdf_file': 'cell.sdf', 'anchor_models': 'some,'})
 
 
 def test_a_file_and_a_text_together_are_refused(settings):
@@ -148,7 +148,7 @@ def test_a_file_and_a_text_together_are_refused(settings):
     ('root_frame', '/map', 'is "/map"; it must be without a leading slash'),
     ('root_frame', 'a\nb', r'is "a\nb"; it must be without control'),
     ('root_frame', 5, 'is 5, which is an integer; it must be a string'),
-    ('anchor_models', 'some', 'is "some"; it must be one of auto, all, static, none'),
+    ('anchor_models', 'some,all', 'is "some,all"; it must be one of auto, all, static, none'),
     ('on_missing_include', 'ignore', 'is "ignore"; it must be one of error, skip'),
     ('frame_names', 'Auto', 'is "Auto"; it must be one of auto, scoped, relative'),
     ('frame_separator', '', 'is ""; it must be at least one'),

@@ -27,7 +27,7 @@ from sdf_pose_bridge.ros.log_lines import MOST_LINES
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.tf.tree import AnchorModels
+from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
 

@@ -12,7 +12,8 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from sdf_pose_bridge.ros import setting_rules as rules
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.tf.tree import AnchorModels
+from sdf_pose_bridge.tf.anchors import AnchorModels
+from sdf_pose_bridge.tf.anchors import AnchorPatterns
 
 PUBLISH_RATE = DECLARATIONS['publish_rate'].convert
 PUBLISH_FREQUENCY = DECLARATIONS['publish_frequency'].convert
@@ -34,7 +35,10 @@ PUBLISH_FREQUENCY = DECLARATIONS['publish_frequency'].convert
     (PUBLISH_RATE, -1.0, 'is -1.0; it must be 0.0 for never'),
     (PUBLISH_RATE, math.nan, 'is nan; it must be 0.0 for never'),
     (PUBLISH_FREQUENCY, 1000.1, 'it must be 0.0 for each message, or from 0.001 to 1000.0'),
-    (DECLARATIONS['anchor_models'].convert, 'ALL', 'is "ALL"; it must be one of '),
+    (rules.anchors_setting, 'a,,b', 'is "a,,b"; it must be one of auto, all, static, none, or '),
+    (rules.anchors_setting, '', 'is ""; it must be one of '),
+    (rules.anchors_setting, 'all,fence', 'none of which is empty or auto, all or none'),
+    (rules.anchors_setting, ',' * 1000, 'has 1001 patterns; it must have at most 1000'),
     (rules.kinds_setting, [], 'is []; it must be at least one of model, '),
     (rules.kinds_setting, ['auto', 'link'], 'it must be "auto" alone, or made of model, '),
     (rules.kinds_setting, ['link', 'links'], 'is "links"; it must be made of model, '),
@@ -62,7 +66,8 @@ def test_refused(rule, value, words):
     (PUBLISH_RATE, 0.001, 0.001),
     (PUBLISH_RATE, 100.0, 100.0),
     (PUBLISH_FREQUENCY, 1000.0, 1000.0),
-    (DECLARATIONS['anchor_models'].convert, 'static', AnchorModels.STATIC),
+    (rules.anchors_setting, 'static', AnchorModels.STATIC),
+    (rules.anchors_setting, 'table*, static,fence', AnchorPatterns(('table*', 'fence'), True)),
     (rules.kinds_setting, ['link', 'light', 'link'], frozenset({Kind.LINK, Kind.LIGHT})),
     (rules.kinds_setting, ['auto'], None),
     (rules.patterns_setting, ['*'] * 1000, ('*',) * 1000),

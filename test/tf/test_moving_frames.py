@@ -19,12 +19,12 @@ from hypothesis import strategies as st
 from sdf_pose_bridge import Kind
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
-from sdf_pose_bridge.tf.tree import AnchorModels
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
 

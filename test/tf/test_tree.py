@@ -30,8 +30,8 @@ from hypothesis import strategies as st
 
 import sdf_pose_bridge
 from sdf_pose_bridge import Kind
+from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
-from sdf_pose_bridge.tf.tree import AnchorModels
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
@@ -211,7 +211,11 @@ def test_a_urdf_keeps_its_own_tree(data, root, prefix, anchor):
     assert {*found, *found.values(), 'world', ''} == {
         *(prefix + name for name in links), 'world', ''}
     if anchor is AnchorModels.ALL:
-        expected = {**dict.fromkeys(found, 'world'), **expected}
+        # The link "world" stands for the root, below which what floats is.
+        above = prefix + 'world' if root == 'world' else 'world'
+        expected = {**dict.fromkeys(found, above), **expected}
+        if prefix + root in found:
+            expected[prefix + root] = 'world'
     assert {child: parent for child, parent in found.items() if parent} == expected
 
 

@@ -29,7 +29,7 @@ from sdf_pose_bridge import scene_at_positions
 from sdf_pose_bridge import SdfError
 from sdf_pose_bridge import UnknownFrameError
 from sdf_pose_bridge.errors import UrdfNotMadeError
-from sdf_pose_bridge.tf.tree import AnchorModels
+from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
 from sdf_pose_bridge.tf.urdf_robot import robot_from_scene

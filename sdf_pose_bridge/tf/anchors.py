@@ -1,0 +1,110 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Which top-level models get a transform from the root frame; odometry may own the others."""
+
+from __future__ import annotations
+
+import enum
+from fnmatch import fnmatchcase
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sdf_pose_bridge.names import hint_from_names
+from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.parents import TfParents
+
+
+class AnchorModels(enum.Enum):
+    """Which top-level models get a transform from the root frame, in a word."""
+
+    AUTO = 'auto'
+    """All models of a world; those of a model file, or of URDF, like ``STATIC``."""
+    ALL = 'all'
+    STATIC = 'static'
+    """Static models, and models that a joint connects to the world."""
+    NONE = 'none'
+
+
+class AnchorPatterns(NamedTuple):
+    """Which top-level models get a transform from the root frame, by their names."""
+
+    patterns: tuple[str, ...]
+    """Glob patterns of the names of top-level models, not empty."""
+    has_static: bool = False
+    """Whether models get one, too, that :attr:`AnchorModels.STATIC` means."""
+
+
+def anchors_from_text(text: str) -> AnchorModels | AnchorPatterns:
+    """
+    Read which models get a transform.
+
+    :param text: a value of :class:`AnchorModels`, or glob patterns of names, separated by commas,
+        such as ``table*,fence``; ``static`` may be one of them.
+    :raises ValueError: if a pattern is empty, or another word stands beside patterns; with the
+        rule.
+    """
+    words = [each.value for each in AnchorModels]
+    if text in words:
+        return AnchorModels(text)
+    patterns = [pattern.strip() for pattern in text.split(',')]
+    if '' in patterns or not {*patterns}.isdisjoint({*words} - {AnchorModels.STATIC.value}):
+        msg = (f'one of {", ".join(words)}, or patterns of names of models with commas between '
+               'them, none of which is empty or auto, all or none')
+        raise ValueError(msg)
+    return AnchorPatterns(
+        tuple(pattern for pattern in patterns if pattern != AnchorModels.STATIC.value),
+        AnchorModels.STATIC.value in patterns)
+
+
+def detached_bodies(
+    scene: Scene, tf_parents: TfParents, anchors: AnchorModels | AnchorPatterns,
+    problems: Problems,
+) -> NDArray[np.bool_]:
+    """
+    Find the bodies that get no transform although their parent is the root.
+
+    :param problems: takes warnings of patterns that no top-level model matches.
+    :return: for each element whether it is one.
+    """
+    is_detached = np.zeros(len(scene.names), np.bool_)
+    if anchors is AnchorModels.AUTO:
+        anchors = AnchorModels.ALL if 0 in scene.world_names else AnchorModels.STATIC
+    if anchors is AnchorModels.ALL:
+        return is_detached
+    keeps_static, anchored = anchors is AnchorModels.STATIC, frozenset[int]()
+    if isinstance(anchors, AnchorPatterns):
+        keeps_static, anchored = anchors.has_static, _matching_models(
+            scene, anchors.patterns, problems)
+    is_body = np.isin(scene.kinds, (Kind.LINK, Kind.MODEL))
+    for body in np.flatnonzero(is_body & (scene.parents < 0)[tf_parents.parents]).tolist():
+        *_, model, _ = scene.with_ancestors(body)
+        is_static = body not in tf_parents.free_bodies or model in scene.static_models
+        # What hangs on the link "world" of a URDF keeps its parent.
+        is_detached[body] = not (
+            model in anchored or (keeps_static and is_static)
+            or (is_static and scene.urdf_root == WORLD_FRAME))
+    return is_detached
+
+
+def _matching_models(
+    scene: Scene, patterns: tuple[str, ...], problems: Problems,
+) -> frozenset[int]:
+    """Return the top-level models whose names match a pattern."""
+    is_model = (scene.kinds == Kind.MODEL) & (scene.parents >= 0)
+    is_top_level = is_model & (scene.parents[scene.parents] < 0)
+    models: list[int] = np.flatnonzero(is_top_level).tolist()
+    matching: set[int] = set()
+    for pattern in patterns:
+        found = [model for model in models if fnmatchcase(scene.own_name(model), pattern)]
+        matching.update(found)
+        if not found:
+            words = [each.value for each in AnchorModels]
+            hint = hint_from_names(pattern, [*words, *map(scene.own_name, models)])
+            msg = f'anchor_models: no top-level model has a name like "{pattern}"{hint}'
+            problems.warning(msg, scene.place(0))
+    return frozenset(matching)
