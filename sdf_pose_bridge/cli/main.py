@@ -74,6 +74,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SdfError as error:
         print_problems(error.errors, error.warnings, sys.stderr)
         return 1
+    except MemoryError:
+        print(f'sdf_pose {options.command}: there is not enough memory', file=sys.stderr)
+        return 1
     except KeyboardInterrupt:
         return 130
     return code

@@ -11,6 +11,7 @@ import xml.etree.ElementTree as ET
 from command_line import COMMAND
 from command_line import ENVIRONMENT
 import pytest
+from sdf_texts import model_file
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -44,6 +45,18 @@ def test_an_unknown_command_is_an_error_that_lists_the_known_ones(sdf_pose):
     done = sdf_pose('chekc')
     assert done.returncode == 2
     assert all(name in done.stderr for name in ('check', 'poses', 'convert'))
+
+
+def test_a_lack_of_memory_is_one_sentence(files):
+    (files / 'large.sdf').write_text(model_file(''.join(
+        f'<link name="l{i}"/>' for i in range(200_000))), encoding='utf-8')
+    # Libraries alone have about 200 MB of addresses.
+    done = subprocess.run(
+        ['bash', '-c', f'ulimit -v 300000; exec {shlex.join(COMMAND)} tree large.sdf'], cwd=files,
+        env={**ENVIRONMENT, 'OPENBLAS_NUM_THREADS': '1'}, capture_output=True, text=True,
+        timeout=60, check=False)
+    assert done.returncode == 1
+    assert done.stderr == 'sdf_pose tree: there is not enough memory\n'
 
 
 def test_errors_of_a_file_are_printed_behind_what_was_printed_before(files):
