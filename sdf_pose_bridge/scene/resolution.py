@@ -35,6 +35,7 @@ from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.inertials import Inertial
 from sdf_pose_bridge.sdformat.inertials import moments_from_matrix
+from sdf_pose_bridge.sdformat.inertials import sum_of_moments
 from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
 
 _Details = TypeVar('_Details')
@@ -166,10 +167,8 @@ def _place_automatic_inertials(root_poses: PoseArray, elements: Elements) -> dic
         axes = to_link @ matrix_from_quaternion(root_poses[collisions[link], 3:])
         moments = np.array([part.moments_kg_m2 for part in parts])
         offsets = (points - root_poses[index, :3]) @ to_link.T
-        # Steiner's theorem.
-        matrix = np.einsum('nij,nj,nkj->ik', axes, moments, axes) + (
-            np.eye(3) * (masses @ (offsets ** 2).sum(axis=1))
-            - np.einsum('n,ni,nj->ij', masses, offsets, offsets))
+        matrix = sum_of_moments(
+            np.einsum('nij,nj,nkj->nik', axes, moments, axes), masses, offsets)
         scale = 1.0 if mass_kg is None else mass_kg / masses.sum()
         inertials[index] = Inertial(
             float(scale * masses.sum()), moments_from_matrix(scale * matrix))

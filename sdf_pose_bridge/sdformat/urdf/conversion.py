@@ -31,11 +31,13 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.sdformat.inertials import MOMENTS
 from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
 from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
 from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
+from sdf_pose_bridge.sdformat.urdf.lumping import lumped_inertial
 from sdf_pose_bridge.sdformat.urdf.robot import gazebo_elements_of
 from sdf_pose_bridge.sdformat.urdf.robot import Inertial
 from sdf_pose_bridge.sdformat.urdf.robot import Joint
@@ -172,14 +174,10 @@ class _Conversion:
         joint = self._robot.parent_joints[link.name]
         old = self._inertials[joint.parent] or Inertial()
         joint_pose = pose_from_xyz_rpy(joint.origin[:3], rpy_by_urdfdom(joint.origin))
-        center = pose_product(joint_pose, inertial.origin)
-        mass = old.mass + inertial.mass
-        if self._for_ros and not mass:
+        if self._for_ros and not old.mass + inertial.mass:
             return
-        x, y, z = (
-            (a * old.mass + b * inertial.mass) / mass if mass else math.nan
-            for a, b in zip(old.origin[:3], center[:3], strict=True))
-        self._inertials[joint.parent] = Inertial(mass, old.origin._replace(x=x, y=y, z=z))
+        self._inertials[joint.parent] = lumped_inertial(
+            old, inertial._replace(origin=pose_product(joint_pose, inertial.origin)))
 
     def _links_left_out(self) -> set[str]:
         """Return the links that Gazebo leaves out, with a warning about each that has no mass."""
@@ -251,6 +249,11 @@ class _Conversion:
             inertial_xml = self._element(xml, 'inertial', link.xml)
             self._add_pose(inertial_xml, link.xml, inertial.origin, rpy_by_gz_math)
             self._element(inertial_xml, 'mass', link.xml, text=text_from_numbers([inertial.mass]))
+            if not self._for_ros:
+                self._add_numbers(
+                    self._element(inertial_xml, 'inertia', link.xml), link.xml,
+                    {name: [moment] for name, moment in zip(
+                        MOMENTS, inertial.moments, strict=True)})
         members = self._bases[link.name].members
         for tag in ('collision', 'visual'):
             self._add_shapes(xml, tag, link, members)

@@ -22,6 +22,7 @@ from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import JOINT_SUFFIX
+from sdf_pose_bridge.sdformat.inertials import MOMENTS
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
 from sdf_pose_bridge.sdformat.urdf.values import is_true
@@ -47,7 +48,7 @@ SHAPES = {
     'box': 'size:3!', 'cylinder': 'length! radius!', 'mesh': 'scale:3', 'sphere': 'radius!'}
 """Shapes, and their attributes that are numbers."""
 
-_INERTIA = 'ixx! ixy! ixz! iyy! iyz! izz!'
+_INERTIA = ' '.join(f'{name}!' for name in MOMENTS)
 
 _SETTINGS = frozenset({
     'canonicalBody', 'cfmDamping', 'collision', 'dampingFactor', 'disableFixedJointLumping',
@@ -60,11 +61,13 @@ _SETTINGS = frozenset({
 
 
 class Inertial(NamedTuple):
-    """Mass and center of mass of a link."""
+    """Mass, center of mass and moments of inertia of a link."""
 
     mass: float = 0.0
     origin: Pose = Pose()
     """The inertial frame in the link."""
+    moments: tuple[float, ...] = (0.0,) * len(MOMENTS)
+    """Those of ``MOMENTS`` in that frame."""
 
 
 class Shape(NamedTuple):
@@ -225,7 +228,9 @@ class _RobotReader:
                 inertial = Inertial(origin=_origin(inertial_xml))
                 mass = numbers_of(_required_child(inertial_xml, 'mass'), 'value!')
                 inertial = inertial._replace(mass=mass['value'][0])
-                numbers_of(_required_child(inertial_xml, 'inertia'), _INERTIA)
+                inertia = numbers_of(_required_child(inertial_xml, 'inertia'), _INERTIA)
+                inertial = inertial._replace(
+                    moments=tuple(inertia[name][0] for name in MOMENTS))
             for tag, shapes_of_tag in shapes.items():
                 for shape in child_elements(xml, tag):
                     shapes_of_tag.append(_shape(shape))

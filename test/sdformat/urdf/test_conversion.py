@@ -474,3 +474,19 @@ def test_lines_beyond_those_that_libxml2_counts(tmp_path):
     path = write(tmp_path, '\n' * 70_000 + link('a') + gazebo(bad_pose, 'a') + '\n' + link('b')
                  + '\n' + joint('j', 'a', 'b', 'continuous', '<axis/>'))
     assert [error.line for error in errors_of_file(path)] == [70_002, 70_004]
+
+
+# Moments of inertia, which an included robot has, and which nobody needs of others
+
+def moments_in(model):
+    return [float(each.text) for each in model.iterfind('link/inertial/inertia/*')]
+
+
+def test_moments_of_links():
+    assert moments_in(model_from(robot(link('a')))) == [1, 1, 1, 0, 0, 0]
+    assert moments_in(model_from(robot(link('a')), is_included=False)) == []
+
+
+def test_moments_of_links_that_are_lumped():
+    assert moments_in(model_from(robot(TWO + FIXED))) == pytest.approx(
+        [2, 2.5, 2.5, 0, 0, 0], abs=1e-12)

@@ -1,0 +1,47 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Sums of masses, centers and moments of inertia."""
+
+import math
+
+import numpy as np
+import pytest
+
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
+from sdf_pose_bridge.sdformat.urdf.lumping import lumped_inertial
+from sdf_pose_bridge.sdformat.urdf.robot import Inertial
+
+HERE = Pose()
+TURNED = quaternion_from_rpy((0.0, 0.0, math.pi / 2.0))
+
+
+def box(x, y, z, origin=HERE):
+    """Return the inertial of a box of 12 kg per cubic metre."""
+    moments = (y * y + z * z, x * x + z * z, x * x + y * y)
+    mass = x * y * z
+    return Inertial(12.0 * mass, origin, (*(mass * moment for moment in moments), 0.0, 0.0, 0.0))
+
+
+def test_center_of_nothing_is_not_a_number():
+    total = lumped_inertial(Inertial(), Inertial(origin=Pose(1.0)))
+    assert total.mass == 0.0
+    assert np.isnan(total.origin[:3]).all()
+
+
+def test_halves_of_a_box_are_a_box():
+    total = lumped_inertial(box(1, 2, 3), box(1, 2, 3, Pose(1.0)))
+    assert (total.mass, total.origin.x) == (144.0, 0.5)
+    assert total.moments == pytest.approx(box(2, 2, 3).moments)
+
+
+def test_sum_has_the_axes_of_the_parent():
+    total = lumped_inertial(
+        box(1, 2, 3, Pose(0.0, 0.0, 0.0, *TURNED)), box(2, 1, 3, Pose(-2.0)))
+    assert total.origin == pytest.approx((-1.0, 0.0, 0.0, *TURNED))
+    assert total.moments == pytest.approx(box(1, 4, 3).moments)
+
+
+def test_link_without_a_mass_changes_nothing():
+    assert lumped_inertial(Inertial(), box(1, 2, 3, Pose(1.0))).moments == pytest.approx(
+        box(1, 2, 3).moments)
