@@ -37,6 +37,10 @@ from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 LARGEST_POSITION = 1e9
 """The largest position, in radians or metres, that counts as one."""
 
+SLIDE_SUFFIX = '_slide'
+"""What the second joint of a screw joint in URDF has after its name. Publishers of joint states
+that read URDF name it too; its position follows from the first one."""
+
 _MOST_STEPS = 10
 """How many innermost steps of a name may stand for it."""
 
@@ -105,6 +109,9 @@ class JointPositions:
         """The name of each degree of freedom."""
         self._indices = _indices_from_names(self.names, scene, dofs, model)
         self._followers = _followers(dofs)
+        self._slides = frozenset(
+            name + SLIDE_SUFFIX for name, each in zip(self.names, dofs, strict=True)
+            if each.rad_per_unit and each.m_per_unit)
 
     @property
     def is_known(self) -> NDArray[np.bool_]:
@@ -135,7 +142,8 @@ class JointPositions:
                     waiting.append(follower.dof)
         return Selection(
             np.array(rows, np.intp), np.array(dofs, np.intp), tuple(followers),
-            tuple(name for name in names if name not in self._indices))
+            tuple(name for name in names
+                  if name not in self._indices and name not in self._slides))
 
     def hint(self, name: str) -> str:
         """

@@ -36,6 +36,7 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.joint_motion import dofs_from_joint
+from sdf_pose_bridge.tf.joint_positions import SLIDE_SUFFIX
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
@@ -243,7 +244,7 @@ class _RobotMaker:
                 # What turns in a thread slides, too.
                 follows = Mimic(joint.element, dof.number, dof.m_per_unit, 0.0, 0.0)
                 steps.append(_Step(
-                    self._joint_names.new(f'{name}_slide'), 'prismatic',
+                    self._joint_names.new(f'{name}{SLIDE_SUFFIX}'), 'prismatic',
                     JointAxis(axis.xyz, mimic=follows)))
         return steps
 

@@ -71,6 +71,13 @@ def test_names_of_joints_in_a_world_are_scoped():
     assert positions.selection(['j']).unknown == ('j',)
 
 
+def test_the_second_joint_that_a_screw_joint_has_in_urdf_is_not_unknown():
+    text = model_file(
+        '<link name="a"/><link name="b"/>'
+        '<joint name="j" type="screw"><parent>a</parent><child>b</child></joint>')
+    assert positions_of(text).selection(['j', 'j_slide', 'k_slide']).unknown == ('k_slide',)
+
+
 def test_names_of_models_can_be_left_out_where_one_joint_is_meant():
     text = world_file(model('x') + '<model name="y"><static>1</static><link name="l"/></model>')
     assert positions_of(text).selection(['j']).dofs.tolist() == [0]
