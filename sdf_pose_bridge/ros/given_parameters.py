@@ -174,12 +174,11 @@ def add_parameter_services(
         request: SetParameters.Request, response: SetParameters.Response,
     ) -> SetParameters.Response:
         count = len(request.parameters)
-        found = await result(request.parameters)
-        response.results = [found] * min(count, MOST_REASONS)
-        if MOST_REASONS < count <= MOST_VALUES:
-            other = found if found.successful else SetParametersResult(
+        found = other = await result(request.parameters)
+        if not found.successful:
+            other = SetParametersResult(
                 successful=False, reason='the first result of this answer says why')
-            response.results += [other] * (count - MOST_REASONS)
+        response.results = ([found] * MOST_REASONS + [other] * count)[:count]
         return response
 
     async def answer_atomically(

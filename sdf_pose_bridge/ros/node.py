@@ -139,13 +139,17 @@ class SdfPoseBridge:
         """Publish a scene, with the topics that the settings ask for."""
         frames = await _frames_of_scene(self._node, loaded, self._settings, self._frames)
         async with self._publishing:
+            # Joints have gone on moving while messages were made.
+            frames.take_over(self._frames)
             before, self._loaded, self._frames = self._loaded, loaded, frames
             self._follow_joints()
             if loaded is not before:
                 frames.publish_tf()
             await frames.publish_topics()
         if loaded is not before:
-            for line in lines_about_lost_frames(before.tree, loaded.tree):
+            lines = await run_in_thread(
+                self._node, lambda: lines_about_lost_frames(before.tree, loaded.tree))
+            for line in lines:
                 self._logger.warning(line)
             self._report_success()
             self._publish_robot_description()
@@ -379,6 +383,8 @@ async def _frames_of_scene(
     if node.get_logger().is_enabled_for(LoggingSeverity.DEBUG):
         for frame_id, name in topics.names.items():
             node.get_logger().debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
-    return PublishedFrames(
+    frames = PublishedFrames(
         before.publishers, loaded.tree, loaded.joint_positions, topics.names, before,
         has_transforms=settings.publish_transforms)
+    await run_in_thread(node, lambda: frames.lay_out(with_tf=before.tree is not loaded.tree))
+    return frames

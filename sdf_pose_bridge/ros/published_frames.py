@@ -41,7 +41,8 @@ class PublishedFrames:
     """
     The frames of a tree on their topics.
 
-    Messages are made when they are needed first, so that nothing delays ``/tf_static``.
+    Messages are made when they are needed first, so that nothing delays ``/tf_static``, or before
+    in another thread by :meth:`lay_out`.
 
     :param publishers: the publishers of the node. Those of topics that other frames had before
         are kept, if these frames have the topics too.
@@ -73,6 +74,22 @@ class PublishedFrames:
             self.moving = PublishedMovingFrames(
                 publishers, tree, tree.moving, positions, self._pose_topics,
                 before.moving if before else None)
+
+    def lay_out(self, *, with_tf: bool) -> None:
+        """
+        Make the messages of fixed frames, which takes long where there are many.
+
+        :param with_tf: whether to make that of ``/tf_static`` too.
+        """
+        if with_tf:
+            self._tf_static_message  # noqa: B018 - to look at it makes it
+        self._fixed_transforms  # noqa: B018
+        self._fixed_poses  # noqa: B018
+
+    def take_over(self, before: PublishedFrames) -> None:
+        """Continue where the joints of the frames are that these ones replace now."""
+        if self.moving is not None and before.moving is not None:
+            self.moving.take_over(before.moving)
 
     def publish_tf(self) -> None:
         """Publish all fixed frames on ``/tf_static``, and all moving ones on ``/tf``."""
@@ -152,10 +169,10 @@ class PublishedMovingFrames:
         self.frames = moving
         self.positions = positions
         """The positions of the joints, which others set."""
-        self.stamp: Stamp | None = None if before is None else before.stamp
+        self.stamp: Stamp | None = None
         """The stamp of these positions; None before the first message of ``joint_states``."""
-        if before is not None and before.positions is not positions:
-            positions.take_over(before.positions)
+        if before is not None:
+            self.take_over(before)
         self._tf = publishers.opened(TF)
         self.transforms_topic = _transforms_topic(len(moving.indices), 'moving')
         self._transform_messages = stamped_messages(*_transforms(tree, moving.indices))
@@ -165,6 +182,12 @@ class PublishedMovingFrames:
         self._pose_messages = stamped_messages(
             [[tree.pose_frame] * len(self._posed_rows)],
             tree.poses_in_pose_frame[moving.posed_indices[self._posed_rows]])
+
+    def take_over(self, before: PublishedMovingFrames) -> None:
+        """Continue with the positions of joints with the same names."""
+        self.stamp = before.stamp
+        if before.positions is not self.positions:
+            self.positions.take_over(before.positions)
 
     @property
     def has_transform(self) -> NDArray[np.bool_]:

@@ -141,6 +141,26 @@ def test_after_a_reload_poses_have_the_stamps_of_the_tree_and_of_the_joints(node
     assert stamps == {'base': frames.stamp, 'upper': (5, 6)}
 
 
+def test_joints_that_go_on_moving_before_a_reload_is_published_are_where_they_were_last(node):
+    publishers = Publishers(node)
+    before = frames_of_arm(publishers)
+    frames = frames_of_arm(publishers, before)
+    before.moving.positions.values[:] = 0.5
+    before.moving.stamp = (5, 6)
+    frames.take_over(before)
+    assert frames.moving.positions.values.tolist() == [0.5]
+    assert frames.moving.stamp == (5, 6)
+
+
+def test_messages_that_were_laid_out_before_are_published(node, poses):
+    frames = frames_of_arm(Publishers(node))
+    frames.lay_out(with_tf=True)
+    laid_out = frames._fixed_poses
+    node.executor.create_task(frames.publish_topics)
+    wait_until(node, lambda: 'base' in dict(poses), poses)
+    assert frames._fixed_poses is laid_out
+
+
 def test_what_a_joint_without_a_position_moves_is_not_published(node, poses):
     publishers, transforms = Publishers(node), []
     node.create_subscription(TransformStamped, '/bridge/transforms', transforms.append, LATCHED)
