@@ -38,10 +38,9 @@ from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.parameters import Value
+from sdf_pose_bridge.ros.qos_overrides import QOS_OVERRIDES
+from sdf_pose_bridge.ros.qos_overrides import sentences_about_overrides
 from sdf_pose_bridge.ros.setting_rules import MOST_VALUES
-
-QOS_OVERRIDES = 'qos_overrides.'
-"""How names of parameters begin that other nodes have for the quality of service of a topic."""
 
 MOST_REASONS = 20
 """How many results of a call that sets parameters have the reason why none is set."""
@@ -78,6 +77,9 @@ def settings_from_node(
     if not {'sdf_file', 'robot_description'}.intersection(given):
         defaults['sdf_file'] = file
     parameters = _parameters_at_start(given, defaults)
+    sentences = sentences_about_overrides(given)
+    if sentences:
+        raise SettingsError(sentences)
     settings = changed_settings(Settings({}), parameters, shows_command_line=True)
     for parameter in parameters:
         _declare(node, parameter)

@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from collections.abc import Sequence
 import contextlib
+import copy
 from dataclasses import dataclass
 import threading
 import time
@@ -42,6 +43,8 @@ from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.publishers import Stamp
+from sdf_pose_bridge.ros.qos_overrides import overriding_options
+from sdf_pose_bridge.ros.qos_overrides import POLICIES_OF_SUBSCRIPTION
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION
 from sdf_pose_bridge.tf.joint_positions import Selection
@@ -133,7 +136,8 @@ class JointStates:
             INITIAL_PERIOD_S, self._publish_initially, clock=steady_clock)
         self._grace_timer = node.create_timer(GRACE_S, self._end_grace, clock=steady_clock)
         self._timers = [self._initial_timer, self._grace_timer]
-        rest_period, quality = TOPICS_PERIOD_S, qos_profile_sensor_data
+        # A copy, which parameters may change.
+        rest_period, quality = TOPICS_PERIOD_S, copy.copy(qos_profile_sensor_data)
         self._period_timer: Timer | None = None
         if frequency:
             period = 1.0 / frequency
@@ -150,10 +154,13 @@ class JointStates:
         self._rest_timer = node.create_timer(
             rest_period, self._follow_to_rest, clock=steady_clock)
         self._timers.append(self._rest_timer)
-        # What is best effort and volatile fits every publisher, so there is nothing to report.
+        # What is best effort and volatile fits every publisher, so there is nothing to report
+        # unless parameters change that.
         self._subscription = node.create_subscription(
             JointState, 'joint_states', self.take, quality, callback_group=self._gate, raw=True,
-            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False))
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+            qos_overriding_options=overriding_options(
+                node, 'joint_states', 'subscription', POLICIES_OF_SUBSCRIPTION))
         self._take_message = _take_message_from_subscription(self._subscription)
         self._gate.keeps_messages = self._take_message is not None
 

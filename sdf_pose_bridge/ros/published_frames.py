@@ -32,8 +32,8 @@ from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.moving_frames import MovingFrames
 from sdf_pose_bridge.tf.tree import TfTree
 
-TF_STATIC = Topic('/tf_static', TFMessage)
-TF = Topic('/tf', TFMessage, depth=100, is_latched=False)
+TF_STATIC = Topic('/tf_static', TFMessage, is_overridable=True)
+TF = Topic('/tf', TFMessage, depth=100, is_latched=False, is_overridable=True)
 """With the quality of service that it has in tf2_ros."""
 
 

@@ -20,6 +20,8 @@ from rclpy.qos import QoSProfile
 from rclpy.qos import ReliabilityPolicy
 
 from sdf_pose_bridge.ros.background import run_other_callbacks
+from sdf_pose_bridge.ros.qos_overrides import overriding_options
+from sdf_pose_bridge.ros.qos_overrides import POLICIES_OF_PUBLISHER
 
 # How many are published, or made, before other callbacks run: in a few milliseconds.
 MESSAGES_AT_ONCE = 500
@@ -40,6 +42,8 @@ class Topic(NamedTuple):
     """Whether the messages that it keeps reach listeners that come later."""
     part: str = ''
     """Tells publishers on one topic apart."""
+    is_overridable: bool = False
+    """Whether parameters can override its quality of service."""
 
 
 class Publishers:
@@ -112,6 +116,9 @@ def new_publisher(
     # cannot be offered; but the executor waits for each, a thousand of them in a large scene.
     return node.create_publisher(
         topic.message_type, topic.name, quality,
+        qos_overriding_options=overriding_options(
+            node, topic.name, 'publisher', POLICIES_OF_PUBLISHER)
+        if topic.is_overridable else None,
         event_callbacks=PublisherEventCallbacks(matched=matched, use_default_callbacks=False))
 
 
