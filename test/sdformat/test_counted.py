@@ -4,11 +4,13 @@
 
 import os
 
+from lxml import etree
+import pytest
+
+pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import settings
 from hypothesis import strategies as st
-from lxml import etree
-import pytest
 
 from sdf_pose_bridge.errors import LimitError
 from sdf_pose_bridge.errors import Place
