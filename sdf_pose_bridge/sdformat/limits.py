@@ -57,7 +57,7 @@ STEPS_OF_NAMED_ELEMENT = 8
 """Further steps for one with a name, as most elements with a frame have one."""
 
 CHARACTERS_OF_LOOK = 1000
-"""How many characters of a model count for one step of each look for a name in it."""
+"""Searching a model for a name costs one step per this many characters."""
 
 CHARACTERS_OF_STEP = 16
 """How many characters of a name, or of an element that is copied, count for one step of work."""

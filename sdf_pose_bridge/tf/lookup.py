@@ -154,7 +154,7 @@ class PoseLookup:
         """Find an element by its name in SDF."""
         scene = self._scene
         if not scene.has(name):
-            msg = f'"{name}" is the name of nothing{self._name_index.hint(name)}'
+            msg = f'no frame or element is called "{name}"{self._name_index.hint(name)}'
             raise UnknownFrameError(msg, Place(scene.path))
         element = scene.index(name, world=self._tree.world)
         if scene.roots[element]:

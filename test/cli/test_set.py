@@ -77,9 +77,9 @@ def test_the_camera_moves_where_its_optical_frame_was_measured(run_main, path):
     (['f', *'00000', 'x'], "'x' is not a number"),
     (['f', *'00000', 'nan'], 'it must be a finite number'),
     (['f', '--format', 'sdf_quat_xyzw', *'0000000'], 'is zero, which is not a rotation'),
-    (['g', *'000000'], '"g" is the name of nothing'),
+    (['g', *'000000'], 'no frame or element is called "g"'),
     (['f', '--relative-to', 'm', *'000000'], 'good.sdf:3: POSE_NOT_SET: '),
-    (['f', '--relative-to', 'g', *'000000'], '"g" is the name of nothing'),
+    (['f', '--relative-to', 'g', *'000000'], 'no frame or element is called "g"'),
 ])
 def test_what_cannot_be_set_is_one_error(run_main, path, arguments, message):
     text = path.read_text()

@@ -108,7 +108,8 @@ def test_a_name_that_means_nothing_is_answered(listener):
     request = LookupPose.Request(frame='crate::bodi')
     answer = listener.call(LookupPose, LOOKUP, request)
     assert not answer.success
-    assert answer.message == '"crate::bodi" is the name of nothing; did you mean "crate::body"?'
+    assert answer.message == (
+        'no frame or element is called "crate::bodi"; did you mean "crate::body"?')
 
 
 def test_a_large_batch_of_poses(listener):

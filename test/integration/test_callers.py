@@ -315,7 +315,7 @@ def test_a_name_that_was_probably_meant_is_searched_beside(large_bridge, start_l
     future = asked(
         listener, LookupPose, 'lookup_pose', LookupPose.Request(frame=f'{LONG_NAME}x'))
     assert waiting.longest_until(future.done) < LONGEST_WAIT_S
-    assert 'is the name of nothing; did you mean' in future.result().message
+    assert '; did you mean ' in future.result().message
 
 
 def test_many_patterns_for_many_frames_are_answered(large_bridge, start_listener):

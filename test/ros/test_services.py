@@ -118,7 +118,7 @@ def test_poses_are_converted_row_by_row():
 def test_an_unknown_frame_is_refused_with_its_name():
     response = look_up('m::k')
     assert not response.success
-    assert response.message.startswith('"m::k" is the name of nothing')
+    assert response.message.startswith('no frame or element is called "m::k"')
 
 
 def test_a_pose_has_every_number_in_its_place():

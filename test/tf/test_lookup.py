@@ -94,11 +94,12 @@ def test_poses_by_the_names_of_sdf_and_of_tf(lookup, frame, relative_to, expecte
 
 
 @pytest.mark.parametrize(('frame', 'relative_to', 'sentence'), [
-    ('robot::gripp', '', '"robot::gripp" is the name of nothing; did you mean "robot::grip"?'),
+    ('robot::gripp', '',
+     'no frame or element is called "robot::gripp"; did you mean "robot::grip"?'),
     ('left/robot/gripp', '', 'did you mean "left/robot/grip"?'),
-    ('robot::grip', 'floor', '"floor" is the name of nothing'),
-    ('', '', '"" is the name of nothing'),
-    ('/left/robot', '', '"/left/robot" is the name of nothing; did you mean "left/robot"?'),
+    ('robot::grip', 'floor', 'no frame or element is called "floor"'),
+    ('', '', 'no frame or element is called ""'),
+    ('/left/robot', '', 'no frame or element is called "/left/robot"; did you mean "left/robot"?'),
 ])
 def test_a_name_that_means_nothing_is_named(lookup, frame, relative_to, sentence):
     with pytest.raises(UnknownFrameError) as caught:
