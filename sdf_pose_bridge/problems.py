@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from collections.abc import Iterable
+from collections.abc import Iterator
 from collections.abc import Mapping
 from collections.abc import Sequence
 from typing import TypeVar
@@ -14,6 +15,7 @@ from sdf_pose_bridge.errors import LoadError
 from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.names import shortened_message
 
 MOST_PROBLEMS = 100
@@ -21,6 +23,9 @@ MOST_PROBLEMS = 100
 
 MOST_HINTS = 50
 """How many messages of a load may say which name was probably meant."""
+
+MOST_CHARACTERS_OF_HINTS = 1_000_000
+"""How many characters the names may have together among which the hints of a load are found."""
 
 _LONGEST_CHAIN = 10
 """How many includes that lead to a file are named."""
@@ -51,6 +56,8 @@ class Problems:
         self._errors = _First[SdfError]()
         self._warnings = _First[SdfWarning]()
         self._hints = 0
+        self._indices: dict[Hashable, NameIndex] = {}
+        self._characters_of_hints = 0
         self.are_for_gazebo = False
         """Whether all warnings from now on are about what only Gazebo would do."""
 
@@ -102,6 +109,25 @@ class Problems:
             return self._parent.allows_hint()
         self._hints += 1
         return self._hints <= MOST_HINTS
+
+    def name_index(self, key: Hashable, names: Iterable[str]) -> NameIndex:
+        """
+        Return an index of names for hints, which is made once for all hints with the same key.
+
+        Names are left out where those of all indices of the load would be too long together.
+        """
+        if self._parent is not None:
+            return self._parent.name_index(key, names)
+        if key not in self._indices:
+            self._indices[key] = NameIndex(self._affordable(names))
+        return self._indices[key]
+
+    def _affordable(self, names: Iterable[str]) -> Iterator[str]:
+        for name in names:
+            self._characters_of_hints += len(name)
+            if self._characters_of_hints > MOST_CHARACTERS_OF_HINTS:
+                return
+            yield name
 
     @property
     def errors(self) -> tuple[SdfError, ...]:

@@ -10,12 +10,12 @@ Source: ``ScopedGraph.hh`` of libsdformat. A reference in a scope is the absolut
 from __future__ import annotations
 
 from collections import defaultdict
+from itertools import chain
 from itertools import islice
 
 import numpy as np
 
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
-from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import scoped_name
@@ -54,7 +54,10 @@ class NameScopes:
 
     def __init__(self, elements: Elements, usage: Usage, problems: Problems) -> None:
         self._elements = elements
+        self._usage = usage
         self._problems = problems
+        # Of the indices for hints. Itself as a key would make a circle of references.
+        self._key = object()
         self.names = _absolute_names(elements, usage)
         self.roots: list[int] = ends_from_pointers(elements.parents).tolist()
         self._is_model: list[bool] = (elements.kinds == Kind.MODEL).tolist()
@@ -92,12 +95,17 @@ class NameScopes:
         if not missing:
             return ''
         steps = reference.split(SEPARATOR, _MOST_STEPS)
+        end = 0
         for count, step in enumerate(steps):
-            outer = self.frame(scope, SEPARATOR.join(steps[:count])) if count else scope
+            # Each beginning of the reference is a name that is made for this.
+            self._usage.add('work', 1 + (len(self.names[scope]) + end) // CHARACTERS_OF_STEP,
+                            lambda: self._elements.place(scope))
+            outer = self.frame(scope, reference[:end]) if count else scope
             uris = missing.get(NO_ELEMENT if outer is None else outer, {})
             uri = uris.get(step) or uris.get('')
             if uri:
                 return uri
+            end += len(step) + (len(SEPARATOR) if count else 0)
         return ''
 
     def _described(self, scope: int) -> str:
@@ -136,7 +144,8 @@ class NameScopes:
             WORLD_FRAME, '')
         visible = (name[len(prefix):] for name in self._frames[self.roots[scope]]
                    if name.startswith(prefix))
-        return hint_from_names(reference, [own, *islice(visible, _MOST_NAMES_COMPARED - 1)])
+        names = chain([own], islice(visible, _MOST_NAMES_COMPARED - 1))
+        return self._problems.name_index((self._key, scope), names).hint(reference)
 
 
 def _absolute_names(elements: Elements, usage: Usage) -> list[str]:

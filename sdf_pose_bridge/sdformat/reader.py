@@ -23,7 +23,6 @@ from sdf_pose_bridge.errors import DuplicateNameError
 from sdf_pose_bridge.errors import ElementIncorrectTypeError
 from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ReservedNameError
-from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.elements import Elements
@@ -268,8 +267,9 @@ class _Reader:
                     error = (
                         ElementInvalidError if definition.kind is None else AttributeInvalidError)
                     msg = f'{name}="{value.strip(WHITE_SPACE)}" of <{written_tag(xml)}> {fault}'
-                    hint = hint_from_names(value.strip(WHITE_SPACE), attribute.choice.texts) if (
-                        self._sources.problems.allows_hint()) else ''
+                    problems = self._sources.problems
+                    hint = problems.name_index(attribute.choice, attribute.choice.texts).hint(
+                        value.strip(WHITE_SPACE)) if problems.allows_hint() else ''
                     self._sources.error(error, xml, msg + hint)
 
     def _read_pose(self, xml: XmlElement, definition: Definition, parent: int) -> None:

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.sdformat.grammar import Definition
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.sources import Sources
@@ -116,6 +115,7 @@ class UndefinedReporter:
         # Most of what is undefined in a file has one of a few names.
         key = form, parent, name
         if key not in self._nearest and self._sources.problems.allows_hint():
-            self._nearest[key] = NameIndex(names).nearest(name)
+            index = self._sources.problems.name_index((form, parent), names)
+            self._nearest[key] = index.nearest(name)
         nearest = self._nearest.get(key, '')
         return f'did you mean {form.format(nearest)}?' if nearest else ''

@@ -19,6 +19,7 @@ from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
@@ -70,6 +71,7 @@ _MODELS = ('model', 'world/model')
 """Paths of the models that are in no other model."""
 
 _SCOPED_TAGS = frozenset({'link', 'joint', 'frame', 'model', 'gripper'})
+_STEPS_COUNTED_TOGETHER = 1000
 _REFERENCE_ATTRIBUTES = ('relative_to', 'attached_to', 'expressed_in')
 
 
@@ -179,13 +181,16 @@ def _rename_frame_attributes(root: XmlElement) -> None:
 
 def _convert_use_parent_model_frame(root: XmlElement, sources: Sources) -> None:
     """1.6 to 1.7: ``axis/use_parent_model_frame`` becomes ``axis/xyz/@expressed_in``."""
+    expressed_in_model = {}
     for flag in list(root.iter('use_parent_model_frame')):
         axis = flag.getparent()
         if axis is None or is_foreign(flag):
             continue
         if boolean_from_text(text_of(flag)):
-            _express_in_model(axis, sources)
+            expressed_in_model[axis] = True
         axis.remove(flag)
+    for axis in expressed_in_model:
+        _express_in_model(axis, sources)
 
 
 def _express_in_model(axis: XmlElement, sources: Sources) -> None:
@@ -197,7 +202,7 @@ def _express_in_model(axis: XmlElement, sources: Sources) -> None:
     xyz.set('expressed_in', MODEL_FRAME)
 
 
-def _nest_scoped_elements(model: XmlElement, sources: Sources) -> None:
+def _nest_scoped_elements(model: XmlElement, sources: Sources, depth: int = 1) -> None:
     """
     1.7 to 1.8: move elements named ``nested::name`` into a new model ``nested``, recursively.
 
@@ -208,12 +213,13 @@ def _nest_scoped_elements(model: XmlElement, sources: Sources) -> None:
 
     :raises ConversionError: if a moved element refers to something outside its new model.
     """
+    sources.usage.check('depth', depth, lambda: sources.place(model))
     nested_models: dict[str, XmlElement] = {}
     is_stopped = False
     for child in list(child_elements(model)):
         scope, separator, name = attribute_of(child, 'name').partition(SEPARATOR)
         if child.tag == 'model' and scope and not separator and not is_stopped:
-            _nest_scoped_elements(child, sources)
+            _nest_scoped_elements(child, sources, depth + 1)
             is_stopped = True
         if child.tag not in _SCOPED_TAGS or not separator or not scope or not name:
             continue
@@ -227,11 +233,12 @@ def _nest_scoped_elements(model: XmlElement, sources: Sources) -> None:
             _replace_model_frame(child, nested_models[scope], prefix)
             continue
         _remove_prefix_from_references(child, prefix, sources)
+        sources.count_work(len(name) // CHARACTERS_OF_STEP, child)
         child.set('name', name)
         nested_models[scope].append(child)
     for nested_model in nested_models.values():
         model.append(nested_model)
-        _nest_scoped_elements(nested_model, sources)
+        _nest_scoped_elements(nested_model, sources, depth + 1)
 
 
 def _replace_model_frame(frame: XmlElement, nested_model: XmlElement, prefix: str) -> None:
@@ -248,17 +255,22 @@ def _replace_model_frame(frame: XmlElement, nested_model: XmlElement, prefix: st
 
 
 def _remove_prefix_from_references(xml: XmlElement, prefix: str, sources: Sources) -> None:
-    for element in xml.iter(etree.Element):
+    for steps, element in enumerate(xml.iter(etree.Element), 1):
+        # Each model that becomes nested asks for all that is in it again.
+        if steps % _STEPS_COUNTED_TOGETHER == 0:
+            sources.count_work(_STEPS_COUNTED_TOGETHER, xml)
         for attribute in _REFERENCE_ATTRIBUTES:
             name = attribute_of(element, attribute)
             if name:
                 element.set(attribute, _without_prefix(name, prefix, element, sources))
+    sources.count_work(steps % _STEPS_COUNTED_TOGETHER, xml)
     if xml.tag == 'joint':
         for end in child_elements(xml, 'parent', 'child'):
             end.text = _without_prefix(value_of(end), prefix, end, sources)
 
 
 def _without_prefix(name: str, prefix: str, xml: XmlElement, sources: Sources) -> str:
+    sources.count_work(len(name) // CHARACTERS_OF_STEP, xml)
     if name.startswith(prefix):
         return name[len(prefix):]
     if name in (WORLD_FRAME, MODEL_FRAME, ''):

@@ -138,6 +138,7 @@ CHAIN = ''.join(f'<frame name="f{i}" attached_to="f{i + 1}"/>' for i in range(10
 DEEP_PLACEMENTS = '<sdf version="1.9">' + ''.join(
     f'<model name="n" placement_frame="{"n::" * (199 - depth)}f0">{LINK}' for depth in range(200)
 ) + CHAIN.replace(' attached_to="f10000"', '') + '</model>' * 200 + '</sdf>'
+OLD_FLAG = '<use_parent_model_frame>1</use_parent_model_frame>'
 MISSING = '<include><uri>none.sdf</uri><name>x</name></include>'
 
 
@@ -151,8 +152,24 @@ MISSING = '<include><uri>none.sdf</uri><name>x</name></include>'
     '<sdf version="1.9">' + ''.join(f'<model name="m{i}">' for i in range(240)) + LINK
     + ''.join(f'<frame name="f{i}" attached_to="g"/>' for i in range(9000))
     + '</model>' * 240 + '</sdf>',
+    '<robot name="r"><link name="{}">{}</link></robot>'.format('x' * 200_000, (
+        '<visual><geometry><sphere radius="1"/></geometry></visual>' * 4000)),
+    model_file(f'{LINK}<link name="c"/><joint name="j" type="revolute"><parent>l</parent>'
+               f'<child>c</child><axis>{OLD_FLAG * 30_000}'
+               '</axis></joint>', version='1.6'),
+    world_file(f'<model name="m"><link name="{"a::" * 240}l">{"<a/>" * 50_000}</link></model>',
+               version='1.7'),
+    world_file(f'<model name="m"><link name="{"a::" * 5000}l"/></model>', version='1.7'),
+    model_file(f'<model name="{"Ω" * 370}">{LINK}' + ''.join(
+        f'<frame name="ß{i}"/>' for i in range(2000)) + ''.join(
+        f'<frame name="f{i}" attached_to="λ{i}"/>' for i in range(50)) + '</model>'),
+    model_file(f'{MISSING}<model name="{"n" * 300}">{LINK}' + ''.join(
+        f'<frame name="f{i}" attached_to="{"a::" * 300}x"/>' for i in range(1000)) + '</model>'),
 ], ids=['chain to a missing file', 'long path to a missing file', 'attributes', 'not UTF-8',
-        'long tag', 'placement frames at the end of a chain', 'errors in deep models'])
+        'long tag', 'placement frames at the end of a chain', 'errors in deep models',
+        'long name of a link in URDF', 'flags of an old axis', 'old name of many scopes',
+        'old name of too many scopes', 'hints from names beyond ASCII',
+        'long references to a missing file'])
 def test_time_grows_with_the_size_of_a_file_and_not_faster(text):
     begin = time.thread_time()
     with contextlib.suppress(SdfError):

@@ -14,9 +14,9 @@ from collections.abc import Callable
 from collections.abc import Iterator
 from itertools import islice
 
-from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import scoped_name
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
 from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
@@ -24,6 +24,7 @@ from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _MOST_IDS_COMPARED = 2000
+_MOST_ELEMENTS_SEARCHED = 10_000
 _LONGEST_ID_COMPARED = 200
 
 
@@ -61,15 +62,17 @@ def element_by_id(
     return None
 
 
-def hint_for_id(top: XmlElement, element_id: str, tag: str = '') -> str:
+def hint_for_id(top: XmlElement, element_id: str, tag: str, problems: Problems) -> str:
     """
     Return the end of a message about an id that was not found.
 
+    :param problems: those of the load, which limit what is compared.
     :return: a likely reason, or the nearest id that exists; else an empty string.
     """
     if len(element_id) > _LONGEST_ID_COMPARED:
         return ''
-    ids = list(islice(_ids(top, ''), _MOST_IDS_COMPARED))
+    searched = islice(_ids(top, ''), _MOST_ELEMENTS_SEARCHED)
+    ids = list(islice((found for found in searched if found[0]), _MOST_IDS_COMPARED))
     tags = [found_tag for found_id, found_tag in ids if found_id == element_id]
     if tag in tags and len(element_id.split(SEPARATOR)[0]) == 1:
         return '; libsdformat does not find names of one letter at the top of a model'
@@ -77,15 +80,18 @@ def hint_for_id(top: XmlElement, element_id: str, tag: str = '') -> str:
         return f'; libsdformat finds only the <{tags[0]}> of that name, which comes before it'
     if tags:
         return f'; that is a <{tags[0]}>'
-    wanted = [found_id for found_id, found_tag in ids if tag in ('', found_tag)]
-    return hint_from_names(element_id, wanted)
+    wanted = (found_id for found_id, found_tag in ids if tag in ('', found_tag))
+    # Each parameter may change which elements there are, so each has an index of its own.
+    return problems.name_index(object(), wanted).hint(element_id)
 
 
 def _ids(xml: XmlElement, scope: str) -> Iterator[tuple[str, str]]:
-    """Iterate over the ids in an element, and their tags, without those that are very long."""
+    """Iterate over the ids in an element, and their tags; empty ones for those without."""
     for child in child_elements(xml):
         name = attribute_of(child, 'name')
         scoped = scoped_name(scope, name)
         if name and len(scoped) <= 2 * _LONGEST_ID_COMPARED:
             yield scoped, written_tag(child)
             yield from _ids(child, scoped)
+        else:
+            yield '', ''

@@ -305,8 +305,8 @@ class _Changer:
     # Errors
 
     def _hint(self, element_id: str, tag: str = '') -> str:
-        allowed = self._sources.problems.allows_hint()
-        return hint_for_id(self._top, element_id, tag) if allowed else ''
+        problems = self._sources.problems
+        return hint_for_id(self._top, element_id, tag, problems) if problems.allows_hint() else ''
 
     def _report_action(self, xml: XmlElement) -> None:
         msg = f'action="{xml.get("action")}" must be one of {", ".join(_ACTIONS)}'

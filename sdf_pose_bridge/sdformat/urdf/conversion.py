@@ -217,6 +217,9 @@ class _Conversion:
         **attributes: str,
     ) -> XmlElement:
         """Add an element with the line of the URDF element that it comes from."""
+        # Names of links and joints go into any number of elements.
+        self._sources.count_work(
+            sum(map(len, (text or '', *attributes.values()))) // CHARACTERS_OF_STEP, source)
         element = etree.SubElement(parent, tag, attributes)
         element.text = text
         self._sources.set_parsed_line(element, source)
@@ -268,7 +271,7 @@ class _Conversion:
             for shape in member.shapes[tag]:
                 name = f'{shape.name or member.name}_{tag}{f"_{index}" if index else ""}'
                 if not name.startswith(link.name):
-                    name = f'{self._counted(link.name, shape.geometry)}{_LUMP_PREFIX}{name}'
+                    name = f'{link.name}{_LUMP_PREFIX}{name}'
                 index += 1
                 element = self._element(xml, tag, shape.geometry, name=name)
                 pose = pose_product(self._bases[member.name].pose, shape.origin)
@@ -304,7 +307,7 @@ class _Conversion:
                 and not self._for_ros):
             joint_type = 'revolute'
         base = self._bases[joint.parent]
-        parent = self._counted(base.link.name, joint.xml)
+        parent = base.link.name
         xml = self._element(self._model, 'joint', joint.xml, name=joint.name, type=joint_type)
         self._add_pose_in_link(
             xml, joint.xml, pose_product(base.pose, joint.origin), parent)
