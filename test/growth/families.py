@@ -778,10 +778,10 @@ def text_behind_the_pose_of_a_merged_model(n: int) -> Files:
 
 @family
 def old_axis_with_many_flags(n: int) -> Files:
-    flags = '<use_parent_model_frame/>' * n
+    flags = '<use_parent_model_frame>1</use_parent_model_frame>' * n
     return {'scene.sdf': model(
         '<link name="c"/><joint name="j" type="revolute"><parent>base</parent><child>c</child>'
-        f'<axis><xyz>0 0 1</xyz>{flags}</axis></joint>', version='1.6')}
+        f'<axis>{flags}<xyz>0 0 1</xyz></axis></joint>', version='1.6')}
 
 
 @family
