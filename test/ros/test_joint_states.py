@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What messages of joint states put on ``/tf``: which frames, with which stamp, and how often."""
 
+from itertools import count
 import math
 import time
 
@@ -16,6 +17,7 @@ from rclpy.qos import DurabilityPolicy
 from rclpy.qos import QoSProfile
 from rclpy.qos import ReliabilityPolicy
 from rclpy.serialization import serialize_message
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
@@ -336,3 +338,24 @@ def test_simulated_time_that_has_not_begun_holds_nothing_up(slow_states, states,
     _, publisher, found = slow_states(0.001)
     publisher.publish(joint_state(NOW - 1, {'turn': 0.5}))
     wait_until(lambda: (NOW - 1, {'upper'}) in found, found)
+
+
+def test_a_period_is_one_of_simulated_time(slow_states, states, listener, wait_until):
+    states._node.set_parameters([Parameter('use_sim_time', value=True)])
+    clock = listener.create_publisher(Clock, '/clock', 1)
+
+    def is_at(sec):
+        clock.publish(Clock(clock=Time(sec=sec)))
+        return states._node.get_clock().now().nanoseconds == sec * NOW
+
+    wait_until(lambda: is_at(1000), 'the clock')
+    # A period of 1000 seconds.
+    slow, _, _ = slow_states(0.001)
+    seconds = count(3000, 2000)
+    assert not slow._gate.is_open
+
+    def is_over():
+        is_at(next(seconds))
+        return slow._gate.is_open
+
+    wait_until(is_over, 'the end of the period')
