@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import partial
 from itertools import islice
 import math
-import os
+from pathlib import Path
 from queue import Empty
 from queue import SimpleQueue
 from typing import Any
@@ -353,7 +353,7 @@ def _html_of_change(change: PoseChange | list[str]) -> str:
     """Tell which file a frame can be written to, or why it cannot."""
     if not isinstance(change, PoseChange):
         return _html_of_lines('errors_of_setting', change)
-    path = os.path.realpath(change.file.path)
+    path = str(Path(change.file.path).resolve())
     return f'<div class="file" style="{_FILE_STYLE}">in the file {escaped(path)}</div>'
 
 
