@@ -5,6 +5,9 @@
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
+import time
+
+from bridge_process import SECONDS
 from diagnostic_msgs.msg import DiagnosticArray
 from diagnostic_msgs.msg import DiagnosticStatus
 from listener import latched
@@ -12,6 +15,8 @@ from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
 from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
+
+from sdf_pose_bridge_interfaces.srv import ConvertRotation
 
 BRIDGE = '/sdf_pose_bridge'
 
@@ -80,3 +85,35 @@ class Monitor:
         count = self.count
         self._listener.wait(lambda: self.count > count + 1, lambda: 'diagnostics')
         return self.status
+
+
+class Waiting:
+    """
+    Asks for something small again and again, and checks that it never waits long.
+
+    Half a second is promised. Twice that is allowed, and more where the machine has so much other
+    work to do that such calls wait anyway.
+    """
+
+    def __init__(self, listener):
+        self._listener = listener
+        self._call()
+        self._longest_allowed_s = 1.0 + 10.0 * max(self._call() for _ in range(30))
+
+    def _call(self):
+        """Return how long a call takes."""
+        begin = time.monotonic()
+        assert self._listener.call(
+            ConvertRotation, f'{BRIDGE}/convert_rotation', ConvertRotation.Request()).success
+        return time.monotonic() - begin
+
+    def check_until(self, is_done):
+        """Ask until something is done."""
+        deadline = time.monotonic() + SECONDS
+        while not is_done():
+            assert time.monotonic() < deadline, 'waited in vain'
+            self.check()
+
+    def check(self):
+        """Ask once."""
+        assert self._call() < self._longest_allowed_s
