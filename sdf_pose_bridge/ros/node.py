@@ -89,6 +89,7 @@ class SdfPoseBridge:
         self._diagnostics = Diagnostics(node, self._unreported_joints)
         self._has_told_of_joints = False
         self._watcher = FileWatcher()
+        self._watcher.watch(loaded.files, loaded.read_since_ns)
         # All callbacks that change what is published: one runs after the other.
         self._changes = MutuallyExclusiveCallbackGroup()
         # Held while anything is published on all topics. A timer that is always due would keep
@@ -149,6 +150,8 @@ class SdfPoseBridge:
         if loaded is not before:
             lines = await run_in_thread(
                 self._node, lambda: lines_about_lost_frames(before.tree, loaded.tree))
+            await run_in_thread(
+                self._node, lambda: self._watcher.watch(loaded.files, loaded.read_since_ns))
             for line in lines:
                 self._logger.warning(line)
             self._report_success()
@@ -192,7 +195,6 @@ class SdfPoseBridge:
         loaded = self._loaded
         self._failure = self._pending_failure = []
         self._retry_time = math.inf
-        self._watcher.watch(loaded.files, loaded.read_since_ns)
         for line in lines_from_warnings(loaded.warnings):
             self._logger.warning(line)
         self._logger.info(
@@ -214,9 +216,10 @@ class SdfPoseBridge:
         try:
             await self._show(await self._load(self._settings))
         except Exception as error:  # noqa: BLE001 - includes defects
+            files = files_behind_error(error, self._settings.load_request)
+            with contextlib.suppress(MemoryError):  # it is read again then
+                await run_in_thread(self._node, lambda: self._watcher.watch_also(files))
             self._retry_time = time.monotonic() + RETRY_PERIOD_S if may_pass(error) else math.inf
-            self._watcher.watch_also(files_behind_error(
-                error, self._settings.load_request))
             return self._lines_from_error(error)
         return []
 
@@ -284,7 +287,10 @@ class SdfPoseBridge:
         """
         try:
             before = self._pending_failure
-            if self._watcher.has_changed() or self._has_to_retry():
+            has_changed = False
+            with contextlib.suppress(MemoryError):  # it is looked at again
+                has_changed = await run_in_thread(self._node, self._watcher.has_changed)
+            if has_changed or self._has_to_retry():
                 self._pending_failure = await self._reload()
                 if self._pending_failure != before:
                     return
