@@ -124,6 +124,8 @@ class _Reader:
         self._builder = ElementsBuilder(sources.paths, has_shapes=shapes)
         self._names = SiblingNames(self._builder, sources)
         self._undefined = UndefinedReporter(sources)
+        self._of_actors: _Reader | None = None
+        """Reads the parts of actors, which are not in the table."""
         self._file_indices = sources.file_indices
         self._readers_of_details: dict[Kind, tuple[str, Callable[[XmlElement], Any]]] = {
             Kind.MODEL: ('models', _model_details),
@@ -160,6 +162,8 @@ class _Reader:
                 self.read(child, child_definition, index, index, path)
         if not self._builder.names:
             self._sources.warning(root, 'the file has no world, model, light or actor')
+        if self._of_actors is not None:
+            self._of_actors._builder.elements(self._sources.problems)  # noqa: SLF001
         return self._builder.elements(self._sources.problems)
 
     def _report_second_top(self, xml: XmlElement, first: str) -> None:
@@ -220,11 +224,12 @@ class _Reader:
         path: str,
     ) -> tuple[Definition, int, int, str]:
         """Add an element to the table; return by what to read its children."""
-        if parent != NO_ELEMENT and self._builder.kinds[parent] == Kind.ACTOR:
-            # Links and joints of actors are read, but nothing can refer to them.
-            reader = _Reader(self._sources)
-            reader.read(xml, definition, path=path)
-            reader._builder.elements(self._sources.problems)
+        if parent >= 0 and self._builder.kinds[parent] == Kind.ACTOR:
+            # Links and joints of actors are read, but nothing can refer to them, so that their
+            # names may repeat: each has another parent.
+            self._of_actors = self._of_actors or _Reader(self._sources)
+            number = len(self._of_actors._builder.names)  # noqa: SLF001
+            self._of_actors.read(xml, definition, NO_ELEMENT - 1 - number, path=path)
             return _READ_ALREADY, NO_ELEMENT, scope, path
         has_name = 'name' in definition.attributes
         name = self._names.add(kind, xml, parent, path) if has_name else kind.label

@@ -198,7 +198,7 @@ def _express_in_model(axis: XmlElement, sources: Sources) -> None:
     xyz = first_child(axis, 'xyz')
     if xyz is None:
         xyz = etree.SubElement(axis, 'xyz')
-        sources.set_source(xyz, axis)
+        sources.set_parsed_line(xyz, axis)
     xyz.set('expressed_in', MODEL_FRAME)
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from itertools import takewhile
 from pathlib import Path
 
 from lxml import etree
@@ -56,6 +57,7 @@ from sdf_pose_bridge.sdformat.xml_tree import child_value
 from sdf_pose_bridge.sdformat.xml_tree import described
 from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import value_of
+from sdf_pose_bridge.sdformat.xml_tree import with_ancestors
 from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
@@ -93,6 +95,8 @@ class IncludeExpansion:
         self._missing_uris: set[str] = set()
         self._merged_models: dict[tuple[XmlElement, str, bytes], ModelByItself | None] = {}
         self._undefined = UndefinedReporter(sources)
+        self._definitions: dict[XmlElement, Definition | None] = {}
+        """What the elements that hold includes, and those around them, may hold."""
 
     def expand(self, document: Document) -> None:
         """
@@ -108,10 +112,28 @@ class IncludeExpansion:
         """Replace the includes in a tree; ``files`` led to it, each included by the one before."""
         for include in list(root.iter('include')):
             parent = include.getparent()
-            if parent is not None and _definition_in_tree(parent) is not None:
+            if parent is not None and self._definition_in_tree(parent) is not None:
                 self._expand_include(include, files)
                 if include.getparent() is not None:
                     self._mark_missing(include)
+
+    def _definition_in_tree(self, xml: XmlElement) -> Definition | None:
+        """Return the definition of an element that may hold others; None if it is not read."""
+        known = self._definitions
+        unknown = list(takewhile(lambda each: each not in known, with_ancestors(xml)))
+        for each in reversed(unknown):
+            parent = each.getparent()
+            if parent is None:
+                # The copy of an included element has no <sdf> around it yet.
+                is_top = each.tag in ('sdf', *_TOP_TAGS)
+                known[each] = definition_of(str(each.tag), has_frames=True) if is_top else None
+                continue
+            outer = known[parent]
+            definition = None if outer is None else outer.children.get(each.tag)
+            is_read = definition is not None and definition.value_type is None and (
+                not definition.takes_any_children)
+            known[each] = definition if is_read else None
+        return known[xml]
 
     def _mark_missing(self, include: XmlElement) -> None:
         """Keep of an include that stays which name and which URI are missing without it."""
@@ -339,7 +361,7 @@ class IncludeExpansion:
     def _insert(self, include: XmlElement, top: XmlElement) -> None:
         parent = include.getparent()
         assert parent is not None
-        definition = _definition_in_tree(parent)
+        definition = self._definition_in_tree(parent)
         if definition is None or top.tag not in definition.children:
             msg = (f'the included {written_tag(top)} is left out; a <{written_tag(parent)}> '
                    'cannot hold one')
@@ -347,20 +369,6 @@ class IncludeExpansion:
             parent.remove(include)
         else:
             parent.replace(include, top)
-
-
-def _definition_in_tree(xml: XmlElement) -> Definition | None:
-    """Return the definition of an element that may hold others; None if it is not read."""
-    parent = xml.getparent()
-    if parent is None:
-        # The copy of an included element has no <sdf> around it yet.
-        is_top = xml.tag in ('sdf', *_TOP_TAGS)
-        return definition_of(str(xml.tag), has_frames=True) if is_top else None
-    outer = _definition_in_tree(parent)
-    definition = None if outer is None else outer.children.get(xml.tag)
-    if definition is None or definition.value_type is not None or definition.takes_any_children:
-        return None
-    return definition
 
 
 def _name_from_uri(uri: str) -> str:
