@@ -34,7 +34,10 @@ _COUNTS = tuple(etree.XPath(f'count({path})') for path in (
 _MOST_LINKS = 40
 """How many links may lead to one another; Linux follows no more."""
 
-_CHARACTERS_OF_WALK = 16
+_LONGEST_PATH = 4095
+"""How many bytes of a path Linux takes."""
+
+_CHARACTERS_OF_WALK = 8
 """How many characters of a path count for one step of a walk over its parts."""
 
 _STEPS_OF_LOOK = 2
@@ -102,9 +105,11 @@ class FileLookups(NamedTuple):
         """Return the path of a file or directory without links; None if it does not exist."""
         self.usage.add('work', 1, self.place)
         try:
+            if len(os.fsencode(path)) > _LONGEST_PATH:
+                return None
             return self._followed(
                 path if path.startswith('/') else f'{os.getcwd()}/{path}', 0)  # noqa: PTH109
-        except (FileNotFoundError, _TooManyLinksError):
+        except (FileNotFoundError, UnicodeEncodeError, _TooManyLinksError):
             return None
 
     def is_directory(self, path: str) -> bool:

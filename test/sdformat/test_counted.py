@@ -74,7 +74,7 @@ def make_folder(tmp_path_factory):
 
 NAMES = st.sampled_from([
     'a', 'b', 'file', 'link', 'up', 'to_file', 'full', 'loop', 'one', 'nowhere', 'far', 'none',
-    'slash', '..', '.', '', 'x' * 300, '\0'])
+    'slash', '..', '.', '', 'x' * 300, '\0', '\ud800', '\udcff'])
 
 
 @settings(max_examples=500)
@@ -114,6 +114,13 @@ def test_a_long_way_over_links_is_followed_once(tmp_path):
     for number in range(10):
         assert lookups.real_path(f'{tmp_path}/d/{"./" * number}../l0') is not None
     assert used(usage) - first < first // 10
+
+
+@pytest.mark.parametrize('count', [400, 1000])
+def test_a_path_is_as_long_as_the_system_allows(folder, count):
+    path = f'{folder}/{"a/b/../../" * count}a'
+    exists = os.path.exists(path)  # noqa: PTH110
+    assert (file_lookups().real_path(path) is not None) == exists == (count == 400)
 
 
 def test_too_many_links_lead_nowhere(tmp_path):
