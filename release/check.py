@@ -18,7 +18,6 @@ import re
 import shutil
 import subprocess
 import sys
-import tarfile
 import tempfile
 import xml.etree.ElementTree as ET
 
@@ -30,12 +29,14 @@ TOOLS = CACHE / 'tools/bin'
 WHEELS = CACHE / 'wheels'
 LOCK = ROOT / 'underlay/release.txt'
 BRIDGE, INTERFACES = 'sdf_pose_bridge', 'sdf_pose_bridge_interfaces'
-PYTHONS = ('3.10', '3.11', '3.12', '3.13')
 PLATFORMS = (
     ('jazzy', 'ubuntu', 'noble'), ('jazzy', 'rhel', '9'),
     ('kilted', 'ubuntu', 'noble'), ('kilted', 'rhel', '9'),
     ('lyrical', 'ubuntu', 'resolute'), ('lyrical', 'rhel', '10'))
 """Distribution, system and version, for which the build farm builds packages."""
+FOREIGN_VARIABLES = re.compile(
+    'PYTHON|PIP_(PREFIX|PYTHON|REQUIRE_VIRTUALENV|ROOT|TARGET|USER)|VIRTUAL_ENV|(AMENT|CMAKE|COLCON'
+    '|_?ROS)_|LD_LIBRARY_PATH')
 PLACEHOLDERS = ('<owner>', 'example.org')
 
 
@@ -52,7 +53,7 @@ def run(*command: object, cwd: Path = ROOT, **environment: str) -> str:
     """
     kept = {
         name: value for name, value in os.environ.items()
-        if not re.match('PYTHON|PIP_|VIRTUAL_ENV|AMENT|CMAKE|COLCON|ROS|_ROS|LD_LIBRARY', name)}
+        if not FOREIGN_VARIABLES.match(name)}
     done = subprocess.run(
         list(map(str, command)), cwd=cwd, env={**kept, **environment}, text=True, check=False,
         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
@@ -82,31 +83,37 @@ def python_of(version: str) -> str:
     return ''
 
 
-def requirements() -> list[str]:
-    """Return what setup.py says that the package and its tests need."""
+def declared() -> tuple[list[str], list[str]]:
+    """Return what the package and its tests need, and for which Pythons they are, by setup.py."""
     code = ('import json, runpy, setuptools; found = {}; setuptools.setup = found.update; '
-            'runpy.run_path("setup.py"); '
-            'print(json.dumps(found["install_requires"] + found["extras_require"]["test"]))')
-    found: list[str] = json.loads(run(sys.executable, '-c', code))
-    return found
+            'runpy.run_path("setup.py"); found.pop("cmdclass"); print(json.dumps(found))')
+    found = json.loads(run(sys.executable, '-c', code))
+    pythons = re.findall(r':: (3\.\d+)$', '\n'.join(found['classifiers']), re.MULTILINE)
+    return found['install_requires'] + found['extras_require']['test'], pythons
 
 
-def prepare() -> None:
-    """Fetch the tools and the wheels of what the package needs, for each Python."""
-    wanted = json.dumps([hashlib.sha256(LOCK.read_bytes()).hexdigest(), requirements(), PYTHONS])
+def prepare() -> list[str]:
+    """
+    Fetch the tools and the wheels of what the package needs, for each Python.
+
+    :return: the versions of Python.
+    """
+    requirements, pythons = declared()
+    wanted = json.dumps([hashlib.sha256(LOCK.read_bytes()).hexdigest(), requirements, pythons])
     stamp = CACHE / 'stamp'
     if stamp.exists() and stamp.read_text() == wanted:
-        return
+        return pythons
     print('fetching the release tools, and wheels for each Python ...', flush=True)
     shutil.rmtree(CACHE, ignore_errors=True)
     run(sys.executable, '-m', 'venv', TOOLS.parent)
     pip = (TOOLS / 'python', '-m', 'pip', '--disable-pip-version-check', '--quiet')
     run(*pip, 'install', '--require-hashes', '-r', LOCK)
-    for version in PYTHONS:
+    for version in pythons:
         run(*pip, 'download', '--only-binary', ':all:', '--python-version', version,
-            '--dest', WHEELS, 'setuptools>=77', 'wheel', *requirements())
+            '--dest', WHEELS, 'setuptools>=77', 'wheel', *requirements)
     (CACHE / 'COLCON_IGNORE').touch()
     stamp.write_text(wanted)
+    return pythons
 
 
 class Release:
@@ -114,10 +121,11 @@ class Release:
     A release in a scratch clone.
 
     :param scratch: an empty folder.
+    :param pythons: the versions of Python for which it is.
     """
 
-    def __init__(self, scratch: Path) -> None:
-        self._scratch = scratch
+    def __init__(self, scratch: Path, pythons: list[str]) -> None:
+        self._scratch, self._pythons = scratch, pythons
         self._clone = scratch / 'clone'
         run('git', 'clone', '--quiet', ROOT, self._clone)
         last = ET.parse(self._clone / 'package.xml').getroot().findtext('version') or ''
@@ -127,12 +135,11 @@ class Release:
 
     def is_made(self) -> str:
         """Make the commit, the tags and the branch."""
-        git = ('git', '-c', 'user.name=release check', '-c', 'user.email=check@localhost')
         run('git', 'config', 'user.name', 'release check', cwd=self._clone)
         run('git', 'config', 'user.email', 'check@localhost', cwd=self._clone)
         run(TOOLS / 'python', 'release/make_release.py', self._version, cwd=self._clone)
         for tag, package in self._tags():
-            run(*git, 'worktree', 'add', '--quiet', '--detach', self._scratch / package, tag,
+            run('git', 'worktree', 'add', '--quiet', '--detach', self._scratch / package, tag,
                 cwd=self._clone)
         return f'version {self._version} of {self._commit()}'
 
@@ -162,13 +169,13 @@ class Release:
             'ROSDEP_SOURCE_PATH': str(index / 'sources.list.d')}
         run(TOOLS / 'rosdep', 'update', **environment)
         for distro, system, name in PLATFORMS:
-            kind, folder = ('debian', 'debian') if system == 'ubuntu' else ('rpm', 'rpm')
+            kind = 'debian' if system == 'ubuntu' else 'rpm'
             for _, package in self._tags():
                 source = self._scratch / package
                 run(TOOLS / 'bloom-generate', f'ros{kind}', '--ros-distro', distro,
                     '--os-name', system, '--os-version', name, cwd=source, **environment)
-                self._check_generated(source / folder, distro, package, kind)
-                shutil.rmtree(source / folder)
+                self._check_generated(source / kind, distro, package, kind)
+                shutil.rmtree(source / kind)
         return ', '.join(f'{distro} on {system} {name}' for distro, system, name in PLATFORMS)
 
     def _check_generated(self, folder: Path, distro: str, package: str, kind: str) -> None:
@@ -198,7 +205,7 @@ class Release:
     def is_installed(self) -> str:
         """Install the wheel, and the sdist, for each Python, and start the programs."""
         results = []
-        for version in PYTHONS:
+        for version in self._pythons:
             if not python_of(version):
                 results.append(f'{version} is not on this machine')
                 continue
@@ -237,8 +244,8 @@ class Release:
         version = f'3.{sys.version_info.minor}'
         wheel, archive = self._distributions
         folder = self._scratch / 'unpacked'
-        with tarfile.open(archive) as tar:
-            tar.extractall(folder, filter='data')
+        folder.mkdir()
+        run('tar', '-xzf', archive, '-C', folder)
         (source,) = folder.iterdir()
         programs = self._environment(version, f'{BRIDGE}[test] @ {wheel.as_uri()}')
         printed = run(programs / 'python', '-m', 'pytest', '-q', '-p', 'no:cacheprovider',
@@ -320,9 +327,9 @@ def main() -> int:
     options = parser.parse_args()
     title = 'prepared'
     try:
-        prepare()
+        pythons = prepare()
         with tempfile.TemporaryDirectory(prefix='sdf_pose_bridge_release_') as scratch:
-            release = Release(Path(scratch))
+            release = Release(Path(scratch), pythons)
             for title, step in steps(release, only_installs=options.only_installs):
                 print(f'{title}: {step()}', flush=True)
     except CheckError as error:
