@@ -249,7 +249,7 @@ class Release:
         (source,) = folder.iterdir()
         programs = self._environment(version, f'{BRIDGE}[test] @ {wheel.as_uri()}')
         printed = run(programs / 'python', '-m', 'pytest', '-q', '-p', 'no:cacheprovider',
-                      cwd=source)
+                      cwd=source, PATH=f'{programs}:{os.defpath}')
         return f'{printed.splitlines()[-1]}, with Python {version}'
 
     def has_no_placeholders(self) -> str:

@@ -24,7 +24,8 @@ NOT_COPIED = shutil.ignore_patterns(
 @pytest.fixture(scope='session')
 def prefix_of_wheel(tmp_path_factory):
     """A folder in which pip has installed the wheel."""
-    pytest.importorskip('setuptools', reason='needs setuptools')
+    for name in ('pip', 'setuptools', 'wheel'):
+        pytest.importorskip(name, reason=f'needs {name}')
     folder = tmp_path_factory.mktemp('wheel')
     shutil.copytree(ROOT, folder / 'source', ignore=NOT_COPIED)
     pip = [sys.executable, '-m', 'pip', '--quiet', '--disable-pip-version-check']
@@ -41,7 +42,7 @@ def program_of_workspace(name):
     executable = executable_of_workspace(name)
     if executable is None:
         pytest.skip('needs a ROS workspace')
-    return [str(executable)], os.environ['PYTHONPATH']
+    return [str(executable)], os.environ.get('PYTHONPATH', '')
 
 
 @pytest.fixture(params=['executable', 'environment', 'wheel', 'module'])
@@ -53,7 +54,7 @@ def started(request):
         program = shutil.which('sdf_pose')
         if program is None:
             pytest.skip('needs the environment of underlay/setup.bash')
-        return [program], os.environ['PYTHONPATH']
+        return [program], os.environ.get('PYTHONPATH', '')
     if request.param == 'module':
         return AS_MODULE, str(ROOT)
     prefix = request.getfixturevalue('prefix_of_wheel')
