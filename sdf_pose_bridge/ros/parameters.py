@@ -164,7 +164,7 @@ class Settings:
         DescriptionFormat.AS_GIVEN,
         'What the topic robot_description has: "as_given" is the text of a model or URDF as it '
         'is; with "urdf" it is URDF made of the model that is published, whose links are its '
-        'frames, also where that is one of a world.',
+        'frames, also where that is one of a world, and TF has frames where it has joints.',
     )
     publish_transforms = _switch(
         True, 'Publishes all transforms one by one on ~/transforms.', needs_load=False,
@@ -301,7 +301,9 @@ class Settings:
     @property
     def tf_options(self) -> TfOptions:
         """The settings of the TF tree; parameters and options have the same names."""
-        return TfOptions(**{name: self.values[name] for name in TfOptions._fields})
+        return TfOptions(
+            **{name: value for name, value in self.values.items() if name in TfOptions._fields},
+            has_joint_links=self.description_format is DescriptionFormat.URDF)
 
     @property
     def load_request(self) -> LoadRequest:

@@ -97,12 +97,17 @@ class JointMotion:
         bodies = list(ranges)
         last_of_bodies = np.full(len(scene.kinds), NO_DOF, np.int32)
         last_of_bodies[bodies] = [each[-1] for each in ranges.values()]
-        self.last_dofs: Indices = last_of_bodies[
+        last_of_elements = last_of_bodies[
             ends_from_pointers(np.where(last_of_bodies != NO_DOF, -1, tf_parents.parents))]
-        """For each element the last degree of freedom between the root and it; -1 for none."""
+        self.last_dofs: Indices = np.append(
+            last_of_elements, np.arange(len(dofs), dtype=np.int32))
+        """For each element the last degree of freedom between the root and it; -1 for none. Then
+        each degree of freedom itself, for frames that stand between it and the next one."""
+        self.moved_bodies = tuple(body for body, each in ranges.items() for _ in each)
+        """The body at the end of the joint of each degree of freedom."""
         self.previous: Indices = np.arange(-1, len(dofs) - 1, dtype=np.int32)
         """For each degree of freedom the one before it on the way from the root; -1 for none."""
-        self.previous[[each[0] for each in ranges.values()]] = self.last_dofs[
+        self.previous[[each[0] for each in ranges.values()]] = last_of_elements[
             tf_parents.parents[bodies]]
         poses = scene.poses[[each.joint.element for each in dofs]]
         directions = np.reshape([each.axis.xyz for each in dofs], (-1, 3))

@@ -36,6 +36,7 @@ from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.frame_ids import optical_frames_of_cameras
 from sdf_pose_bridge.tf.frame_ids import with_ids_of_sensors
+from sdf_pose_bridge.tf.joint_links import joint_links_from_motion
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.moving_frames import MovingFrames
 from sdf_pose_bridge.tf.parents import NO_PARENT
@@ -70,6 +71,8 @@ class TfOptions(NamedTuple):
     """Whether each camera gets an optical frame besides its own."""
     use_joint_states: bool = False
     """Whether moving joints follow ``joint_states``."""
+    has_joint_links: bool = False
+    """Whether the links without mass that URDF has at joints are frames too."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -94,7 +97,8 @@ class TfTree:
     transforms: PoseArray
     """Shape (n, 7): pose of each frame in its parent; the identity if it has none."""
     elements: Indices
-    """The element of the scene that each frame belongs to; -1 for an optical frame."""
+    """The element of the scene that each frame belongs to; -1 for an optical frame and for one
+    at a joint."""
     nearest_frames: Indices
     """The frame of each element of the scene, or that of the nearest element above it in TF that
     has one; or :data:`ROOT_IS_PARENT`, or :data:`NO_PARENT`."""
@@ -169,21 +173,34 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     owners += [frame.camera for frame in optical_frames]
     frame_ids += [frame.frame_id for frame in optical_frames]
     _check_frame_ids(frame_ids, owners, scene, options.root_frame, problems)
+    problems.raise_errors()
     tf_parents = tf_parents_from_scene(scene)
     for joint in tf_parents.loop_joints:
         msg = (f'joint "{scene.names[joint.element]}" closes a loop between '
                f'"{scene.names[joint.parent]}" and "{scene.names[joint.child]}"; TF is a tree, so '
                'it moves nothing there')
         problems.warning(msg, scene.place(joint.element))
-    problems.raise_errors()
+    motion = JointMotion(
+        scene, tf_parents) if options.use_joint_states or options.has_joint_links else None
     nearest_frames, parents_of_elements = _nearest_frames_and_parents(
         scene, tf_parents, elements,
         detached_bodies(scene, tf_parents, options.anchor_models, problems),
         is_world_anchored=options.anchor_models is AnchorModels.ALL)
-    parents = np.concatenate([
-        parents_of_elements, np.array([frame.parent for frame in optical_frames], np.int32)])
-    poses = np.concatenate([
-        scene.poses[elements], np.reshape([frame.pose for frame in optical_frames], (-1, 7))])
+    extra_parents = [frame.parent for frame in optical_frames]
+    extra_poses = [frame.pose for frame in optical_frames]
+    if options.has_joint_links and motion is not None:
+        frames = {element: frame for frame, element in enumerate(elements.tolist())}
+        for link in joint_links_from_motion(scene, motion, options.frame_names):
+            frame = frames.get(motion.moved_bodies[link.dof], NO_PARENT)
+            frame_id = options.frame_prefix + link.name
+            if frame >= 0 and parents_of_elements[frame] != NO_PARENT and (
+                    frame_id not in frame_ids):
+                frame_ids.append(frame_id)
+                owners.append(len(scene.kinds) + link.dof)
+                extra_parents.append(int(parents_of_elements[frame]))
+                extra_poses.append(link.pose)
+    parents = np.concatenate([parents_of_elements, np.array(extra_parents, np.int32)])
+    poses = np.concatenate([scene.poses[elements], np.reshape(extra_poses, (-1, 7))])
     # The last two poses are for ROOT_IS_PARENT and NO_PARENT, which are negative.
     transforms = canonical_relative_poses(
         np.concatenate([poses, [Pose(), Pose()]])[parents], poses)
@@ -193,8 +210,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     poses_in_pose_frame = poses if reference < 0 else canonical_relative_poses(
         poses[reference], poses)
     moving = None
-    if options.use_joint_states:
-        motion = JointMotion(scene, tf_parents)
+    if options.use_joint_states and motion is not None:
         moving = MovingFrames(motion, poses, parents, np.array(owners, np.int32), reference)
     return TfTree(
         root_frame=options.root_frame,
@@ -204,7 +220,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         poses_in_pose_frame=poses_in_pose_frame,
         parents=parents,
         transforms=transforms,
-        elements=np.concatenate([elements, np.full(len(optical_frames), -1, np.int32)]),
+        elements=np.concatenate([elements, np.full(len(extra_poses), -1, np.int32)]),
         nearest_frames=nearest_frames,
         moving=moving,
         world=scene.world_names.get(0, ''),

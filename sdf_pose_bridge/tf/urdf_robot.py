@@ -15,7 +15,6 @@ from collections import defaultdict
 from collections.abc import Iterator
 from collections.abc import Sequence
 from itertools import count
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -35,6 +34,8 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
+from sdf_pose_bridge.tf.joint_links import is_same_place
+from sdf_pose_bridge.tf.joint_links import LINK_SUFFIX
 from sdf_pose_bridge.tf.joint_motion import dofs_from_joint
 from sdf_pose_bridge.tf.joint_positions import SLIDE_SUFFIX
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
@@ -47,8 +48,6 @@ from sdf_pose_bridge.tf.tree import TfOptions
 NO_LIMIT = 1e16
 """How users of URDF and Gazebo write a limit that is none."""
 
-_SAME_PLACE = 1e-12
-"""Two frames that differ by less, in metres and halves of radians, are one."""
 _MOST_NAMES_SHOWN = 10
 
 
@@ -261,11 +260,11 @@ class _RobotMaker:
         element = self._elements[frame]
         joint_pose = self._scene.pose_of(self._tf_parents.joints[element].element)
         in_joint = relative_pose(joint_pose, Pose(*tree.poses[frame].tolist()))
-        is_at_joint = math.dist(in_joint[:6], Pose()[:6]) < _SAME_PLACE
+        is_at_joint = is_same_place(in_joint)
         origin = transform if is_at_joint else pose_product(transform, pose_inverse(in_joint))
         for step in steps:
             is_last = is_at_joint and step is steps[-1]
-            child = name if is_last else self._link_names.new(f'{step.name}_frame')
+            child = name if is_last else self._link_names.new(f'{step.name}{LINK_SUFFIX}')
             self._add(child, link if is_last else -1, UrdfJoint(
                 step.name, step.type, parent, origin, step.axis, self._mimic(step, element)))
             parent, origin = child, Pose()

@@ -30,6 +30,7 @@ from sdf_pose_bridge import SdfError
 from sdf_pose_bridge import UnknownFrameError
 from sdf_pose_bridge.errors import UrdfNotMadeError
 from sdf_pose_bridge.tf.anchors import AnchorModels
+from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
 from sdf_pose_bridge.tf.urdf_robot import robot_from_scene
@@ -284,16 +285,31 @@ def test_second_axis_can_be_followed():
 
 # Every link is where TF has the frame, at every position of the joints
 
-def assert_same_frames(text, positions, **options):
+def poses_of_joint_links(scene, positions, options):
+    """Return the poses of the frames that TF has at joints for URDF."""
+    tree = tf_tree_from_scene(scene, TfOptions(
+        anchor_models=AnchorModels.ALL, use_joint_states=True, has_joint_links=True, **options))
+    state = JointPositions(scene, tree.moving.dofs)
+    selection = state.selection(list(positions))
+    state.update(selection, np.array(list(positions.values()), float))
+    return {
+        frame_id: tree.moving.pose_of_frame(index, state.values)
+        for index, frame_id in enumerate(tree.frame_ids) if frame_id.endswith('_frame')}
+
+
+def assert_same_frames(text, positions, joints=(), **options):
     scene = load_text(text, shapes=True)
     robot = robot_from_scene(scene, TfOptions(**options))
     urdf = load_text(urdf_from_scene(scene, **options).text, 'robot.urdf')
     moved, moved_urdf = (scene_at_positions(each, positions) for each in (scene, urdf))
     tree = tf_tree_from_scene(moved, TfOptions(anchor_models=AnchorModels.ALL, **options))
     expected = dict(zip(tree.frame_ids, tree.poses.tolist(), strict=True))
+    expected.update(poses_of_joint_links(scene, positions, options))
     places = {link.name: matrix_from_pose(moved_urdf.pose(f'{urdf.own_name(1)}::{link.name}'))
               for link in robot.links if link.name in expected}
     assert places.keys() == expected.keys()
+    assert {link.name for link in robot.links} - places.keys() - {'world'} <= {
+        f'{joint.name}_frame' for joint in joints if joint.type == 'screw'}
     first = robot.links[0].name
     to_root = np.eye(4)
     if first in expected:
@@ -311,7 +327,7 @@ def test_frames_of_random_trees_of_joints(data, count):
     extra = f'<frame name="f" attached_to="l{count - 1}">{pose_text(data.draw(POSES))}</frame>'
     positions = {
         name: data.draw(POSITIONS) for each in joints for name in each.position_names}
-    assert_same_frames(model_text(link_poses, joints, extra), positions)
+    assert_same_frames(model_text(link_poses, joints, extra), positions, joints)
 
 
 @settings(max_examples=40, deadline=None)
