@@ -443,6 +443,28 @@ def includes(n: int) -> Files:
 
 
 @family
+def includes_without_a_uri_in_deep_links(n: int) -> Files:
+    links = '<link name="l"><include/></link>' * n
+    return {'scene.sdf': world('<model name="m">' * DEEPEST + links + '</model>' * DEEPEST)}
+
+
+@family
+def links_of_an_actor(n: int) -> Files:
+    return {'scene.sdf': world(f'<actor name="a">{LINK * n}</actor>')}
+
+
+@family
+def axes_without_a_direction(n: int) -> Files:
+    joint = '<joint name="j" type="revolute">' + '<axis/>' * n + '</joint>'
+    return {'scene.sdf': model(joint, version='1.4')}
+
+
+@family
+def elements_behind_the_outermost_one(n: int) -> Files:
+    return {'scene.sdf': model('') + '<a/>' * n + '</a>'}
+
+
+@family
 def includes_of_many_files(n: int) -> Files:
     parts = {f'p{number}.sdf': model('') for number in range(n // 4)}
     return {'scene.sdf': world(''.join(include(f'<name>{uri}</name>', uri=uri) for uri in parts)),
