@@ -43,7 +43,7 @@ help:
 	@echo 'make licenses       licences of everything that is installed for this, as in docs/licenses.md'
 	@echo 'make audit          known vulnerabilities of it, by pip-audit; needs the network'
 	@echo 'make docs           the documentation, into docs/_build/html'
-	@echo 'make pictures       the pictures in the documentation but rviz.png; needs Chromium and Graphviz'
+	@echo 'make pictures       the pictures in the documentation but those of RViz; needs Chromium and Graphviz'
 	@echo 'make wheel_check    wheel and sdist in clean environments of each Python that is here'
 	@echo 'make release_check  a release in a scratch clone, tried as users and release tools do'
 	@echo 'make release        VERSION=1.0.0: commit, tags and branch of a release; see docs/releasing.md'

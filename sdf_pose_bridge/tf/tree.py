@@ -190,11 +190,13 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     extra_poses = [frame.pose for frame in optical_frames]
     if options.has_joint_links and motion is not None:
         frames = {element: frame for frame, element in enumerate(elements.tolist())}
+        used = {options.root_frame, *frame_ids}
         for link in joint_links_from_motion(scene, motion, options.frame_names):
             frame = frames.get(motion.moved_bodies[link.dof], NO_PARENT)
             frame_id = options.frame_prefix + link.name
             if frame >= 0 and parents_of_elements[frame] != NO_PARENT and (
-                    frame_id not in frame_ids):
+                    frame_id not in used):
+                used.add(frame_id)
                 frame_ids.append(frame_id)
                 owners.append(len(scene.kinds) + link.dof)
                 extra_parents.append(int(parents_of_elements[frame]))
