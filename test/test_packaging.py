@@ -33,6 +33,7 @@ def package_xml(package):
 
 
 def run_setup(*options):
+    pytest.importorskip('setuptools', reason='needs setuptools')
     return subprocess.run(
         [sys.executable, 'setup.py', '--quiet', *options], cwd=ROOT, check=True,
         capture_output=True, text=True, env={**os.environ, 'PYTHONWARNINGS': 'ignore'})

@@ -25,6 +25,8 @@ PYTHON = Path(sys.base_prefix, f'bin/python3.{sys.version_info.minor}')
 
 needs_x86 = pytest.mark.skipif(
     platform.machine() != 'x86_64', reason='any other processor is refused before')
+needs_python_of_jazzy = pytest.mark.skipif(
+    sys.version_info >= (3, 14), reason='this Python is refused before')
 pytestmark = pytest.mark.skipif(
     sys.platform != 'linux' or not shutil.which('bash'), reason='needs bash on Linux')
 
@@ -104,29 +106,34 @@ def test_machine_without_python_is_refused(checkout, tools):
 
 
 @needs_x86
+@needs_python_of_jazzy
 def test_machine_without_compiler_is_refused(checkout, tools):
     result = make_underlay(checkout, PATH=str(tools), PYTHON=str(PYTHON))
     assert_refused_with(result, 'no C compiler', 'build-essential')
 
 
 @needs_x86
+@needs_python_of_jazzy
 def test_compiler_that_does_not_exist_is_refused_with_its_name(checkout):
     result = make_underlay(checkout, PYTHON=str(PYTHON), CXX='c++-99')
     assert_refused_with(result, "CXX names 'c++-99'")
 
 
 @needs_x86
+@needs_python_of_jazzy
 def test_compiler_that_cannot_compile_is_refused_with_its_reason(checkout, tools):
     broken = command(tools, 'broken-cc', 'echo "cannot find crt1.o" >&2; exit 1')
     result = make_underlay(checkout, PYTHON=str(PYTHON), CC=str(broken))
     assert_refused_with(result, 'cannot find crt1.o')
 
 
+@needs_python_of_jazzy
 def test_checkout_in_a_path_with_a_space_is_refused(checkout):
     moved = checkout.rename(checkout.with_name('check out'))
     assert_refused_with(make_underlay(moved, PYTHON=str(PYTHON)), "' '", 'move it')
 
 
+@needs_python_of_jazzy
 def test_ros_installation_that_lacks_packages_is_refused_with_their_names(checkout, tmp_path):
     (tmp_path / 'jazzy').mkdir()
     (tmp_path / 'jazzy/setup.bash').touch()
