@@ -218,8 +218,9 @@ class _Conversion:
     ) -> XmlElement:
         """Add an element with the line of the URDF element that it comes from."""
         # Names of links and joints go into any number of elements.
-        self._sources.count_work(
-            sum(map(len, (text or '', *attributes.values()))) // CHARACTERS_OF_STEP, source)
+        characters = sum(map(len, (text or '', *attributes.values())))
+        if characters >= CHARACTERS_OF_STEP:
+            self._sources.count_work(characters // CHARACTERS_OF_STEP, source)
         element = etree.SubElement(parent, tag, attributes)
         element.text = text
         self._sources.set_parsed_line(element, source)
