@@ -1,35 +1,19 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Take the values that parameters are given: when the node is started, and by its services."""
+"""Take the values that parameters are given: when the node is started, and later."""
 
 from __future__ import annotations
 
 import array
-from collections.abc import Awaitable
-from collections.abc import Callable
 from collections.abc import Container
 from collections.abc import Iterable
 from collections.abc import Mapping
-from collections.abc import Sequence
-import contextlib
 from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange
-from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterDescriptor
-from rcl_interfaces.msg import SetParametersResult
-from rcl_interfaces.srv import DescribeParameters
-from rcl_interfaces.srv import GetParameters
-from rcl_interfaces.srv import GetParameterTypes
-from rcl_interfaces.srv import ListParameters
-from rcl_interfaces.srv import SetParameters
-from rcl_interfaces.srv import SetParametersAtomically
-from rclpy.callback_groups import CallbackGroup
-from rclpy.exceptions import ParameterNotDeclaredException
-from rclpy.exceptions import ParameterUninitializedException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.qos import qos_profile_parameters
 
 from sdf_pose_bridge.names import hint_from_names
 from sdf_pose_bridge.names import printable
@@ -40,17 +24,6 @@ from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.parameters import Value
 from sdf_pose_bridge.ros.qos_overrides import QOS_OVERRIDES
 from sdf_pose_bridge.ros.qos_overrides import sentences_about_overrides
-from sdf_pose_bridge.ros.setting_rules import MOST_VALUES
-
-MOST_REASONS = 20
-"""How many results of a call that sets parameters have the reason why none is set."""
-
-MOST_CHARACTERS_OF_REPEATED = 1_000_000
-"""How long the values may be together in an answer that has some of them several times."""
-
-WARNING_PERIOD_S = 10.0
-
-_KINDS_OF_LISTS = ('byte', 'bool', 'integer', 'double', 'string')
 
 _NAMES_OF_TYPES = {
     Parameter.Type.STRING: 'a string', Parameter.Type.BOOL: 'true or false',
@@ -147,153 +120,6 @@ def warnings_about_unknown_parameters(
     return [
         f'there is no parameter "{name}", so it has no effect{hint}'
         for name, hint in hints.items() if hint or not only_misspelt]
-
-
-def add_parameter_services(
-    node: Node, group: CallbackGroup,
-    set_parameters: Callable[[list[Parameter]], Awaitable[SetParametersResult]],
-) -> None:
-    """
-    Offer the parameter services of a node; a call that sets parameters sets all of them or none.
-
-    rclpy's own services set the parameters of a call one after the other, without waiting: the
-    file would be read for each of them, in states that nobody asked for, while no other callback
-    runs.
-
-    Calls are refused by their size before anything is done for them.
-
-    :param group: callback group of the services that set parameters.
-    :param set_parameters: sets declared parameters, and returns what the services answer.
-    """
-    async def result(messages: Sequence[ParameterMessage]) -> SetParametersResult:
-        try:
-            parameters = _parameters_from_messages(node, messages)
-        except (ValueError, TypeError) as error:
-            return SetParametersResult(successful=False, reason=str(error))
-        return await set_parameters(parameters)
-
-    async def answer(
-        request: SetParameters.Request, response: SetParameters.Response,
-    ) -> SetParameters.Response:
-        count = len(request.parameters)
-        found = other = await result(request.parameters)
-        if not found.successful:
-            other = SetParametersResult(
-                successful=False, reason='the first result of this answer says why')
-        response.results = ([found] * MOST_REASONS + [other] * count)[:count]
-        return response
-
-    async def answer_atomically(
-        request: SetParametersAtomically.Request, response: SetParametersAtomically.Response,
-    ) -> SetParametersAtomically.Response:
-        response.result = await result(request.parameters)
-        return response
-
-    services = [
-        (SetParameters, 'set_parameters', answer, group),
-        (SetParametersAtomically, 'set_parameters_atomically', answer_atomically, group),
-        *((type_, name, read, None) for type_, name, read in _reading_services(node))]
-    for service_type, name, callback, callback_group in services:
-        node.create_service(
-            service_type, f'~/{name}', callback, qos_profile=qos_profile_parameters,
-            callback_group=callback_group)
-
-
-def _reading_services(node: Node) -> list[tuple[type, str, Callable[[Any, Any], Any]]]:
-    """Return types, names and callbacks of the services that show parameters, as rclpy's do."""
-    def has_too_much(names: Sequence[str], values: Sequence[object] = ()) -> bool:
-        """Return whether an answer would be too large; it has no place for the reason then."""
-        reason = ''
-        if len(names) > MOST_VALUES:
-            reason = f'{len(names)} names; it can have at most {MOST_VALUES}'
-        elif len(set(names)) < len(names):
-            size = sum(len(value) for value in values if isinstance(value, str))
-            if size > MOST_CHARACTERS_OF_REPEATED:
-                reason = f'names again and again, whose values have {size} characters together'
-        if reason:
-            node.get_logger().warning(
-                f'a call that reads parameters is not answered: it has {reason}',
-                throttle_duration_sec=WARNING_PERIOD_S)
-        return bool(reason)
-
-    # Of names that are not declared, or have no value, these services return nothing at all.
-    def describe(
-        request: DescribeParameters.Request, response: DescribeParameters.Response,
-    ) -> DescribeParameters.Response:
-        if not has_too_much(request.names):
-            with contextlib.suppress(ParameterNotDeclaredException):
-                response.descriptors = node.describe_parameters(request.names)
-        return response
-
-    def values(
-        request: GetParameters.Request, response: GetParameters.Response,
-    ) -> GetParameters.Response:
-        if has_too_much(request.names):
-            return response
-        with contextlib.suppress(ParameterNotDeclaredException, ParameterUninitializedException):
-            parameters = node.get_parameters(request.names)
-            if not has_too_much(request.names, [parameter.value for parameter in parameters]):
-                response.values = [parameter.get_parameter_value() for parameter in parameters]
-        return response
-
-    def types(
-        request: GetParameterTypes.Request, response: GetParameterTypes.Response,
-    ) -> GetParameterTypes.Response:
-        if not has_too_much(request.names):
-            with contextlib.suppress(ParameterNotDeclaredException):
-                response.types = [
-                    Parameter.Type(type_).value
-                    for type_ in node.get_parameter_types(request.names)]
-        return response
-
-    def names(
-        request: ListParameters.Request, response: ListParameters.Response,
-    ) -> ListParameters.Response:
-        if not has_too_much(request.prefixes):
-            with contextlib.suppress(TypeError, ValueError):
-                response.result = node.list_parameters(request.prefixes, request.depth)
-        return response
-
-    return [
-        (DescribeParameters, 'describe_parameters', describe),
-        (GetParameters, 'get_parameters', values),
-        (GetParameterTypes, 'get_parameter_types', types),
-        (ListParameters, 'list_parameters', names)]
-
-
-def _parameters_from_messages(
-    node: Node, messages: Sequence[ParameterMessage],
-) -> list[Parameter]:
-    """
-    Return the parameters that a call wants to set.
-
-    :return: the parameters, without read-only ones that keep their values, which "ros2 param load"
-        of a dump sets too.
-    :raises ValueError: if there is no such parameter, or no such type, or if there are too many
-        parameters or values.
-    """
-    if len(messages) > MOST_VALUES:
-        msg = f'a call can set at most {MOST_VALUES} parameters, and this one has {len(messages)}'
-        raise ValueError(msg)
-    parameters = []
-    for message in messages:
-        if not node.has_parameter(message.name):
-            msg = (f'there is no parameter "{printable(shortened(message.name))}"'
-                   f'{hint_from_names(message.name, DECLARATIONS)}')
-            raise ValueError(msg)
-        for kind in _KINDS_OF_LISTS:
-            count = len(getattr(message.value, f'{kind}_array_value'))
-            if count > MOST_VALUES:
-                msg = (f'parameter {message.name} is a list of {count} values; a list can have at '
-                       f'most {MOST_VALUES}')
-                raise ValueError(msg)
-        parameter = Parameter.from_parameter_msg(message)
-        if message.name in DECLARATIONS:
-            parameter = parameter_with_type(parameter, DECLARATIONS[message.name].type_)
-        if not (node.describe_parameter(message.name).read_only
-                and node.get_parameter(message.name).value == parameter.value):
-            parameters.append(parameter)
-    return parameters
 
 
 def _given_parameters(node: Node) -> Mapping[str, Parameter]:

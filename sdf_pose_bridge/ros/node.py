@@ -29,7 +29,6 @@ from sdf_pose_bridge.ros.background import PollingThread
 from sdf_pose_bridge.ros.background import run_in_thread
 from sdf_pose_bridge.ros.diagnostics import Diagnostics
 from sdf_pose_bridge.ros.diagnostics import PERIOD_S
-from sdf_pose_bridge.ros.given_parameters import add_parameter_services
 from sdf_pose_bridge.ros.given_parameters import changed_settings
 from sdf_pose_bridge.ros.log_lines import count_in_words
 from sdf_pose_bridge.ros.log_lines import line_about_detached_models
@@ -38,6 +37,7 @@ from sdf_pose_bridge.ros.log_lines import line_about_joints_at_rest
 from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
+from sdf_pose_bridge.ros.parameter_services import add_parameter_services
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
