@@ -2,12 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command line as its users start it."""
 
+from importlib.util import find_spec
 import os
 from pathlib import Path
 import sys
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[1]
 AS_MODULE = [sys.executable, '-m', 'sdf_pose_bridge']
+
+
+def skip_without(*modules):
+    """Skip a test whose processes need modules; setuptools cannot be imported into any process."""
+    for name in modules:
+        if find_spec(name) is None:
+            pytest.skip(f'needs {name}')
 
 
 def executable_of_workspace(name):

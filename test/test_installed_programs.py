@@ -11,6 +11,7 @@ import sysconfig
 
 from command_line import AS_MODULE
 from command_line import executable_of_workspace
+from command_line import skip_without
 import mesh_texts
 import pytest
 
@@ -24,8 +25,7 @@ NOT_COPIED = shutil.ignore_patterns(
 @pytest.fixture(scope='session')
 def prefix_of_wheel(tmp_path_factory):
     """A folder in which pip has installed the wheel."""
-    for name in ('pip', 'setuptools', 'wheel'):
-        pytest.importorskip(name, reason=f'needs {name}')
+    skip_without('pip', 'setuptools', 'wheel')
     folder = tmp_path_factory.mktemp('wheel')
     shutil.copytree(ROOT, folder / 'source', ignore=NOT_COPIED)
     pip = [sys.executable, '-m', 'pip', '--quiet', '--disable-pip-version-check']

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ET
 
+from command_line import skip_without
 import pytest
 
 import sdf_pose_bridge
@@ -33,7 +34,7 @@ def package_xml(package):
 
 
 def run_setup(*options):
-    pytest.importorskip('setuptools', reason='needs setuptools')
+    skip_without('setuptools')
     return subprocess.run(
         [sys.executable, 'setup.py', '--quiet', *options], cwd=ROOT, check=True,
         capture_output=True, text=True, env={**os.environ, 'PYTHONWARNINGS': 'ignore'})
@@ -52,7 +53,7 @@ def installed_files():
 
 def arguments_of_setup(*command):
     """Return what setup.py calls setuptools with, for a command."""
-    pytest.importorskip('setuptools', reason='needs setuptools')
+    skip_without('setuptools')
     code = (
         'import json, runpy, setuptools; found = {}; setuptools.setup = found.update; '
         'runpy.run_path("setup.py"); found.pop("cmdclass"); print(json.dumps(found))')
