@@ -92,7 +92,9 @@ def run(options: argparse.Namespace) -> int:
         0 if options.output else options.port, tf_options_from_arguments(options),
         Units(options.length_unit, options.angle_unit),
         resource_finder(options.resource_paths, os.environ),
-        partial(set_pose, options=options) if options.edit else None)
+        partial(set_pose, options=options) if options.edit else None,
+        # A file has no switches.
+        viewer.HIDDEN_AT_FIRST - ({'all names'} if options.output else set()))
     try:
         for line in page.show(scene):
             print(f'sdf_pose view: {line}', file=sys.stderr)

@@ -6,6 +6,7 @@ import html
 import os
 import re
 import subprocess
+import time
 from types import SimpleNamespace
 import urllib.error
 from urllib.parse import urlsplit
@@ -19,6 +20,7 @@ import numpy as np
 import pytest
 
 from sdf_pose_bridge import load
+from sdf_pose_bridge.cli.viewer.view_point import view_of_bounds
 
 pytest.importorskip('viser', reason='needs viser')
 
@@ -95,7 +97,7 @@ def test_slider_moves_frames_and_those_that_mimic(page):
     select(page, 'slide')
     assert page.run("document.body.innerText.includes('arm/second')") is False
     enter(page, "[...document.querySelectorAll('input')].filter("
-                "input => ['decimal', 'numeric'].includes(input.inputMode))[0]", '0.5')
+                "input => ['decimal', 'numeric'].includes(input.inputMode))[1]", '0.5')
     page.wait_for("document.body.innerText.includes('xyz 0.0000 0.0000 0.5000 m')")
     select(page, 'follower')
     page.wait_for("document.body.innerText.includes('xyz 0.0000 0.0000 1.0000 m')")
@@ -136,12 +138,12 @@ def test_names_and_errors_are_text(page, shown):
 def point_on_screen(page, point):
     """Return where a point of the scene is in the picture, as the camera stands at first."""
     width, height = page.run('[window.innerWidth, window.innerHeight]')
-    middle = np.array([0.45, 0.0, 0.0])
-    to_scene = -1.6 * 1.1 * np.array([0.75, -0.5, 0.45])
+    view = view_of_bounds(np.array([(-0.1, -0.1, -0.1), (1.0, 0.1, 0.1)]), (0.75, -0.5, 0.45))
+    to_scene = view.look_at - view.position
     forward = to_scene / np.linalg.norm(to_scene)
     right = np.cross(forward, (0, 0, 1))
     right /= np.linalg.norm(right)
-    x, y, z = np.array([right, np.cross(right, forward), forward]) @ (point - middle + to_scene)
+    x, y, z = np.array([right, np.cross(right, forward), forward]) @ (point - view.position)
     scale = 0.5 * height / np.tan(0.4)
     return 0.5 * width + scale * x / z, 0.5 * height - scale * y / z
 
@@ -150,7 +152,7 @@ def test_frame_is_dragged_and_written(page, shown):
     select(page, HOSTILE)
     # Nothing says when the gizmo is drawn; until then there is nothing to drag.
     page.run('new Promise(drawn => requestAnimationFrame(() => requestIdleCallback(drawn)))')
-    page.mouse(*(point_on_screen(page, (1.0, 0.0, 0.38 + height)) for height in (
+    page.mouse(*(point_on_screen(page, (1.0, 0.0, 0.27 + height)) for height in (
         0.0, 0.02, 0.05, 0.08, 0.1)))
     write = "[...document.querySelectorAll('button')].find(b => b.innerText === 'write to file')"
     page.wait_for(write)
@@ -161,6 +163,20 @@ def test_frame_is_dragged_and_written(page, shown):
     changed = shown.file.read_text().splitlines()
     assert [line for line in TEXT.splitlines() if line not in changed] == [
         f'  <frame name="{html.escape(HOSTILE)}"><pose>1 0 0 0 0 0</pose></frame>']
+
+
+def test_name_is_shown_at_the_pointer(page):
+    x, y = point_on_screen(page, (1.0, 0.0, 0.0))
+
+    def move():
+        page.call('Input.dispatchMouseEvent', type='mouseMoved', x=x + 3, y=y - 3)
+        return page.run("document.querySelector('.name-at-pointer')?.textContent")
+    # Nothing says when the axes are drawn; until then there is no name.
+    end = time.monotonic() + DEADLINE_S
+    while move() is None and time.monotonic() < end:
+        time.sleep(0.1)
+    assert move() == HOSTILE
+    assert page.run('window.wasRun') is None
 
 
 def test_page_asks_for_nothing_elsewhere(page, shown):

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from collections.abc import Sequence
-import math
 from typing import Any
 from typing import NamedTuple
 
@@ -16,8 +15,15 @@ import trimesh
 import viser
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
+from sdf_pose_bridge.cli.viewer.labels import labels_from_names
 from sdf_pose_bridge.cli.viewer.meshes import MeshPart
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
+from sdf_pose_bridge.cli.viewer.view_point import bounds_of_interest
+from sdf_pose_bridge.cli.viewer.view_point import bounds_of_points
+from sdf_pose_bridge.cli.viewer.view_point import FIELD_OF_VIEW_RAD
+from sdf_pose_bridge.cli.viewer.view_point import grid_spacing_m
+from sdf_pose_bridge.cli.viewer.view_point import home_view
+from sdf_pose_bridge.cli.viewer.view_point import View
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.rotations import Floats
@@ -38,21 +44,19 @@ MOST_TRIANGLES = 3_000_000
 MOST_NAMES = 500
 """How many names are shown at once."""
 
-GROUPS = ('visuals', 'collisions', 'names', 'lines to parents')
+GROUPS = ('visuals', 'collisions', 'all names', 'all lines to parents', 'grid')
 """What can be hidden, besides the kinds of frames by their labels."""
+HIDDEN_AT_FIRST = frozenset(('collisions', 'all names', 'all lines to parents'))
+"""Those that a page does not show until they are switched on."""
 
 _WXYZ = [6, 3, 4, 5]
-_DIRECTION_TO_EYE = np.array([0.75, -0.5, 0.45])
-_FIELD_OF_VIEW_RAD = 0.8
-_GRAY = (0.7, 0.7, 0.7, 1.0)
-_LINE_COLOR = (134, 142, 150)
-_LIGHT_FROM_BELOW = (160, 160, 160)
-_OPACITY = 0.6
-"""That of surfaces, so that the frames in them are seen."""
-
-_LINE_HEIGHT, _CHARACTER_WIDTH = 0.018, 0.008
-"""Size of a name, as a part of the height of a window of 720 pixels."""
-_MOST_IN_A_LABEL = 8
+_GRAY = (0.52, 0.54, 0.57, 1.0)
+"""The color of what has none, which shows on a light and on a dark ground."""
+_LINE_COLOR = (255, 146, 43)
+_GRID_COLOR, _GRID_SECTION_COLOR = (173, 178, 184), (134, 141, 149)
+_COLLISION_RGBA = (0.05, 0.62, 0.55, 1.0)
+_LIGHT_FROM_BELOW = (120, 124, 130)
+_DIRECTION_TO_LIGHT = (0.35, -0.6, 1.0)
 
 
 class Surface(NamedTuple):
@@ -83,7 +87,10 @@ class Drawing:
         self._server, self._meshes, self._select = server, meshes, select
         self.gizmo: Any = None
         """The gizmo, which is not visible at first."""
+        self.opacity = 1.0
+        """That of surfaces; see :meth:`set_opacity`."""
         self._camera: Any = None
+        self._marked = -1
         self._labels: list[viser.LabelHandle] = []
 
     def look_from(self, camera: viser.CameraHandle) -> None:
@@ -91,12 +98,14 @@ class Drawing:
         self._camera = camera
 
     def draw(
-        self, scene: Scene, tree: TfTree, is_shown: NDArray[np.bool_], hidden: set[str],
+        self, scene: Scene, tree: TfTree, is_shown: NDArray[np.bool_],
+        is_in_robot: NDArray[np.bool_], hidden: set[str],
     ) -> list[str]:
         """
         Draw a scene instead of the one before.
 
         :param is_shown: whether to draw each element of the scene.
+        :param is_in_robot: whether each element is in a model that moves.
         :param hidden: the groups and kinds of frames that are not drawn.
         :return: why visuals and collisions are not drawn as the file means them, for each of them.
         """
@@ -104,11 +113,10 @@ class Drawing:
         # Other nodes replace those of their name. Of these there may be fewer now.
         for name in ('/visuals', '/collisions'):
             nodes.remove_by_name(name)
-        nodes.add_light_hemisphere('/light', ground_color=_LIGHT_FROM_BELOW, intensity=1.5)
         # An optical frame is shown with its parent.
         elements = np.where(
             tree.elements < 0, tree.elements[np.maximum(tree.parents, 0)], tree.elements)
-        self._frames = np.array([
+        self.frames = np.array([
             frame for frame, label in enumerate(kind_labels_of(scene, tree))
             if label not in hidden and is_shown[elements[frame]]], int)
         origins = tree.poses[:, :3]
@@ -117,26 +125,29 @@ class Drawing:
             scene, [element for element in scene.shapes if is_shown[element]
                     and f'{Kind(scene.kinds[element]).label}s' not in hidden],
             extent_m or 1.0, self._meshes)
-        bounds = bounds_of_scene(scene, origins, surfaces)
-        size_m = float(np.ptp(bounds, axis=0).max()) or 1.0
-        view_m = size_m
-        if 0.0 < extent_m < 0.55 * size_m:
-            # A floor is often much larger than what stands on it.
-            bounds, view_m = bounds_of_scene(scene, origins, []), max(extent_m, 0.3 * size_m)
+        boxes = boxes_of_surfaces(scene, surfaces)
+        size_m = float(np.ptp(bounds_of_points(
+            np.concatenate([origins, np.zeros((1, 3)), boxes.reshape(-1, 3)])), axis=0).max())
+        size_m = size_m or 1.0
+        self.bounds = bounds_of_interest(
+            origins[self.frames], is_in_robot[elements[self.frames]], boxes)
+        view_m = float(np.linalg.norm(self.bounds[1] - self.bounds[0])) or size_m
+        self.home = home_view(self.bounds, origins[self.frames], boxes)
+        self._add_surroundings(view_m, size_m)
         if self._camera is None:
-            self._look_at(0.5 * bounds.sum(axis=0), view_m, size_m)
-        length_m = _length_of_axes(tree, size_m)
+            self._look_at(self.home, size_m)
+        self.axes_length_m = length_m = _length_of_axes(tree, view_m)
         self._marker = nodes.add_frame(
             '/selected', axes_length=2.0 * length_m, axes_radius=0.08 * length_m, visible=False)
         self.gizmo = nodes.add_transform_controls(
-            '/gizmo', 4.0 * length_m, depth_test=False, visible=False)
+            '/gizmo', 2.5 * length_m, depth_test=False, visible=False)
         self._lines = nodes.add_line_segments(
-            '/lines to parents', _lines(tree, self._frames), _LINE_COLOR,
-            thickness=0.002 * view_m, visible='lines to parents' not in hidden)
+            '/lines to parents', _lines(tree, self._lined(tree)), _LINE_COLOR, thickness=2.0,
+            thickness_units='screen')
         self._axes = nodes.add_batched_axes(
-            '/frames', *_places(tree.poses[self._frames]), axes_length=length_m,
+            '/frames', *_places(tree.poses[self.frames]), axes_length=length_m,
             axes_radius=0.05 * length_m)
-        self._select_by_click(self._axes, self._frames)
+        self._select_by_click(self._axes, self.frames)
         self._copies = [
             (self._add_surface(number, surface, scene, tree), surface.elements)
             for number, surface in enumerate(surfaces)]
@@ -145,20 +156,44 @@ class Drawing:
 
     def place(self, scene: Scene, tree: TfTree) -> None:
         """Move what is drawn to the poses of a scene that differs in nothing else."""
-        self._axes.batched_wxyzs, self._axes.batched_positions = _places(tree.poses[self._frames])
+        self._axes.batched_wxyzs, self._axes.batched_positions = _places(tree.poses[self.frames])
         for copies, elements in self._copies:
             copies.batched_wxyzs, copies.batched_positions = _places(scene.poses[elements])
-        self._lines.points = _lines(tree, self._frames)
+        self._lines.points = _lines(tree, self._lined(tree))
         self._place_names(tree)
 
-    def mark(self, pose: Pose | None) -> None:
-        """Show larger axes at a pose in the root frame; none for None."""
+    def mark(self, frame: int, pose: Pose | None) -> None:
+        """
+        Show larger axes, the name, and the lines to the ancestors of a frame.
+
+        :param frame: its index, or -1 for none.
+        :param pose: where the axes are, in the root frame.
+        """
+        self._marked = frame
         self._marker.visible = pose is not None
         if pose is not None:
             self._marker.position, self._marker.wxyz = pose[:3], (pose.qw, *pose[3:6])
 
+    def set_opacity(self, opacity: float) -> None:
+        """Let surfaces be seen through, from 0 to 1, where 1 is opaque."""
+        self.opacity = opacity
+        for copies, _ in self._copies:
+            copies.opacity = None if opacity >= 1.0 else opacity
+
+    def _lined(self, tree: TfTree) -> NDArray[np.intp]:
+        """Return the frames with a line to their parents."""
+        if 'all lines to parents' not in self._hidden:
+            return self.frames
+        lined, frame = [], self._marked
+        while frame >= 0:
+            lined.append(frame)
+            frame = int(tree.parents[frame])
+        return np.array(lined, int)
+
     def _place_names(self, tree: TfTree) -> None:
-        frames = [] if 'names' in self._hidden else self._frames[:MOST_NAMES].tolist()
+        frames = [] if 'all names' in self._hidden else self.frames[:MOST_NAMES].tolist()
+        if self._marked >= 0 and self._marked not in frames:
+            frames.append(self._marked)
         names = [
             printable(shortened(tree.frame_ids[frame].rpartition('/')[2])) for frame in frames]
         labels = labels_from_names(
@@ -171,21 +206,47 @@ class Drawing:
             if label.visible:
                 label.text, label.position = labels[number]
 
-    def _look_at(self, middle: Floats, view_m: float, size_m: float) -> None:
+    def _look_at(self, view: View, size_m: float) -> None:
         """Choose what a browser sees at first."""
         self._camera = camera = self._server.initial_camera
-        camera.look_at, camera.fov = middle, _FIELD_OF_VIEW_RAD
-        camera.position = middle + 1.6 * view_m * _DIRECTION_TO_EYE
+        camera.position, camera.look_at = view
+        camera.fov = FIELD_OF_VIEW_RAD
         camera.near, camera.far = 0.001 * size_m, 100.0 * size_m
 
+    def _add_surroundings(self, view_m: float, size_m: float) -> None:
+        """Add light from above and from one side, and a grid on the ground."""
+        nodes = self._server.scene
+        nodes.add_light_hemisphere('/light/sky', ground_color=_LIGHT_FROM_BELOW, intensity=1.7)
+        # Far away and without decay, so that its rays are parallel.
+        nodes.add_light_point(
+            '/light/sun', intensity=1.9, decay=0.0,
+            position=tuple(100.0 * size_m * np.array(_DIRECTION_TO_LIGHT)))
+        spacing_m, has_grid = grid_spacing_m(view_m), 'grid' not in self._hidden
+        middle = np.round(self.bounds.mean(axis=0)[:2] / spacing_m) * spacing_m
+        width_m = 2.0 * spacing_m * np.ceil(view_m / spacing_m)
+        # A little above the floors that many files have there.
+        height_m = 0.001 * view_m
+        nodes.add_grid(
+            '/grid', width_m, width_m, cell_size=spacing_m, section_size=5.0 * spacing_m,
+            cell_color=_GRID_COLOR, section_color=_GRID_SECTION_COLOR, shadow_opacity=0.0,
+            fade_distance=4.0 * view_m, position=(*middle, height_m), visible=has_grid)
+        to_camera = 0.3 * (self.home.position - self.home.look_at)[:2]
+        nodes.add_label(
+            '/grid spacing', f'grid {spacing_m:g} m', font_screen_scale=0.8, visible=has_grid,
+            position=(*(middle + spacing_m * np.round(to_camera / spacing_m)), height_m))
+
     def _add_surface(self, number: int, surface: Surface, scene: Scene, tree: TfTree) -> Any:
+        is_collision = surface.kind == Kind.COLLISION
         rgba = np.clip(surface.rgba, 0.0, 1.0)
+        if is_collision:
+            rgba[:] = _COLLISION_RGBA
         copies = self._server.scene.add_batched_meshes_simple(
             f'/{surface.kind.label}s/{number}', surface.part.points, surface.part.faces,
             *_places(scene.poses[surface.elements]), batched_scales=surface.scales,
             batched_colors=np.round(255.0 * rgba[:, :3]).astype(np.uint8),
             batched_opacities=rgba[:, 3] if (rgba[:, 3] < 1.0).any() else None,
-            opacity=_OPACITY, lod='off', flat_shading=True, side='double')
+            opacity=None if self.opacity >= 1.0 else self.opacity, lod='off',
+            wireframe=is_collision, flat_shading=not is_collision, side='double')
         self._select_by_click(copies, tree.nearest_frames[surface.elements])
         return copies
 
@@ -260,72 +321,14 @@ def surfaces_from_scene(
     return surfaces, reasons
 
 
-def bounds_of_scene(scene: Scene, origins: Floats, surfaces: Sequence[Surface]) -> Floats:
-    """
-    Find what a view of everything has to contain.
-
-    :param origins: shape (n, 3), the origins of frames.
-    :return: shape (2, 3): the lowest and the highest corner.
-    """
-    points = [origins, np.zeros((1, 3))]
+def boxes_of_surfaces(scene: Scene, surfaces: Sequence[Surface]) -> Floats:
+    """Return the lowest and the highest corner of each copy of surfaces, shape (n, 2, 3)."""
+    boxes = [np.zeros((0, 2, 3))]
     for surface in surfaces:
         part, poses = surface.part.points, scene.poses[surface.elements]
         corners = trimesh.bounds.corners([part.min(axis=0), part.max(axis=0)])
         matrices = matrix_from_quaternion(poses[:, 3:])
         turned = (surface.scales[:, np.newaxis] * corners) @ matrices.transpose(0, 2, 1)
-        points.append((turned + poses[:, np.newaxis, :3]).reshape(-1, 3))
-    together = np.concatenate(points)
-    return np.array([together.min(axis=0), together.max(axis=0)])
-
-
-class _Label(NamedTuple):
-    """Names in a rectangle of the picture, in parts of its height."""
-
-    top: float
-    left: float
-    point: Floats
-    names: list[str]
-
-    @property
-    def lines(self) -> list[str]:
-        """Return the lines of the text."""
-        more = len(self.names) - _MOST_IN_A_LABEL
-        return self.names[:_MOST_IN_A_LABEL] + ([f'and {more} more'] if more > 0 else [])
-
-    def is_on(self, other: _Label) -> bool:
-        """Return whether a part of one would lie on the other."""
-        higher, lower = sorted((self, other), key=lambda each: each.top)
-        first, second = sorted((self, other), key=lambda each: each.left)
-        return (lower.top < higher.top + _LINE_HEIGHT * len(higher.lines)
-                and second.left < first.left + _CHARACTER_WIDTH * max(map(len, first.lines)))
-
-
-def labels_from_names(
-    names: Sequence[str], points: Floats, eye: Floats, look_at: Floats,
-) -> list[tuple[str, Floats]]:
-    """
-    Join names that would lie on one another in the picture, as lines of one text.
-
-    :param names: the names of frames.
-    :param points: shape (n, 3), their origins.
-    :param eye: shape (3,), where the camera is.
-    :param look_at: shape (3,), what is in the middle of the picture, not above or below the eye.
-    :return: the texts, and their points: each text is right of its point and below it.
-    """
-    forward = np.asarray(look_at) - eye
-    right = np.cross(forward, (0.0, 0.0, 1.0))
-    axes = np.array([
-        axis / np.linalg.norm(axis) for axis in (right, np.cross(forward, right), forward)])
-    x, y, depth = ((points - eye) @ axes.T).T
-    seen = np.flatnonzero(depth > 0.0)
-    scale = 0.5 / (math.tan(0.5 * _FIELD_OF_VIEW_RAD) * depth[seen])
-    labels: list[_Label] = []
-    places = scale * np.stack([y[seen], x[seen]])
-    for top, left, index in sorted(zip(*places.tolist(), seen.tolist(), strict=True)):
-        label = _Label(top, left, points[index], [names[index]])
-        while other := next(filter(label.is_on, labels), None):
-            labels = [each for each in labels if each is not other]
-            higher, lower = sorted((other, label), key=lambda each: each.top)
-            label = higher._replace(names=higher.names + lower.names)
-        labels.append(label)
-    return [('\n'.join(label.lines), label.point) for label in labels]
+        turned += poses[:, np.newaxis, :3]
+        boxes.append(np.stack([turned.min(axis=1), turned.max(axis=1)], axis=1))
+    return np.concatenate(boxes)

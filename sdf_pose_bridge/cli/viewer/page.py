@@ -21,14 +21,19 @@ import numpy as np
 from sdf_pose_bridge.cli.printing import kind_labels_of
 from sdf_pose_bridge.cli.printing import Unit
 from sdf_pose_bridge.cli.printing import Units
+from sdf_pose_bridge.cli.viewer.browser_script import html_of_frame_names
+from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
 from sdf_pose_bridge.cli.viewer.drawing import Drawing
 from sdf_pose_bridge.cli.viewer.drawing import GROUPS
+from sdf_pose_bridge.cli.viewer.drawing import HIDDEN_AT_FIRST
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_frame
 from sdf_pose_bridge.cli.viewer.frame_texts import rows_of_tree
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.cli.viewer.server import id_of_button
 from sdf_pose_bridge.cli.viewer.server import server_for_its_owner
+from sdf_pose_bridge.cli.viewer.view_point import DIRECTIONS
+from sdf_pose_bridge.cli.viewer.view_point import view_of_bounds
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
 from sdf_pose_bridge.geometry.poses import Pose
@@ -71,6 +76,7 @@ class Page:
     :param options: which elements are frames, and how they are named.
     :param units: the units of poses and sliders.
     :param finder: finds the meshes.
+    :param hidden: what is not shown until it is switched on.
     :param set_pose: puts a pose into the file, as ``sdf_pose_bridge.cli.set.set_pose`` does, of
         which it has the arguments but for the options; None if frames cannot be dragged.
     """
@@ -78,6 +84,7 @@ class Page:
     def __init__(
         self, port: int, options: TfOptions, units: Units, finder: ResourceFinder,
         set_pose: Callable[..., PoseChange] | None = None,
+        hidden: Iterable[str] = HIDDEN_AT_FIRST,
     ) -> None:
         self._server, self.address = server_for_its_owner(port)
         self._options, self._units, self._set_pose = options, units, set_pose
@@ -89,8 +96,9 @@ class Page:
         self._positions: dict[str, float] = {}
         self._selected = ''
         self._dragged: Pose | None = None
-        self._hidden = {'collisions'}
+        self._hidden = set(hidden)
         self._listed: object = None
+        self._is_dark = False
         self._server.on_client_connect(
             lambda client: self._when(
                 client.camera.on_update, partial(self._drawing.look_from, client.camera)))
@@ -98,7 +106,7 @@ class Page:
     def html(self, title: str) -> str:
         """Return the scene, without controls, as a page that needs no network."""
         page: str = self._server.get_scene_serializer().as_html()
-        return page.replace('<title>Viser</title>', f'<title>{escaped(title)}</title>')
+        return page_with_script(page, printable(title), html_of_frame_names(self._names_of_axes()))
 
     def close(self) -> None:
         """End the server, and the process that reads meshes."""
@@ -168,7 +176,9 @@ class Page:
     def _draw(self) -> list[str]:
         hidden = [element for name, element in self._models.items() if name in self._hidden]
         is_shown = self._is_in_model & ~np.isin(self._tops, hidden)
-        reasons = self._drawing.draw(self._scene, self._tree, is_shown, self._hidden)
+        reasons = self._drawing.draw(
+            self._scene, self._tree, is_shown, self._is_in_robot, self._hidden)
+        self._names.content = html_of_frame_names(self._names_of_axes())
         self._when(self._drawing.gizmo.on_update, self._drag)
         self._show_frame()
         lines = [
@@ -176,6 +186,9 @@ class Page:
             f'it: {printable(reason)}' for reason, count in Counter(reasons).items()]
         self._reasons.content = _html_of_lines('reasons', lines)
         return lines
+
+    def _names_of_axes(self) -> list[str]:
+        return [printable(self._tree.frame_ids[frame]) for frame in self._drawing.frames]
 
     # Joints
 
@@ -187,6 +200,8 @@ class Page:
             metres.
         """
         dofs = JointMotion(self._loaded, tf_parents_from_scene(self._loaded)).dofs
+        moving = self._tops[[dof.joint.element for dof in dofs]]
+        self._is_in_robot = np.isin(self._tops, moving)
         names = JointPositions(self._loaded, dofs).names
         return {
             name: self._range_of_dof(dof) for name, dof in zip(names, dofs, strict=True)
@@ -226,8 +241,9 @@ class Page:
         # What was asked for until now, was asked by controls that are gone.
         self._actions = SimpleQueue()
         gui.set_panel_label(printable(self._loaded.path))
-        self._errors, self._reasons = gui.add_html(''), gui.add_html('')
+        self._errors, self._reasons, self._names = (gui.add_html('') for _ in range(3))
         with gui.add_folder('Show'):
+            self._add_controls_of_looks()
             for name in switches:
                 self._add_switch(name)
         if 1 < len(self._models) <= _MOST_SWITCHES:
@@ -253,6 +269,35 @@ class Page:
             self._write = gui.add_button('write to file', visible=False)
         self._when(self._choice.on_update, self._show_frame)
         self._when(self._write.on_click, self._write_pose)
+
+    def _add_controls_of_looks(self) -> None:
+        gui, drawing = self._server.gui, self._drawing
+        views = gui.add_button_group('view', ('home', *DIRECTIONS, 'zoom to'))
+        self._when(views.on_click, lambda: self._look(views.value))
+        opacity = gui.add_slider('opacity', 0.1, 1.0, 0.05, drawing.opacity)
+        self._when(opacity.on_update, lambda: drawing.set_opacity(opacity.value))
+        dark = gui.add_checkbox('dark background', self._is_dark)
+
+        def change() -> None:
+            self._is_dark = dark.value
+            gui.configure_theme(show_logo=False, show_share_button=False, dark_mode=dark.value)
+        self._when(dark.on_update, change)
+
+    def _look(self, name: str) -> None:
+        """Turn the cameras to a view, or to the selected frame for "zoom to"."""
+        drawing = self._drawing
+        view = drawing.home
+        if name in DIRECTIONS:
+            view = view_of_bounds(drawing.bounds, DIRECTIONS[name])
+        elif name == 'zoom to' and self._selected in self._tree.frame_ids:
+            origin = self._tree.poses[self._tree.frame_ids.index(self._selected), :3]
+            half_m = 3.0 * drawing.axes_length_m
+            view = view_of_bounds(
+                np.array([origin - half_m, origin + half_m]), view.position - view.look_at)
+        for client in self._server.get_clients().values():
+            with client.atomic():
+                client.camera.position, client.camera.look_at = view
+                client.camera.up_direction = 0.0, 0.0, 1.0
 
     def _add_switch(self, name: str) -> None:
         switch = self._server.gui.add_checkbox(printable(name), name not in self._hidden)
@@ -302,7 +347,7 @@ class Page:
         gizmo, ids, self._dragged = self._drawing.gizmo, self._tree.frame_ids, None
         self._write.visible = gizmo.visible = False
         if self._selected not in ids:
-            self._drawing.mark(None)
+            self._drawing.mark(-1, None)
             self._description.content = _HOW_TO_SELECT
             return
         frame = ids.index(self._selected)
@@ -323,7 +368,7 @@ class Page:
             self._write.visible = True
 
     def _describe(self, frame: int, pose: Pose) -> None:
-        self._drawing.mark(pose)
+        self._drawing.mark(frame, pose)
         poses = self._tree.poses.copy()
         poses[frame] = pose
         other, ids = self._choice.value, self._tree.frame_ids

@@ -22,11 +22,13 @@ import rich
 import viser
 from websockets.asyncio import server as websockets_server
 from websockets.asyncio.server import ServerConnection
+from websockets.datastructures import Headers
 from websockets.http11 import Request
 from websockets.http11 import Response
 
 from sdf_pose_bridge.cli.printing import CommandError
 from sdf_pose_bridge.cli.viewer import LIBRARIES
+from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
 
 _ADDRESS = '127.0.0.1'
 _NAMES = (_ADDRESS, 'localhost')
@@ -59,7 +61,7 @@ def server_for_its_owner(port: int) -> PageServer:
     server.gui.configure_theme(show_logo=False, show_share_button=False)
     # The picture of surroundings that viser lights a scene with makes every color pale.
     server.scene.configure_environment_map(None)
-    server.scene.configure_default_lights(cast_shadow=False)
+    server.scene.configure_default_lights(enabled=False)
     return PageServer(server, f'http://{_ADDRESS}:{server.get_port()}/{secret}/')
 
 
@@ -108,8 +110,17 @@ def _requests_need(secret: str) -> Iterator[None]:
             reason = reason_to_refuse(request, secret)
             if reason:
                 return connection.respond(HTTPStatus.FORBIDDEN, f'{reason}\n')
+            headers = Headers(request.headers)
+            # The page is changed below, which is simpler when it is not compressed.
+            headers.pop('Accept-Encoding', None)
             path = request.path.removeprefix(f'/{secret}') or '/'
-            answer: Response | None = process_request(connection, replace(request, path=path))
+            answer: Response | None = process_request(
+                connection, replace(request, path=path, headers=headers))
+            kind = '' if answer is None else answer.headers.get('Content-Type', '')
+            if answer is not None and kind.startswith('text/html'):
+                answer.body = page_with_script((answer.body or b'').decode()).encode()
+                answer.headers.pop('Content-Length', None)
+                answer.headers['Content-Length'] = str(len(answer.body))
             return answer
 
         guarded.append(process)

@@ -10,8 +10,7 @@ pytest.importorskip('trimesh', reason='needs trimesh')
 pytest.importorskip('viser', reason='needs viser')
 from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.viewer import drawing
-from sdf_pose_bridge.cli.viewer.drawing import bounds_of_scene
-from sdf_pose_bridge.cli.viewer.drawing import labels_from_names
+from sdf_pose_bridge.cli.viewer.drawing import boxes_of_surfaces
 from sdf_pose_bridge.cli.viewer.drawing import surfaces_from_scene
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
@@ -84,8 +83,8 @@ def test_boxes_of_any_size_share_a_surface(drawn):
 ])
 def test_size_of_a_shape(drawn, shape, half):
     scene, surfaces, _ = drawn(geometry(shape))
-    bounds = bounds_of_scene(scene, np.zeros((1, 3)), surfaces)
-    assert bounds == pytest.approx(np.array([-np.array(half), half]), rel=0.01)
+    (box,) = boxes_of_surfaces(scene, surfaces)
+    assert box == pytest.approx(np.array([-np.array(half), half]), rel=0.01)
 
 
 def test_color_of_the_material(drawn):
@@ -112,47 +111,8 @@ def test_mesh_with_its_scale(drawn, tmp_path):
     assert not not_drawn
 
 
-def test_bounds_contain_what_is_turned(drawn):
+def test_box_contains_what_is_turned(drawn):
     scene, surfaces, _ = drawn(
         '<pose degrees="true">0 0 5 0 90 0</pose>' + geometry('<box><size>1 2 6</size></box>'))
-    bounds = bounds_of_scene(scene, np.zeros((1, 3)), surfaces)
-    assert bounds == pytest.approx(np.array([(-3, -1, 0), (3, 1, 5.5)]))
-
-
-EYE, MIDDLE = np.array((0.0, -10.0, 0.0)), np.zeros(3)
-
-
-def labels(*names_and_points):
-    names, points = zip(*names_and_points, strict=True)
-    return list(labels_from_names(names, np.array(points, float), EYE, MIDDLE))
-
-
-def test_names_that_would_lie_on_one_another_are_joined():
-    found = labels(
-        ('c', (0.05, 0, -0.05)), ('left', (-5, 0, 0)), ('behind', (0.01, 5, -0.01)),
-        ('a', (0, 0, 0)))
-    assert [text for text, _ in found] == ['left', 'a\nbehind\nc']
-    assert found[1][1].tolist() == [0, 0, 0]
-
-
-def test_label_that_grows_joins_the_one_that_it_reaches():
-    found = labels(('a', (0, 0, 0)), ('right', (0.3, 0, -0.05)), ('b' * 40, (0, 0, -0.1)))
-    assert [text for text, _ in found] == ['a\n' + 'b' * 40 + '\nright']
-
-
-def test_many_names_of_one_place_are_counted():
-    ((text, _),) = labels(*((name, (0, 0, 0)) for name in 'abcdefghij'))
-    assert text == 'a\nb\nc\nd\ne\nf\ng\nh\nand 2 more'
-
-
-@pytest.mark.parametrize(('name', 'is_joined'), [('a', False), ('a' * 40, True)])
-def test_long_names_reach_others(name, is_joined):
-    assert (len(labels((name, (0, 0, 0)), ('b', (1, 0, -0.01)))) == 1) is is_joined
-
-
-def test_names_behind_the_camera_are_not_shown():
-    assert labels(('a', (0, -20, 0))) == []
-
-
-def test_no_names():
-    assert list(labels_from_names([], np.zeros((0, 3)), EYE, MIDDLE)) == []
+    (box,) = boxes_of_surfaces(scene, surfaces)
+    assert box == pytest.approx(np.array([(-3, -1, 4.5), (3, 1, 5.5)]))

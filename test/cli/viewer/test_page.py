@@ -55,15 +55,15 @@ def test_what_is_switched_off_is_not_drawn(page, tmp_path):
     box = '<visual name="v"><geometry><box/></geometry></visual>'
     (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{box}</link>'))
     page.show(load(tmp_path / 'm.sdf', shapes=True))
-    name = page._server.scene.get_handle_by_name('/names/0')
-    assert name.visible
+    grid = page._server.scene.get_handle_by_name('/grid')
+    assert grid.visible
     assert page._server.scene.get_handle_by_name('/visuals/0') is not None
     for switch in page._server.gui._gui_input_handle_from_uuid.values():
         if switch.value is True:
             switch.value = False
-    while not page._actions.empty() or {'visuals', 'names'} - page._hidden:
+    while not page._actions.empty() or {'visuals', 'grid'} - page._hidden:
         page.act(0.1)
-    assert not name.visible
+    assert not page._server.scene.get_handle_by_name('/grid').visible
     assert page._server.scene.get_handle_by_name('/visuals/0') is None
 
 

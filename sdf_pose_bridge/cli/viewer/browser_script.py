@@ -1,0 +1,93 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What viser does not do in the browser: frames on top of bodies, names at the pointer, and copying.
+
+The scene is found as the developer tools of three.js find it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import html
+import json
+
+_TITLE = '<title>Viser</title>'
+_SCRIPT = """<script>(() => {
+  let frames, camera;
+  window.__THREE_DEVTOOLS__ ??= new EventTarget();
+  __THREE_DEVTOOLS__.addEventListener('observe', ({detail: scene}) => {
+    if (scene.isScene) scene.onBeforeRender = (renderer, _, used) => {
+      const names = frameNames();
+      scene.traverse(node => {
+        // These are axes, and nothing else is.
+        if (!node.isInstancedMesh || !node.material.isMeshBasicMaterial) return;
+        if (node.count === 3 * names.length) [frames, camera] = [node, used];
+        if (node.renderOrder) return;
+        // Late, and with no depth of what was drawn before, they are on top of all bodies.
+        node.renderOrder = 9000;
+        node.material.transparent = true;
+        node.onBeforeRender = drawing => drawing.clearDepth();
+      });
+    };
+  });
+  let listed, names = [];
+  const frameNames = () => {
+    const given = document.querySelector('[data-frame-names]')?.dataset.frameNames ?? '[]';
+    if (given !== listed) [listed, names] = [given, JSON.parse(given)];
+    return names;
+  };
+  const shown = document.createElement('div');
+  shown.className = 'name-at-pointer';
+  shown.style = 'position:fixed;z-index:9;pointer-events:none;padding:1px 5px;'
+    + 'font:13px sans-serif;background:#212529;color:#fff;white-space:pre;display:none';
+  addEventListener('pointermove', event => {
+    shown.style.display = 'none';
+    if (event.buttons || event.target.tagName !== 'CANVAS' || !frames?.parent) return;
+    const box = event.target.getBoundingClientRect(), found = [];
+    const half = 0.5 * frames.geometry.parameters.height, m = frames.instanceMatrix.array;
+    for (let k = 0; k < Math.min(frames.count / 3, 20000); k++) {
+      // The origin is where the cylinder of the first axis begins.
+      const [x, y, z] = [0, 1, 2].map(i => m[48 * k + 12 + i] - half * m[48 * k + 4 + i]);
+      const at = frames.position.clone().set(x, y, z).applyMatrix4(frames.matrixWorld);
+      at.project(camera);
+      const distance = Math.hypot((0.5 + 0.5 * at.x) * box.width + box.left - event.clientX,
+                                  (0.5 - 0.5 * at.y) * box.height + box.top - event.clientY);
+      if (at.z < 1 && distance < 12) found.push([distance, frameNames()[k]]);
+    }
+    if (!found.length) return;
+    found.sort(([a], [b]) => a - b);
+    shown.textContent = found.slice(0, 8).map(([, name]) => name).join('\\n')
+      + (found.length > 8 ? `\\nand ${found.length - 8} more` : '');
+    Object.assign(shown.style, {
+      display: 'block', left: `${event.clientX + 14}px`, top: `${event.clientY + 8}px`});
+    document.body.append(shown);
+  });
+  addEventListener('click', event => {
+    const text = event.target.closest?.('[data-copy]')?.dataset.copy;
+    if (text) navigator.clipboard.writeText(text).then(() => {
+      event.target.textContent = 'copied';
+      setTimeout(() => { event.target.textContent = 'copy'; }, 1000);
+    });
+  });
+})();</script>"""
+
+
+def page_with_script(page: str, title: str = 'sdf_pose view', frame_names: str = '') -> str:
+    """
+    Add the script to a page of viser.
+
+    :param frame_names: an element with the names of frames; see :func:`html_of_frame_names`.
+    """
+    return page.replace(_TITLE, f'<title>{html.escape(title)}</title>{frame_names}{_SCRIPT}', 1)
+
+
+def html_of_frame_names(names: Sequence[str]) -> str:
+    """Return an element that is not seen, from which the script has the names of all axes."""
+    return f'<meta data-frame-names="{html.escape(json.dumps(list(names)))}">'
+
+
+def html_of_copy_button(text: str) -> str:
+    """Return a button that copies a text."""
+    return (f'<button data-copy="{html.escape(text)}" style="float:right;cursor:pointer;'
+            f'font-size:0.9em;border:1px solid;border-radius:3px;opacity:0.7">copy</button>')

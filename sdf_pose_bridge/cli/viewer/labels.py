@@ -1,0 +1,81 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Choose where names of frames stand in the picture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from sdf_pose_bridge.cli.viewer.view_point import FIELD_OF_VIEW_RAD
+from sdf_pose_bridge.geometry.rotations import Floats
+
+_LINE_HEIGHT, _CHARACTER_WIDTH = 0.018, 0.008
+"""Size of a name, as a part of the height of a window of 720 pixels."""
+_MOST_IN_A_LABEL = 4
+
+
+class _Label(NamedTuple):
+    """Names in a rectangle of the picture, in parts of its height."""
+
+    top: float
+    left: float
+    point: Floats
+    names: list[str]
+
+    @property
+    def lines(self) -> list[str]:
+        """Return the lines of the text."""
+        more = len(self.names) - _MOST_IN_A_LABEL
+        return self.names[:_MOST_IN_A_LABEL] + ([f'and {more} more'] if more > 0 else [])
+
+    def is_at(self, other: _Label) -> bool:
+        """Return whether the points of both are at one place."""
+        return math.hypot(self.top - other.top, self.left - other.left) < _LINE_HEIGHT
+
+    def is_on(self, other: _Label) -> bool:
+        """Return whether a part of one would lie on the other."""
+        higher, lower = sorted((self, other), key=lambda each: each.top)
+        first, second = sorted((self, other), key=lambda each: each.left)
+        return (lower.top < higher.top + _LINE_HEIGHT * len(higher.lines)
+                and second.left < first.left + _CHARACTER_WIDTH * max(map(len, first.lines)))
+
+
+def labels_from_names(
+    names: Sequence[str], points: Floats, eye: Floats, look_at: Floats,
+) -> list[tuple[str, Floats]]:
+    """
+    Choose where the names of frames stand, so that none lies on another.
+
+    Names of frames that are at one place are lines of one text. Of other names that would lie on
+    one another, the one that is nearest to the camera stands, and the others are left out.
+
+    :param names: the names of frames.
+    :param points: shape (n, 3), their origins.
+    :param eye: shape (3,), where the camera is.
+    :param look_at: shape (3,), what is in the middle of the picture, not above or below the eye.
+    :return: the texts, and their points: each text is right of its point and below it.
+    """
+    forward = np.asarray(look_at) - eye
+    right = np.cross(forward, (0.0, 0.0, 1.0))
+    axes = np.array([
+        axis / np.linalg.norm(axis) for axis in (right, np.cross(forward, right), forward)])
+    x, y, depth = ((points - eye) @ axes.T).T
+    seen = np.flatnonzero(depth > 0.0)
+    scale = 0.5 / (math.tan(0.5 * FIELD_OF_VIEW_RAD) * depth[seen])
+    labels: list[_Label] = []
+    for index, place in sorted(enumerate(seen.tolist()), key=lambda each: depth[each[1]]):
+        top, left = (scale[index] * np.array([y[place], x[place]])).tolist()
+        label = _Label(top, left, points[place], [names[place]])
+        covered = [other for other in labels if label.is_on(other)]
+        if not covered:
+            labels.append(label)
+        elif label.is_at(covered[0]):
+            grown = covered[0]._replace(names=covered[0].names + label.names)
+            others = [other for other in labels if other is not covered[0]]
+            if not any(map(grown.is_on, others)):
+                labels = [*others, grown]
+    return [('\n'.join(label.lines), label.point) for label in labels]

@@ -1,0 +1,125 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Choose where a camera stands, so that it shows robots and frames."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+import math
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from numpy.typing import NDArray
+
+from sdf_pose_bridge.geometry.rotations import Floats
+
+FIELD_OF_VIEW_RAD = 0.8
+"""The vertical field of view of the camera."""
+
+DIRECTIONS: Mapping[str, tuple[float, float, float]] = MappingProxyType({
+    # Not along z, where the picture could be turned in any way.
+    'top': (-1e-3, 0.0, 1.0),
+    'front': (1.0, 0.0, 0.0),
+    'side': (0.0, -1.0, 0.0),
+})
+"""Where the camera stands for each view, seen from what it shows; +x is the front."""
+
+_HOME_DIRECTIONS = ((0.75, -0.5, 0.45), (0.75, 0.5, 0.45), (-0.75, -0.5, 0.45), (-0.75, 0.5, 0.45))
+_MARGIN = 1.1
+_MOST_COMPARED = 300
+_OUTLIERS = 0.1
+"""The part of the frames, in each direction, that the first view may leave out."""
+
+
+class View(NamedTuple):
+    """Where a camera stands, and what is in the middle of its picture."""
+
+    position: Floats
+    look_at: Floats
+
+
+def bounds_of_points(points: Floats) -> Floats:
+    """Return the lowest and the highest corner of points (n, 3), as an array (2, 3)."""
+    return np.array([points.min(axis=0), points.max(axis=0)])
+
+
+def bounds_of_interest(
+    origins: Floats, is_in_robot: NDArray[np.bool_], boxes: Floats,
+) -> Floats:
+    """
+    Find what the first view shows: robots, most other frames, and the bodies at them.
+
+    A floor or a fence, which is larger than the frames are apart or is far from them, does not
+    count.
+
+    :param origins: shape (n, 3), the origins of frames.
+    :param is_in_robot: shape (n,), whether each is a frame of a model that moves.
+    :param boxes: shape (m, 2, 3), the lowest and the highest corners of bodies.
+    :return: shape (2, 3): the lowest and the highest corner.
+    """
+    if not len(origins):
+        origins, is_in_robot = np.zeros((1, 3)), np.zeros(1, bool)
+    bounds = bounds_of_points(np.concatenate([
+        np.quantile(origins, [_OUTLIERS], axis=0, method='lower'),
+        np.quantile(origins, [1.0 - _OUTLIERS], axis=0, method='higher'), origins[is_in_robot]]))
+    extent_m = np.linalg.norm(bounds[1] - bounds[0])
+    sizes_m, middles = np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1), boxes.mean(axis=1)
+    is_near = (np.abs(middles - bounds.mean(axis=0)) <= 0.6 * np.ptp(bounds, axis=0) + 1e-6
+               + 0.1 * extent_m).all(axis=1)
+    chosen = boxes[is_near & (sizes_m <= extent_m)]
+    if not len(chosen) and extent_m < 0.3 * sizes_m.max(initial=0.0):
+        chosen = boxes
+    return bounds_of_points(np.concatenate([bounds, chosen.reshape(-1, 3)]))
+
+
+def view_of_bounds(bounds: Floats, direction: ArrayLike) -> View:
+    """
+    Place a camera so that a box fills its picture.
+
+    :param bounds: shape (2, 3): the lowest and the highest corner of the box.
+    :param direction: from the middle of the box to the camera.
+    """
+    middle = bounds.mean(axis=0)
+    backward = np.asarray(direction) / np.linalg.norm(direction)
+    right = np.cross((0.0, 0.0, 1.0), backward)
+    right /= np.linalg.norm(right)
+    corners = np.array(np.meshgrid(*(bounds - middle).T)).reshape(3, -1).T
+    across = np.abs(corners @ np.array([right, np.cross(backward, right)]).T).max(axis=1)
+    distance_m = float((_MARGIN * across / math.tan(0.5 * FIELD_OF_VIEW_RAD)
+                        + corners @ backward).max())
+    return View(middle + (distance_m or 1.0) * backward, middle)
+
+
+def home_view(bounds: Floats, origins: Floats, boxes: Floats) -> View:
+    """
+    Choose the first view: the side from which bodies hide the fewest frames.
+
+    :param bounds: what it shows, shape (2, 3).
+    :param origins: shape (n, 3), the origins of frames.
+    :param boxes: shape (m, 2, 3), the lowest and the highest corners of bodies.
+    """
+    size_m = np.linalg.norm(bounds[1] - bounds[0])
+    large = boxes[np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1) >= 0.5 * size_m]
+    seen = origins[((bounds[0] <= origins) & (origins <= bounds[1])).all(axis=1)]
+    views = [view_of_bounds(bounds, direction) for direction in _HOME_DIRECTIONS]
+    return min(views, key=lambda view: int(_are_hidden(
+        view.position, seen[:_MOST_COMPARED], large[:_MOST_COMPARED]).sum()))
+
+
+def grid_spacing_m(size_m: float) -> float:
+    """Return the distance of lines on the ground, 1, 2 or 5 times a power of ten, in metres."""
+    power = 10.0 ** math.floor(math.log10(size_m / 10.0))
+    return power * max(factor for factor in (1.0, 2.0, 5.0) if factor * power <= size_m / 10.0)
+
+
+def _are_hidden(eye: Floats, points: Floats, boxes: Floats) -> NDArray[np.bool_]:
+    """Return for each point (n, 3) whether a box (m, 2, 3) is between the eye and it."""
+    ways = points - eye
+    # A way along an axis never leaves the slab of a box, or never enters it.
+    ways = np.where(np.abs(ways) < 1e-9, 1e-9, ways)[:, np.newaxis]
+    ends = np.sort(np.stack([(boxes[:, 0] - eye) / ways, (boxes[:, 1] - eye) / ways]), axis=0)
+    enters, leaves = ends[0].max(axis=2), ends[1].min(axis=2)
+    hides = (enters < leaves) & (leaves > 0.0) & (enters < 0.99)
+    return np.asarray(hides.any(axis=1))

@@ -1,0 +1,24 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What is put into a page; integration/test_view_page.py lets a browser run it."""
+
+import html
+import json
+import re
+
+from sdf_pose_bridge.cli.viewer.browser_script import html_of_frame_names
+from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
+
+HOSTILE = '"><script>'
+
+
+def test_names_are_escaped():
+    text = html_of_frame_names([HOSTILE, 'b'])
+    (names,) = re.fullmatch('<meta data-frame-names="([^"<>]*)">', text).groups()
+    assert json.loads(html.unescape(names)) == [HOSTILE, 'b']
+
+
+def test_title_is_escaped_and_the_rest_stays():
+    page = page_with_script('<head><title>Viser</title></head><body>', HOSTILE)
+    assert page.startswith('<head><title>&quot;&gt;&lt;script&gt;</title><script>')
+    assert page.endswith('</script></head><body>')

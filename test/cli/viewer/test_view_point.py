@@ -1,0 +1,75 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the camera shows, and from where."""
+
+import math
+
+import numpy as np
+import pytest
+
+from sdf_pose_bridge.cli.viewer.view_point import bounds_of_interest
+from sdf_pose_bridge.cli.viewer.view_point import DIRECTIONS
+from sdf_pose_bridge.cli.viewer.view_point import FIELD_OF_VIEW_RAD
+from sdf_pose_bridge.cli.viewer.view_point import grid_spacing_m
+from sdf_pose_bridge.cli.viewer.view_point import home_view
+from sdf_pose_bridge.cli.viewer.view_point import view_of_bounds
+
+NO_BOXES = np.zeros((0, 2, 3))
+CUBE = np.array([(-1.0, -1.0, -1.0), (1.0, 1.0, 1.0)])
+
+
+def interest(origins, boxes=NO_BOXES, robot=()):
+    is_in_robot = np.isin(np.arange(len(origins)), robot)
+    return bounds_of_interest(np.array(origins, float).reshape(-1, 3), is_in_robot, boxes)
+
+
+def test_no_frames_and_no_bodies():
+    assert interest([]).tolist() == [[0, 0, 0], [0, 0, 0]]
+
+
+def test_few_frames_are_all_shown():
+    assert interest([(0, 0, 0), (1, 2, 3)]).tolist() == [[0, 0, 0], [1, 2, 3]]
+
+
+@pytest.mark.parametrize(('robot', 'highest'), [((), 18), ((20,), 100)])
+def test_a_frame_far_from_many_counts_in_a_robot_only(robot, highest):
+    origins = [(x, 0, 0) for x in (*range(20), 100)]
+    assert interest(origins, robot=robot)[1, 0] == highest
+
+
+@pytest.mark.parametrize('floor', [
+    [(-10, -10, -0.1), (10, 10, 0)], [(5, 0, 0), (5.5, 0.5, 0.5)]])
+def test_large_and_distant_bodies_do_not_count(floor):
+    body = [(-0.5, -0.5, 0), (0.5, 0.5, 1)]
+    boxes = np.array([floor, body], float)
+    assert interest([(0, 0, 0), (0.5, 0.5, 2)], boxes).tolist() == [[-0.5, -0.5, 0], [0.5, 0.5, 2]]
+
+
+def test_body_of_a_single_frame_counts():
+    assert interest([(0, 0, 0)], CUBE[np.newaxis]).tolist() == CUBE.tolist()
+
+
+@pytest.mark.parametrize('direction', [*DIRECTIONS.values(), (1, 2, -3)])
+def test_view_contains_a_box_and_no_more(direction):
+    view = view_of_bounds(CUBE + 5.0, direction)
+    assert view.look_at.tolist() == [5, 5, 5]
+    forward = view.look_at - view.position
+    forward /= np.linalg.norm(forward)
+    right = np.cross(forward, (0, 0, 1))
+    right /= np.linalg.norm(right)
+    corners = np.array(np.meshgrid(*(CUBE + 5.0).T)).reshape(3, -1).T - view.position
+    ratios = np.abs(corners @ np.array([right, np.cross(right, forward)]).T) / (
+        corners @ forward)[:, np.newaxis]
+    assert 0.8 < ratios.max() / math.tan(0.5 * FIELD_OF_VIEW_RAD) < 1.0
+
+
+def test_camera_does_not_stand_behind_a_wall():
+    wall = np.array([[(2.0, -5.0, -5.0), (2.1, 5.0, 5.0)]])
+    assert home_view(CUBE, np.zeros((1, 3)), NO_BOXES).position[0] > 2.1
+    assert home_view(CUBE, np.zeros((1, 3)), wall).position[0] < 2.0
+
+
+@pytest.mark.parametrize(('size_m', 'spacing_m'), [
+    (0.5, 0.05), (10.0, 1.0), (19.0, 1.0), (20.0, 2.0), (60.0, 5.0)])
+def test_grid_spacing(size_m, spacing_m):
+    assert grid_spacing_m(size_m) == pytest.approx(spacing_m)
