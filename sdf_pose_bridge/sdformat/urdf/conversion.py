@@ -17,8 +17,6 @@ Materials, and what only physics needs, are not converted.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Mapping
 from collections.abc import Sequence
 from itertools import chain
 import math
@@ -29,14 +27,12 @@ from lxml import etree
 from sdf_pose_bridge.errors import RelativeToError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_product
-from sdf_pose_bridge.names import MODEL_FRAME
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.sdformat.inertials import MOMENTS
-from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
 from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
+from sdf_pose_bridge.sdformat.urdf.element_writer import ElementWriter
 from sdf_pose_bridge.sdformat.urdf.lumping import lumped_inertial
 from sdf_pose_bridge.sdformat.urdf.robot import gazebo_elements_of
 from sdf_pose_bridge.sdformat.urdf.robot import Inertial
@@ -117,10 +113,11 @@ class _Conversion:
         self._root = root
         self._robot = robot
         self._sources = sources
+        self._write = ElementWriter(sources, for_ros=for_ros)
         # libsdformat reads what <gazebo> elements hold in this version.
         self._sdf = etree.Element('sdf', version='1.11')
         sources.set_parsed_line(self._sdf, root)
-        self._model = self._element(self._sdf, 'model', root, name=robot.name)
+        self._model = self._write.add(self._sdf, 'model', root, name=robot.name)
         self._gazebo = gazebo_elements_of(root)
         self._links = robot.links_in_order
         self._bases: dict[str, _Base] = {}
@@ -140,7 +137,7 @@ class _Conversion:
             # Its joints move. Without links, as of the link "world" alone, only that is valid.
             static = None if first_child(self._model, 'link') is not None else 'true'
         if static is not None:
-            self._element(self._model, 'static', self._root, text=static)
+            self._write.add(self._model, 'static', self._root, text=static)
         self._add_extensions(self._model, '')
         self._add_frames()
         self._add_robot_origin()
@@ -212,25 +209,6 @@ class _Conversion:
 
     # Writing
 
-    def _element(
-        self, parent: XmlElement, tag: str, source: XmlElement, *, text: str | None = None,
-        **attributes: str,
-    ) -> XmlElement:
-        """Add an element with the line of the URDF element that it comes from."""
-        # Names of links and joints go into any number of elements.
-        characters = sum(map(len, (text or '', *attributes.values())))
-        if characters >= CHARACTERS_OF_STEP:
-            self._sources.count_work(characters // CHARACTERS_OF_STEP, source)
-        element = etree.SubElement(parent, tag, attributes)
-        element.text = text
-        self._sources.set_parsed_line(element, source)
-        return element
-
-    def _counted(self, name: str, xml: XmlElement) -> str:
-        """Count a name that may be longer than all that is written where it goes."""
-        self._sources.count_work(STEPS_OF_ELEMENT + len(name) // CHARACTERS_OF_STEP, xml)
-        return name
-
     def _add_links(self) -> None:
         for link in self._links:
             name = link.name
@@ -244,18 +222,18 @@ class _Conversion:
 
     def _add_link(self, link: Link, inertial: Inertial | None, joint: Joint | None) -> None:
         is_joined = joint is not None and self._add_joint(joint)
-        xml = self._element(self._model, 'link', link.xml, name=link.name)
+        xml = self._write.add(self._model, 'link', link.xml, name=link.name)
         if joint is not None and is_joined:
-            self._element(xml, 'pose', joint.xml, relative_to=joint.name)
+            self._write.add(xml, 'pose', joint.xml, relative_to=joint.name)
         elif joint is not None:
-            self._add_pose_in_link(xml, joint.xml, joint.origin, joint.parent)
+            self._write.add_pose_in_link(xml, joint.xml, joint.origin, joint.parent)
         if inertial is not None:
-            inertial_xml = self._element(xml, 'inertial', link.xml)
-            self._add_pose(inertial_xml, link.xml, inertial.origin, rpy_by_gz_math)
-            self._element(inertial_xml, 'mass', link.xml, text=text_from_numbers([inertial.mass]))
+            inertial_xml = self._write.add(xml, 'inertial', link.xml)
+            self._write.add_pose(inertial_xml, link.xml, inertial.origin, rpy_by_gz_math)
+            self._write.add_numbers(inertial_xml, link.xml, {'mass': [inertial.mass]})
             if not self._for_ros:
-                self._add_numbers(
-                    self._element(inertial_xml, 'inertia', link.xml), link.xml,
+                self._write.add_numbers(
+                    self._write.add(inertial_xml, 'inertia', link.xml), link.xml,
                     {name: [moment] for name, moment in zip(
                         MOMENTS, inertial.moments, strict=True)})
         members = self._bases[link.name].members
@@ -274,20 +252,20 @@ class _Conversion:
                 if not name.startswith(link.name):
                     name = f'{link.name}{_LUMP_PREFIX}{name}'
                 index += 1
-                element = self._element(xml, tag, shape.geometry, name=name)
+                element = self._write.add(xml, tag, shape.geometry, name=name)
                 pose = pose_product(self._bases[member.name].pose, shape.origin)
-                self._add_pose(element, shape.geometry, pose, rpy_by_urdfdom)
+                self._write.add_pose(element, shape.geometry, pose, rpy_by_urdfdom)
                 self._add_geometry(element, shape.geometry)
 
     def _add_geometry(self, xml: XmlElement, geometry: XmlElement) -> None:
-        shape = self._element(
-            self._element(xml, 'geometry', geometry), str(geometry.tag), geometry)
+        shape = self._write.add(
+            self._write.add(xml, 'geometry', geometry), str(geometry.tag), geometry)
         if shape.tag == 'mesh':
             uri = geometry.get('filename', '')
             if not self._for_ros:
                 uri = uri.replace('package://', 'model://', 1)
-            self._element(shape, 'uri', geometry, text=uri)
-        self._add_numbers(shape, geometry, numbers_of(geometry, SHAPES[str(shape.tag)]))
+            self._write.add(shape, 'uri', geometry, text=uri)
+        self._write.add_numbers(shape, geometry, numbers_of(geometry, SHAPES[str(shape.tag)]))
 
     def _add_joint(self, joint: Joint) -> bool:
         joint_type = URDF_JOINT_TYPES[joint.type].sdformat
@@ -309,11 +287,11 @@ class _Conversion:
             joint_type = 'revolute'
         base = self._bases[joint.parent]
         parent = base.link.name
-        xml = self._element(self._model, 'joint', joint.xml, name=joint.name, type=joint_type)
-        self._add_pose_in_link(
+        xml = self._write.add(self._model, 'joint', joint.xml, name=joint.name, type=joint_type)
+        self._write.add_pose_in_link(
             xml, joint.xml, pose_product(base.pose, joint.origin), parent)
-        self._element(xml, 'parent', joint.xml, text=parent)
-        self._element(xml, 'child', joint.xml, text=joint.child)
+        self._write.add(xml, 'parent', joint.xml, text=parent)
+        self._write.add(xml, 'child', joint.xml, text=joint.child)
         if JOINT_TYPES[joint_type].dofs:
             self._add_axis(xml, joint)
         self._add_extensions(xml, joint.name)
@@ -330,12 +308,12 @@ class _Conversion:
             ends = sorted((*limit.pop('lower', [0.0]), *limit.pop('upper', [0.0])))
             if URDF_JOINT_TYPES[joint.type].has_limit:
                 limit.update({'lower': ends[:1], 'upper': ends[1:]})
-        axis = self._element(xml, 'axis', joint.xml)
-        self._add_numbers(axis, joint.xml, {'xyz': xyz})
-        self._add_numbers(self._element(axis, 'limit', joint.xml), joint.xml, limit)
+        axis = self._write.add(xml, 'axis', joint.xml)
+        self._write.add_numbers(axis, joint.xml, {'xyz': xyz})
+        self._write.add_numbers(self._write.add(axis, 'limit', joint.xml), joint.xml, limit)
         if 'dynamics' in values:
-            dynamics = self._element(axis, 'dynamics', joint.xml)
-            self._add_numbers(dynamics, joint.xml, values['dynamics'])
+            dynamics = self._write.add(axis, 'dynamics', joint.xml)
+            self._write.add_numbers(dynamics, joint.xml, values['dynamics'])
         mimic = first_child(joint.xml, 'mimic')
         if mimic is not None and 'mimic' in values:
             name = mimic.get('joint', '')
@@ -344,18 +322,18 @@ class _Conversion:
                 msg = f'the mimic is left out: there is no joint "{name}"'
                 self._sources.warning(mimic, msg)
                 return
-            self._add_numbers(
-                self._element(axis, 'mimic', mimic, joint=leader or name), mimic,
+            self._write.add_numbers(
+                self._write.add(axis, 'mimic', mimic, joint=leader or name), mimic,
                 {'multiplier': [1.0], 'offset': [0.0], **values['mimic']})
 
     def _add_frames(self) -> None:
         for name, (base, *_) in self._bases.items():
             if base.name != name:
                 joint = self._robot.parent_joints[name]
-                frame = self._element(
+                frame = self._write.add(
                     self._model, 'frame', joint.xml, name=joint.name, attached_to=joint.parent)
-                self._add_pose(frame, joint.xml, joint.origin, rpy_by_gz_math)
-                self._element(
+                self._write.add_pose(frame, joint.xml, joint.origin, rpy_by_gz_math)
+                self._write.add(
                     self._model, 'frame', self._robot.links[name].xml, name=name,
                     attached_to=joint.name)
 
@@ -366,30 +344,7 @@ class _Conversion:
         pose = first_child(self._model, 'pose')
         if pose is not None:
             self._model.remove(pose)
-        self._add_pose(self._model, origin, self._robot.origin, rpy_by_urdfdom)
-
-    def _add_pose(
-        self, xml: XmlElement, source: XmlElement, pose: Pose,
-        rpy_from_pose: Callable[[Pose], Sequence[float]],
-    ) -> XmlElement:
-        if self._for_ros:  # angles would lose digits near gimbal lock
-            return self._element(
-                xml, 'pose', source, text=text_from_numbers(pose, 17),
-                rotation_format='quat_xyzw')
-        text = text_from_numbers([*pose[:3], *rpy_from_pose(pose)])
-        return self._element(xml, 'pose', source, text=text)
-
-    def _add_pose_in_link(
-        self, xml: XmlElement, source: XmlElement, pose: Pose, link: str,
-    ) -> None:
-        self._add_pose(xml, source, pose, rpy_by_gz_math).set(
-            'relative_to', MODEL_FRAME if link == WORLD_FRAME else link)
-
-    def _add_numbers(
-        self, xml: XmlElement, source: XmlElement, numbers: Mapping[str, Sequence[float]],
-    ) -> None:
-        for tag, values in numbers.items():
-            self._element(xml, tag, source, text=text_from_numbers(values))
+        self._write.add_pose(self._model, origin, self._robot.origin, rpy_by_urdfdom)
 
     # What <gazebo> elements hold
 
@@ -405,7 +360,7 @@ class _Conversion:
                 pose is not None and pose.get('relative_to') is not None):
             return
         if pose is None:
-            pose = self._element(xml, 'pose', xml)
+            pose = self._write.add(xml, 'pose', xml)
         elif pose.keys():
             self._sources.warning(
                 pose, 'the attributes of this <pose> are ignored, as libsdformat ignores them '
@@ -429,7 +384,7 @@ class _Conversion:
             for end in child_elements(joint, 'parent', 'child') if joint.tag == 'joint' else ():
                 base = self._bases.get(text_of(end).strip(WHITE_SPACE))
                 if base is not None:
-                    end.text = self._counted(base.link.name, end)
+                    end.text = self._write.counted(base.link.name, end)
 
     def _report_unused_extensions(self) -> None:
         for reference, children in self._gazebo.extensions.items():

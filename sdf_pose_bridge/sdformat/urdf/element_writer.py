@@ -1,0 +1,89 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Write elements of SDFormat that have the lines of the URDF elements they are made from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from collections.abc import Mapping
+from collections.abc import Sequence
+
+from lxml import etree
+
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.names import MODEL_FRAME
+from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
+from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math
+from sdf_pose_bridge.sdformat.urdf.values import text_from_numbers
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+
+
+class ElementWriter:
+    """
+    Adds elements to a tree.
+
+    :param sources: takes the lines of the elements, and counts their characters.
+    :param for_ros: whether rotations keep all their digits, which libsdformat rounds.
+    """
+
+    def __init__(self, sources: Sources, *, for_ros: bool) -> None:
+        self._sources = sources
+        self._for_ros = for_ros
+
+    def add(
+        self, parent: XmlElement, tag: str, source: XmlElement, *, text: str | None = None,
+        **attributes: str,
+    ) -> XmlElement:
+        """
+        Add an element.
+
+        :param source: the element of URDF that it comes from.
+        :return: the new element.
+        :raises LimitError: if there are too many characters.
+        """
+        # Names of links and joints go into any number of elements.
+        characters = sum(map(len, (text or '', *attributes.values())))
+        if characters >= CHARACTERS_OF_STEP:
+            self._sources.count_work(characters // CHARACTERS_OF_STEP, source)
+        element = etree.SubElement(parent, tag, attributes)
+        element.text = text
+        self._sources.set_parsed_line(element, source)
+        return element
+
+    def counted(self, name: str, xml: XmlElement) -> str:
+        """Count a name that may be longer than all that is written where it goes."""
+        self._sources.count_work(STEPS_OF_ELEMENT + len(name) // CHARACTERS_OF_STEP, xml)
+        return name
+
+    def add_pose(
+        self, xml: XmlElement, source: XmlElement, pose: Pose,
+        rpy_from_pose: Callable[[Pose], Sequence[float]],
+    ) -> XmlElement:
+        """
+        Add a ``<pose>`` to an element.
+
+        :param rpy_from_pose: makes the angles that are written unless rotations keep all digits.
+        """
+        if self._for_ros:  # angles would lose digits near gimbal lock
+            return self.add(
+                xml, 'pose', source, text=text_from_numbers(pose, 17),
+                rotation_format='quat_xyzw')
+        text = text_from_numbers([*pose[:3], *rpy_from_pose(pose)])
+        return self.add(xml, 'pose', source, text=text)
+
+    def add_pose_in_link(
+        self, xml: XmlElement, source: XmlElement, pose: Pose, link: str,
+    ) -> None:
+        """Add a ``<pose>`` relative to a link, or to the model for the link ``world``."""
+        self.add_pose(xml, source, pose, rpy_by_gz_math).set(
+            'relative_to', MODEL_FRAME if link == WORLD_FRAME else link)
+
+    def add_numbers(
+        self, xml: XmlElement, source: XmlElement, numbers: Mapping[str, Sequence[float]],
+    ) -> None:
+        """Add an element for each tag, with its numbers."""
+        for tag, values in numbers.items():
+            self.add(xml, tag, source, text=text_from_numbers(values))
