@@ -7,11 +7,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from collections.abc import Sequence
 import html
+import math
 import shlex
 from xml.sax.saxutils import quoteattr
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
 from sdf_pose_bridge.cli.printing import Units
+from sdf_pose_bridge.cli.viewer.browser_script import html_of_copy_button
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import relative_pose
@@ -45,9 +47,12 @@ def html_of_frame(scene: Scene, tree: TfTree, frame: int, reference: int, units:
         last in forms to copy.
     """
     element, parent = int(tree.elements[frame]), int(tree.parents[frame])
-    lines = [f'<b>{escaped(tree.frame_ids[frame])}</b> {kind_labels_of(scene, tree)[frame]}']
+    kind = kind_labels_of(scene, tree)[frame]
+    rows = [(tree.frame_ids[frame], f'<b>{escaped(tree.frame_ids[frame])}</b> {kind}')]
     if element >= 0:
-        lines += [escaped(scene.names[element]), escaped(str(scene.place(element)))]
+        rows += [(text, escaped(text)) for text in (
+            scene.names[element], str(scene.place(element)))]
+    lines = [html_of_copy_button(printable(text)) + row for text, row in rows]
     # The last entries are the root frame, which the index of the root as a parent means.
     assert ROOT_IS_PARENT == -1
     ids = (*tree.frame_ids, tree.root_frame)
@@ -58,6 +63,10 @@ def html_of_frame(scene: Scene, tree: TfTree, frame: int, reference: int, units:
             lines.append(
                 f'in <b>{escaped(ids[other])}</b><br>xyz {" ".join(texts[:3])} {units.length.name}'
                 f'<br>rpy {" ".join(texts[3:])} {units.angle.name}')
+            if other == reference:
+                distance = units.length.factor * math.dist(poses[other][:3], poses[frame][:3])
+                lines.append(
+                    f'distance {distance:.{units.length.digits}f} {units.length.name}')
     pose = relative_pose(poses[reference], poses[frame])
     # What differs less than this comes from the computation. To add zero leaves no negative zeros.
     rpy, quat, franka = (
@@ -74,7 +83,8 @@ def html_of_frame(scene: Scene, tree: TfTree, frame: int, reference: int, units:
         'Franka matrix': str(franka),
     }
     forms = ''.join(
-        f'<div>{label}<code style="{_COPIED}">{html.escape(text)}</code></div>'
+        f'<div>{html_of_copy_button(text)}{label}'
+        f'<code style="{_COPIED}">{html.escape(text)}</code></div>'
         for label, text in copied.items())
     return (f'<div style="font-size:0.8em;margin:0 1em;overflow-wrap:anywhere">'
             f'{"<br>".join(lines)}{forms}</div>')

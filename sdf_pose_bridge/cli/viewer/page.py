@@ -10,7 +10,6 @@ from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
 from itertools import islice
-import math
 from pathlib import Path
 from queue import Empty
 from queue import SimpleQueue
@@ -19,7 +18,6 @@ from typing import Any
 import numpy as np
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
-from sdf_pose_bridge.cli.printing import Unit
 from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.viewer.browser_script import html_of_frame_names
 from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
@@ -29,6 +27,9 @@ from sdf_pose_bridge.cli.viewer.drawing import HIDDEN_AT_FIRST
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_frame
 from sdf_pose_bridge.cli.viewer.frame_texts import rows_of_tree
+from sdf_pose_bridge.cli.viewer.joint_sliders import add_joint_sliders
+from sdf_pose_bridge.cli.viewer.joint_sliders import JointRange
+from sdf_pose_bridge.cli.viewer.joint_sliders import range_of_dof
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.cli.viewer.server import id_of_button
 from sdf_pose_bridge.cli.viewer.server import server_for_its_owner
@@ -42,7 +43,6 @@ from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
-from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.joint_positions import scene_at_positions
@@ -55,9 +55,6 @@ from sdf_pose_bridge.tf.tree import TfOptions
 MOST_ROWS = 300
 """How many rows of the tree of frames are in the page at once; a search finds the others."""
 
-_LARGEST_RANGE = 1000.0
-"""A joint with a wider range counts as one without limits, which the page moves by half a turn or
-half a metre to either side."""
 _MOST_SWITCHES = 50
 _MOST_CHOICES = 1000
 _ROWS_STYLE = ('<style>.rows{max-height:40vh;overflow:auto;margin:0 1em;font-size:0.8em}'
@@ -131,9 +128,13 @@ class Page:
             # The outermost element around each, below the world or the implicit root.
             self._tops = ends_from_pointers(
                 np.where(scene.parents[scene.parents] < 0, -1, scene.parents))
-            ranges = self._ranges_of_joints()
-            self._positions = {
-                name: value for name, value in self._positions.items() if name in ranges}
+            ranges = self._find_joints()
+            positions = {
+                name: limits.clipped(self._positions.get(name, 0.0))
+                for name, limits in ranges.items()}
+            # The sliders change this dictionary.
+            self._positions.clear()
+            self._positions.update(positions)
             self._move()
             self._models = {
                 f'model {scene.names[element]}': element
@@ -192,49 +193,24 @@ class Page:
 
     # Joints
 
-    def _ranges_of_joints(self) -> dict[str, tuple[Unit, float, float]]:
-        """
-        Find the degrees of freedom that do not follow another.
-
-        :return: by their names their units, and their lowest and highest position in radians or
-            metres.
-        """
+    def _find_joints(self) -> dict[str, JointRange]:
+        """Find the degrees of freedom in the models shown that do not follow another."""
         dofs = JointMotion(self._loaded, tf_parents_from_scene(self._loaded)).dofs
-        moving = self._tops[[dof.joint.element for dof in dofs]]
-        self._is_in_robot = np.isin(self._tops, moving)
         names = JointPositions(self._loaded, dofs).names
+        self._is_in_robot = np.isin(self._tops, self._tops[[dof.joint.element for dof in dofs]])
         return {
-            name: self._range_of_dof(dof) for name, dof in zip(names, dofs, strict=True)
+            name: range_of_dof(dof, self._units) for name, dof in zip(names, dofs, strict=True)
             if self._is_in_model[dof.joint.element] and dof.axis.mimic is None}
-
-    def _range_of_dof(self, dof: DegreeOfFreedom) -> tuple[Unit, float, float]:
-        unit, most, axis = self._units.length, 0.5, dof.axis
-        if dof.rad_per_unit:
-            unit, most = self._units.angle, math.pi
-        if axis.upper - axis.lower >= _LARGEST_RANGE:
-            return unit, -most, most
-        # Where the file puts the joint need not be within its limits.
-        return unit, min(axis.lower, 0.0), max(axis.upper, 0.0)
 
     def _move(self) -> None:
         self._drawn_positions = dict(self._positions)
         self._scene = scene_at_positions(self._loaded, self._drawn_positions)
         self._tree = tf_tree_from_scene(self._scene, self._options)
 
-    def _add_slider(self, name: str, unit: Unit, lower: float, upper: float) -> Any:
-        factor = unit.factor
-        value = min(max(self._positions.get(name, 0.0), lower), upper)
-        slider = self._server.gui.add_slider(
-            f'{printable(name)} [{unit.name}]', lower * factor, upper * factor,
-            max((upper - lower) * factor / 1000.0, 1e-9), value * factor)
-        self._when(slider.on_update, lambda: self._positions.update(
-            {name: slider.value / factor}))
-        return slider
-
     # Controls
 
     def _add_controls(
-        self, switches: tuple[str, ...], ranges: dict[str, tuple[Unit, float, float]],
+        self, switches: tuple[str, ...], ranges: dict[str, JointRange],
     ) -> None:
         gui = self._server.gui
         gui.reset()
@@ -242,8 +218,9 @@ class Page:
         self._actions = SimpleQueue()
         gui.set_panel_label(printable(self._loaded.path))
         self._errors, self._reasons, self._names = (gui.add_html('') for _ in range(3))
-        with gui.add_folder('Show'):
+        with gui.add_folder('View'):
             self._add_controls_of_looks()
+        with gui.add_folder('Show', expand_by_default=False):
             for name in switches:
                 self._add_switch(name)
         if 1 < len(self._models) <= _MOST_SWITCHES:
@@ -251,11 +228,7 @@ class Page:
                 for name in self._models:
                     self._add_switch(name)
         if ranges:
-            with gui.add_folder('Joints'):
-                sliders = [self._add_slider(name, *limits) for name, limits in ranges.items()]
-                zero = gui.add_button('all at zero')
-            for slider in sliders:
-                self._when(zero.on_click, partial(setattr, slider, 'value', 0.0))
+            add_joint_sliders(gui, ranges, self._positions, self._when)
         self._folder_of_frames = gui.add_folder('Frames')
         with self._folder_of_frames:
             self._search = gui.add_text('search', '')
@@ -264,10 +237,14 @@ class Page:
         # The rows are labels of these buttons, which are not shown: HTML cannot do more.
         self._buttons: list[Any] = []
         with gui.add_folder('Selected frame'):
-            self._choice = gui.add_dropdown('in', (self._tree.root_frame,))
+            self._choice = gui.add_dropdown(
+                'relative to', (self._tree.root_frame,), hint='for the pose and the distance')
+            measure = gui.add_button(
+                'measure from this frame', hint='to the frames that are selected next')
             self._description = gui.add_html('')
             self._write = gui.add_button('write to file', visible=False)
         self._when(self._choice.on_update, self._show_frame)
+        self._when(measure.on_click, self._measure_from_here)
         self._when(self._write.on_click, self._write_pose)
 
     def _add_controls_of_looks(self) -> None:
@@ -341,6 +318,10 @@ class Page:
             self._selected = self._tree.frame_ids[frame]
             self._show_rows()
             self._show_frame()
+
+    def _measure_from_here(self) -> None:
+        if self._selected in self._choice.options:
+            self._choice.value = self._selected
 
     def _show_frame(self) -> None:
         """Describe the selected frame, and mark it in the scene."""

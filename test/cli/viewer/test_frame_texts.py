@@ -63,6 +63,17 @@ def test_arguments_of_static_transform_publisher(described):
         '--qw': '1.0', '--frame-id': 'm/l', '--child-frame-id': 'm/f'}
 
 
+def test_distance_between_two_frames(described):
+    assert 'distance 0.5000 m' in described('m/f', 'm/l').split('\n')
+
+
+def test_name_is_copied_as_it_is_shown(scene):
+    tree = tf_tree_from_scene(scene)
+    text = html_of_frame(
+        scene, tree, tree.frame_ids.index(HOSTILE), ROOT_IS_PARENT, Units())
+    assert f'data-copy="{html.escape(HOSTILE)}"' in text
+
+
 def test_franka_matrix(described):
     matrix = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.5, 0.0, 0.0, 1.0]
     assert str(matrix) in described('m/f', 'm/l')
