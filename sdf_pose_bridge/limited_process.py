@@ -116,7 +116,7 @@ class LimitedProcess:
                 if self._child is None or not self._child.is_alive():
                     self._end()
                     self._child = _Child()
-                result, error = self._child.answer(self._allowance, function, arguments)
+                result, error = self._child.result_and_error(self._allowance, function, arguments)
             except BaseException:
                 self._end()
                 raise
@@ -188,7 +188,7 @@ class _Child:
     def is_alive(self) -> bool:
         return self._process.poll() is None
 
-    def answer(
+    def result_and_error(
         self, allowance: Allowance, function: Callable[..., Any], arguments: tuple[object, ...],
     ) -> tuple[Any, Exception | None]:
         """Return the result of a function, and what it raised instead."""

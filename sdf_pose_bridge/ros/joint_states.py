@@ -157,7 +157,8 @@ class JointStates:
         # What is best effort and volatile fits every publisher, so there is nothing to report
         # unless parameters change that.
         self._subscription = node.create_subscription(
-            JointState, 'joint_states', self.take, quality, callback_group=self._gate, raw=True,
+            JointState, 'joint_states', self.update_from_message, quality,
+            callback_group=self._gate, raw=True,
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
             qos_overriding_options=overriding_options(
                 node, 'joint_states', 'subscription', POLICIES_OF_SUBSCRIPTION))
@@ -195,11 +196,11 @@ class JointStates:
         with self._subscription.handle:
             while time.monotonic() < ends_at and (
                     taken := self._take_message(JointState, True)) is not None:
-                self.take(taken[0])
+                self.update_from_message(taken[0])
 
     # Messages
 
-    def take(self, data: bytes) -> None:
+    def update_from_message(self, data: bytes) -> None:
         """
         Take positions of joints, and publish what they move unless it has to wait.
 

@@ -66,7 +66,7 @@ def add_parameter_services(
             return SetParametersResult(successful=False, reason=str(error))
         return await set_parameters(parameters)
 
-    async def answer(
+    async def set_each(
         request: SetParameters.Request, response: SetParameters.Response,
     ) -> SetParameters.Response:
         count = len(request.parameters)
@@ -77,15 +77,15 @@ def add_parameter_services(
         response.results = ([found] * MOST_REASONS + [other] * count)[:count]
         return response
 
-    async def answer_atomically(
+    async def set_atomically(
         request: SetParametersAtomically.Request, response: SetParametersAtomically.Response,
     ) -> SetParametersAtomically.Response:
         response.result = await result(request.parameters)
         return response
 
     services = [
-        (SetParameters, 'set_parameters', answer, group),
-        (SetParametersAtomically, 'set_parameters_atomically', answer_atomically, group),
+        (SetParameters, 'set_parameters', set_each, group),
+        (SetParametersAtomically, 'set_parameters_atomically', set_atomically, group),
         *((type_, name, read, None) for type_, name, read in _reading_services(node))]
     for service_type, name, callback, callback_group in services:
         node.create_service(

@@ -229,7 +229,7 @@ class PublishedMovingFrames:
         :param only_listeners: whether to leave out topics that nobody listens to.
         """
         def wanted_publisher(topic: Topic) -> Publisher | None:
-            publisher = self._publishers.get(topic)
+            publisher = self._publishers.existing(topic)
             if publisher is None or (only_listeners and not publisher.get_subscription_count()):
                 return None
             return publisher

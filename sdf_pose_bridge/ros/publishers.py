@@ -58,7 +58,7 @@ class Publishers:
         stamp: Stamp = self._node.get_clock().now().seconds_nanoseconds()
         return stamp
 
-    def get(self, topic: Topic) -> Publisher | None:
+    def existing(self, topic: Topic) -> Publisher | None:
         """Return the publisher of a topic if there is one."""
         return self._publishers.get(topic)
 

@@ -112,7 +112,7 @@ def make_published(listener, wait_until, states):
 
     def published(*messages):
         for message in messages:
-            states.take(serialize_message(message))
+            states.update_from_message(serialize_message(message))
         wait_until(lambda: found[-1][0] == messages[-1].header.stamp.sec, found)
         return [each for each in found if each[0] < NOW]
 
@@ -174,12 +174,12 @@ def test_a_value_that_is_no_position_reports_no_joint(published_when_reported):
 def test_joints_that_stay_unreported_are_named_once_and_then_that_none_is(
         states, moving_frames, wait_until, capfd):
     states.replace(moving_frames(ARM, UnreportedJoints.NONE)[1])
-    states.take(serialize_message(joint_state(5, {'lift': 0.5})))
+    states.update_from_message(serialize_message(joint_state(5, {'lift': 0.5})))
     assert states.unreported == ()
     wait_until(lambda: states.unreported, 'two seconds')
     assert states.unreported == ('turn', 'grip')
     for sec in (6, 7):
-        states.take(serialize_message(joint_state(sec, dict.fromkeys(JOINTS, 0.0))))
+        states.update_from_message(serialize_message(joint_state(sec, dict.fromkeys(JOINTS, 0.0))))
     log = capfd.readouterr().err
     assert log.count('2 joints have not been reported yet, for example "turn"') == 1
     assert log.count('all joints have been reported now') == 1
@@ -194,7 +194,7 @@ def test_of_joints_that_are_known_those_that_move_are_published(published):
 
 def test_a_message_without_a_stamp_gets_the_time_of_the_node(published, states):
     published(joint_state(0, {'turn': 0.5}), joint_state(6, {'turn': 0.25}))
-    states.take(serialize_message(joint_state(0, {'turn': 0.5})))
+    states.update_from_message(serialize_message(joint_state(0, {'turn': 0.5})))
     assert states._frames.stamp[0] > NOW
 
 
@@ -210,14 +210,14 @@ def test_bytes_that_align_names_mean_nothing(published, states):
     for sec, padding in (5, b'\0\0'), (6, b'ab'), (7, b'cd'):
         data = serialize_message(joint_state(sec, {'slide': 0.5, 'lift': 0.5}))
         begin = data.index(b'slide\0') + 6
-        states.take(data[:begin] + padding + data[begin + 2:])
+        states.update_from_message(data[:begin] + padding + data[begin + 2:])
     assert len(states._plans) == 1, 'as each takes time'
     assert published(joint_state(8, {'lift': 0.5}))[-1] == (8, {'slide', 'upper', 'finger'})
 
 
 def test_a_message_that_is_not_one_is_ignored(published, states):
-    states.take(b'')
-    states.take(serialize_message(joint_state(5, {'turn': 0.5}))[:30])
+    states.update_from_message(b'')
+    states.update_from_message(serialize_message(joint_state(5, {'turn': 0.5}))[:30])
     assert [sec for sec, _ in published(joint_state(6, {'turn': 0.5}))] == [6]
 
 
@@ -232,7 +232,7 @@ def test_topics_have_few_of_many_messages_and_the_last_one_again_at_rest(
     wait_until(lambda: stamps, stamps)
     begin = time.monotonic()
     for sec in range(1, 201):
-        states.take(serialize_message(joint_state(sec, {'turn': 0.5})))
+        states.update_from_message(serialize_message(joint_state(sec, {'turn': 0.5})))
     seconds = time.monotonic() - begin
     wait_until(lambda: stamps[-2:] == [200, 200], stamps)
     assert stamps[1] == 1
@@ -247,7 +247,7 @@ def test_after_a_message_frames_have_its_time_alone(listener, wait_until, states
         TransformStamped, '/bridge/transforms',
         lambda each: on_transforms.append(each.header.stamp.sec), LATCHED)
     wait_until(lambda: on_tf, on_tf)
-    states.take(serialize_message(joint_state(5, {'turn': 0.5})))
+    states.update_from_message(serialize_message(joint_state(5, {'turn': 0.5})))
     # At once, and again at rest, for three frames.
     wait_until(lambda: 5 in on_tf and on_transforms.count(5) == 6, on_transforms)
     assert on_tf[on_tf.index(5):] == [5]

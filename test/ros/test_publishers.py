@@ -31,7 +31,7 @@ def topics_of(node):
 def test_equal_topics_share_a_publisher(publishers):
     publisher = publishers.opened(Topic('~/a', PoseStamped))
     assert publishers.opened(Topic('~/a', PoseStamped)) is publisher
-    assert publishers.get(Topic('~/a', PoseStamped)) is publisher
+    assert publishers.existing(Topic('~/a', PoseStamped)) is publisher
 
 
 @pytest.mark.parametrize('other', [
@@ -39,7 +39,7 @@ def test_equal_topics_share_a_publisher(publishers):
     Topic('~/a', PoseStamped, is_latched=False), Topic('~/a', PoseStamped, part='b')])
 def test_topics_that_differ_have_publishers_of_their_own(publishers, other):
     publisher = publishers.opened(Topic('~/a', PoseStamped))
-    assert publishers.get(other) is None
+    assert publishers.existing(other) is None
     assert publishers.opened(other) is not publisher
 
 
@@ -58,8 +58,8 @@ def test_topics_are_replaced(node, publishers, finish):
     publishers.opened(a)
     finish(node.executor, publishers.replace, [b, c])
     assert topics_of(node) == {'/bridge/b', '/bridge/c'}
-    assert publishers.get(a) is None
-    assert publishers.get(b) is kept
+    assert publishers.existing(a) is None
+    assert publishers.existing(b) is kept
 
 
 def test_each_text_is_published_and_nothing_without_one(node):

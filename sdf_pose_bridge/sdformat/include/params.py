@@ -93,12 +93,12 @@ class _Changer:
             self._sources.error(ElementMissingError, xml, msg)
         elif action in ('modify', 'remove') or self._is_defined(xml):
             if action is not None:
-                self._act(action, xml, target)
+                self._perform(action, xml, target)
                 return
             for child in child_elements(xml):
                 self._change_child(child, tag, target)
 
-    def _act(self, action: str, xml: XmlElement, target: XmlElement) -> None:
+    def _perform(self, action: str, xml: XmlElement, target: XmlElement) -> None:
         acts = {'modify': self._modify, 'remove': self._remove, 'replace': self._replace}
         acts[action](xml, target)
 
@@ -133,7 +133,7 @@ class _Changer:
         elif action == 'add':
             target.append(self._new_element(xml))
         elif (found := self._child(target, xml, takes_first=action == 'modify')) is not None:
-            self._act(action, xml, found)
+            self._perform(action, xml, found)
 
     # Actions
 
