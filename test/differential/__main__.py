@@ -10,6 +10,7 @@ where nothing differs, 1 where something does, 2 where libsdformat is missing.
 from __future__ import annotations
 
 import argparse
+import contextlib
 from pathlib import Path
 import shutil
 import sys
@@ -57,11 +58,12 @@ def main() -> int:
           f'with {", ".join(sorted(f.value for f in features)) or "nothing special"}')
     started, told = time.monotonic(), time.monotonic()
     tally = Tally()
-    for tally in compare_scenes(reference, arguments.scenes, arguments.seed, features,
-                                reference_only=arguments.reference_only):
-        if time.monotonic() - told > 10:
-            told = time.monotonic()
-            print(f'  {tally.scenes} scenes, {len(tally.differences)} differences', flush=True)
+    with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C ends the drawing, not the report
+        for tally in compare_scenes(reference, arguments.scenes, arguments.seed, features,
+                                    reference_only=arguments.reference_only):
+            if time.monotonic() - told > 10:
+                told = time.monotonic()
+                print(f'  {tally.scenes} scenes, {len(tally.differences)} differences', flush=True)
     report(tally, time.monotonic() - started)
     folder = arguments.folder / 'differences' / f'seed_{arguments.seed}'
     write_differences(tally, reference, folder, arguments.show)
