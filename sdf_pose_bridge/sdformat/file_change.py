@@ -41,6 +41,13 @@ class FileChange(NamedTuple):
         """All that the file holds then."""
         return b''.join([self.old_text[:self.begin], self.new, self.old_text[self.end:]])
 
+    @property
+    def undone(self) -> FileChange:
+        """The change that puts back what was in the range, once this one is written."""
+        return FileChange(
+            self.path, self.new_text, self.encoding, self.begin, self.begin + len(self.new),
+            self.old_text[self.begin:self.end])
+
     def write(self) -> None:
         """
         Write the file, which keeps its mode, owner, access list, attributes, and links to it.

@@ -148,21 +148,43 @@ def point_on_screen(page, point):
     return 0.5 * width + scale * x / z, 0.5 * height - scale * y / z
 
 
-def test_frame_is_dragged_and_written(page, shown):
+def button(text):
+    return f"[...document.querySelectorAll('button')].find(b => b.innerText === '{text}')"
+
+
+def drag(page):
+    """Drag the gizmo of the frame with the hostile name upwards."""
     select(page, HOSTILE)
     # Nothing says when the gizmo is drawn; until then there is nothing to drag.
     page.run('new Promise(drawn => requestAnimationFrame(() => requestIdleCallback(drawn)))')
     page.mouse(*(point_on_screen(page, (1.0, 0.0, 0.27 + height)) for height in (
         0.0, 0.02, 0.05, 0.08, 0.1)))
-    write = "[...document.querySelectorAll('button')].find(b => b.innerText === 'write to file')"
-    page.wait_for(write)
-    page.run(f'{write}.click()')
-    page.wait_for(f'!{write}')
+    z = "document.querySelector('.difference')?.rows[3].cells[2].innerText"
+    page.wait_for(f'Math.abs({z} - 0.1) < 0.02')
+
+
+def test_drag_is_shown_beside_the_old_pose_and_cancelled(page, shown):
+    drag(page)
+    z = page.run("[...document.querySelector('.difference').rows[3].cells].map(c => c.innerText)")
+    assert float(z[1]) == 0.0
+    assert z[3] == f'+{z[2]}'
+    page.run(f"{button('cancel')}.click()")
+    page.wait_for(f"!{button('cancel')} && !document.querySelector('.difference')")
+    assert shown.file.read_text() == TEXT
+
+
+def test_frame_is_dragged_and_written(page, shown):
+    drag(page)
+    page.run(f"{button('write to file')}.click()")
+    page.wait_for(f"!{button('write to file')}")
     pose = load(shown.file).pose(HOSTILE)
     assert pose[:3] == pytest.approx((1.0, 0.0, 0.1), abs=0.02)
     changed = shown.file.read_text().splitlines()
     assert [line for line in TEXT.splitlines() if line not in changed] == [
         f'  <frame name="{html.escape(HOSTILE)}"><pose>1 0 0 0 0 0</pose></frame>']
+    page.run(f"{button('undo the last write')}.click()")
+    page.wait_for(f"!{button('undo the last write')}")
+    assert shown.file.read_text() == TEXT
 
 
 def test_name_is_shown_at_the_pointer(page):

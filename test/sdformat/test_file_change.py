@@ -36,6 +36,12 @@ def test_the_change_is_shown_as_difflib_would(text, old, new):
         for line in expected)
 
 
+def test_a_change_that_is_undone():
+    change = change_of(LINES, '5', 'other')
+    assert change.undone.old_text == change.new_text
+    assert change.undone.new_text == LINES.encode()
+
+
 @given(st.text('ab\n', min_size=1), st.data())
 def test_the_new_text_is_the_old_one_with_the_range_replaced(text, data):
     begin = data.draw(st.integers(0, len(text)))

@@ -89,5 +89,6 @@ def html_of_frame_names(names: Sequence[str]) -> str:
 
 def html_of_copy_button(text: str) -> str:
     """Return a button that copies a text."""
-    return (f'<button data-copy="{html.escape(text)}" style="float:right;cursor:pointer;'
-            f'font-size:0.9em;border:1px solid;border-radius:3px;opacity:0.7">copy</button>')
+    return (f'<button data-copy="{html.escape(text)}" style="float:right;clear:right;'
+            f'padding:0 4px;margin-left:4px;font-size:0.85em;line-height:1.3;cursor:pointer;'
+            f'border:1px solid;border-radius:3px;opacity:0.6">copy</button>')

@@ -138,7 +138,7 @@ class Drawing:
             self._look_at(self.home, size_m)
         self.axes_length_m = length_m = _length_of_axes(tree, view_m)
         self._marker = nodes.add_frame(
-            '/selected', axes_length=2.0 * length_m, axes_radius=0.08 * length_m, visible=False)
+            '/selected', axes_length=2.0 * length_m, axes_radius=0.06 * length_m, visible=False)
         self.gizmo = nodes.add_transform_controls(
             '/gizmo', 2.5 * length_m, depth_test=False, visible=False)
         self._lines = nodes.add_line_segments(
@@ -146,7 +146,7 @@ class Drawing:
             thickness_units='screen')
         self._axes = nodes.add_batched_axes(
             '/frames', *_places(tree.poses[self.frames]), axes_length=length_m,
-            axes_radius=0.05 * length_m)
+            axes_radius=0.035 * length_m)
         self._select_by_click(self._axes, self.frames)
         self._copies = [
             (self._add_surface(number, surface, scene, tree), surface.elements)

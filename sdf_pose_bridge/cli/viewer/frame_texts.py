@@ -4,10 +4,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from collections.abc import Iterator
 from collections.abc import Sequence
 import html
 import math
+from pathlib import Path
 import shlex
 from xml.sax.saxutils import quoteattr
 
@@ -19,11 +21,14 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
+_FILE_STYLE = 'margin:0 1em;font-size:0.8em;overflow-wrap:anywhere'
+_ERROR_STYLE = 'color:#c92a2a;white-space:pre-wrap;overflow-wrap:anywhere;margin:0 1em;'
 _COPIED = 'display:block;user-select:all;white-space:pre-wrap;overflow-wrap:anywhere;'
 
 
@@ -103,6 +108,42 @@ def _relative_to(scene: Scene, tree: TfTree, frame: int, reference: int) -> str:
     holder = int(scene.parents[tree.elements[frame]]) if tree.elements[frame] >= 0 else -1
     scope = scene.names[holder] + SEPARATOR if holder >= 0 else ''
     return f' relative_to={quoteattr(name.removeprefix(scope))}'
+
+
+def html_of_difference(
+    tree: TfTree, frame: int, new: Pose, reference: int, units: Units,
+) -> str:
+    """
+    Write the pose of a frame as it is and as it would be, and the difference, side by side.
+
+    :param new: the pose in the root frame as it would be.
+    :param reference: index of the frame that both are relative to, or ``ROOT_IS_PARENT``.
+    """
+    other = Pose() if reference == ROOT_IS_PARENT else Pose(*tree.poses[reference].tolist())
+    old = Pose(*tree.poses[frame].tolist())
+    columns = [units.texts(relative_pose(other, pose)) for pose in (old, new)]
+    labels = ('x', 'y', 'z', 'roll', 'pitch', 'yaw')
+    rows = ''.join(
+        f'<tr><td>{label} [{unit.name}]</td><td>{before}</td><td>{after}</td>'
+        f'<td>{float(after) - float(before):+.{unit.digits}f}</td></tr>'
+        for label, unit, before, after in zip(
+            labels, 3 * [units.length] + 3 * [units.angle], *columns, strict=True))
+    return (f'<table class="difference" style="font-size:0.8em;margin:0 1em;text-align:right">'
+            f'<tr><td></td><td>old</td><td>new</td><td>change</td></tr>{rows}</table>')
+
+
+def html_of_change(change: PoseChange | list[str]) -> str:
+    """Tell which file a frame can be written to, or why it cannot."""
+    if not isinstance(change, PoseChange):
+        return html_of_lines('errors_of_setting', change)
+    path = str(Path(change.file.path).resolve())
+    return f'<div class="file" style="{_FILE_STYLE}">in the file {escaped(path)}</div>'
+
+
+def html_of_lines(name: str, lines: Iterable[str]) -> str:
+    """Return lines as they are, in an element of this class; nothing if there are none."""
+    text = '\n'.join(map(escaped, lines))
+    return text and f'<pre class="{name}" style="{_ERROR_STYLE}">{text}</pre>'
 
 
 def rows_of_tree(tree: TfTree, search: str) -> Iterator[tuple[int, int, str]]:

@@ -10,7 +10,6 @@ from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
 from itertools import islice
-from pathlib import Path
 from queue import Empty
 from queue import SimpleQueue
 from typing import Any
@@ -25,7 +24,10 @@ from sdf_pose_bridge.cli.viewer.drawing import Drawing
 from sdf_pose_bridge.cli.viewer.drawing import GROUPS
 from sdf_pose_bridge.cli.viewer.drawing import HIDDEN_AT_FIRST
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_change
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_difference
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_frame
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_lines
 from sdf_pose_bridge.cli.viewer.frame_texts import rows_of_tree
 from sdf_pose_bridge.cli.viewer.joint_sliders import add_joint_sliders
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointRange
@@ -41,6 +43,7 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.tf.joint_motion import JointMotion
@@ -61,8 +64,6 @@ _ROWS_STYLE = ('<style>.rows{max-height:40vh;overflow:auto;margin:0 1em;font-siz
                '.rows label{display:block;cursor:pointer;white-space:pre}'
                '.rows .selected{font-weight:bold}div:has(>.rows)~*{display:none}</style>')
 _HOW_TO_SELECT = '<div style="margin:0 1em;font-size:0.8em">Click one above or in the scene.</div>'
-_FILE_STYLE = 'margin:0 1em;font-size:0.8em;overflow-wrap:anywhere'
-_ERROR_STYLE = 'color:#c92a2a;white-space:pre-wrap;overflow-wrap:anywhere;margin:0 1em;'
 
 
 class Page:
@@ -93,6 +94,7 @@ class Page:
         self._positions: dict[str, float] = {}
         self._selected = ''
         self._dragged: Pose | None = None
+        self._undone: FileChange | None = None
         self._hidden = set(hidden)
         self._listed: object = None
         self._is_dark = False
@@ -151,7 +153,7 @@ class Page:
 
     def show_errors(self, lines: Iterable[str]) -> None:
         """Show the errors of a file, a line for each, above its last scene."""
-        self._errors.content = _html_of_lines('errors', lines)
+        self._errors.content = html_of_lines('errors', lines)
 
     def act(self, seconds: float) -> None:
         """Do what browsers ask for; wait for it, but no longer than this."""
@@ -185,7 +187,7 @@ class Page:
         lines = [
             f'{"1 shape is" if count == 1 else f"{count} shapes are"} not drawn as the file means '
             f'it: {printable(reason)}' for reason, count in Counter(reasons).items()]
-        self._reasons.content = _html_of_lines('reasons', lines)
+        self._reasons.content = html_of_lines('reasons', lines)
         return lines
 
     def _names_of_axes(self) -> list[str]:
@@ -218,6 +220,10 @@ class Page:
         self._actions = SimpleQueue()
         gui.set_panel_label(printable(self._loaded.path))
         self._errors, self._reasons, self._names = (gui.add_html('') for _ in range(3))
+        self._write, self._cancel, self._undo = (
+            gui.add_button(label, visible=False)
+            for label in ('write to file', 'cancel', 'undo the last write'))
+        self._undo.visible = self._undone is not None
         with gui.add_folder('View'):
             self._add_controls_of_looks()
         with gui.add_folder('Show', expand_by_default=False):
@@ -242,10 +248,11 @@ class Page:
             measure = gui.add_button(
                 'measure from this frame', hint='to the frames that are selected next')
             self._description = gui.add_html('')
-            self._write = gui.add_button('write to file', visible=False)
         self._when(self._choice.on_update, self._show_frame)
         self._when(measure.on_click, self._measure_from_here)
         self._when(self._write.on_click, self._write_pose)
+        self._when(self._cancel.on_click, self._show_frame)
+        self._when(self._undo.on_click, self._undo_write)
 
     def _add_controls_of_looks(self) -> None:
         gui, drawing = self._server.gui, self._drawing
@@ -326,7 +333,7 @@ class Page:
     def _show_frame(self) -> None:
         """Describe the selected frame, and mark it in the scene."""
         gizmo, ids, self._dragged = self._drawing.gizmo, self._tree.frame_ids, None
-        self._write.visible = gizmo.visible = False
+        self._write.visible = self._cancel.visible = gizmo.visible = False
         if self._selected not in ids:
             self._drawing.mark(-1, None)
             self._description.content = _HOW_TO_SELECT
@@ -336,7 +343,7 @@ class Page:
         self._describe(frame, pose)
         if self._set_pose is not None and self._tree.elements[frame] >= 0:
             change = self._change(pose, dry_run=True)
-            self._description.content += _html_of_change(change)
+            self._description.content += html_of_change(change)
             gizmo.position, gizmo.wxyz = pose[:3], (pose.qw, *pose[3:6])
             gizmo.visible = isinstance(change, PoseChange)
 
@@ -346,7 +353,7 @@ class Page:
             w, x, y, z = gizmo.wxyz.tolist()
             self._dragged = Pose(*(*gizmo.position.tolist(), x, y, z, w))
             self._describe(self._tree.frame_ids.index(self._selected), self._dragged)
-            self._write.visible = True
+            self._write.visible = self._cancel.visible = True
 
     def _describe(self, frame: int, pose: Pose) -> None:
         self._drawing.mark(frame, pose)
@@ -354,13 +361,27 @@ class Page:
         poses[frame] = pose
         other, ids = self._choice.value, self._tree.frame_ids
         reference = ids.index(other) if other in ids else ROOT_IS_PARENT
-        self._description.content = html_of_frame(
+        text = html_of_frame(
             self._scene, replace(self._tree, poses=poses), frame, reference, self._units)
+        if self._dragged is not None:
+            text = html_of_difference(self._tree, frame, pose, reference, self._units) + text
+        self._description.content = text
 
     def _write_pose(self) -> None:
         if self._dragged is not None:
             change = self._change(self._dragged, dry_run=False)
             self.show_errors([] if isinstance(change, PoseChange) else change)
+            if isinstance(change, PoseChange):
+                self._undone, self._undo.visible = change.file.undone, True
+
+    def _undo_write(self) -> None:
+        if self._undone is not None:
+            try:
+                self._undone.write()
+            except SdfError as error:
+                self.show_errors(map(str, error.errors))
+                return
+            self._undone, self._undo.visible = None, False
 
     def _change(self, pose: Pose, *, dry_run: bool) -> PoseChange | list[str]:
         """Put the selected frame there, in the file; return why if this is not possible."""
@@ -373,16 +394,3 @@ class Page:
             return self._set_pose(self._loaded, element, pose, measured, dry_run=dry_run)
         except SdfError as error:
             return list(map(str, error.errors))
-
-
-def _html_of_change(change: PoseChange | list[str]) -> str:
-    """Tell which file a frame can be written to, or why it cannot."""
-    if not isinstance(change, PoseChange):
-        return _html_of_lines('errors_of_setting', change)
-    path = str(Path(change.file.path).resolve())
-    return f'<div class="file" style="{_FILE_STYLE}">in the file {escaped(path)}</div>'
-
-
-def _html_of_lines(name: str, lines: Iterable[str]) -> str:
-    text = '\n'.join(map(escaped, lines))
-    return text and f'<pre class="{name}" style="{_ERROR_STYLE}">{text}</pre>'

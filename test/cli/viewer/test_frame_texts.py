@@ -9,8 +9,10 @@ import shlex
 import pytest
 
 from sdf_pose_bridge.cli.printing import Units
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_difference
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_frame
 from sdf_pose_bridge.cli.viewer.frame_texts import rows_of_tree
+from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
@@ -72,6 +74,17 @@ def test_name_is_copied_as_it_is_shown(scene):
     text = html_of_frame(
         scene, tree, tree.frame_ids.index(HOSTILE), ROOT_IS_PARENT, Units())
     assert f'data-copy="{html.escape(HOSTILE)}"' in text
+
+
+def test_old_and_new_pose_side_by_side(scene):
+    tree = tf_tree_from_scene(scene)
+    frame, reference = (tree.frame_ids.index(name) for name in ('m/f', 'm/l'))
+    new = Pose(*tree.poses[frame].tolist())
+    new = new._replace(z=new.z - 0.25)
+    text = html_of_difference(tree, frame, new, reference, Units())
+    rows = re.findall('<tr><td>(.*?)</td><td>(.*?)</td><td>(.*?)</td><td>(.*?)</td></tr>', text)
+    assert rows[1] == ('x [m]', '0.5000', '0.5000', '+0.0000')
+    assert rows[3] == ('z [m]', '0.0000', '-0.2500', '-0.2500')
 
 
 def test_franka_matrix(described):
