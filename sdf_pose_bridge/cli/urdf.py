@@ -25,8 +25,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         'urdf', help='write a model as URDF, whose links are the frames of TF',
         description='Write a model as URDF, for RViz, MoveIt, ros2_control and whoever else reads '
                     'robot_description. Its links are the frames that the node publishes for the '
-                    'model, at every position of its joints. What URDF cannot say is left out, '
-                    'with a warning.')
+                    'model, at every position of its joints. Elements that URDF cannot express '
+                    'are left out, with a warning.')
     add_file_arguments(parser, takes_many=False)
     parser.add_argument(
         '-o', dest='output', metavar='PATH', type=Path, help='where to write it, instead of here')

@@ -234,7 +234,7 @@ class SdfPoseBridge:
     def _report_failure(self, lines: list[str]) -> None:
         if lines != self._failure:
             source = self._settings.load_request.source
-            self._logger.error(f'{source} is not taken; what was published before stays')
+            self._logger.error(f'{source} is rejected; the frames published before stay')
             for line in lines:
                 self._logger.error(line)
         self._failure, self._pending_failure = lines, []

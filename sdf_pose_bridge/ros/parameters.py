@@ -162,7 +162,7 @@ class Settings:
     )
     description_format = _choice(
         DescriptionFormat.AS_GIVEN,
-        'What the topic robot_description has: "as_given" is the text of a model or URDF as it '
+        'Content of the topic robot_description: "as_given" is the text of a model or URDF as it '
         'is; with "urdf" it is URDF made of the model that is published, whose links are its '
         'frames, also where that is one of a world, and TF has frames where it has joints.',
     )
@@ -284,7 +284,7 @@ class Settings:
     )
     on_missing_include = _choice(
         MissingInclude.ERROR,
-        'What to do about an include that cannot be found: "error" refuses the file, "skip" '
+        'How to treat an include that cannot be found: "error" rejects the file, "skip" '
         'leaves the include out with a warning.',
     )
 

@@ -91,7 +91,7 @@ def assert_reported_while_old_poses_are_served(bridge, listener, start_listener,
     monitor = Monitor(listener)
     monitor.wait_for(DiagnosticStatus.ERROR)
     assert text in monitor.status.message
-    line = bridge.wait_for_line(f'{path} is not taken; what was published before stays')
+    line = bridge.wait_for_line(f'{path} is rejected; the frames published before stay')
     assert line.startswith('[ERROR]')
     assert text in bridge.wait_for_line(text)
     late = start_listener()
