@@ -14,6 +14,7 @@ import contextlib
 import fcntl
 import os
 import pickle
+import resource
 import select
 import signal
 import sys
@@ -70,6 +71,8 @@ class Allowance(NamedTuple):
     memory_bytes_per_megabyte: int = 0
     seconds_per_megabyte: float = 0.0
     """Added to both times."""
+    address_space_bytes: int = 0
+    """What it may map, so that one huge array fails at once; 0 for no limit."""
 
 
 class _Use(NamedTuple):
@@ -196,7 +199,7 @@ class _Child:
         answers = select.poll()
         answers.register(self._answers, select.POLLIN)
         try:
-            pickle.dump((function, arguments), self._calls, 5)
+            pickle.dump((allowance.address_space_bytes, function, arguments), self._calls, 5)
             self._calls.flush()
             while not answers.poll(1e3 * _PERIOD_S):
                 _check(self.use(), before, time.monotonic() - begin, allowance)
@@ -205,6 +208,9 @@ class _Child:
         except (EOFError, OSError, pickle.UnpicklingError) as ended:
             raise self._reason_of_end() from ended
         if isinstance(error, MemoryError):
+            if allowance.address_space_bytes:
+                raise LimitExceededError(
+                    _more_than_bytes(allowance.address_space_bytes)) from error
             raise error
         if error is not None:
             error.__cause__ = RuntimeError(f'in another process:\n{text}')
@@ -286,9 +292,13 @@ def serve(life: int) -> None:
         file.write('1000')
     while True:
         try:
-            function, arguments = pickle.load(calls)
+            address_space_bytes, function, arguments = pickle.load(calls)
         except EOFError:
             return
+        if address_space_bytes:
+            _, highest = resource.getrlimit(resource.RLIMIT_AS)
+            with contextlib.suppress(ValueError):  # the user's own limit is lower
+                resource.setrlimit(resource.RLIMIT_AS, (address_space_bytes, highest))
         answers.write(_answer(function, arguments))
         answers.flush()
 

@@ -98,6 +98,13 @@ def test_a_call_that_exceeds_a_limit_is_ended(limited, changes, code, message):
     assert process.call(pow, 2, 2) == 4
 
 
+def test_one_huge_array_fails_at_once(limited):
+    process = limited(address_space_bytes=1_000_000_000)
+    with pytest.raises(LimitExceededError, match='more than 1000 MB of memory'):
+        process.call(bytearray, 1_500_000_000)
+    assert process.call(len, bytes(1000)) == 1000
+
+
 def test_a_process_without_memory_ends(limited):
     process = limited()
     pid = process.call(os.getpid)

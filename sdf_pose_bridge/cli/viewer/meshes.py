@@ -36,7 +36,8 @@ MOST_BYTES = 100_000_000
 """Size of a mesh with the files that it names."""
 MOST_TRIANGLES = 500_000
 """How many triangles a mesh may have."""
-ALLOWANCE = Allowance(memory_bytes=2_000_000_000, processor_s=20.0, wall_s=20.0)
+ALLOWANCE = Allowance(
+    memory_bytes=2_000_000_000, processor_s=20.0, wall_s=20.0, address_space_bytes=2_000_000_000)
 """What to read a mesh may take."""
 MOST_BYTES_KEPT = 300_000_000
 """How much of memory the meshes take together that are kept."""
