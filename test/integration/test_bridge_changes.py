@@ -158,7 +158,7 @@ def test_a_broken_file_is_reported_and_its_repair_is_noticed(bridge, file, start
     file.write_text('<sdf version="1.10"><world name="w">')
     monitor.wait_for(DiagnosticStatus.ERROR)
     assert f'{file}:1: FILE_READ' in monitor.status.message
-    bridge.wait_for_line('what was published before stays')
+    bridge.wait_for_line('the frames published before stay')
     assert len(listener.tf_messages) == 1
     file.write_text(world(3))
     wait_for_x(listener, 3.0)

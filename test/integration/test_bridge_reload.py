@@ -269,7 +269,7 @@ def test_a_failure_is_reported_until_a_load_succeeds(bridge, file, listener):
     assert reload(listener).success
     monitor.wait_for(DiagnosticStatus.OK)
     replace(file, 'not XML')
-    bridge.wait_for_line('what was published before stays', 2)
+    bridge.wait_for_line('the frames published before stay', 2)
 
 
 def test_one_call_that_sets_the_file_and_more_reads_it_once(file, listener):
