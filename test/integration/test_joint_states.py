@@ -151,7 +151,8 @@ def test_joints_that_no_message_has_named_are_nowhere_until_their_driver_is_up(
         lambda message: transforms.update({message.child_frame_id: message}), latched(100))
     tf.listener.wait(
         lambda: 'upper' in transforms and poses.keys() >= {'base', 'upper'}, lambda: poses)
-    bridge.wait_for_line('1 joint has not been reported yet, for example "lift"')
+    # On a busy machine the first message may come after the line.
+    bridge.wait_for_line('not been reported yet, for example ')
     assert tf.last.keys() == {'upper'}
     assert not transforms.keys() & {'slide', 'finger'}
     assert poses.keys() == {'base', 'upper'}

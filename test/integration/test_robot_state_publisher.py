@@ -105,7 +105,8 @@ def test_links_have_the_parents_that_joints_name_once_these_are_reported(
     listener.wait(lambda: joints.send({'turn': 0.5}) and tf['/tf'], lambda: 'the first message')
     assert parents_in(tf['/tf_static']) == {'tip': 'finger'}
     assert parents_in(tf['/tf']) == {'upper': 'base'}
-    program.wait_for_line('1 joint has not been reported yet, for example "grip"')
+    # On a busy machine the first message may come after the line.
+    program.wait_for_line('not been reported yet, for example ')
     sec = joints.send({'grip': 0.25})
     listener.wait(lambda: 'thumb' in parents_in(tf['/tf']), lambda: tf)
     assert parents_in(tf['/tf']) == {'upper': 'base', 'finger': 'upper', 'thumb': 'upper'}
