@@ -49,8 +49,8 @@ __all__ = list(_HOMES)
 
 
 def __getattr__(name: str) -> object:
-    # Looked up when they are used: the executable of the node takes signals before anything slow,
-    # such as numpy, is imported.
+    # Imported on first use: the executable of the node handles signals before anything slow, such
+    # as numpy, is imported.
     if name == '__version__':
         value: object = _version()
     elif name in _HOMES:
@@ -67,7 +67,7 @@ def _version() -> str:
     from pathlib import Path
     from xml.etree import ElementTree as ET
     manifest = Path(__file__).resolve().parents[1] / 'package.xml'
-    if manifest.exists():  # beside the source; what is installed besides may be of another version
+    if manifest.exists():  # beside the source; an installed package may have another version
         return ET.parse(manifest).getroot().findtext('version') or ''
     return version(__name__)
 

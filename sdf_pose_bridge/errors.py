@@ -30,7 +30,7 @@ class Place(NamedTuple):
 
 
 class SdfWarning(NamedTuple):
-    """Something that libsdformat accepts, but that the author of the file should know of."""
+    """A probable mistake in a file that libsdformat accepts."""
 
     code: str
     """Code of the corresponding error, or ``WARNING``."""
@@ -38,7 +38,7 @@ class SdfWarning(NamedTuple):
     """One sentence."""
     place: Place
     is_for_gazebo: bool = False
-    """Whether it is about what only Gazebo would do with a URDF that is read as ROS reads it."""
+    """Whether it concerns Gazebo only, in a URDF that is read as ROS reads it."""
 
     def __str__(self) -> str:
         return f'{self.place}: {self.code}: {self.message}'
@@ -117,11 +117,11 @@ class FileReadError(SdfError):
 
 
 class PassingReadError(FileReadError):
-    """A file cannot be read now, for a reason that passes: no descriptors, no memory, a disk."""
+    """A file cannot be read for a temporary reason: no descriptors, no memory, a disk."""
 
 
 class LimitError(SdfError):
-    """The file needs more than a load may use."""
+    """The file exceeds a limit of the load."""
 
     code = 'LIMIT'
 
@@ -133,7 +133,7 @@ class ParsingError(SdfError):
 
 
 class ConversionError(SdfError):
-    """The declared version is not one that can be read."""
+    """The declared version is not supported."""
 
     code = 'CONVERSION_ERROR'
 
@@ -271,7 +271,7 @@ class MergeIncludeError(SdfError):
 
 
 class PoseNotSetError(SdfError):
-    """A pose cannot be set in the file as it was asked for."""
+    """The requested pose cannot be written into the file."""
 
     code = 'POSE_NOT_SET'
 
@@ -290,10 +290,10 @@ class FileWriteError(SdfError):
 
 class JointPositionError(SdfError, ValueError):
     """
-    A query about positions of joints that cannot be answered.
+    A query about positions of joints is not valid.
 
-    It names a joint that does not exist, gives a joint a value that is no position, or depends on
-    a joint whose position nobody has reported.
+    It names an unknown joint, gives an invalid position, or depends on a joint without a reported
+    position.
     """
 
     code = 'JOINT_POSITION_INVALID'

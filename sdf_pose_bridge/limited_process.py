@@ -1,10 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Call functions in a process of their own, which has limits and can be ended at any time.
+Call functions in a separate process with limits, which can be ended at any time.
 
-Whatever a hostile file makes of its reader, this process keeps its memory and its interpreter.
-Only Linux is supported for the limits of memory and processor time.
+A hostile file cannot exhaust the memory of the calling process. Limits of memory and processor
+time work on Linux only.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ from typing import NamedTuple
 from typing import TypeVar
 
 KEPT_S = 60.0
-"""How long a process is kept for further calls."""
+"""Time in s for which a process is kept for further calls."""
 
 MOST_KEPT_BYTES = 256_000_000
 """The most memory that a process keeps between two calls."""
 
 _PERIOD_S = 0.05
-"""How often the use of a process is compared with its limits."""
+"""Period in s at which the use of a process is compared with its limits."""
 
 _CODE = (
     'import sys; sys.path[:] = sys.argv[2:]; '
@@ -49,37 +49,37 @@ _Result = TypeVar('_Result')
 
 
 class LimitExceededError(Exception):
-    """A call needs more than it may use; the text is what it needs: "more than ..."."""
+    """A call exceeds its limits; the text begins with "more than"."""
 
 
 class ProcessEndedError(Exception):
-    """The process has ended before it answered, or could not be started."""
+    """The process ended before it answered, or could not be started."""
 
     def __init__(self, message: str, *, may_pass: bool) -> None:
         super().__init__(message)
         self.may_pass = may_pass
-        """Whether the same call may succeed later: nothing that it did ended the process."""
+        """Whether the same call may succeed later, because it did not end the process itself."""
 
 
 class Allowance(NamedTuple):
-    """What a call may use: so much, and more for each megabyte that it reads."""
+    """The limits of a call; they grow with each megabyte that it reads."""
 
     memory_bytes: int
     processor_s: float
     wall_s: float
-    """Time by the clock, in which it may also wait for a disk."""
+    """Elapsed time, including waiting for a disk."""
     memory_bytes_per_megabyte: int = 0
     seconds_per_megabyte: float = 0.0
     """Added to both times."""
     address_space_bytes: int = 0
-    """What it may map, so that one huge array fails at once; 0 for no limit."""
+    """Limit of the address space, so that one huge array fails at once; 0 for no limit."""
 
 
 class _Use(NamedTuple):
-    """What a process has used so far."""
+    """Resources that a process has used so far."""
 
     memory_bytes: int
-    """What it has now."""
+    """Current memory."""
     processor_s: float
     bytes_read: int
 
@@ -88,11 +88,10 @@ class LimitedProcess:
     """
     Calls functions in another process, one after the other.
 
-    The process is started for the first call, and ends when it was not needed for a while, when a
-    call exceeds its limits, and with this process, however that ends. All methods may be called
-    in any thread.
+    The process is started for the first call. It ends when it was not used for a while, when a
+    call exceeds its limits, and together with this process. All methods are thread-safe.
 
-    :param allowance: what each call may use.
+    :param allowance: the limits of each call.
     """
 
     def __init__(self, allowance: Allowance) -> None:
@@ -105,12 +104,12 @@ class LimitedProcess:
         """
         Call a function in the process.
 
-        :param function: a function of a module, whose arguments and result can be pickled.
+        :param function: a function of a module; its arguments and result can be pickled.
         :return: its result.
-        :raises LimitExceededError: if it needs more than it may use.
-        :raises ProcessEndedError: if the process ends meanwhile, or cannot be started.
+        :raises LimitExceededError: if it exceeds its limits.
+        :raises ProcessEndedError: if the process ends during the call, or cannot be started.
         :raises MemoryError: if the system has no memory for it.
-        :raises Exception: what the function raises.
+        :raises Exception: any exception of the function.
         """
         with self._lock:
             if self._timer is not None:
@@ -151,7 +150,7 @@ class LimitedProcess:
         timer.daemon = True
         try:
             timer.start()
-        except RuntimeError:  # there is no room for another thread
+        except RuntimeError:  # no memory for another thread
             self._end()
 
 
@@ -194,7 +193,7 @@ class _Child:
     def result_and_error(
         self, allowance: Allowance, function: Callable[..., Any], arguments: tuple[object, ...],
     ) -> tuple[Any, Exception | None]:
-        """Return the result of a function, and what it raised instead."""
+        """Return the result of a function and the exception that it raised instead."""
         before, begin = self.use(), time.monotonic()
         answers = select.poll()
         answers.register(self._answers, select.POLLIN)
@@ -203,7 +202,7 @@ class _Child:
             self._calls.flush()
             while not answers.poll(1e3 * _PERIOD_S):
                 _check(self.use(), before, time.monotonic() - begin, allowance)
-            # Every piece that is read lets other threads run, so that none waits long.
+            # Other threads can run after each piece.
             result, error, text = pickle.load(self._answers)
         except (EOFError, OSError, pickle.UnpicklingError) as ended:
             raise self._reason_of_end() from ended
@@ -217,13 +216,13 @@ class _Child:
         return result, error
 
     def use(self) -> _Use:
-        """Return what it has used; zeros when it has ended, and where nothing says it."""
+        """Return its use of resources; zeros if it has ended or this is unknown."""
         folder = f'/proc/{self._process.pid}'
         try:
             with open(f'{folder}/statm') as file:  # noqa: PTH123 - a quarter of the time of Path
                 pages = int(file.read().split()[1])
             with open(f'{folder}/stat') as file:  # noqa: PTH123
-                # The name of the program, in brackets, may hold anything.
+                # The name of the program, in brackets, may contain any character.
                 fields = file.read().rpartition(')')[2].split()
             with open(f'{folder}/io') as file:  # noqa: PTH123
                 bytes_read = int(file.readline().split()[1])
@@ -242,7 +241,7 @@ class _Child:
 
     def _wait_for_end(self) -> None:
         import subprocess
-        # One that waits for a disk cannot be ended before the disk answers.
+        # A process that waits for a disk cannot be ended before the disk answers.
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(1.0)
 
@@ -250,13 +249,13 @@ class _Child:
         self._wait_for_end()
         code = self._process.returncode
         how = f'by signal {-code}' if code is not None and code < 0 else f'with exit code {code}'
-        # Whoever ends others, such as the kernel when memory runs out, does it by this signal.
+        # The kernel uses this signal when memory runs out.
         return ProcessEndedError(
             f'the process that reads files has ended {how}', may_pass=code == -signal.SIGKILL)
 
 
 def _check(use: _Use, before: _Use, seconds: float, allowance: Allowance) -> None:
-    """:raises LimitExceededError: if a call has used more than it may."""
+    """:raises LimitExceededError: if a call has exceeded its limits."""
     megabytes = (use.bytes_read - before.bytes_read) / _MEGABYTE
     most_bytes = allowance.memory_bytes + megabytes * allowance.memory_bytes_per_megabyte
     if use.memory_bytes > most_bytes:
@@ -283,7 +282,7 @@ def serve(life: int) -> None:
     _end_with(life)
     calls: BinaryIO = os.fdopen(os.dup(0), 'rb')
     answers: BinaryIO = os.fdopen(os.dup(1), 'wb')
-    # What libraries print is for nobody, and must not come between the answers.
+    # Output of libraries must not come between the answers.
     nowhere = os.open(os.devnull, os.O_RDWR)
     for descriptor in (0, 1, 2):
         os.dup2(nowhere, descriptor)
@@ -304,7 +303,7 @@ def serve(life: int) -> None:
 
 
 def _answer(function: Callable[..., object], arguments: tuple[object, ...]) -> bytes:
-    """Return the result of a function, what it raises instead, and the traceback of that."""
+    """Return the result of a function, the exception that it raised instead, and its traceback."""
     try:
         try:
             return pickle.dumps((function(*arguments), None, ''), 5)
@@ -321,7 +320,7 @@ def _answer(function: Callable[..., object], arguments: tuple[object, ...]) -> b
 
 
 def _end_with(life: int) -> None:
-    """Have the kernel end this process with the one at the other end of a pipe."""
+    """Have the kernel end this process with the process at the other end of a pipe."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGIO, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_SETMASK, [])

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Names in SDFormat: how they are scoped, which are reserved, and which one was meant."""
+"""Names in SDFormat: scopes, reserved names, and hints with the nearest name."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ SEPARATOR = '::'
 """Separates the parts of a scoped name: ``robot::arm::hand``."""
 
 WORLD_FRAME = 'world'
-"""The name by which references in a world mean its frame."""
+"""The name of the frame of a world in references."""
 
 ROOT_FRAME = '__root__'
 """The implicit root of a model file. No file may write this name."""
 
 MODEL_FRAME = '__model__'
-"""The name by which references in a model mean the frame of the model."""
+"""The name of the frame of a model in references inside the model."""
 
 JOINT_SUFFIX = '_joint'
 """Appended to the name of a joint if another element has the name."""
@@ -32,15 +32,16 @@ _LONGEST_MESSAGE = 2000
 _QUOTED = re.compile(r'"([^"]*)"')
 
 _LONGEST_COMPARED = 200
-"""How long a name may be that is compared with others."""
+"""Longer names are not compared."""
 
 _NEIGHBORS = 25
-"""How many names on each side of one that was not found are compared with it, in both orders."""
+"""Number of names on each side of an unknown name that are compared with it, in both orders."""
 
 _SEPARATORS = '_-. '
 
 _MOST_PAIRS = 5_000
-"""How many pairs of equal characters the compared names may have; comparing takes as long."""
+"""Largest number of pairs of equal characters in compared names; the time is proportional to
+it."""
 
 
 def is_reserved(name: str) -> bool:
@@ -55,7 +56,7 @@ def is_reserved(name: str) -> bool:
 
 def scoped_name(scope: str, name: str) -> str:
     """
-    Return the absolute name of an element, or of what a reference names.
+    Return the absolute name of an element or of the target of a reference.
 
     :param scope: absolute name of its scope; empty for a world or the implicit root.
     """
@@ -77,7 +78,7 @@ def shortened_message(message: str) -> str:
 
 
 def quoted_names(names: Sequence[str], most: int) -> str:
-    """Return the first names for a message, in double quotes, and how many more there are."""
+    """Return the first names for a message, in double quotes, and the number of the others."""
     shown = ', '.join(f'"{shortened(name)}"' for name in names[:most])
     return f'{shown} and {len(names) - most} more' if len(names) > most else shown
 
@@ -86,7 +87,7 @@ def printable(text: str) -> str:
     r"""
     Return text for one line of a log or a terminal.
 
-    A name in a file may hold a line break, which must not forge a line, and characters that
+    A name in a file can contain line breaks, which must not forge a line, and characters that
     control a terminal or the direction of writing.
 
     :return: the text with escapes, such as ``\n``, for all characters that are not printable.
@@ -109,9 +110,9 @@ def hint_from_names(wanted: str, names: Iterable[str]) -> str:
 
 class NameIndex:
     """
-    Names in order, among which one that was probably meant is found soon, however many they are.
+    Sorted names, in which the nearest name is found quickly.
 
-    :param names: the names that exist; very long ones are never meant.
+    :param names: the existing names; very long ones are ignored.
     """
 
     def __init__(self, names: Iterable[str]) -> None:
@@ -120,7 +121,7 @@ class NameIndex:
         self._reversed_names = sorted((name[::-1] for name in short), key=_sort_key)
 
     def nearest(self, wanted: str) -> str:
-        """Return the name that was probably meant; an empty string if none is near."""
+        """Return the nearest name; an empty string if none is near."""
         if len(wanted) > _LONGEST_COMPARED:
             return ''
         likely = [*_neighbors(self._names, wanted), *(
@@ -135,7 +136,7 @@ class NameIndex:
 
 
 def _sort_key(name: str) -> str:
-    """Return what names are ordered by, the same for all cases and separators."""
+    """Return the sort key of a name, which ignores case and separators."""
     name = name.replace(SEPARATOR, '/')
     for separator in _SEPARATORS:
         # For names beyond ASCII this is five times as fast as str.translate.
@@ -144,13 +145,13 @@ def _sort_key(name: str) -> str:
 
 
 def _neighbors(names: Sequence[str], wanted: str) -> Sequence[str]:
-    """Return the names around one that is not among them; its beginning is that of the nearest."""
+    """Return the names around an unknown one; the nearest name has the same beginning."""
     index = bisect.bisect(names, _sort_key(wanted), key=_sort_key)
     return names[max(index - _NEIGHBORS, 0):index + _NEIGHBORS]
 
 
 def _comparable(wanted: str, names: Iterable[str]) -> Iterator[str]:
-    """Leave out names which the comparison would take long for, as of a few letters repeated."""
+    """Leave out names that take long to compare, such as a few letters repeated."""
     counts = Counter(wanted)
     pairs = 0
     for name in dict.fromkeys(names):

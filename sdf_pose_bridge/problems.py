@@ -19,16 +19,16 @@ from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.names import shortened_message
 
 MOST_PROBLEMS = 100
-"""How many errors and how many warnings of a load are kept."""
+"""Largest number of errors, and of warnings, that a load keeps."""
 
 MOST_HINTS = 50
-"""How many messages of a load may say which name was probably meant."""
+"""Largest number of messages of a load that suggest a name."""
 
 MOST_CHARACTERS_OF_HINTS = 1_000_000
-"""How many characters the names may have together among which the hints of a load are found."""
+"""Largest number of characters of all names that a load searches for hints."""
 
 _LONGEST_CHAIN = 10
-"""How many includes that lead to a file are named."""
+"""Largest number of includes that an error names on the way to a file."""
 
 _Problem = TypeVar('_Problem', SdfError, SdfWarning)
 
@@ -37,9 +37,8 @@ class Problems:
     """
     The errors and warnings of one load.
 
-    Everything that reports them is bounded here, whatever a file holds: the first hundred of each
-    are kept, each once however often its file is included, and the rest is counted. Messages are
-    shortened where they are made.
+    The first hundred of each are kept, each once however often its file is included; the rest is
+    counted. Messages are shortened where they are made.
 
     :param paths: the files that are read, in the order of reading; it may grow.
     :param includes: the place of the include that first led to each included file; it may grow.
@@ -59,7 +58,7 @@ class Problems:
         self._indices: dict[Hashable, NameIndex] = {}
         self._characters_of_hints = 0
         self.are_for_gazebo = False
-        """Whether all warnings from now on are about what only Gazebo would do."""
+        """Whether all warnings from now on concern Gazebo only."""
 
     def error(self, error: SdfError) -> None:
         """Add an error."""
@@ -72,7 +71,7 @@ class Problems:
         Add a warning.
 
         :param code: code of the corresponding error, or ``WARNING``.
-        :param is_for_gazebo: whether it is about what only Gazebo would do.
+        :param is_for_gazebo: whether it concerns Gazebo only.
         """
         warning = SdfWarning(
             code, shortened_message(message), place, is_for_gazebo or self.are_for_gazebo)
@@ -100,11 +99,11 @@ class Problems:
         self._warnings.more += warnings
 
     def keeps_warnings(self) -> bool:
-        """Return whether another warning would be kept, so that it has to be made."""
+        """Return whether another warning would be kept."""
         return len(self._warnings) < MOST_PROBLEMS
 
     def allows_hint(self) -> bool:
-        """Return whether a message may end in a hint that takes long to find, and count it."""
+        """Return whether a message may end in a hint, and count it."""
         if self._parent is not None:
             return self._parent.allows_hint()
         self._hints += 1
@@ -112,9 +111,9 @@ class Problems:
 
     def name_index(self, key: Hashable, names: Iterable[str]) -> NameIndex:
         """
-        Return an index of names for hints, which is made once for all hints with the same key.
+        Return an index of names for hints; hints with the same key share it.
 
-        Names are left out where those of all indices of the load would be too long together.
+        Names are left out if those of all indices of the load would be too long together.
         """
         if self._parent is not None:
             return self._parent.name_index(key, names)
@@ -132,9 +131,9 @@ class Problems:
     @property
     def errors(self) -> tuple[SdfError, ...]:
         """
-        The errors by file and line; a last one says how many more there are.
+        The errors by file and line; the last one counts those that were not kept.
 
-        The first error of an included file says which includes led there.
+        The first error of an included file names the includes on the way there.
         """
         errors = self._in_order(self._errors.values())
         seen = set()
@@ -150,7 +149,7 @@ class Problems:
 
     @property
     def warnings(self) -> tuple[SdfWarning, ...]:
-        """The warnings by file and line; a last one says how many more there are."""
+        """The warnings by file and line; the last one counts those that were not kept."""
         warnings = self._in_order(self._warnings.values())
         if self._warnings.more:
             warnings.append(SdfWarning(

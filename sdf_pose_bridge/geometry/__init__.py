@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Rotations, poses and the formats that they are written in; independent of SDFormat and of ROS.
+Rotations, poses and their formats; independent of SDFormat and of ROS.
 
 - :mod:`~sdf_pose_bridge.geometry.rotations`: convert between roll-pitch-yaw, quaternion, matrix
 - :mod:`~sdf_pose_bridge.geometry.poses`: compose and invert poses

@@ -4,7 +4,7 @@
 Follow chains of pointers, and multiply the poses along them.
 
 A pointer of a node is the index of another node, or -1 for none. Chains are followed by doubling:
-each round doubles the length of what has been followed, so a chain of a thousand takes ten rounds.
+each round doubles the followed length, so a chain of a thousand takes ten rounds.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ def ends_from_pointers(pointers: Indices) -> Indices:
     Follow every node to the end of its path.
 
     :param pointers: the node that each node points to; -1 for none.
-    :return: for each node the one without a pointer that it leads to; for a node that leads into
-        a cycle, any node of that cycle.
+    :return: for each node the end of its path; for a node that leads into a cycle, any node of
+        that cycle.
     """
     ends = np.where(pointers < 0, np.arange(len(pointers), dtype=np.int32), pointers)
     for _ in range(len(pointers).bit_length()):
@@ -68,7 +68,8 @@ def poses_along_chains(
     :param edges: the pose of each element in the one that it is relative to.
     :param references: the element that each is relative to; -1 at the end of a chain.
     :param indices: the elements to resolve. All references of these are among them.
-    :return: a copy of the poses, in which those of these elements are in the ends of their chains.
+    :return: a copy of the poses; those of these elements are in the frames at the ends of their
+        chains.
     """
     resolved: PoseArray = edges.copy()
     targets = references.copy()

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Functions for floats under the names that numpy has for them.
+Functions for floats with the names of numpy's.
 
 A formula that takes its functions from a module given as argument works on arrays with numpy, and
 on floats with this module, which is much faster for single numbers.

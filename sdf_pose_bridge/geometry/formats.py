@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Convert poses and rotations between the formats that robots and files write them in.
+Convert poses and rotations between the formats of robots and files.
 
 A format is one entry of a registry. It converts to one common representation and back, so every
 format converts to every other:
@@ -46,18 +46,18 @@ LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 
 
 class PoseFormatError(ValueError):
-    """The values are not poses in the format; the message says which value breaks which rule."""
+    """The values are not poses in the format; the message names the value and the rule."""
 
 
 class Format(NamedTuple):
-    """How a row of numbers describes a pose or a rotation."""
+    """A format of a pose or a rotation as a row of numbers."""
 
     name: str
-    """What users call it."""
+    """Name for users."""
     row_length: int
-    """How many numbers a pose or rotation has."""
+    """Number of values of a pose or rotation."""
     meaning: str
-    """The numbers in their order, with units, as the help of the command line shows it."""
+    """The values in their order, with units, for the help of the command line."""
     to_common: Callable[[Floats], Floats]
     """Converts finite rows (n, row_length) to the common representation; raises RotationError."""
     from_common: Callable[[Floats], Floats]
@@ -81,11 +81,11 @@ class RotationAnswer(NamedTuple):
     """One rotation in both representations."""
 
     rpy: Triple
-    """Roll, pitch, yaw; in degrees if these were asked for."""
+    """Roll, pitch, yaw; in degrees if requested."""
     quat_xyzw: Quaternion
     """x, y, z, w; unit, w >= 0."""
     gimbal_lock: bool
-    """Pitch is within 4.5e-8 of a right angle, where roll and yaw mean little by themselves."""
+    """Whether pitch is within 4.5e-8 of a right angle, where roll and yaw alone are uncertain."""
 
 
 def converted_poses(
@@ -159,7 +159,7 @@ def converted_rotation(
     """
     if given == Given.RPY:
         rpy_rad: Sequence[float] = rpy
-        # Angles that are not finite are left alone: the error shows them as they are given.
+        # Angles that are not finite are not changed: the error shows them as they are given.
         if degrees and all(map(math.isfinite, rpy)):
             rpy_rad = [radians_from_degrees(floats, angle) for angle in rpy]
         quat = quaternion_from_rpy(rpy_rad)
@@ -180,7 +180,7 @@ def converted_rotation(
 
 
 def _are_canonical(rpy: Any, half_turn: float) -> Any:
-    """Return True where angles are in their ranges and not near lock, where yaw may become 0."""
+    """Return whether angles are in their ranges and not near gimbal lock."""
     roll, pitch, yaw = rpy
     return (
         (abs(roll) <= half_turn) & (abs(yaw) <= half_turn)

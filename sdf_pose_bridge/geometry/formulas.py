@@ -86,7 +86,7 @@ def degrees_from_radians(angle_rad: Component) -> Component:
 
 
 def orthonormality(xp: Any, *matrix: Triple) -> Iterator[tuple[Component, float, str]]:
-    """Yield what an orthonormal matrix determines: value, expected value and what has it."""
+    """Yield value, expected value and description of each property of an orthonormal matrix."""
     (m00, m01, m02), (m10, m11, m12), (m20, m21, m22) = matrix
     yield xp.sqrt(m00 * m00 + m10 * m10 + m20 * m20), 1.0, 'column 0 has norm'
     yield xp.sqrt(m01 * m01 + m11 * m11 + m21 * m21), 1.0, 'column 1 has norm'
@@ -219,7 +219,7 @@ def matrix_from_rpy(xp: Any, roll: Component, pitch: Component, yaw: Component) 
     """
     Return the rows of Rz(yaw) Ry(pitch) Rx(roll).
 
-    By way of the quaternion the elements at gimbal lock would not be exact.
+    The elements at gimbal lock are exact, unlike those computed from the quaternion.
     """
     _check(xp, xp.isfinite(roll) & xp.isfinite(pitch) & xp.isfinite(yaw))
     sin_r, cos_r = xp.sin(roll), xp.cos(roll)
@@ -298,7 +298,7 @@ def _corrected(
     xp: Any, x: Component, y: Component, z: Component, w: Component,
 ) -> Quaternion:
     """
-    Return the canonical quaternion of one whose square differs from 1 by less than NEARLY_UNIT.
+    Return the canonical form of a quaternion whose square is within NEARLY_UNIT of 1.
 
     The error of the square is computed from components that are split in two (Dekker, "A
     floating-point technique for extending the available precision", 1971): the squares of the

@@ -130,7 +130,7 @@ def relative_poses(references: PoseArray, poses: PoseArray) -> PoseArray:
 
 def canonical_relative_poses(references: PoseArray, poses: PoseArray) -> PoseArray:
     """
-    Return what :func:`relative_poses` does, in the canonical form in which poses are published.
+    Return poses as :func:`relative_poses`, in the canonical form in which poses are published.
 
     :return: poses of frames C in frames B, shape (n, 7), canonical.
     """

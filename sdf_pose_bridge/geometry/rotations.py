@@ -20,8 +20,8 @@ nested sequences; the result is an array with the same leading shape.
 
 At gimbal lock, where pitch is a right angle, only roll - yaw (pitch up) or roll + yaw (pitch down)
 is defined: yaw is then 0 and roll has all of it, as in gz-math. Near lock each angle alone is less
-and less certain, but together they always are the rotation given. :func:`near_gimbal_lock` returns
-where gz-math would set yaw to 0 and change the rotation by up to 4.5e-8 radians.
+certain, but together they represent the given rotation. :func:`near_gimbal_lock` returns whether
+gz-math would set yaw to 0, which changes the rotation by up to 4.5e-8 radians.
 
 The rotation returned differs from the one given by at most 1.2e-15 radians, for every rotation and
 every representation.
@@ -60,7 +60,7 @@ LOCK_TOLERANCE = 1e-15
 
 
 class RotationError(ValueError):
-    """The numbers are not a rotation; the message says which value breaks which rule."""
+    """The numbers are not a rotation; the message names the value and the rule."""
 
 
 @overload
@@ -213,7 +213,7 @@ def near_gimbal_lock(quat_xyzw: One) -> bool: ...
 def near_gimbal_lock(quat_xyzw: Many) -> NDArray[np.bool_]: ...
 def near_gimbal_lock(quat_xyzw: One | Many) -> bool | NDArray[np.bool_]:
     """
-    Return whether roll and yaw are practically undefined one without the other.
+    Return whether roll and yaw alone are practically undefined.
 
     The rule is gz-math's: the sine of pitch differs from 1 or -1 by less than 1e-15, so pitch is
     within 4.5e-8 radians of a right angle.
@@ -256,12 +256,12 @@ def _matrix_message(*matrix: Triple) -> str:
 
 
 class _Representation(NamedTuple):
-    """What the numbers of a rotation are."""
+    """A representation of rotations by numbers."""
 
     name: str
     shape: tuple[int, ...]
     message: Callable[..., str]
-    """Returns what is wrong with numbers that are not valid."""
+    """Returns the error message for invalid numbers."""
 
 
 _RPY = _Representation('roll, pitch, yaw', (3,), _rpy_message)
@@ -279,7 +279,7 @@ def _converted(
 
     :param formula: takes numpy or floats, and the components of a rotation.
     :param values: one rotation as a tuple or list, or an array of shape (..., *given.shape).
-    :return: what the formula returns, or an array of shape (..., *shape).
+    :return: the result of the formula, or an array of shape (..., *shape).
     :raises RotationError: wrong shape or invalid numbers; names the first row that has them.
     """
     if not isinstance(values, np.ndarray):

@@ -29,8 +29,8 @@ class ScrewMotions:
     :param before: shape (n, 7), the poses before the motions.
     :param axes: shape (n, 3), unit vectors.
     :param points: shape (n, 3), a point of each axis, in metres.
-    :param rad_per_unit: shape (n,), how far a motion turns about its axis for a position of 1.
-    :param m_per_unit: shape (n,), how far it moves along its axis for a position of 1.
+    :param rad_per_unit: shape (n,), angle about the axis for a position of 1.
+    :param m_per_unit: shape (n,), distance along the axis for a position of 1.
     :param after: shape (n, 7), the poses after the motions.
     """
 

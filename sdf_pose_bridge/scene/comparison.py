@@ -19,7 +19,7 @@ TOLERANCE = 1e-9
 
 
 class Change(enum.Enum):
-    """What happened to an element."""
+    """The kind of a difference."""
 
     ADDED = 'added'
     REMOVED = 'removed'
@@ -44,15 +44,16 @@ def differences_of_scenes(
     old: Scene, new: Scene, *, relative_to: str = '', tolerance: float = TOLERANCE,
 ) -> list[Difference]:
     """
-    List what is different.
+    List the differences.
 
-    An element counts as renamed if it is the only one of its kind in its scope that went, or came,
-    with just that pose. An element may be renamed and moved with others that hold it.
+    An element counts as renamed if it is the only removed or added one of its kind, scope and
+    pose. An element can be renamed and moved together with the elements that contain it.
 
     :param relative_to: the frame in which poses are compared; empty for the world or the implicit
         root.
-    :param tolerance: what counts as no movement, in metres and radians.
-    :return: what was removed, in the order of the old scene, then the rest in that of the new one.
+    :param tolerance: largest difference that does not count as a movement, in metres and radians.
+    :return: the removed elements in the order of the old scene, then the others in that of the new
+        one.
     :raises UnknownFrameError: if there is no such frame in one of the scenes.
     """
     old_poses, new_poses = _poses(old, relative_to), _poses(new, relative_to)
@@ -85,14 +86,14 @@ def differences_of_scenes(
 
 
 def names_of_moved(old: Scene, new: Scene) -> list[str]:
-    """Return the names in the new scene of what has moved in its root, in its order, each once."""
+    """Return the names of moved elements, in the order of the new scene."""
     return list(dict.fromkeys(
         difference.name for difference in differences_of_scenes(old, new)
         if difference.change is Change.MOVED))
 
 
 def _indices(scene: Scene) -> dict[tuple[str, int, str], int]:
-    """Return the elements, without worlds and implicit roots, by what identifies them."""
+    """Return the elements, without worlds and implicit roots, by scope, kind and name."""
     return {
         (scene.world_of(index), int(scene.kinds[index]), scene.names[index]): index
         for index in np.flatnonzero(scene.parents >= 0).tolist()}
@@ -109,7 +110,7 @@ def _renamed(old: Scene, new: Scene, gone: list[int], come: list[int]) -> dict[i
     renamed: dict[int, int] = {}
     new_names: dict[str, str] = {}
     places = _indices_by_place(new, come)
-    # An element stands after the one that holds it.
+    # An element comes after its parent.
     for (scope, world, kind, pose), indices in _indices_by_place(old, gone).items():
         found = places.get((new_names.get(scope, scope), world, kind, pose), [])
         if len(indices) == len(found) == 1:
@@ -121,7 +122,7 @@ def _renamed(old: Scene, new: Scene, gone: list[int], come: list[int]) -> dict[i
 def _indices_by_place(
     scene: Scene, indices: list[int],
 ) -> dict[tuple[str, str, int, bytes], list[int]]:
-    """Return elements by scope, world, kind and pose, which stay where only names change."""
+    """Return elements by scope, world, kind and pose, which stay if only names change."""
     places: dict[tuple[str, str, int, bytes], list[int]] = {}
     for index in indices:
         place = (

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Look up and check every reference: what poses are relative to, and what frames are attached to.
+Look up and check all references of poses, attachments and canonical links.
 
 Source: ``FrameSemantics.cc`` of libsdformat. The graph that results has no cycles.
 """
@@ -77,7 +77,7 @@ def frame_graph_from_elements(
     Look up and check every reference.
 
     :param usage: counts the work.
-    :param problems: takes what is wrong with references.
+    :param problems: takes errors and warnings.
     :return: the graph; a wrong reference in it is replaced by the default of its kind.
     :raises LimitError: if the absolute names are too long, or chains of references.
     """
@@ -88,12 +88,12 @@ def default_references(
     kinds: NDArray[np.uint8], parents: Indices, attachments: Indices,
 ) -> Indices:
     """
-    Find the frame that the pose of each element is relative to where the file does not say it.
+    Find the frame that the pose of each element is relative to by default.
 
     :param attachments: the frame that each frame is attached to, of a joint its child; -1 for
         none.
-    :return: of a joint its child, of an explicit frame what it is attached to, of another element
-        the one that holds it; -1 for worlds and implicit roots.
+    :return: the child of a joint, the attachment of an explicit frame, the parent of any other
+        element; -1 for worlds and implicit roots.
     """
     is_attached = np.isin(kinds, (Kind.JOINT, Kind.FRAME)) & (attachments != NO_ELEMENT)
     return np.where(is_attached, attachments, parents)
@@ -179,8 +179,8 @@ class _Builder:
         pointers: dict[int, int] = {}
         for model in sorted(self._elements.models, reverse=True):  # inner models come first
             default = first_links.get(model, first_models.get(model, NO_ELEMENT))
-            # Of a nested model its own link is meant, even if that model is static, so that its
-            # frame is not attached to the link.
+            # For a nested model, its own link counts, even if the model is static and its frame is
+            # not attached to the link.
             inner = pointers.get(default, NO_ELEMENT)
             if inner >= 0 and kinds[inner] == Kind.LINK:
                 default = inner
@@ -211,7 +211,7 @@ class _Builder:
             if target >= 0 and kinds[target] != Kind.MODEL:
                 link = int(bodies[target])
             else:
-                # A model that is not inside the model does not lead to a link.
+                # A model outside the model does not lead to a link.
                 link = int(links[target]) if target > model else NO_ELEMENT
             if link >= 0 and kinds[link] == Kind.LINK:
                 links[model] = link
@@ -220,7 +220,7 @@ class _Builder:
     # Placement
 
     def _set_references(self, references: Indices) -> None:
-        """Replace the default references of elements by those that the file gives."""
+        """Replace the default references of elements by those in the file."""
         for index, name in self._elements.relative_to.items():
             found = self._scopes.frame(self._scope_of[index], name)
             references[index] = self._default_reference(index, name) if found is None else found
@@ -301,7 +301,7 @@ class _Builder:
         self, references: Indices, attachments: Indices, joints: Mapping[int, JointEnds],
         placements: Mapping[int, int],
     ) -> None:
-        """Add the elements that depend on an unresolved one, and report how many there are."""
+        """Add the elements that depend on an unresolved one, and report their number."""
         if not self._unresolved:
             return
         columns = self._elements.parents.tolist(), references.tolist(), attachments.tolist()

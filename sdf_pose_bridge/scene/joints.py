@@ -43,13 +43,13 @@ class AxisReferences(NamedTuple):
 
 
 class JointEnds(NamedTuple):
-    """The frames that a joint joins, by index; -1 for a name that means no frame."""
+    """The frames that a joint joins, by index; -1 for a name that names no frame."""
 
     joint: int
     parent: int
     child: int
     axes: tuple[AxisReferences, ...] = ()
-    """Those of both axes, also where they are not given; empty before the joint is checked."""
+    """The references of both axes, with defaults; empty before the joint is checked."""
 
 
 class JointChecks:
@@ -168,9 +168,9 @@ class JointChecks:
         part: str = '', *, is_checked: bool = False,
     ) -> None:
         """
-        Report an error, or a warning where libsdformat does not check this.
+        Report an error, or a warning if libsdformat does not check this.
 
-        :param is_checked: whether it checks this in models in models too, as it does children.
+        :param is_checked: whether libsdformat checks this in nested models too, as for children.
         """
         scope, root = self._scope_of[joint], self._scopes.roots[joint]
         place = self._elements.place(joint, line, part)

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Load a file: read it, replace its includes, read its elements, check and resolve them."""
+"""Load a file: parse it, replace its includes, read its elements, check and resolve them."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 
 class MissingInclude(enum.Enum):
-    """What to do about an include that is not found."""
+    """Treatment of includes that are not found."""
 
     ERROR = 'error'
     """The file is not valid."""
@@ -72,12 +72,12 @@ def load(
     :param resource_paths: directories in which included models are searched first; then come
         those of the environment variables ``GZ_SIM_RESOURCE_PATH`` and ``SDF_PATH``.
     :param on_missing_include: ``error``, or ``skip`` to leave out includes that are not found.
-    :param limits: what the load may use; hostile files that need more are refused.
-    :param shapes: whether to read the shapes of visuals and collisions, and the dynamics of
-        joints, too.
-    :param texts: what to read instead of some files, by their paths as in ``Scene.files``: to see
-        what a change would mean before it is made.
-    :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
+    :param limits: limits of the load, against hostile files.
+    :param shapes: whether to also read the shapes of visuals and collisions, and the dynamics of
+        joints.
+    :param texts: texts to read instead of some files, by their paths as in ``Scene.files``, to try
+        a change before it is written.
+    :raises SdfError: if the file is not valid; its ``errors`` has all errors.
     """
     on_missing_include = MissingInclude(on_missing_include)
     gazebo_errors: list[SdfError] = []
@@ -97,13 +97,14 @@ def load(
             except LoadError as error:
                 if gazebo_faults is None or not document.has_gazebo_elements:
                     raise
-                # ROS does not read what <gazebo> elements hold, so that must not keep a robot from
-                # being read. What has an error is left out, and if that is not enough, all.
+                # ROS does not read the content of <gazebo> elements, so an error there must not
+                # keep a robot from being read. The invalid elements are left out, and if errors
+                # remain, all of them.
                 gazebo_errors += error.errors
                 gazebo_faults = None if gazebo_faults else {
                     each.line for each in error.errors if each.file == document.path} or None
         except LimitError as error:
-            # It ends a load at once, behind the errors found so far.
+            # It ends a load at once, after the errors found so far.
             raise LoadError([*problems.errors, error], problems.warnings) from None
 
 
@@ -135,7 +136,7 @@ def _scene(
     on_missing_include: MissingInclude, *, shapes: bool,
 ) -> Scene:
     if next(document.root.iter('include'), None) is not None:
-        # Many files have no includes and need not wait for this import.
+        # Many files have no includes and do not need this import.
         from sdf_pose_bridge.sdformat.include.expansion import IncludeExpansion
         expansion = IncludeExpansion(
             resource_finder(resource_paths, os.environ), sources,
@@ -153,8 +154,8 @@ def _model_by_itself(root: XmlElement, sources: Sources) -> ModelByItself | None
     """
     Check a model file by itself.
 
-    :param sources: where its elements were written; takes the errors of the file.
-    :return: what is known of the model; None if there are errors.
+    :param sources: the places of its elements; takes the errors of the file.
+    :return: the facts about the model that a merge needs; None if there are errors.
     """
     part = sources.with_own_problems()
     elements = elements_from_tree(root, part)

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Look up the frames that references name: siblings and downwards, never upwards.
+Look up the frames that references name: in their own scope and below, never above.
 
 Source: ``ScopedGraph.hh`` of libsdformat. A reference in a scope is the absolute name
 ``scope::reference``; nothing is searched in outer scopes.
@@ -31,7 +31,7 @@ from sdf_pose_bridge.sdformat.limits import Usage
 _OWN_FRAME = SEPARATOR + MODEL_FRAME
 _MOST_NAMES_COMPARED = 2000
 _MOST_STEPS = 300
-"""How many steps of a reference can lead to an include; elements are not nested deeper."""
+"""Largest number of steps of a reference that leads to an include, the limit of nesting."""
 
 IS_FRAME_KIND = np.array([kind.is_frame for kind in Kind])
 """For each kind whether references can name elements of it."""
@@ -56,13 +56,13 @@ class NameScopes:
         self._elements = elements
         self._usage = usage
         self._problems = problems
-        # Of the indices for hints. Itself as a key would make a circle of references.
+        # Key of the indices for hints. Using the object itself would make a circle of references.
         self._key = object()
         self.names = _absolute_names(elements, usage)
         self.roots: list[int] = ends_from_pointers(elements.parents).tolist()
         self._is_model: list[bool] = (elements.kinds == Kind.MODEL).tolist()
         self._frames = defaultdict[int, dict[str, int]](dict)
-        # Of equal names, which are errors, the first one counts.
+        # If names are equal, which is an error, the first one counts.
         for index in np.flatnonzero(IS_FRAME_KIND[elements.kinds])[::-1].tolist():
             self._frames[self.roots[index]][self.names[index]] = index
 
@@ -90,14 +90,14 @@ class NameScopes:
         return found
 
     def missing_uri(self, scope: int, reference: str) -> str:
-        """Return the URI of the missing include that a reference would lead into, else ''."""
+        """Return the URI of the missing include that a reference leads into, or ''."""
         missing = self._elements.missing_includes
         if not missing:
             return ''
         steps = reference.split(SEPARATOR, _MOST_STEPS)
         end = 0
         for count, step in enumerate(steps):
-            # Each beginning of the reference is a name that is made for this.
+            # A name is made for each beginning of the reference.
             self._usage.add('work', 1 + (len(self.names[scope]) + end) // CHARACTERS_OF_STEP,
                             lambda: self._elements.place(scope))
             outer = self.frame(scope, reference[:end]) if count else scope
@@ -120,7 +120,7 @@ class NameScopes:
         """
         Return the end of a message about a reference that names no frame.
 
-        :return: in which scope, with the likely reason or the nearest name that exists.
+        :return: the scope, and the likely reason or the nearest name.
         """
         hint = self._hint(scope, reference) if self._problems.allows_hint() else ''
         return f'names no frame in {self._described(scope)}{hint}'

@@ -1,10 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Find what a file must say so that an element is at a pose.
+Find the change of a file that moves an element to a pose.
 
-No rule of SDFormat is stated again here. A scene says which ``<pose>`` places the element and what
-it is relative to, and whether a new number is right is seen by reading the changed file.
+No rule of SDFormat is implemented here: the scene has the ``<pose>`` that places the element and
+its reference, and the new numbers are checked by reading the changed file.
 """
 
 from __future__ import annotations
@@ -46,11 +46,11 @@ Load: TypeAlias = Callable[[Mapping[str, bytes]], Scene]
 """Reads the scene with other texts instead of some of its files."""
 
 Measure: TypeAlias = Callable[[Scene, int], Pose]
-"""Returns the pose of an element in the frame that was asked for."""
+"""Returns the pose of an element in the requested frame."""
 
 
 class PoseChange(NamedTuple):
-    """What a file must say."""
+    """A change of one pose in a file."""
 
     file: FileChange
     line: int
@@ -64,19 +64,18 @@ def pose_change(
     all_instances: bool = False,
 ) -> PoseChange:
     """
-    Find what a file must say so that an element is at a pose. Nothing is written.
+    Find the change of a file that moves an element to a pose. Nothing is written.
 
-    Where the pose of a model places a frame in it, that pose is changed, unless the frame is to be
-    elsewhere in the model.
+    If the pose of a model places a frame in it, that pose is changed, unless the frame moves in
+    the model.
 
     :param asked: the pose, as ``measure`` shall return it.
-    :param measure: says where elements are, in a frame of the caller's choice. Joints may be
-        anywhere, but always at the same positions.
-    :param all_instances: whether elements that the same ``<pose>`` places may move too.
-    :return: the text of one file in which one pose is different. The pose in it is right to 1e-9
-        metres and radians.
-    :raises PoseNotSetError: if no single ``<pose>`` can say this.
-    :raises SdfError: if a file cannot be read any more.
+    :param measure: returns the pose of an element in a frame of the caller's choice, always at the
+        same positions of joints.
+    :param all_instances: whether other elements that the same ``<pose>`` places may move too.
+    :return: the change; with it, the pose is right to 1e-9 metres and radians.
+    :raises PoseNotSetError: if no change of a single ``<pose>`` gives this pose.
+    :raises SdfError: if a file can no longer be read.
     """
     try:
         return _change_of_own_pose(
@@ -118,9 +117,9 @@ def _change_of_own_pose(
     written = text.pose(target) if is_written else relative_pose(in_asked, old)
     current, tolerance = old, TOLERANCE
     for _ in range(_MOST_ATTEMPTS):
-        # What is at the pose that was asked for is C in the frame that the pose in the file
-        # places, most often the element itself. So asked = R written C before and after, and the
-        # unknown C follows from what is there now.
+        # The element has the pose C in the frame that the pose in the file places, most often the
+        # identity. So requested = R written C, before and after the change, and C follows from the
+        # current poses.
         there = pose_product(pose_product(asked, pose_inverse(current)), in_asked)
         written = pose_product(relative_pose(in_asked, there), written)
         written = Pose(*written[:3], *canonical_quaternion(written[3:]))
@@ -155,11 +154,11 @@ def _check_kind(scene: Scene, element: int) -> None:
 
 
 def _place_of_pose(scene: Scene, element: int) -> tuple[str, int, bool]:
-    """Return file and line of the pose, or of what it is to be inserted in; and which of both."""
+    """Return file and line of the pose, or else of the element; and whether it is a pose."""
     path, line = scene.place(element)[:2]
     include = scene.includes.get(element)
     if include is not None and include.file != path:
-        # The include does not place the element yet, but its pose counts.
+        # The include has no pose yet.
         return include.file, include.line, False
     pose_line = int(scene.pose_lines[element])
     return path, pose_line or line, bool(pose_line)
@@ -190,6 +189,6 @@ def _check_joints(scene: Scene, element: int, in_reference: Pose, at: Place) -> 
 
 
 def _distance(a: Pose, b: Pose) -> float:
-    """Return the distance of two poses in metres, or their angle in radians if that is larger."""
+    """Return the larger one of the distance of two poses in metres and their angle in radians."""
     between = canonical_relative_pose(a, b)
     return max(math.hypot(*between[:3]), 2.0 * math.atan2(math.hypot(*between[3:6]), between.qw))

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Resolve poses and axes, each in the frame that it is relative to, and make the scene."""
+"""Resolve poses and axes, and make the scene."""
 
 from __future__ import annotations
 
@@ -148,7 +148,7 @@ def _place_automatic_inertials(root_poses: PoseArray, elements: Elements) -> dic
     """
     Move automatic inertials to the centers of mass of their links' collisions, in place.
 
-    :return: what they are, with the axes of their links.
+    :return: the inertials, with the axes of their links.
     """
     collisions: dict[int, list[int]] = {}
     if elements.automatic_inertials:
@@ -193,7 +193,7 @@ def poses_in_references(elements: Elements, graph: FrameGraph) -> PoseArray:
     """
     Return the pose of each element in the frame that it is relative to.
 
-    That of a placement frame is replaced by that of its model frame. With the reference R, the
+    The pose of a placement frame is replaced by that of its model frame. With the reference R, the
     placement frame P and the model frame M, ``X_RM = X_RP inverse(X_MP)``. Inner models, which
     come last, are solved first.
     """

@@ -59,7 +59,7 @@ class JointAxis(NamedTuple):
     """Upper limit of the position, in radians or metres."""
     mimic: Mimic | None = None
     dynamics: Dynamics = NO_DYNAMICS
-    """What it does against a motion; nothing unless the load was to read shapes."""
+    """Defaults unless the load reads shapes."""
 
 
 class Joint(NamedTuple):
@@ -75,8 +75,7 @@ class Joint(NamedTuple):
     axes: tuple[JointAxis, JointAxis]
     """``<axis>`` and ``<axis2>``; along z where the file has none."""
     screw_pitch_m: float
-    """How far a screw joint moves along its axis in one turn; positive for a right-handed
-    thread."""
+    """Movement of a screw joint along its axis in one turn; positive for a right-handed thread."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,8 +83,8 @@ class Scene:
     """
     All elements of a file that have a pose.
 
-    Entry i of each sequence and array is about element i. Elements stand in file order, each after
-    its parent element. A scene is immutable, and its arrays are read-only.
+    Entry i of each sequence and array describes element i. Elements are in file order, each after
+    its parent. A scene is immutable, and its arrays are read-only.
     """
 
     path: str
@@ -99,14 +98,14 @@ class Scene:
     parents: Indices
     """The parent element of each element; -1 for a world and the implicit root."""
     roots: Indices
-    """The world or implicit root of each element; each of these is a tree of its own."""
+    """The world or implicit root of each element."""
     poses: PoseArray
     """Shape (n, 7): pose of each in its root, x y z in metres, unit quaternion x y z w, w >= 0."""
     references: Indices
     """The frame that the pose of each is relative to; -1 for worlds and implicit roots."""
     placements: Mapping[int, int]
-    """The frame that the pose of a model places, where this is not the model itself, by the index
-    of the model; also for the frame that replaces a merged model."""
+    """The frame that the pose of a model places, if this is not the model itself, by the index of
+    the model; also for the frame that replaces a merged model."""
     attachments: Indices
     """The frame that each frame is attached to; -1 for links, static models and roots."""
     bodies: Indices
@@ -120,14 +119,14 @@ class Scene:
     sensors: Mapping[int, SensorDetails]
     """Details of each sensor, by its index."""
     inertials: Mapping[int, Inertial]
-    """Masses and moments of inertia, by the indices of inertials; automatic ones where they are
+    """Masses and moments of inertia, by the indices of inertials; also of automatic ones that are
     computed."""
     has_shapes: bool
-    """Whether the load was to read shapes."""
+    """Whether the load read shapes."""
     shapes: Mapping[int, Shape]
-    """The shapes of visuals and collisions, by index; empty unless the load was to read them."""
+    """The shapes of visuals and collisions, by index; empty unless the load read them."""
     urdf_texts: Mapping[int, tuple[str, ...]]
-    """The XML of the elements in models that are URDF, by the indices of models that have some."""
+    """The XML of elements of URDF in models, by the indices of models."""
     lines: Indices
     """The line of each element; 0 where it is not known."""
     pose_lines: Indices
@@ -141,10 +140,10 @@ class Scene:
     world_names: Mapping[int, str]
     """The name of each world, by its index."""
     warnings: tuple[SdfWarning, ...]
-    """What libsdformat accepts, but the author of the file should know of, in file order."""
+    """The warnings, in file order."""
     urdf_root: str | None
-    """The link without a parent of a URDF that is the file or the text itself; None for SDFormat.
-    Where it is ``world``, it is the implicit root here."""
+    """The root link of a URDF that is the file or the text itself; None for SDFormat. If it is
+    called ``world``, it is the implicit root."""
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
@@ -172,7 +171,7 @@ class Scene:
 
         :param frame: absolute name such as ``robot::arm::hand``.
         :param relative_to: absolute name; empty for the world or the implicit root.
-        :param world: the world to look in, for a file that holds several.
+        :param world: the world, for a file with several.
         :return: pose of ``frame`` in ``relative_to``: x y z in metres, unit quaternion x y z w
             with w >= 0.
         :raises UnknownFrameError: if there is no such name, or more than one.
@@ -212,10 +211,10 @@ class Scene:
         """
         Find an element by its name.
 
-        Where a frame and another element have the same name, the frame is found.
+        If a frame and another element have the same name, the frame is found.
 
         :param name: absolute name such as ``robot::arm::hand``.
-        :param world: the world to look in, for a file that holds several.
+        :param world: the world, for a file with several.
         :raises UnknownFrameError: if there is no such name, or more than one.
         """
         found = self._indices.get(name, [])
@@ -240,14 +239,14 @@ class Scene:
         return Place(self.files[self.file_indices[index]], int(self.lines[index]))
 
     def with_ancestors(self, index: int) -> Iterator[int]:
-        """Iterate over an element and all that hold it, from the innermost to its root."""
+        """Iterate over an element and its ancestors, from the element to its root."""
         while index >= 0:
             yield index
             index = int(self.parents[index])
 
     @cached_property
     def default_references(self) -> Indices:
-        """The frame that the pose of each is relative to where the file does not say it."""
+        """The frame that the pose of each is relative to by default."""
         return default_references(self.kinds, self.parents, self.attachments)
 
     @cached_property
@@ -274,7 +273,7 @@ class Scene:
 
 
 _MOST_NAMED = 10
-"""How many of the elements that have the same name are named in a message."""
+"""Largest number of elements with the same name that a message names."""
 
 _FRAMES_AND_ROOTS = frozenset(
     kind for kind in Kind if kind.is_frame or kind in (Kind.WORLD, Kind.ROOT))

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which top-level models get a transform from the root frame; odometry may own the others."""
+"""Choose the top-level models that get a transform from the root frame."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from sdf_pose_bridge.tf.parents import TfParents
 
 
 class AnchorModels(enum.Enum):
-    """Which top-level models get a transform from the root frame, in a word."""
+    """The top-level models that get a transform from the root frame, by a word."""
 
     AUTO = 'auto'
     """All models of a world; those of a model file, or of URDF, like ``STATIC``."""
@@ -31,22 +31,21 @@ class AnchorModels(enum.Enum):
 
 
 class AnchorPatterns(NamedTuple):
-    """Which top-level models get a transform from the root frame, by their names."""
+    """The top-level models that get a transform from the root frame, by their names."""
 
     patterns: tuple[str, ...]
     """Glob patterns of the names of top-level models, not empty."""
     has_static: bool = False
-    """Whether models get one, too, that :attr:`AnchorModels.STATIC` means."""
+    """Whether the models of :attr:`AnchorModels.STATIC` get one too."""
 
 
 def anchors_from_text(text: str) -> AnchorModels | AnchorPatterns:
     """
-    Read which models get a transform.
+    Read a value of the parameter ``anchor_models``.
 
     :param text: a value of :class:`AnchorModels`, or glob patterns of names, separated by commas,
         such as ``table*,fence``; ``static`` may be one of them.
-    :raises ValueError: if a pattern is empty, or another word stands beside patterns; with the
-        rule.
+    :raises ValueError: with the rule, if a pattern is empty, or another word is among patterns.
     """
     words = [each.value for each in AnchorModels]
     if text in words:
@@ -69,7 +68,7 @@ def detached_bodies(
     Find the bodies that get no transform although their parent is the root.
 
     :param problems: takes warnings of patterns that no top-level model matches.
-    :return: for each element whether it is one.
+    :return: for each element whether it is such a body.
     """
     is_detached = np.zeros(len(scene.names), np.bool_)
     if anchors is AnchorModels.AUTO:
@@ -84,7 +83,7 @@ def detached_bodies(
     for body in np.flatnonzero(is_body & (scene.parents < 0)[tf_parents.parents]).tolist():
         *_, model, _ = scene.with_ancestors(body)
         is_static = body not in tf_parents.free_bodies or model in scene.static_models
-        # What hangs on the link "world" of a URDF keeps its parent.
+        # Children of the link "world" of a URDF keep their parent.
         is_detached[body] = not (
             model in anchored or (keeps_static and is_static)
             or (is_static and scene.urdf_root == WORLD_FRAME))

@@ -3,9 +3,9 @@
 """
 Make TF frame ids of scoped SDF names.
 
-``robot::arm::hand`` becomes ``robot/arm/hand``, the form in which ros_gz_bridge passes on Gazebo's
-frame ids. Kinds that may share a name with elements of other kinds have the kind before their own
-name: ``robot/link/visual/name``.
+``robot::arm::hand`` becomes ``robot/arm/hand``, as ros_gz_bridge writes Gazebo's frame ids. Kinds
+that may share a name with elements of other kinds have the kind before their own name:
+``robot/link/visual/name``.
 
 Gazebo stamps a sensor's messages with the frame id that the file sets (``frame_id``, before
 version 1.12 ``gz_frame_id``), or with one made of the sensor's name. A camera's optical frame is
@@ -36,7 +36,7 @@ _LABELLED_KINDS = (
 
 
 class FrameNames(enum.Enum):
-    """How much of a scoped name goes into the frame id."""
+    """The part of a scoped name that the frame id contains."""
 
     AUTO = 'auto'
     """Relative for a model file, scoped for a world."""
@@ -47,7 +47,7 @@ class FrameNames(enum.Enum):
 
 
 class FrameNaming(NamedTuple):
-    """How frame ids are made of scoped names."""
+    """Rules to make frame ids of scoped names."""
 
     names: FrameNames = FrameNames.AUTO
     separator: str = '/'
@@ -101,7 +101,7 @@ OPTICAL_POSE = Pose(0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
 
 
 class OpticalFrame(NamedTuple):
-    """The frame of a camera's image, beside that of the camera itself."""
+    """The frame of a camera's image, besides that of the camera itself."""
 
     frame_id: str
     camera: int

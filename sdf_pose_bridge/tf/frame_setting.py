@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Find what a file must say so that a frame is where it was measured."""
+"""Find the change of a file that moves a frame to a measured pose."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 
 class FrameChange(NamedTuple):
-    """What a file must say."""
+    """A change of one pose in a file."""
 
     file: FileChange
     diff: str
@@ -40,15 +40,15 @@ def frame_change_from_request(
     positions: JointPositions | None,
 ) -> FrameChange:
     """
-    Find what a file must say so that a frame is where it was measured. Nothing is written.
+    Find the change of a file that moves a frame to a measured pose. Nothing is written.
 
-    :param request: what is published.
-    :param fingerprint: that of the scene that is published.
+    :param request: the request of the published scene.
+    :param fingerprint: the fingerprint of the published scene.
     :param asked: the measured pose of the frame.
     :param reference: the name of the frame in which it was measured; empty for the root frame.
-    :param positions: the positions of the joints meanwhile; None if they do not move.
-    :return: the change; with it the file is valid and can be published.
-    :raises SdfError: if no pose in a file can say it.
+    :param positions: the positions of the joints at that time; None if they do not move.
+    :return: the change; the changed file is valid and can be published.
+    :raises SdfError: if no change of a single pose gives this pose.
     """
     loaded = loaded_scene_from_request(request)
     scene = loaded.scene

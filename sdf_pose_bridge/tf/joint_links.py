@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Find the frames at joints that URDF has links for, where no frame of SDFormat is.
+Find the frames at joints for which URDF needs links that SDFormat does not have.
 
 In URDF a joint is where its child link is, and has one axis.
 """
@@ -22,10 +22,10 @@ from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.joint_positions import SLIDE_SUFFIX
 
 LINK_SUFFIX = '_frame'
-"""What the name of such a link has after that of its joint."""
+"""Appended to the name of a joint for the name of such a link."""
 
 _SAME_PLACE = 1e-12
-"""Two frames that differ by less, in metres and halves of radians, are one."""
+"""Frames that differ by less, in metres and halves of radians, are the same."""
 
 
 class JointLink(NamedTuple):
@@ -39,7 +39,7 @@ class JointLink(NamedTuple):
 
 
 def is_same_place(pose: Pose) -> bool:
-    """Return whether a pose is the identity but for what arithmetic rounds."""
+    """Return whether a pose is the identity, except for rounding errors."""
     return math.dist(pose[:6], Pose()[:6]) < _SAME_PLACE
 
 
@@ -47,10 +47,9 @@ def joint_links_from_motion(
     scene: Scene, motion: JointMotion, frame_names: FrameNames,
 ) -> list[JointLink]:
     """
-    Find the frames between degrees of freedom, and those of joints away from what they move.
+    Find the frames between degrees of freedom, and those of joints away from their links.
 
-    That between the turning and the sliding of a screw joint is left out, as it is no position of
-    the joint.
+    The frame between the turning and the sliding of a screw joint is left out.
     """
     joints = np.array([dof.joint.element for dof in motion.dofs], np.int32)
     names = FrameNaming(frame_names).frame_ids_from_scene(scene, joints)

@@ -35,33 +35,33 @@ from sdf_pose_bridge.sdformat.specification import Motion
 from sdf_pose_bridge.tf.parents import TfParents
 
 NO_DOF = -1
-"""Index that means no degree of freedom."""
+"""Index for no degree of freedom."""
 
 _TURN_RAD = 2.0 * math.pi
 
 
 class DegreeOfFreedom(NamedTuple):
-    """One of the ways in which a joint can move."""
+    """A degree of freedom of a joint."""
 
     joint: Joint
     number: int | None
-    """Which axis of the joint it is, 0 or 1; None for a ball joint."""
+    """The axis of the joint, 0 or 1; None for a ball joint."""
     suffix: str
-    """What its name in ``joint_states`` has after that of the joint."""
+    """Appended to the name of the joint for its name in ``joint_states``."""
     axis: JointAxis
     """The axis with its limits; of a ball joint a fixed direction without limits."""
     rad_per_unit: float
-    """How far it turns about the axis for a position of 1."""
+    """Angle about the axis for a position of 1."""
     m_per_unit: float
-    """How far it moves along the axis for a position of 1."""
+    """Distance along the axis for a position of 1."""
 
 
 def dofs_from_joint(joint: Joint) -> list[DegreeOfFreedom]:
     """
-    List the ways in which a joint can move.
+    List the degrees of freedom of a joint.
 
-    :return: its degrees of freedom from its parent to its child; none for a fixed joint. A ball
-        joint has yaw, pitch and roll of its child in its parent.
+    :return: in order from its parent to its child; none for a fixed joint. A ball joint has yaw,
+        pitch and roll of its child in its parent.
     :raises KeyError: if :data:`JOINT_TYPES` does not have the type of the joint.
     """
     rad_and_m_per_unit = {
@@ -93,7 +93,7 @@ class JointMotion:
                 dofs += reversed(path) if is_reversed else path
                 signs += [-1.0 if is_reversed else 1.0] * len(path)
         self.dofs = tuple(dofs)
-        """All degrees of freedom; those of a joint stand together."""
+        """All degrees of freedom; those of one joint are adjacent."""
         bodies = list(ranges)
         last_of_bodies = np.full(len(scene.kinds), NO_DOF, np.int32)
         last_of_bodies[bodies] = [each[-1] for each in ranges.values()]
@@ -102,11 +102,11 @@ class JointMotion:
         self.last_dofs: Indices = np.append(
             last_of_elements, np.arange(len(dofs), dtype=np.int32))
         """For each element the last degree of freedom between the root and it; -1 for none. Then
-        each degree of freedom itself, for frames that stand between it and the next one."""
+        each degree of freedom itself, for frames between it and the next one."""
         self.moved_bodies = tuple(body for body, each in ranges.items() for _ in each)
         """The body at the end of the joint of each degree of freedom."""
         self.previous: Indices = np.arange(-1, len(dofs) - 1, dtype=np.int32)
-        """For each degree of freedom the one before it on the way from the root; -1 for none."""
+        """For each degree of freedom the previous one on the path from the root; -1 for none."""
         self.previous[[each[0] for each in ranges.values()]] = last_of_elements[
             tf_parents.parents[bodies]]
         poses = scene.poses[[each.joint.element for each in dofs]]
@@ -147,7 +147,7 @@ class JointMotion:
         rows = np.flatnonzero(last != NO_DOF)
         moved: PoseArray = poses.copy()
         if len(rows):
-            # The root comes last, where the index -1 finds it.
+            # The root comes last, at the index -1.
             edges = np.concatenate([self._displacements.poses(positions), [Pose()]])
             ends = np.append(self.previous % len(edges), NO_DOF)
             displacements = poses_along_chains(edges, ends, np.arange(len(edges)))

@@ -3,9 +3,9 @@
 """
 The current positions of joints, by the names that ``joint_states`` uses.
 
-A name is that of the joint as frame ids are made (``arm/elbow``), or as in SDF (``arm::elbow``).
-The names of models around it can be left out where no other joint is meant. A second axis is
-called ``<joint>_axis2``; a ball joint has ``<joint>_roll``, ``<joint>_pitch`` and ``<joint>_yaw``.
+A joint is named like a frame id (``arm/elbow``), or as in SDF (``arm::elbow``). The names of
+models around it can be left out if the rest is unambiguous. A second axis is called
+``<joint>_axis2``; a ball joint has ``<joint>_roll``, ``<joint>_pitch`` and ``<joint>_yaw``.
 """
 
 from __future__ import annotations
@@ -35,25 +35,25 @@ from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 
 LARGEST_POSITION = 1e9
-"""The largest position, in radians or metres, that counts as one."""
+"""The largest accepted position, in radians or metres."""
 
 SLIDE_SUFFIX = '_slide'
-"""What the second joint of a screw joint in URDF has after its name. Publishers of joint states
+"""Appended to the name of a screw joint for its second joint in URDF. Publishers of joint states
 that read URDF name it too; its position follows from the first one."""
 
 _MOST_STEPS = 10
-"""How many innermost steps of a name may stand for it."""
+"""Largest number of innermost steps of a name that can replace it."""
 
 _MOST_NAMES_SHOWN = 6
 
 
 class UnreportedJoints(enum.Enum):
-    """Where joints are that no message has named."""
+    """Treatment of joints that no message has named."""
 
     NONE = 'none'
-    """Nowhere: what they move has no pose."""
+    """The frames that they move have no pose."""
     ZERO = 'zero'
-    """At zero, where the file puts them."""
+    """They are at zero, as in the file."""
 
 
 class Follower(NamedTuple):
@@ -65,16 +65,16 @@ class Follower(NamedTuple):
 
 
 class Selection(NamedTuple):
-    """The degrees of freedom that a list of names means."""
+    """The degrees of freedom of a list of names."""
 
     rows: NDArray[np.intp]
     """The entries of the list that name degrees of freedom."""
     dofs: NDArray[np.intp]
-    """What each of these entries names."""
+    """The degree of freedom of each of these entries."""
     followers: tuple[Follower, ...]
-    """Those that follow from these, and are not named themselves; each after its leader."""
+    """Other degrees of freedom that follow these; each after its leader."""
     unknown: tuple[str, ...]
-    """The names that mean nothing, or several things."""
+    """Unknown and ambiguous names."""
 
     @property
     def changed(self) -> set[int]:
@@ -86,9 +86,9 @@ class JointPositions:
     """
     The positions of the degrees of freedom of a scene; all are zero at first.
 
-    :param frame_names: how much of a scoped name goes into the name of a joint.
+    :param frame_names: the part of a scoped name that the name of a joint contains.
     :param model: the scoped name of the only model whose joints have names; empty for all.
-    :param unreported: whether this zero counts as a position.
+    :param unreported: whether joints without a reported position count as being at zero.
     """
 
     def __init__(
@@ -99,7 +99,7 @@ class JointPositions:
         self.values = np.zeros(len(dofs))
         """The position of each degree of freedom, in radians or metres."""
         self.is_reported = np.zeros(len(dofs), np.bool_)
-        """Whether each has been given a position, or follows from one that has."""
+        """Whether each has a reported position, or follows from one that has."""
         self._unreported = unreported
         self.dofs = tuple(dofs)
         joints = np.array([each.joint.element for each in dofs], np.int32)
@@ -115,14 +115,14 @@ class JointPositions:
 
     @property
     def is_known(self) -> NDArray[np.bool_]:
-        """Whether the position of each counts."""
+        """Whether the position of each is known."""
         if self._unreported is UnreportedJoints.NONE:
             return self.is_reported
         return np.ones(len(self.dofs), np.bool_)
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """The names of those whose positions do not count, and follow from no others."""
+        """The names of those without known positions that follow from no others."""
         followers = {each.dof for found in self._followers.values() for each in found}
         return tuple(
             self.names[dof] for dof in np.flatnonzero(~self.is_known).tolist()
@@ -147,9 +147,9 @@ class JointPositions:
 
     def hint(self, name: str) -> str:
         """
-        Return the end of a message about a name that means nothing, or several things.
+        Return the end of a message about an unknown or ambiguous name.
 
-        :return: the nearest name that exists, or those that can be meant; else an empty string.
+        :return: the nearest name, or the possible names; else an empty string.
         """
         return hint_from_names(name, self._indices)
 
@@ -157,14 +157,14 @@ class JointPositions:
         """
         Set positions.
 
-        :param selection: what the values are for.
+        :param selection: the degrees of freedom of the values.
         :param values: a value for each name that was looked up, in radians or metres.
         :return: the names whose values are not finite or too large; their positions stay.
         """
         dofs, new = selection.dofs, values[selection.rows]
         invalid: list[str] = []
         sizes = np.abs(new)
-        # One that is not a number is the largest.
+        # NaN is the largest.
         if not sizes.max(initial=0.0) <= LARGEST_POSITION:
             is_valid = sizes <= LARGEST_POSITION
             invalid = [self.names[dof] for dof in dofs[~is_valid].tolist()]
@@ -182,7 +182,7 @@ class JointPositions:
         """
         Continue with the positions of joints that have the same names.
 
-        :param before: the positions in the scene that this one's scene replaces.
+        :param before: the positions in the scene that is replaced.
         """
         rows = {name: row for row, name in enumerate(before.names)}
         for dof, name in enumerate(self.names):
@@ -197,11 +197,11 @@ def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
 
     :param scene: the scene, as it was loaded.
     :param positions: positions by the names of joints, in radians or metres. All other joints stay
-        at zero, but for those that mimic one of these.
-    :return: a scene with other poses and, where a position is beyond the limits of its joint, more
-        warnings.
-    :raises JointPositionError: if a name is not that of one moving joint, or a position is not
-        finite or too large.
+        at zero, except those that mimic one of these.
+    :return: a scene with other poses, and a warning for each position beyond the limits of its
+        joint.
+    :raises JointPositionError: if a name is unknown or ambiguous, or a position is not finite or
+        too large.
     """
     motion = JointMotion(scene, tf_parents_from_scene(scene))
     state = JointPositions(scene, motion.dofs)
@@ -231,10 +231,10 @@ def _indices_from_names(
     names: Sequence[str], scene: Scene, dofs: Sequence[DegreeOfFreedom], model: str,
 ) -> dict[str, int]:
     """
-    Return all names by which a degree of freedom can be meant.
+    Return all names of the degrees of freedom, with their indices.
 
-    In URDF and in old SDFormat a joint may have the name of a link, and has another one here. Its
-    own name is still understood.
+    In URDF and in old SDFormat, a joint may have the name of a link; it is then renamed. Its own
+    name is still accepted.
     """
     own: dict[str, int] = {}
     shorter: dict[str, set[int]] = {}
@@ -247,7 +247,7 @@ def _indices_from_names(
         before = scoped.removesuffix(JOINT_SUFFIX)
         for each in {scoped, before} if scene.has(before) else {scoped}:
             steps = each.split(SEPARATOR)
-            # All endings of names that are nested deep would take the square of their memory.
+            # All endings of deeply nested names would take the square of their memory.
             for count in {0, *range(max(len(steps) - _MOST_STEPS, 0), len(steps))}:
                 for separator in (SEPARATOR, '/'):
                     alias = separator.join(steps[count:]) + dof.suffix

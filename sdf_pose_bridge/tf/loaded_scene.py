@@ -35,16 +35,16 @@ from sdf_pose_bridge.tf.tree import TfTree
 
 
 class DescriptionFormat(enum.Enum):
-    """What the topic ``robot_description`` has."""
+    """The text on the topic ``robot_description``."""
 
     AS_GIVEN = 'as_given'
-    """The text that was read, unless it is a world."""
+    """The unchanged text, unless it is a world."""
     URDF = 'urdf'
-    """URDF made of the model that is published; URDF that was read as it is."""
+    """URDF made of the published model; URDF is not changed."""
 
 
 class LoadRequest(NamedTuple):
-    """What is to be read, and how."""
+    """The settings of a load."""
 
     sdf_file: str
     """A path or a URI; empty for a text."""
@@ -58,7 +58,7 @@ class LoadRequest(NamedTuple):
 
     @property
     def source(self) -> str:
-        """The name of what is read, for people: that of the file or of the parameter."""
+        """The name of the file or of the parameter, for messages."""
         return self.sdf_file or 'robot_description'
 
 
@@ -69,23 +69,23 @@ class LoadedScene(NamedTuple):
     path: Path
     """The path of the file; of a text, the name of its parameter."""
     text: str | bytes
-    """What was read; bytes are in the encoding that they declare."""
+    """The text that was read; bytes are in the encoding that they declare."""
     description: str
-    """The text for the topic ``robot_description``; empty for a world, and for what cannot be
-    made URDF."""
+    """The text for the topic ``robot_description``; empty for a world, and if no URDF can be
+    made."""
     scene: Scene
     tree: TfTree
     lookup: PoseLookup
     joint_positions: JointPositions | None
     """The positions of its joints; None if joints do not follow ``joint_states``."""
     warnings: tuple[SdfWarning, ...]
-    """Without those about what only Gazebo would do."""
+    """Without warnings that concern Gazebo only."""
     gazebo_warning_count: int
-    """How many those are."""
+    """Number of warnings that concern Gazebo only."""
     files: tuple[str, ...]
     """All files that were read."""
     read_since_ns: int
-    """When reading began, in nanoseconds since 1970."""
+    """Time at which reading began, in nanoseconds since 1970."""
     seconds: float
     """How long reading took."""
 

@@ -33,11 +33,11 @@ class PoseLookup:
     Looks up poses in a scene and its TF tree.
 
     Names are absolute names of SDF (``robot::arm::tool``) of any kind of element, or frame ids
-    (``robot/arm/tool``), including those of optical frames. A name that is both is taken as a name
-    of SDF.
+    (``robot/arm/tool``), including those of optical frames. A name that is both is treated as a
+    name of SDF.
 
-    :param positions: the current positions of the joints; not copied. None for all joints where
-        the file puts them.
+    :param positions: the current positions of the joints; not copied. None for the positions in
+        the file.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class PoseLookup:
         return FoundPose(canonical_relative_pose(reference, pose), frame_id)
 
     def knows(self, name: str) -> bool:
-        """Return whether a name is that of a frame, of an element or of the root frame."""
+        """Return whether a frame, an element or the root frame has a name."""
         return name == self._tree.root_frame or name in self._indices or self._scene.has(name)
 
     def pose_of_element(self, element: int, relative_to: str = '') -> Pose:
@@ -87,11 +87,11 @@ class PoseLookup:
 
     def element(self, name: str) -> tuple[int, Pose]:
         """
-        Find the element whose pose decides where a frame is.
+        Find the element whose pose places a frame.
 
         :param name: a name of SDF or of TF.
-        :return: its index in the scene, and the pose of the frame in it: the identity, but for the
-            optical frame of a camera.
+        :return: its index in the scene, and the pose of the frame in it: the identity, except for
+            the optical frame of a camera.
         :raises UnknownFrameError: if the name is unknown or ambiguous.
         """
         tree = self._tree
@@ -110,7 +110,7 @@ class PoseLookup:
 
     @cached_property
     def _name_index(self) -> NameIndex:
-        """All names, put in order when one was not found for the first time."""
+        """All names, sorted when a name is not found for the first time."""
         return NameIndex([*self._indices, *self._scene.names])
 
     def _check_positions(self, first: int, second: int) -> None:

@@ -25,9 +25,9 @@ class MovingFrames:
     """
     The frames whose transforms depend on the positions of joints.
 
-    The way from the parent of a frame to the frame crosses degrees of freedom: most often one,
-    more for joints with several, and where frames between both are not published. Methods take
-    the position of each degree of freedom, shape (n,), in radians or metres.
+    The path from the parent of a frame to the frame crosses degrees of freedom: most often one,
+    more for joints with several, or if frames between both are not published. Methods take the
+    position of each degree of freedom, shape (n,), in radians or metres.
 
     :param poses: shape (n, 7): pose of each frame in the root.
     :param parents: index of the parent of each frame, or :data:`ROOT_IS_PARENT`, or
@@ -84,7 +84,7 @@ class MovingFrames:
                 transforms[rows] = pose_products(transforms[rows], poses)
             else:
                 transforms = poses
-        # They are unit already. Only the sign has to be made canonical.
+        # They are unit quaternions already. Only the sign has to be made canonical.
         quaternions = transforms[:, 3:]
         quaternions *= np.copysign(1.0, quaternions[:, 3:])
         return transforms
@@ -122,7 +122,7 @@ class MovingFrames:
         :param is_known: whether the position of each degree of freedom is known.
         :return: shape (k,).
         """
-        # The root comes last, where the index -1 finds it.
+        # The root comes last, at the index -1.
         previous = np.append(self._motion.previous, NO_DOF)
         is_unknown = np.append(~is_known, False)
         reference = NO_DOF if self._pose_frame < 0 else self.last_dof_of_frame(self._pose_frame)
@@ -148,7 +148,7 @@ class MovingFrames:
 
     def dofs_between(self, first: int, second: int) -> list[int]:
         """
-        Return the degrees of freedom that decide where two frames are to one another.
+        Return the degrees of freedom that decide the pose of one frame in another.
 
         :param first: the last degree of freedom between the root and the one; -1 for none.
         :param second: likewise for the other one.

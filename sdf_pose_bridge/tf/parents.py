@@ -1,14 +1,14 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Choose the TF parent of every element: what it is fixed to, or what a joint connects it to.
+Choose the TF parent of every element: the frame that it is fixed to or joined with.
 
-``relative_to`` says only where things start. ``attached_to`` and joints say which things move
-together. So the parent of a frame is what it is attached to, that of a model its canonical link,
-and that of a link the link on the other side of a joint.
+``relative_to`` gives initial poses only; ``attached_to`` and joints define which elements move
+together. So the parent of a frame is its attachment, the parent of a model is its canonical link,
+and the parent of a link is the link on the other side of a joint.
 
-A URDF keeps its own tree: a link that no joint connects, but for its root, hangs on a floating
-joint, and has no parent.
+A URDF keeps its own tree: a link without a joint, except the root, belongs to a floating joint and
+has no parent.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class TfParents(NamedTuple):
     free_bodies: frozenset[int]
     """Links and models whose parent is the root, although no joint connects them to it."""
     joints: Mapping[int, Joint]
-    """For each body that a joint connects to its parent: that joint."""
+    """The joint of each body that a joint connects to its parent."""
     reversed_bodies: frozenset[int]
     """Those of these bodies that are at the parent's end of their joint."""
     loop_joints: tuple[Joint, ...]
@@ -52,9 +52,8 @@ def tf_parents_from_scene(scene: Scene) -> TfParents:
     """
     Choose parents for all elements.
 
-    Of joints that form a loop the last one in the file is left out. A tree of joints starts at the
-    world if a joint connects it to the world, else at a static model, else at the canonical link
-    of a model.
+    The last joint of a loop in the file is left out. A tree of joints starts at the world if a
+    joint connects it to the world, else at a static model, else at the canonical link of a model.
 
     :return: the parents; they form one tree for each world or implicit root.
     """
@@ -91,7 +90,7 @@ def tf_parents_from_scene(scene: Scene) -> TfParents:
 
 def _elements_by_rank(scene: Scene, children: Sequence[int]) -> Indices:
     """
-    Order elements by how much a tree of joints should start at them.
+    Order elements by their preference as roots of trees of joints.
 
     :param children: the bodies that are the child of a joint.
     :return: all roots, models and links.
@@ -116,11 +115,11 @@ def _joints_from_bodies(
     ends: Sequence[tuple[int, int]], starts: Sequence[int], left_out: Container[int],
 ) -> dict[int, int]:
     """
-    Walk along joints, in both directions, from one start after the other.
+    Follow joints, in both directions, from one start after the other.
 
     :param ends: the two bodies that each joint connects, parent and child.
     :param left_out: the joints that close loops.
-    :return: for each body that a joint led to: that joint.
+    :return: for each body the joint on the way to it.
     """
     joints_of_bodies = defaultdict[int, list[int]](list)
     for joint, (parent, child) in enumerate(ends):
@@ -135,7 +134,7 @@ def _joints_from_bodies(
             for joint in joints_of_bodies.pop(body):
                 parent, child = ends[joint]
                 neighbour = parent if body == child else child
-                # Without loops only one joint leads to a body; the other end is where it led from.
+                # Without loops, only one joint leads to a body, from its other end.
                 if neighbour in joints_of_bodies:
                     joints[neighbour] = joint
                     waiting.append(neighbour)
@@ -143,7 +142,7 @@ def _joints_from_bodies(
 
 
 def _joints_that_close_loops(ends: Iterable[tuple[int, int]]) -> list[int]:
-    """Return which joints connect what the joints before them connect already (union-find)."""
+    """Return the joints whose ends are connected by earlier joints already (union-find)."""
     leaders: dict[int, int] = {}
 
     def leader(body: int) -> int:
@@ -164,8 +163,8 @@ def _parents_of_free_bodies(scene: Scene, connected: Container[int]) -> dict[int
     """
     Choose the parents of links, and of models without links, that have no parent along joints.
 
-    That is the canonical link of the model around; for a canonical link, which represents its
-    model, the canonical link of the next model around; in URDF the root.
+    It is the canonical link of their model; for a canonical link, that of the next outer model; in
+    URDF the root.
     """
     parents, canonical_links = scene.parents.tolist(), scene.canonical_links.tolist()
     is_link, is_model = scene.kinds == Kind.LINK, scene.kinds == Kind.MODEL

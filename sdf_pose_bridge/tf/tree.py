@@ -49,12 +49,12 @@ DEFAULT_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.FRAME, Kind.SENSOR})
 
 
 class TfOptions(NamedTuple):
-    """Which elements become frames, and how the frames are named."""
+    """The elements that become frames, and the rules for their names."""
 
     root_frame: str = 'world'
     """The frame id of the world, or of a model file's implicit root."""
     anchor_models: AnchorModels | AnchorPatterns = AnchorModels.AUTO
-    """Which top-level models get a transform from the root frame."""
+    """The top-level models that get a transform from the root frame."""
     model: str = ''
     """The scoped name of the only model to publish; empty for everything."""
     frame_names: FrameNames = FrameNames.AUTO
@@ -72,7 +72,7 @@ class TfOptions(NamedTuple):
     use_joint_states: bool = False
     """Whether moving joints follow ``joint_states``."""
     has_joint_links: bool = False
-    """Whether the links without mass that URDF has at joints are frames too."""
+    """Whether the links without mass at joints of URDF are frames too."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -146,7 +146,7 @@ class TfTree:
 
     @property
     def transform_count(self) -> int:
-        """How many frames have a transform."""
+        """Number of frames with a transform."""
         return int(np.count_nonzero(self.parents != NO_PARENT))
 
 
@@ -154,8 +154,8 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     """
     Make the TF tree of a scene.
 
-    :param scene: the scene; of several worlds the first one is taken.
-    :param options: which elements become frames, and how the frames are named.
+    :param scene: the scene; of several worlds, the first one counts.
+    :param options: the elements that become frames, and the rules for their names.
     :raises SdfError: if two frames would share an id, an id would be empty, or the model to
         publish does not exist; ``errors`` has all errors that were found.
     """
@@ -248,7 +248,7 @@ def _kinds(scene: Scene, options: TfOptions) -> frozenset[Kind]:
     """Return the kinds of element that become frames."""
     if scene.urdf_root is None:
         return DEFAULT_KINDS if options.kinds is None else options.kinds
-    # Two robots of one make have one name, and a frame has one parent.
+    # Robots of one type have the same name, and a frame has one parent.
     return (frozenset({Kind.LINK}) if options.kinds is None else options.kinds) - {Kind.MODEL}
 
 
@@ -277,7 +277,7 @@ def elements_in_model(scene: Scene, name: str) -> NDArray[np.bool_]:
     """
     if not name:
         return np.ones(len(scene.names), np.bool_)
-    # Of several models of that name the first one is meant.
+    # Of several models of that name, the first one counts.
     models = {
         scene.names[model]: model
         for model in np.flatnonzero(scene.kinds == Kind.MODEL)[::-1].tolist()}

@@ -1,12 +1,12 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Make a tree of links and joints, as URDF has it, from the frames of a model in TF.
+Make a tree of links and joints of URDF from the frames of a model in TF.
 
-Each frame becomes a link. A joint of URDF is where its child link is. So where a joint of SDFormat
-is not at the link that it moves, a link without a mass is put there, named after the joint, and
-the moved link is fixed to it. A joint with several degrees of freedom becomes a chain of joints
-with one each.
+Each frame becomes a link. A joint of URDF is at its child link. So if a joint of SDFormat is not
+at the link that it moves, a link without a mass is inserted there, named after the joint, and the
+moved link is fixed to it. A joint with several degrees of freedom becomes a chain of joints with
+one each.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
 
 NO_LIMIT = 1e16
-"""How users of URDF and Gazebo write a limit that is none."""
+"""The usual value in URDF and Gazebo for no limit."""
 
 _MOST_NAMES_SHOWN = 10
 
@@ -68,7 +68,7 @@ class UrdfJoint(NamedTuple):
     parent: str
     """The name of its parent link."""
     origin: Pose
-    """Its pose, which is that of its child link at zero, in its parent link."""
+    """Its pose in its parent link, also that of its child link at zero."""
     axis: JointAxis | None = None
     """Its axis with limits and dynamics; None for a fixed joint."""
     mimic: UrdfMimic | None = None
@@ -79,7 +79,7 @@ class UrdfLink(NamedTuple):
 
     name: str
     element: int
-    """The link of the scene that it is; -1 if it is another frame."""
+    """The link of the scene; -1 for another frame."""
     joint: UrdfJoint | None
     """None for the first link."""
 
@@ -91,7 +91,7 @@ class UrdfRobot(NamedTuple):
     elements: frozenset[int]
     """The elements of the scene in its model."""
     links: tuple[UrdfLink, ...]
-    """Each after its parent, and before links that are not below it."""
+    """In depth-first order, parents before children."""
     warnings: tuple[SdfWarning, ...]
 
 
@@ -128,7 +128,7 @@ def _model(scene: Scene, name: str) -> int:
 
 
 class _Names:
-    """Names that are used once each."""
+    """Unique names."""
 
     def __init__(self, used: set[str]) -> None:
         self._used = used
@@ -163,13 +163,13 @@ class _RobotMaker:
         self._link_names = _Names({self._tree.root_frame, *self._tree.frame_ids})
         self._joint_names = _Names(set())
         self._dofs: dict[tuple[int, int | None], tuple[str, Mimic | None]] = {}
-        """For each degree of freedom the name of its joint, and what it follows."""
+        """For each degree of freedom the name of its joint, and the joint that it follows."""
         self._children: defaultdict[str, list[UrdfLink]] = defaultdict(list)
 
     def robot(self) -> UrdfRobot:
         scene, tree = self._scene, self._tree
         first, root = self._first_link()
-        # The joints that move take their names first, since joint_states has them too.
+        # The joints that move are named first, since joint_states has these names too.
         steps = [self._steps(element) for element in self._elements]
         ids = (*tree.frame_ids, '', first)
         for frame, parent in enumerate(tree.parents.tolist()):
@@ -240,7 +240,7 @@ class _RobotMaker:
             if dof.m_per_unit and not dof.rad_per_unit:
                 steps.append(_Step(name, 'prismatic', axis))
             elif dof.m_per_unit and dof.number is not None:
-                # What turns in a thread slides, too.
+                # A screw joint slides too.
                 follows = Mimic(joint.element, dof.number, dof.m_per_unit, 0.0, 0.0)
                 steps.append(_Step(
                     self._joint_names.new(f'{name}{SLIDE_SUFFIX}'), 'prismatic',

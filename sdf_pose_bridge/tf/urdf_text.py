@@ -37,7 +37,7 @@ from sdf_pose_bridge.tf.urdf_robot import UrdfJoint
 from sdf_pose_bridge.tf.urdf_robot import UrdfRobot
 
 _DIGITS = 15
-"""So many digits, and decimals of poses, are written: they leave out what arithmetic rounds."""
+"""Number of digits, and of decimals of poses, so that rounding errors are not written."""
 
 
 class Urdf(NamedTuple):
@@ -45,19 +45,19 @@ class Urdf(NamedTuple):
 
     text: str
     warnings: tuple[SdfWarning, ...]
-    """What URDF cannot say of the model."""
+    """Features of the model that URDF does not have."""
 
     def __str__(self) -> str:
         return self.text
 
 
 class _Geometry(NamedTuple):
-    """A shape as URDF has it."""
+    """A shape in URDF."""
 
     tag: str
     attributes: dict[str, str]
     z_m: float = 0.0
-    """Where it is on the z axis of the shape that it is part of."""
+    """Its position on the z axis of the shape that it is part of."""
 
 
 def urdf_from_scene(
@@ -73,21 +73,22 @@ def urdf_from_scene(
     has_capsules: bool = False,
 ) -> Urdf:
     """
-    Write a model as URDF whose links are the frames that the model has in TF.
+    Write a model as URDF, whose links are the frames of the model in TF.
 
-    Every link is where TF has the frame of that name, at every position of the joints.
+    At every position of the joints, the pose of each link equals that of its frame in TF.
 
     :param scene: the scene, loaded with ``shapes=True``.
     :param model: scoped name of the model; may be empty if there is only one.
     :param kinds: the kinds of element that become links: models, links, frames and sensors
         unless others are given. Links do in any case.
-    :param frame_names: how links and joints are named: ``auto``, ``scoped`` or ``relative``.
+    :param frame_names: rule for the names of links and joints: ``auto``, ``scoped`` or
+        ``relative``.
     :param frame_separator: replaces ``::`` in names of links.
     :param optical_frames: whether each camera gets an optical frame besides its own.
     :param root_frame: the name of the first link of a model that is fixed in the world.
     :param resource_paths: directories in which meshes are searched, as for ``load``.
-    :param has_capsules: whether to write ``<capsule>``, which needs a reader of URDF 1.2, and not
-        a cylinder and two spheres.
+    :param has_capsules: whether to write ``<capsule>``, which needs a reader of URDF 1.2, instead
+        of a cylinder and two spheres.
     :raises SdfError: if the file is URDF, if there is no such model, or none is named where there
         are several, or if its frames cannot have these names.
     :raises ValueError: if the scene was loaded without shapes.
@@ -225,7 +226,7 @@ class _Writer:
                 etree.SubElement(material, 'color', rgba=text)
 
     def _geometries(self, shape: Shape, element: int) -> list[_Geometry] | str:
-        """Return a shape as URDF has it, or why it does not."""
+        """Return a shape in URDF, or the reason why URDF does not have it."""
         if shape.type == 'mesh':
             return self._mesh(shape, element)
         if shape.reason_without_surface:
@@ -253,7 +254,7 @@ class _Writer:
 
 
 def _geometry_from_part(part: Part) -> _Geometry | None:
-    """Return a body as URDF has it; None for an ellipsoid that is no sphere."""
+    """Return a body in URDF; None for an ellipsoid that is no sphere."""
     x_m, y_m, z_m = part.extent_m
     radius = {'radius': _numbers([0.5 * x_m])}
     elements = {
@@ -278,7 +279,7 @@ def _limited(limit: float) -> float:
 
 
 def _rounded(numbers: Sequence[float]) -> list[float]:
-    # To add zero leaves no negative zeros.
+    # Adding zero removes negative zeros.
     return [round(number, _DIGITS) + 0.0 for number in numbers]
 
 

@@ -32,10 +32,10 @@ from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfTree
 
 MOST_MARKERS = 10_000
-"""How many markers there may be. To send these takes a fifth of a second, in one piece."""
+"""Largest number of markers. Sending these takes a fifth of a second, in one piece."""
 
 MOST_POINTS = 150_000
-"""How many corners of triangles all markers may have together; to send these takes as long."""
+"""Largest number of corners of triangles of all markers; sending these takes as long."""
 
 _NO_POINTS = np.zeros((0, 3))
 _MARKER_TYPES = {
@@ -43,7 +43,7 @@ _MARKER_TYPES = {
 
 
 class Form(NamedTuple):
-    """What a marker looks like."""
+    """The shape of a marker."""
 
     type: str
     """The name of a constant of ``visualization_msgs/Marker``: ``CUBE``, ``SPHERE``,
@@ -51,7 +51,7 @@ class Form(NamedTuple):
     scale: tuple[float, ...] = (1.0, 1.0, 1.0)
     """Along x, y and z: metres, but factors for a mesh and triangles."""
     z_m: float = 0.0
-    """Where its center is on the z axis of the visual."""
+    """Position of its center on the z axis of the visual."""
     points: Floats = _NO_POINTS
     """Shape (3 n, 3): the corners of n triangles, one after the other; empty for others."""
     mesh_resource: str = ''
@@ -76,7 +76,7 @@ def visual_markers_from_scene(
     scene: Scene, tree: TfTree, model: str, finder: ResourceFinder,
 ) -> tuple[list[VisualMarker], tuple[SdfWarning, ...]]:
     """
-    Choose the markers of the visuals beside a TF tree.
+    Choose the markers of visuals.
 
     Visuals that are fully transparent have none. The markers of a large file are limited to
     ``MOST_MARKERS`` and ``MOST_POINTS``.
@@ -131,8 +131,8 @@ def markers_from_text(
     """
     Resolve the text of a loaded scene again, with its shapes, and make their markers.
 
-    Shapes are not read with the rest because that would make each load a quarter longer, or more,
-    and few nodes need them.
+    Other loads leave out shapes, which would make them longer by a quarter or more, and which few
+    nodes need.
 
     :param text: the text of the loaded scene.
     :param path: its path.
@@ -155,7 +155,7 @@ def markers_from_text(
 def _forms_from_shape(
     shape: Shape, file: str, finder: ResourceFinder,
 ) -> tuple[Form, ...] | str:
-    """Return what a visual looks like, or why it cannot be shown."""
+    """Return the markers of a shape, or the reason why it cannot be shown."""
     if shape.type == 'mesh':
         return _form_of_mesh(shape, file, finder)
     if shape.reason_without_surface:
