@@ -229,10 +229,13 @@ ELEMENTS = {
     'link_state': (
         '@name! angular_velocity linear_velocity:vector3 velocity:pose angular_acceleration '
         'linear_acceleration:vector3 acceleration:pose torque:vector3 force:vector3 wrench:pose '
-        'collision collision_state=link_state/collision pose'),
+        'collision_state pose'),
     'link_state/angular_acceleration': ':vector3 @degrees:bool',
     'link_state/angular_velocity': ':vector3 @degrees:bool',
-    'link_state/collision': '@name!',
+    'link_state/collision_state': '@name!',
+    'old_link_state': (
+        '@name! velocity:pose acceleration:pose wrench:pose collision=link_state/collision_state '
+        'pose'),
     'logical_camera': 'near!:double far!:double aspect_ratio!:double horizontal_fov!:double',
     'magnetometer': 'x y z',
     'material': (
@@ -245,9 +248,10 @@ ELEMENTS = {
         'albedo_map roughness_map roughness metalness_map metalness environment_map '
         'ambient_occlusion_map normal_map emissive_map light_map'),
     'mimic': '@joint! @axis multiplier!:double offset!:double reference!:double',
-    'model_state': (
-        '@name! joint=old_joint_state joint_state model=model_state model_state frame=frame pose '
-        'scale:vector3 link=link_state link_state'),
+    'model_state': '@name! joint_state model_state frame=frame pose scale:vector3 link_state',
+    'old_model_state': (
+        '@name! joint=old_joint_state model=old_model_state frame=frame pose scale:vector3 '
+        'link=old_link_state'),
     'joint_state': '@name! angle axis_state axis2_state=axis_state',
     'old_joint_state': '@name! angle+',
     'angle': ':double @axis!:uint',
@@ -317,7 +321,7 @@ ELEMENTS = {
     'spot': 'inner_angle!:double outer_angle!:double falloff!:double',
     'state': (
         '@world_name! sim_time:time wall_time:time real_time:time iterations!:uint '
-        'insertions deletions model=model_state model_state light=light_state light_state '
+        'insertions deletions model=old_model_state model_state light=light_state light_state '
         'joint_state'),
     'submesh': 'name! center:bool',
     'surface': 'bounce friction contact soft_contact',

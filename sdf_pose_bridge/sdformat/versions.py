@@ -255,13 +255,22 @@ def _replace_model_frame(frame: XmlElement, nested_model: XmlElement, prefix: st
 
 
 def _remove_prefix_from_references(xml: XmlElement, prefix: str, sources: Sources) -> None:
+    pose = first_child(xml, 'pose')
+    if pose is not None:
+        # If it is relative to another frame, that is looked up in the new model.
+        relative_to = attribute_of(pose, 'relative_to')
+        if relative_to.startswith(prefix):
+            pose.set('relative_to', relative_to[len(prefix):])
+    if xml.tag == 'model':
+        # References in it are to names in it.
+        return
     for steps, element in enumerate(xml.iter(etree.Element), 1):
         # Each model that becomes nested asks for all that is in it again.
         if steps % _STEPS_COUNTED_TOGETHER == 0:
             sources.count_work(_STEPS_COUNTED_TOGETHER, xml)
         for attribute in _REFERENCE_ATTRIBUTES:
             name = attribute_of(element, attribute)
-            if name:
+            if name and element is not pose:
                 element.set(attribute, _without_prefix(name, prefix, element, sources))
     sources.count_work(steps % _STEPS_COUNTED_TOGETHER, xml)
     if xml.tag == 'joint':

@@ -234,6 +234,17 @@ def test_values_of_a_state_by_the_names_of_version_1_12(content, right, wrong):
     assert codes_of(state(content.format(wrong))) == ['ELEMENT_INVALID']
 
 
+@pytest.mark.parametrize('content', [
+    '<model_state name="m"><link name="l"><wrench>1 2</wrench></link></model_state>',
+    '<model_state name="m"><joint name="j"><angle axis="0">x</angle></joint></model_state>',
+    '<model name="m"><link_state name="l"><force>1 2</force></link_state></model>',
+    '<model name="m"><link name="l"><force>1 2</force></link></model>',
+])
+def test_old_and_new_names_in_one_state_are_not_defined(content):
+    (warning,) = load_text(state(content)).warnings
+    assert ' is not defined in SDFormat' in warning.message
+
+
 def test_state_of_a_model_in_the_model_has_no_frames():
     model_state = '<model_state name="s"><frame name="f"/><pose>1 0 0 0 0 0</pose></model_state>'
     scene = load_text(link_with('').replace('</model>', model_state + '</model>'))

@@ -178,9 +178,29 @@ def test_joint_from_a_nested_model_to_outside_cannot_be_converted(joint):
     assert codes_of(text) == ['CONVERSION_ERROR']
 
 
-def test_reference_from_a_nested_model_to_outside_cannot_be_converted():
-    text = world('<link name="base"/><link name="n::l"><pose relative_to="base"/></link>')
+def test_reference_from_inside_a_nested_link_to_outside_cannot_be_converted():
+    text = world('<link name="base"/><link name="n::l"><visual name="v"><pose relative_to="base"/>'
+                 '<geometry/></visual></link>')
     assert codes_of(text) == ['CONVERSION_ERROR']
+
+
+def test_pose_of_a_nested_link_relative_to_a_frame_outside_is_an_error():
+    text = world('<link name="base"/><link name="n::l"><pose relative_to="base"/></link>')
+    assert codes_of(text) == ['POSE_RELATIVE_TO_INVALID']
+
+
+def test_pose_of_a_nested_link_can_be_relative_to_a_name_in_the_new_model():
+    scene = load_text(world(
+        '<link name="n::l"><pose relative_to="k">1 0 0 0 0 0</pose></link>'
+        '<link name="n::k"><pose>0 5 0 0 0 0</pose></link>'))
+    assert scene.pose('m::n::l')[:3] == (1.0, 5.0, 0.0)
+
+
+def test_references_in_a_nested_model_that_is_moved_stay():
+    scene = load_text(world(
+        '<link name="base"/><model name="n::k"><frame name="f"><pose>0 3 0 0 0 0</pose></frame>'
+        '<link name="l"><pose relative_to="f">1 0 0 0 0 0</pose></link></model>'))
+    assert scene.pose('m::n::k::l')[:3] == (1.0, 3.0, 0.0)
 
 
 def test_names_with_the_separator_are_refused_in_newer_files():
