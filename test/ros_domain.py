@@ -3,15 +3,35 @@
 """ROS domains that a test has to itself, also while other tests run beside it."""
 
 import contextlib
+from pathlib import Path
 import random
+import re
 import socket
 
 _CLAIMS = []
+_FIRST_PORT = 7400
+_PORTS = 250
+_IS_COMPLETE = (2).to_bytes(4, 'little')
 
 
 def port_of_claim(domain):
     """Return the sixth of the 250 UDP ports of a domain, which the middleware leaves alone."""
-    return 7405 + 250 * domain
+    return _FIRST_PORT + _PORTS * domain + 5
+
+
+def remove_incomplete_segments(domain, folder=Path('/dev/shm')):
+    """
+    Remove the shared memory of a domain that a killed process had begun to create.
+
+    Fast DDS waits for its completion without a limit. The first four bytes are the state that
+    boost::interprocess sets to 2 when the memory can be used.
+    """
+    for segment in folder.glob('fast*_port*'):
+        port = re.fullmatch(r'fast(?:dds|rtps)_port([0-9]+)', segment.name)
+        if port and (int(port[1]) - _FIRST_PORT) // _PORTS == domain:
+            with contextlib.suppress(FileNotFoundError), segment.open('rb') as file:
+                if file.read(4) != _IS_COMPLETE:
+                    segment.unlink()
 
 
 def claims():
@@ -37,6 +57,7 @@ def claimed_domain():
             except OSError:
                 continue
             _CLAIMS.append(claim)
+            remove_incomplete_segments(domain)
             try:
                 yield domain
             finally:

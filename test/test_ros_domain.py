@@ -10,6 +10,7 @@ import pytest
 from ros_domain import claimed_domain
 from ros_domain import claims
 from ros_domain import port_of_claim
+from ros_domain import remove_incomplete_segments
 
 
 def test_a_process_that_is_left_behind_keeps_its_domain_claimed():
@@ -23,3 +24,22 @@ def test_a_process_that_is_left_behind_keeps_its_domain_claimed():
                 other.bind(('127.0.0.1', port_of_claim(domain)))
             process.communicate(b'\n')
         other.bind(('127.0.0.1', port_of_claim(domain)))
+
+
+@pytest.mark.parametrize('state', [b'', bytes(4), b'\1\0\0\0'])
+def test_shared_memory_that_nobody_completed_is_removed(tmp_path, state):
+    segment = tmp_path / 'fastrtps_port22913'
+    segment.write_bytes(state)
+    remove_incomplete_segments(62, tmp_path)
+    assert not segment.exists()
+
+
+def test_other_shared_memory_is_kept(tmp_path):
+    complete = tmp_path / 'fastrtps_port22913'
+    complete.write_bytes(b'\2\0\0\0' + bytes(100))
+    lock = tmp_path / 'fastrtps_port22913_el'
+    lock.touch()
+    of_other_domain = tmp_path / 'fastrtps_port23150'
+    of_other_domain.touch()
+    remove_incomplete_segments(62, tmp_path)
+    assert sorted(tmp_path.iterdir()) == [complete, lock, of_other_domain]
