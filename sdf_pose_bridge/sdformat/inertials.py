@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 import math
+from operator import itemgetter
 import sys
 from typing import NamedTuple
 
@@ -20,12 +21,10 @@ import numpy as np
 from sdf_pose_bridge.errors import ElementMissingError
 from sdf_pose_bridge.errors import LinkInertiaError
 from sdf_pose_bridge.geometry.rotations import Floats
-from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import boolean_from_text
-from sdf_pose_bridge.sdformat.values import numbers_from_text
 from sdf_pose_bridge.sdformat.values import numbers_of_child
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
 from sdf_pose_bridge.sdformat.xml_tree import child_elements
@@ -38,7 +37,11 @@ DEFAULT_DENSITY_KG_M3 = 1000.0
 MOMENTS = ('ixx', 'iyy', 'izz', 'ixy', 'ixz', 'iyz')
 """The tags of the moments of an :class:`Inertial`, in their order."""
 
-_DEFAULTS = dict(zip(('mass', *MOMENTS), (1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0), strict=True))
+_MOMENTS_OF_NONE = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
+"""The moments of an inertial that has none, as libsdformat has them."""
+_DEFAULT_TEXTS = {'mass': '1'} | dict(
+    zip(MOMENTS, map(str, _MOMENTS_OF_NONE), strict=True))
+_texts_of_numbers = itemgetter(*_DEFAULT_TEXTS)
 _TOLERANCE = 10.0 * sys.float_info.epsilon
 """Of gz-math: by which part of half their sum moments may break a rule."""
 
@@ -63,12 +66,13 @@ class Inertial(NamedTuple):
         if not all(map(math.isfinite, self.moments_kg_m2)):
             return False
         tolerance = _TOLERANCE * abs(half)
-        matrix = matrix_from_moments(self.moments_kg_m2)
-        smallest, middle, largest = np.linalg.eigvalsh(matrix).tolist()
+        smallest, middle, largest = (
+            np.linalg.eigvalsh(matrix_from_moments(self.moments_kg_m2)).tolist()
+            if ixy or ixz or iyz else sorted((ixx, iyy, izz)))
         return bool(
             self.mass_kg >= 0.0 and ixx + tolerance >= 0.0
-            and ixx * iyy - ixy ** 2 + tolerance >= 0.0
-            and np.linalg.det(matrix) + tolerance >= 0.0
+            and ixx * iyy - ixy * ixy + tolerance >= 0.0
+            and _determinant(ixx, iyy, izz, ixy, ixz, iyz) + tolerance >= 0.0
             and smallest + tolerance >= 0.0 and smallest + middle + tolerance >= largest)
 
 
@@ -95,9 +99,15 @@ def _is_positive(
     xx: float, yy: float, zz: float, xy: float, xz: float, yz: float,
 ) -> bool:
     """Return whether all eigenvalues of a symmetric matrix are positive (Sylvester)."""
-    minor = xx * yy - xy * xy
-    return xx > 0.0 and minor > 0.0 and (
-        zz * minor - xx * yz * yz - yy * xz * xz + 2.0 * xy * xz * yz > 0.0)
+    return xx > 0.0 and xx * yy - xy * xy > 0.0 and _determinant(xx, yy, zz, xy, xz, yz) > 0.0
+
+
+def _determinant(
+    xx: float, yy: float, zz: float, xy: float, xz: float, yz: float,
+) -> float:
+    """Compute it with the rounding of gz-math (``Matrix3::Determinant``)."""
+    return (
+        (zz * yy - yz * yz) * xx - (zz * xy - xz * yz) * xy + (yz * xy - xz * yy) * xz)
 
 
 def matrix_from_moments(moments: Sequence[float]) -> Floats:
@@ -139,15 +149,18 @@ def inertial_from_element(
     auto = xml.get('auto')
     if auto and boolean_from_text(auto):
         return _automatic_inertial(xml, sources)
-    # Values are checked where all others are. Here each is read with little effort, since every
+    # Values are checked where all others are. Here they are read with little effort, since every
     # load does it.
-    texts = {child.tag: child.text or '' for child in xml.iterdescendants()}
+    texts = _DEFAULT_TEXTS | {child.tag: child.text for child in xml.iterdescendants()}
     try:
-        mass_kg, *moments = [float(texts[tag]) for tag in _DEFAULTS]
-    except (KeyError, ValueError):
-        mass_kg, *moments = [
-            next(iter(numbers_from_text(texts.get(tag, ''), ValueType.NUMBER)), default)
-            for tag, default in _DEFAULTS.items()]
+        mass_kg, *moments = map(float, _texts_of_numbers(texts))
+    except (TypeError, ValueError):
+        (mass_kg,) = numbers_of_child(xml, 'mass', (1.0,))
+        inertia = first_child(xml, 'inertia')
+        moments = [
+            number for tag, default in zip(MOMENTS, _MOMENTS_OF_NONE, strict=True)
+            for number in (
+                (default,) if inertia is None else numbers_of_child(inertia, tag, (default,)))]
     inertial = Inertial(mass_kg, tuple(moments))
     if not inertial.is_valid:
         link = xml.getparent()

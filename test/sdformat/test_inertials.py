@@ -54,6 +54,7 @@ def inertia(*moments, mass='2'):
     inertia(1, 1, 1, 0, 2, 0),
     inertia('nan', 1, 1, 0, 0, 0),
     inertia('inf', 1, 1, 0, 0, 0),
+    inertia(1, 1, 1, '1e200', 0, 0),
 ])
 def test_moments_that_no_body_can_have_are_a_warning(content):
     scene = load_text(link_with(f'\n{content}'), 'm.sdf')
@@ -98,6 +99,7 @@ def test_validity_is_that_of_the_principal_moments(moments):
      1, (1, 1.5, 1, 0, 0.1, 0)),
     (inertia(1, 1.1, 1.2, 0.1, 0.2, 0.3), 2, (1, 1.1, 1.2, 0.1, 0.2, 0.3)),
     ('<inertial><mass/></inertial>', 1, (1, 1, 1, 0, 0, 0)),
+    (inertia(1, '<!-- kg m2 -->1.5', 1, 0, 0, 0), 2, (1, 1.5, 1, 0, 0, 0)),
 ])
 def test_inertial_has_mass_and_moments(content, mass_kg, moments):
     assert inertial_of(content) == (mass_kg, moments)
