@@ -202,9 +202,9 @@ class _Writer:
         _add_origin(xml, pose)
         etree.SubElement(xml, 'mass', value=_numbers([inertial.mass_kg]))
         # In the order that is usual in URDF.
-        moments = dict(zip(MOMENTS, inertial.moments_kg_m2, strict=True))
+        moments = zip(MOMENTS, inertial.moments_kg_m2, strict=True)
         etree.SubElement(xml, 'inertia', {
-            name: _numbers([moments[name]]) for name in sorted(moments)})
+            name: _numbers([moment]) for name, moment in sorted(moments)})
 
     def _add_shape(self, link: etree._Element, element: int, pose: Pose) -> None:
         kind = Kind(self._scene.kinds[element]).label
@@ -216,7 +216,8 @@ class _Writer:
         name = self._scene.own_name(element)
         for number, geometry in enumerate(geometries):
             xml = etree.SubElement(link, kind, name=f'{name}_{number}' if number else name)
-            _add_origin(xml, pose_product(pose, Pose(z=geometry.z_m)))
+            _add_origin(
+                xml, pose_product(pose, Pose(z=geometry.z_m)) if geometry.z_m else pose)
             etree.SubElement(
                 etree.SubElement(xml, 'geometry'), geometry.tag, geometry.attributes)
             if kind == Kind.VISUAL.label and shape.drawn_rgba is not None:
@@ -256,13 +257,13 @@ class _Writer:
 def _geometry_from_part(part: Part) -> _Geometry | None:
     """Return a body in URDF; None for an ellipsoid that is no sphere."""
     x_m, y_m, z_m = part.extent_m
+    if part.primitive is Primitive.BOX:
+        return _Geometry('box', {'size': _numbers(part.extent_m)}, part.z_m)
     radius = {'radius': _numbers([0.5 * x_m])}
-    elements = {
-        Primitive.BOX: ('box', {'size': _numbers(part.extent_m)}),
-        Primitive.CYLINDER: ('cylinder', {**radius, 'length': _numbers([z_m])}),
-        Primitive.ELLIPSOID: ('sphere', radius) if x_m == y_m == z_m else None}
-    element = elements[part.primitive]
-    return None if element is None else _Geometry(*element, part.z_m)
+    if part.primitive is Primitive.CYLINDER:
+        return _Geometry('cylinder', {**radius, 'length': _numbers([z_m])}, part.z_m)
+    is_sphere = part.primitive is Primitive.ELLIPSOID and x_m == y_m == z_m
+    return _Geometry('sphere', radius, part.z_m) if is_sphere else None
 
 
 def _add_origin(xml: etree._Element, pose: Pose) -> None:

@@ -102,7 +102,7 @@ def pose_from_xyz_rpy(
 
 def text_from_numbers(numbers: Sequence[float], digits: int = 16) -> str:
     """Write numbers, each with so many significant digits."""
-    return ' '.join([f'{number:.{digits}g}' for number in numbers])
+    return ' '.join([f'%.{digits}g'] * len(numbers)) % tuple(numbers)
 
 
 def rpy_by_gz_math(pose: Pose) -> Sequence[float]:
