@@ -137,7 +137,7 @@ def _fixed_frame(context: LaunchContext, given: dict[str, str], params_file: str
     try:
         tree = loaded_scene_from_request(settings_from_values(values).load_request).tree
     except (SdfError, SettingsError, AddressError):
-        # The node says what is wrong.
+        # The node prints the error.
         return given['root_frame']
     return tree.fixed_frame
 

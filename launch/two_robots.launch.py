@@ -50,7 +50,7 @@ def generate_launch_description() -> LaunchDescription:
 
 
 def _bridge(**arguments: str | LaunchConfiguration) -> GroupAction:
-    # In a group, or the arguments would also apply to what is included next.
+    # In a group, or the arguments would also apply to the next included file.
     return GroupAction([IncludeLaunchDescription(
         PathJoinSubstitution([ThisLaunchFileDir(), 'bridge.launch.py']),
         launch_arguments=arguments.items())])

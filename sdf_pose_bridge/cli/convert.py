@@ -25,7 +25,7 @@ from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 
 LINES_AT_A_TIME = 10_000
-"""Lines that are converted together: fast, and memory stays bounded for input of any length."""
+"""Number of lines that are converted together, so that memory is bounded for any input."""
 
 NEGATIVE_NUMBER = re.compile(r'^-(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$|^-(inf|nan)', re.IGNORECASE)
 
@@ -63,7 +63,7 @@ def run(options: argparse.Namespace) -> int:
     """
     Convert the numbers of the arguments or the lines of standard input.
 
-    :return: exit code: 0, 1 if anything was not converted, 2 for a pose and a rotation format.
+    :return: exit code: 0; 1 if a line was not converted; 2 for a pose and a rotation format.
     """
     formats = POSE_FORMATS if options.from_format in POSE_FORMATS else ROTATION_FORMATS
     if options.to_format not in (None, *formats):
@@ -80,7 +80,7 @@ def run(options: argparse.Namespace) -> int:
         print(*_texts(result, targets), sep='\n')
         return 0
     if isinstance(sys.stdin, io.TextIOWrapper):
-        # Bytes that are not text are an error of their line only.
+        # Invalid bytes are an error in their line only.
         sys.stdin.reconfigure(errors='backslashreplace')
     exit_code = 0
     lines = (
@@ -112,7 +112,7 @@ def numbers_from_text(text: str, source: Format) -> list[float]:
     for word in text.split():
         try:
             if '_' in word or not word.isascii():
-                # float() takes 1_000 and digits of all scripts; other readers of poses do not.
+                # float() accepts 1_000 and digits of all scripts; other readers of poses do not.
                 raise ValueError
             values.append(float(word))
         except ValueError:
@@ -129,7 +129,7 @@ def numbers_from_text(text: str, source: Format) -> list[float]:
 def _print_lines(
     lines: Sequence[tuple[int, str]], source: Format, targets: Sequence[Format],
 ) -> int:
-    """Print the result or the error of each line, by its number, and return the exit code."""
+    """Print the result or the error of each line, with its number, and return the exit code."""
     exit_code = 0
     output = []
     results = _converted_or_errors([text for _, text in lines], source, targets)
@@ -137,7 +137,7 @@ def _print_lines(
         if isinstance(result, str):
             exit_code = 1
             print(f'sdf_pose convert: line {number}: {printable(result)}', file=sys.stderr)
-            # A comment keeps the lines of output beside those of input.
+            # A comment keeps the numbers of lines of output and input equal.
             output.append(f'# line {number} is not converted')
         else:
             output += _texts(result, targets)
@@ -148,7 +148,7 @@ def _print_lines(
 
 
 def _texts(result: _Result, targets: Sequence[Format]) -> list[str]:
-    """Return a line for each format, which begins with its name if there are several."""
+    """Return a line for each format, with its name if there are several."""
     width = max(len(target.name) for target in targets)
     return [
         (f'{target.name:{width}}  ' if len(targets) > 1 else '') + ' '.join(map(repr, numbers))

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""``sdf_pose diff``: which frames of two files were added, removed, renamed and moved."""
+"""``sdf_pose diff``: print the frames of two files that were added, removed, renamed or moved."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ from sdf_pose_bridge.scene.comparison import TOLERANCE
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command."""
     parser = subparsers.add_parser(
-        'diff', help='print which frames of two files differ',
-        description='Compare two files: print which elements were added, removed, renamed and '
+        'diff', help='print the differences between the frames of two files',
+        description='Compare two files: print the elements that were added, removed, renamed or '
                     'moved, one per line, with the distance and the angle. The exit code is 1 if '
                     'there is a difference, 2 if a file has an error.')
     parser.add_argument('old', metavar='OLD', help='an SDFormat file; - reads the standard input')
@@ -43,8 +43,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='compare poses relative to this frame, such as robot::arm::hand')
     parser.add_argument(
         '--tolerance', metavar='T', type=_tolerance_from_text, default=TOLERANCE,
-        help='a frame has not moved if it is as near as this, in metres and radians; by default '
-             f'{TOLERANCE:g}')
+        help='the largest distance in metres, and angle in radians, of a frame that has not '
+             f'moved; by default {TOLERANCE:g}')
     add_kinds_argument(parser, 'compare only')
     parser.set_defaults(run=run)
 

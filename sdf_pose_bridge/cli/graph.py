@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-``sdf_pose graph``: draw what poses are relative to, what is attached to what, and joints.
+``sdf_pose graph``: draw references of poses, attachments and joints.
 
 The graph is written in the language DOT; the program ``dot`` of Graphviz lays it out and draws it.
 """
@@ -41,10 +41,10 @@ digraph frames {
   edge [arrowsize=0.6]
 """
 _LEGEND = (
-    'Arrows lead from what a pose is relative to: blue where the file says relative_to, gray by '
-    'default.\\lGreen: to a frame from what it is attached to, and also relative to unless a blue '
-    'arrow leads to it.\\lBold: from the parent of a joint to the joint and on to its child, '
-    'which a joint is relative to by default.\\l')
+    'Arrows start at the frame that a pose is relative to: blue for relative_to in the file, gray '
+    'by default.\\lGreen: attached_to, and also relative to unless a blue arrow leads there.\\l'
+    'Bold: from the parent of a joint to the joint, and on to its child, the default reference of '
+    'a joint.\\l')
 _STYLES = {
     Kind.ROOT: 'shape=box style="filled,bold" fillcolor=gray90',
     Kind.WORLD: 'shape=box style="filled,bold" fillcolor=gray90',
@@ -58,11 +58,11 @@ _DEFAULT, _RELATIVE_TO, _ATTACHED_TO, _JOINT = 'gray70', 'royalblue', 'forestgre
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command."""
     parser = subparsers.add_parser(
-        'graph', help='draw what poses are relative to, attachments and joints',
-        description='Draw the frames of a file: what each pose is relative to, what frames are '
-                    'attached to, and joints with their types. Without -o the graph is printed '
-                    'in the language DOT; to draw it needs the program dot of Graphviz, which '
-                    'takes long for thousands of frames: --model draws one model.')
+        'graph', help='draw references of poses, attachments and joints',
+        description='Draw the frames of a file: the frame that each pose is relative to, '
+                    'attachments, and joints with their types. Without -o the graph is printed in '
+                    'the language DOT. Drawing needs the program dot of Graphviz, which takes '
+                    'long for thousands of frames: --model draws one model.')
     add_file_arguments(parser, takes_many=False)
     add_output_argument(
         parser, _FORMATS, f'the graph; the ending says the format: {", ".join(_FORMATS)}')
@@ -103,7 +103,7 @@ def dot_from_scene(scene: Scene, kinds: Sequence[Kind] = _KINDS, model: str = ''
     lines = [f'  label="{_LEGEND}"', *_nodes(scene, shown)]
     for (start, end), colors in edges.items():
         width = ' penwidth=2.5' if colors[0] == _JOINT else ''
-        # Several colors make several lines beside one another.
+        # Several colors make several parallel lines.
         lines.append(f'  n{start} -> n{end} [color="{":".join(colors)}"{width}]')
     return _HEAD + '\n'.join(lines) + '\n}\n'
 
@@ -132,7 +132,7 @@ def _edges(scene: Scene, chosen: Container[int]) -> dict[tuple[int, int], list[s
 
 
 def _nodes(scene: Scene, shown: Sequence[int]) -> Iterator[str]:
-    """Write the nodes; those of a model, and of the models in it, are in a box."""
+    """Write the nodes; a box contains those of a model and of its nested models."""
     joint_types = {joint.element: joint.type for joint in scene.joints}
     boxes: list[int] = []
     for element in shown:
@@ -157,7 +157,7 @@ def _escaped(name: str) -> str:
 
 
 def _write(text: str, path: Path) -> None:
-    """Write a graph in the format that the path says."""
+    """Write a graph in the format of the path."""
     if path.suffix.lower() == '.dot':
         write_text(text, path)
         return

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Load the files of a command as its arguments say, and choose their frames."""
+"""Load the files of a command, and choose their frames, by its arguments."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 from sdf_pose_bridge.tf.tree import TfOptions
 
 SHOWN_KINDS = tuple(kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD))
-"""The kinds that ``--kinds`` takes."""
+"""The kinds that ``--kinds`` accepts."""
 
 STANDARD_INPUT = '-'
-"""The argument that stands for the standard input."""
+"""The argument for the standard input."""
 
 _SHOWN_BY_NAME = {kind.label: kind for kind in SHOWN_KINDS}
 _KIND_NAMES = ', '.join(_SHOWN_BY_NAME)
@@ -47,7 +47,7 @@ class LoadedFile(NamedTuple):
 
 def add_file_arguments(parser: argparse.ArgumentParser, *, takes_many: bool = True) -> None:
     """
-    Add the files of a command, and how :func:`load_file` loads them.
+    Add the files of a command, and the arguments of :func:`load_file`.
 
     :param takes_many: whether the command takes several files.
     """
@@ -73,11 +73,11 @@ def scene_from_file(
     texts: Mapping[str, bytes] | None = None,
 ) -> Scene:
     """
-    Load a file, or what a pipe such as that of the shell's ``<(command)`` holds.
+    Load a file, or a pipe such as that of the shell's ``<(command)``.
 
     :param path: path of the file; ``-`` for the standard input, beside which includes are searched
         in the working directory.
-    :param texts: what to read instead of some files, by their paths.
+    :param texts: texts to read instead of some files, by their paths.
     :raises SdfError: if the file is not valid.
     """
     is_input = path == STANDARD_INPUT
@@ -118,7 +118,7 @@ def add_kinds_argument(
     """
     Add the argument ``--kinds``, a list of kinds.
 
-    :param what: what the command does with the kinds.
+    :param what: the beginning of the help, such as ``print only``.
     :param default: the kinds without the argument.
     """
     labels = ','.join(kind.label for kind in SHOWN_KINDS if kind in default)
@@ -149,7 +149,7 @@ def add_model_argument(parser: argparse.ArgumentParser, verb: str = 'show') -> N
     """
     Add the argument ``--model``.
 
-    :param verb: what the command does with the model.
+    :param verb: the verb of the help.
     """
     parser.add_argument(
         '--model', metavar='NAME', default='', help=f'{verb} only this model, such as robot::arm')
@@ -160,12 +160,12 @@ def add_naming_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--frame-names', choices=[names.value for names in FrameNames],
         default=FrameNames.AUTO.value,
-        help='scoped: the names of all models around an element are in its frame id; relative: '
-             'all but that of the top-level model; auto: relative for a model file')
+        help='scoped: frame ids with the names of all models around an element; relative: '
+             'without that of the top-level model; auto: relative for a model file')
 
 
 def tf_options_from_arguments(options: argparse.Namespace) -> TfOptions:
-    """Return which elements become frames, and how they are named."""
+    """Return the elements that become frames, and the rules for their names."""
     return TfOptions(
         model=options.model, kinds=frozenset(options.kinds),
         frame_names=FrameNames(options.frame_names))

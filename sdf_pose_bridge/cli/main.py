@@ -42,10 +42,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = new_parser()
     options = parser.parse_args(arguments)
     if sys.stdout is None:
-        # The caller has closed it. What is printed must fail, as it does where a disk is full.
+        # The caller has closed it. Printing must fail, as with a full disk.
         sys.stdout = os.fdopen(os.open(os.devnull, os.O_RDONLY), 'w')
     if isinstance(sys.stdout, io.TextIOWrapper):
-        # A name that the encoding of the terminal does not have must not end the command.
+        # A character that the terminal does not have must not end the command.
         sys.stdout.reconfigure(errors='backslashreplace')
     try:
         if options.version:
@@ -92,7 +92,7 @@ def new_parser() -> argparse.ArgumentParser:
     for command in (check, poses, tree, graph, view, urdf, convert, diff, set_command):
         command.add_parser(subparsers)
     if '_ARGCOMPLETE' in os.environ:
-        # The shell asks how a command line goes on. As for ros2, this works where it is installed.
+        # The shell completes a command line. As for ros2, this needs argcomplete.
         with contextlib.suppress(ImportError):
             importlib.import_module('argcomplete').autocomplete(parser, exclude=['-h', '--help'])
     return parser

@@ -58,7 +58,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(options: argparse.Namespace) -> int:
     """
-    Print the poses of files; after an invalid file the next one follows.
+    Print the poses of files; continue after an invalid file.
 
     :return: exit code: 0 if all files are valid, else 1.
     """

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Print problems and poses: colors, units and places of output."""
+"""Print problems and poses: colors, units and output files."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def is_colored(stream: TextIO) -> bool:
     """
     Return whether to print colors.
 
-    :param stream: where they would be printed.
+    :param stream: the stream to print to.
     :return: True for a terminal, unless the variable ``NO_COLOR`` is set (https://no-color.org).
     """
     return stream.isatty() and not os.environ.get('NO_COLOR')
@@ -43,7 +43,7 @@ def print_problems(
     errors: tuple[SdfError, ...], warnings: tuple[SdfWarning, ...], stream: TextIO,
 ) -> None:
     """Print errors and warnings in the order of files and lines; in color on a terminal."""
-    # What was printed before comes first, also where both streams go to one place.
+    # Earlier output comes first, also if both streams go to one place.
     sys.stdout.flush()
     has_colors = is_colored(stream)
     bold, plain = (_BOLD, _PLAIN) if has_colors else ('', '')
@@ -69,12 +69,12 @@ def in_order(*problems: tuple[_Problem, ...]) -> tuple[_Problem, ...]:
 
 
 def discard_output() -> None:
-    """Discard what is still to be printed, so that the end of the process does not fail again."""
+    """Discard pending output, so that the end of the process does not fail again."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 class CommandError(Exception):
-    """The reason, in a sentence, why a command fails."""
+    """A command fails; the text is the reason."""
 
 
 def write_text(text: str, path: Path) -> None:
@@ -91,11 +91,11 @@ def write_text(text: str, path: Path) -> None:
 
 
 class Unit(NamedTuple):
-    """A unit of lengths or angles, and how many digits of it are shown."""
+    """A unit of lengths or angles, with the number of digits to show."""
 
     name: str
     factor: float
-    """How many of it a metre or a radian is."""
+    """A metre or a radian in this unit."""
     digits: int
 
 
@@ -116,7 +116,7 @@ class Units(NamedTuple):
         :return: x, y, z, roll, pitch and yaw, rounded.
         """
         values = (*pose[:3], *rpy_from_quaternion(pose[3:]))
-        # To add zero leaves no negative zeros.
+        # Adding zero removes negative zeros.
         return [
             f'{round(value * unit.factor, unit.digits) + 0.0:.{unit.digits}f}'
             for value, unit in zip(values, 3 * [self.length] + 3 * [self.angle], strict=True)]
@@ -126,10 +126,10 @@ def add_output_argument(
     parser: argparse.ArgumentParser, formats: Sequence[str], what: str,
 ) -> None:
     """
-    Add the argument ``-o``, a path whose ending says the format.
+    Add the argument ``-o``, a path whose ending gives the format.
 
     :param formats: the endings, such as ``.svg``.
-    :param what: what is written there.
+    :param what: the content of the file.
     """
     def path_from_text(text: str) -> Path:
         path = Path(text)

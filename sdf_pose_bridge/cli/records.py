@@ -75,7 +75,7 @@ def print_csv(columns: Sequence[str], records: Iterable[Mapping[str, Any]]) -> N
 
 def print_annotations(problems: Iterable[SdfError | SdfWarning]) -> None:
     """
-    Print problems as workflow commands of GitHub Actions, which a review shows at their lines.
+    Print problems as workflow commands of GitHub Actions, for annotations in a review.
 
     Source of the syntax and the escapes: "Workflow commands for GitHub Actions" of its
     documentation, and ``command.ts`` of its toolkit.

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""``sdf_pose set``: put a measured pose into the file that places a frame."""
+"""``sdf_pose set``: write a measured pose into the file that places a frame."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ from sdf_pose_bridge.tf.tree import TfOptions
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command."""
     parser = subparsers.add_parser(
-        'set', help='put a measured pose into a file',
-        description='Change the numbers of the <pose> that places a frame, in the file where it '
-                    'stands, so that the frame is where it was measured. Nothing else in the file '
-                    'changes. The change is printed, and which other frames move with it.')
+        'set', help='write a measured pose into a file',
+        description='Change the numbers of the <pose> that places a frame to a measured pose. '
+                    'Nothing else in the file changes. The change, and the other frames that move '
+                    'with it, are printed.')
     # By default argparse parses -1e-3 as an option.
     parser._negative_number_matcher = NEGATIVE_NUMBER  # noqa: SLF001
     add_file_arguments(parser, takes_many=False)
@@ -57,11 +57,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='format of the numbers, as of "sdf_pose convert"; by default sdf_rpy: x y z roll '
              'pitch yaw in metres and radians. With a format of rotations the position stays')
     parser.add_argument(
-        '--dry-run', action='store_true', help='print what would change, and write nothing')
+        '--dry-run', action='store_true', help='print the change without writing it')
     parser.add_argument(
         '--all-instances', action='store_true',
-        help='accept that what else the same <pose> places moves too, in a file that is included '
-             'more than once')
+        help='accept that all instances of a file that is included more than once move')
     parser.set_defaults(run=run)
 
 
@@ -72,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
     :return: exit code: 0.
     :raises CommandError: for the standard input.
     :raises PoseFormatError: if the numbers are wrong.
-    :raises SdfError: if the file cannot say this, or cannot be written.
+    :raises SdfError: if the pose cannot be written into the file.
     """
     if options.files[0] == STANDARD_INPUT:
         msg = 'the standard input cannot be changed; name a file'
@@ -100,7 +99,7 @@ def run(options: argparse.Namespace) -> int:
         if name != scene.names[element]]
     try:
         if change.file.path != scene.files[0]:
-            print(f'the pose stands in {printable(change.file.path)}')
+            print(f'the pose is in {printable(change.file.path)}')
         print(change.file.diff, end='')
         if moved:
             print(f'moved with it: {", ".join(moved)}')
@@ -109,7 +108,7 @@ def run(options: argparse.Namespace) -> int:
         if options.dry_run:
             raise
         discard_output()
-        print(f'sdf_pose set: {printable(change.file.path)} says this pose now, but the change '
+        print(f'sdf_pose set: {printable(change.file.path)} has the new pose, but the change '
               f'cannot be printed: {(error.strerror or str(error)).lower()}', file=sys.stderr)
     return 0
 
@@ -119,14 +118,14 @@ def set_pose(
     all_instances: bool = False, dry_run: bool = False,
 ) -> PoseChange:
     """
-    Put the pose of an element into the file that says it.
+    Write the pose of an element into its file.
 
     :param asked: the pose, as ``measure`` shall return it.
-    :param options: how the scene was loaded.
-    :param all_instances: whether elements that the same ``<pose>`` places may move too.
+    :param options: the arguments with which the scene was loaded.
+    :param all_instances: whether other elements that the same ``<pose>`` places may move too.
     :param dry_run: whether nothing is written.
-    :return: what the file says then.
-    :raises SdfError: if the file cannot say this, or cannot be written.
+    :return: the change of the file.
+    :raises SdfError: if the pose cannot be written into the file.
     """
     def loaded(texts: Mapping[str, bytes]) -> Scene:
         return scene_from_file(options.files[0], options, texts=texts)
@@ -141,6 +140,6 @@ def _lookup(scene: Scene) -> PoseLookup:
     try:
         tree = tf_tree_from_scene(scene)
     except SdfError:
-        # Frames that would share an id have their names in SDF.
+        # Frames that would share an id keep their names in SDF.
         tree = tf_tree_from_scene(scene, TfOptions(kinds=frozenset()))
     return PoseLookup(scene, tree)

@@ -57,9 +57,9 @@ _WIDEST_INDENT = 60
 
 class _Row(NamedTuple):
     name: str
-    """What is printed."""
+    """The printed name."""
     full_name: str
-    """What a pattern is compared with."""
+    """The name that is compared with a pattern."""
     kind: str
     parent: int
     """Index of the row of the parent; -1 for none."""
@@ -71,7 +71,7 @@ class _Line(NamedTuple):
     branches: str
     row: _Row
     hidden: int
-    """How many rows below this one are not printed because they are too deep."""
+    """Number of rows below this one that are too deep to be printed."""
     is_match: bool
 
 
@@ -86,13 +86,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_format_argument(parser, CSV, JSON)
     parser.add_argument(
         '--scope', action='store_true',
-        help='print elements below those that hold them in the file, all kinds unless --kinds '
-             'is given; poses are in the frame that they are relative to, which is named where '
-             'it is not the default')
+        help='print elements as they are nested in the file, of all kinds unless --kinds is '
+             'given, with poses in the frames that they are relative to')
     add_frame_arguments(parser)
     parser.add_argument(
         '--depth', metavar='N', type=_depth_from_text, default=math.inf,
-        help='print N levels below the root, and how many frames are below them')
+        help='print N levels below the root, and the number of frames below them')
     parser.add_argument(
         '--match', metavar='GLOB', default='',
         help='print only frames whose whole name matches, such as "*tool*", and those above them')
@@ -101,7 +100,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(options: argparse.Namespace) -> int:
     """
-    Print the trees of files; after an invalid file the next one follows.
+    Print the trees of files; continue after an invalid file.
 
     :return: exit code: 0 if all files are valid, else 1.
     """
@@ -159,7 +158,7 @@ def _rows_of_frames(
 ) -> tuple[list[_Row], tuple[SdfWarning, ...]]:
     tree = tf_tree_from_scene(scene, tf_options_from_arguments(options))
     root = _Row(tree.root_frame, tree.root_frame, 'root', -1, None)
-    # The root frame is row 0, so that the index of a row is that of its frame plus one.
+    # The root frame is row 0, so the index of a row is that of its frame plus one.
     return [root, *(
         _Row(frame_id, frame_id, kind, -1, None, 'no parent') if parent == NO_PARENT
         else _Row(frame_id, frame_id, kind, parent + 1, Pose(*pose))
@@ -171,13 +170,13 @@ def _rows_of_frames(
 def _rows_by_scope(
     scene: Scene, options: argparse.Namespace,
 ) -> tuple[list[_Row], tuple[SdfWarning, ...]]:
-    """Return the elements of all worlds below those that hold them."""
+    """Return the elements of all worlds as they are nested."""
     joints = {joint.element: joint for joint in scene.joints}
     is_shown = (scene.parents < 0) | (
         elements_in_model(scene, options.model) & np.isin(scene.kinds, options.kinds))
     rows: list[_Row] = []
-    # The elements in a hidden one are shown below the next one around it. The last entry is for
-    # the parent -1.
+    # Children of a hidden element are shown below its nearest shown ancestor. The last entry is
+    # for the parent -1.
     indices = [-1] * (len(scene.names) + 1)
     for element, parent in enumerate(scene.parents.tolist()):
         indices[element] = indices[parent]
@@ -193,7 +192,7 @@ def _rows_by_scope(
 
 
 def _note(scene: Scene, element: int, joint: Joint | None) -> str:
-    """Return what else the file says about the place of an element."""
+    """Return further facts about the place of an element."""
     names, default = scene.names, scene.default_references[element]
     parts = []
     if joint is not None:
@@ -245,7 +244,7 @@ def _branches() -> Sequence[str]:
 
 
 def _widest_name(other_columns: int) -> int:
-    """Return how many characters of a line are left for a branch and a name."""
+    """Return the number of characters of a line for a branch and a name."""
     if not sys.stdout.isatty():
         return _WIDEST_NAME
     return max(shutil.get_terminal_size().columns - other_columns, _SHORTEST_NAME)

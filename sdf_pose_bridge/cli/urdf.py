@@ -23,19 +23,20 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Add the command."""
     parser = subparsers.add_parser(
         'urdf', help='write a model as URDF, whose links are the frames of TF',
-        description='Write a model as URDF, for RViz, MoveIt, ros2_control and whoever else reads '
+        description='Write a model as URDF, for RViz, MoveIt, ros2_control and other readers of '
                     'robot_description. Its links are the frames that the node publishes for the '
                     'model, at every position of its joints. Elements that URDF cannot express '
                     'are left out, with a warning.')
     add_file_arguments(parser, takes_many=False)
     parser.add_argument(
-        '-o', dest='output', metavar='PATH', type=Path, help='where to write it, instead of here')
+        '-o', dest='output', metavar='PATH', type=Path,
+        help='the file to write, instead of the standard output')
     add_kinds_argument(parser, 'make links of', DEFAULT_KINDS)
     add_model_argument(parser, 'write')
     add_naming_argument(parser)
     parser.add_argument(
         '--frame-separator', metavar='TEXT', type=_separator_from_text, default='/',
-        help='what stands for "::" in the names of links, instead of /')
+        help='the text instead of "::" in the names of links; by default /')
     parser.add_argument(
         '--capsules', action='store_true',
         help='write <capsule>, which URDF has since version 1.2, instead of a cylinder and two '

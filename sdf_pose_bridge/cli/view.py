@@ -40,12 +40,12 @@ _PORT = 8080
 _PERIOD_S = 0.05
 
 _BROWSERS = ('chromium', 'chromium-browser', 'google-chrome', 'chrome')
-# WebGL in software where there is no graphics card; no requests but those of the page.
+# WebGL in software if there is no graphics card; no requests except those of the page.
 _BROWSER_OPTIONS = (
     '--headless', '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
     '--enable-unsafe-swiftshader', '--no-first-run', '--disable-background-networking',
     '--disable-component-update', '--disable-sync', '--disable-quic',
-    # The picture is drawn when the page has had nothing to do for this long, in milliseconds.
+    # Milliseconds without activity of the page before the picture is drawn.
     '--window-size=1600,1000', '--hide-scrollbars', '--virtual-time-budget=10000')
 _ONLY_THE_SCENE = '<style>body :not(canvas, :has(canvas)) {visibility: hidden}</style>'
 _MOST_SECONDS = 300.0
@@ -67,8 +67,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help=f'the port of the page, or the next free one; by default {_PORT}')
     parser.add_argument(
         '--edit', action='store_true',
-        help='let a frame be dragged in the page, and its pose be written into the file as by '
-             '"sdf_pose set"')
+        help='drag frames in the page, and write their poses into the file as "sdf_pose set" does')
     parser.set_defaults(run=run)
 
 
@@ -84,7 +83,7 @@ def run(options: argparse.Namespace) -> int:
         msg = 'the standard input cannot be changed, as --edit would; name a file'
         raise CommandError(msg)
     viewer = _viewer()
-    # Else a browser that draws a picture would outlive this process.
+    # Otherwise a browser that draws a picture would outlive this process.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     path, read_since_ns = options.files[0], time.time_ns()
     scene = scene_of(path, options, shapes=True)
@@ -93,7 +92,7 @@ def run(options: argparse.Namespace) -> int:
         Units(options.length_unit, options.angle_unit),
         resource_finder(options.resource_paths, os.environ),
         partial(set_pose, options=options) if options.edit else None,
-        # A file has no switches.
+        # A page in a file has no switches.
         viewer.HIDDEN_AT_FIRST - ({'all names'} if options.output else set()))
     try:
         for line in page.show(scene):
@@ -118,7 +117,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _viewer() -> ModuleType:
     """
-    Import what shows the page; other commands need none of this.
+    Import the viewer, which other commands do not need.
 
     :raises CommandError: if a library is missing or too old.
     """
@@ -157,7 +156,7 @@ def _how_to_install() -> str:
 
 
 def _open(address: str) -> None:
-    # This is imported here because the other commands need not wait for it.
+    # Imported here because other commands do not need it.
     import webbrowser
     print(address, flush=True)
     if not webbrowser.open(address):
@@ -166,7 +165,7 @@ def _open(address: str) -> None:
 
 
 def _follow(page: Any, watcher: FileWatcher, options: argparse.Namespace) -> None:
-    """Show the file again whenever it, or a file that it includes, changes; never returns."""
+    """Show the file again whenever it or an included file changes; never returns."""
     while True:
         page.act(_PERIOD_S)
         if watcher.has_changed():
@@ -189,7 +188,7 @@ def _picture(page: str) -> bytes:
     if browser is None:
         msg = 'a picture needs Chrome or Chromium; a file that ends with .html does not'
         raise FileNotFoundError(msg)
-    # The last processes of the browser may still write while the first has ended.
+    # Other processes of the browser may still write after the first one has ended.
     with tempfile.TemporaryDirectory(
             prefix='sdf_pose_view_', ignore_cleanup_errors=True) as folder:
         source, picture = Path(folder, 'page.html'), Path(folder, 'picture.png')

@@ -71,7 +71,7 @@ class Format(NamedTuple):
 
 
 class Given(enum.IntEnum):
-    """Which representation of a rotation is given; the constants of ConvertRotation.srv."""
+    """The given representation of a rotation; the constants of ConvertRotation.srv."""
 
     RPY = 0
     QUATERNION = 1
@@ -147,7 +147,7 @@ def converted_rotation(
     """
     Return both representations of one rotation, as the service ConvertRotation does.
 
-    :param given: which of the next two is converted, a value of :class:`Given`; the other one is
+    :param given: a value of :class:`Given`, which chooses one of the next two; the other one is
         ignored.
     :param rpy: roll, pitch, yaw, of any size.
     :param quat_xyzw: x, y, z, w, of any norm but zero.

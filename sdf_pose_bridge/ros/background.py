@@ -18,15 +18,15 @@ PERIOD_S = 0.25
 """Seconds between two evaluations of the condition of a :class:`PollingThread`."""
 
 LARGEST_SHARE = 0.001
-"""Largest share of a core for evaluating it; where that takes long, the period gets longer."""
+"""Largest share of a core for evaluating it; if this takes long, the period gets longer."""
 
 
 def run_in_thread(node: Node, function: Callable[[], object]) -> Future:
     """
-    Run a function in a thread of its own, which does not keep the process from ending.
+    Run a function in a separate thread, which does not keep the process from ending.
 
     :param node: a node with an executor.
-    :param function: what to run; it must not use the node.
+    :param function: the function; it must not use the node.
     :return: a future for its result or exception, which a coroutine on the executor can await.
     :raises MemoryError: if no thread can be started.
     """
@@ -38,13 +38,13 @@ def run_in_thread(node: Node, function: Callable[[], object]) -> Future:
             try:
                 future.set_result(function())
             except MemoryError:
-                pass  # here its traceback still keeps all that the function has made
+                pass  # its traceback still references the objects of the function here
             except Exception as error:  # noqa: BLE001 - raised where the future is awaited
                 future.set_exception(error)
             if not future.done():
                 future.set_exception(MemoryError('out of memory'))
         except MemoryError:
-            # Without a result, the callbacks that wait for it would be blocked for ever.
+            # Without a result, callbacks that wait for it would be blocked forever.
             os._exit(1)
         # The executor resumes coroutines only when it wakes up. It may have been shut down.
         with contextlib.suppress(InvalidHandle):
@@ -60,12 +60,12 @@ def run_in_thread(node: Node, function: Callable[[], object]) -> Future:
 
 async def run_other_callbacks(node: Node) -> None:
     """
-    Let the executor run other callbacks before it goes on with the coroutine that awaits this.
+    Let the executor run other callbacks before it resumes the coroutine that awaits this.
 
     :param node: a node with an executor.
     """
-    # To wake the executor is what the task is for: releases of rclpy differ in whether it wakes up
-    # by itself to go on with a coroutine when the task that the coroutine awaits has ended.
+    # The task wakes the executor: in some releases of rclpy it does not wake up by itself to
+    # resume a coroutine when the awaited task has ended.
     await node.executor.create_task(node.executor.wake)
 
 
@@ -94,7 +94,7 @@ class CoroutineLock:
         assert self._released is not None
         released, self._released = self._released, None
         released.set_result(None)
-        # Some releases of rclpy do not wake up by themselves for those that wait.
+        # Some releases of rclpy do not wake up by themselves to resume waiting coroutines.
         self._node.executor.wake()
 
 
@@ -102,8 +102,8 @@ class PollingThread:
     """
     A thread that calls a function whenever a condition is true.
 
-    A timer of the node would wake its executor for each look at the condition, which takes ten
-    times as much of the processor.
+    A timer of the node would wake its executor for each evaluation, which takes ten times as much
+    processor time.
 
     :param condition: is evaluated every ``PERIOD_S``.
     :param call: is called if it is true; nothing more happens until :meth:`resume`.
@@ -123,7 +123,7 @@ class PollingThread:
         period = PERIOD_S
         while True:
             time.sleep(period)
-            # A look that waits, for a disk or for a core, must not make the next one late.
+            # Waiting for a disk or a core must not lengthen the period.
             begin = time.thread_time()
             is_due = self._condition()
             period = max(PERIOD_S, (time.thread_time() - begin) / LARGEST_SHARE)

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The executables of the node; they handle signals before they import ROS, which takes a while."""
+"""The executables of the node; they handle signals before the slow import of ROS."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ import signal
 import sys
 
 BUILD_COMMAND = 'colcon build --base-paths src src/<repo>/sdf_pose_bridge_interfaces'
-"""Builds both packages in a workspace, where plain ``colcon build`` finds only one of them."""
+"""Builds both packages in a workspace; plain ``colcon build`` finds only one of them there."""
 
 MISSING_INTERFACES = (
     'sdf_pose_bridge_interfaces is not built or not in this environment; in the workspace type '
     f'"{BUILD_COMMAND}" (<repo> is the folder of the repository) and then '
     '". install/setup.bash"')
-"""What to do if the interfaces are missing."""
+"""Message if the interfaces are missing."""
 
 MISSING_MODULE = (
     'the Python module {module} is missing; the node needs a shell with ROS 2, as after '
-    '". /opt/ros/jazzy/setup.bash", and what "rosdep install --from-paths src '
+    '". /opt/ros/jazzy/setup.bash", and the packages that "rosdep install --from-paths src '
     'src/<repo>/sdf_pose_bridge_interfaces --ignore-src" installs (<repo> is the folder of the '
     'repository)')
-"""What to do if another module is missing that the node imports."""
+"""Message if another module is missing that the node imports."""
 
 
 def robot_state_publisher() -> int:
@@ -41,15 +41,15 @@ def main(args: Sequence[str] | None = None, program: str = 'bridge') -> int:
     :return: exit code: 0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
     for number in (signal.SIGINT, signal.SIGTERM):
-        # Not an exception, which the import that it interrupts could catch or report.
+        # No exception, which the interrupted import could catch or report.
         signal.signal(number, lambda _number, _frame: os._exit(0))
     # The installed executable has blocked them in its first line.
     signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT, signal.SIGTERM])
-    # Collecting garbage would take a tenth of the start, and there is none.
+    # Garbage collection would take a tenth of the start, and there is no garbage.
     gc.disable()
     # Threads of numpy for large matrices, which the node does not have, would spin at first.
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
-    # Look up the functions of ROS's libraries when they are called, as programs in C++ do.
+    # Resolve functions of ROS's libraries at their first call, as programs in C++ do.
     sys.setdlopenflags(os.RTLD_LAZY)
     try:
         from sdf_pose_bridge.ros.process import run
@@ -63,7 +63,7 @@ def main(args: Sequence[str] | None = None, program: str = 'bridge') -> int:
 
 
 def sentence_from_import_error(error: ImportError) -> str:
-    """Explain what to do about a failed import."""
+    """Return a message with a remedy for a failed import."""
     module = (error.name or '').partition('.')[0]
     if module == 'sdf_pose_bridge_interfaces':
         return MISSING_INTERFACES

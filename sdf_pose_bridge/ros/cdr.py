@@ -1,15 +1,15 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Serialize messages about frames straight from arrays, and read serialized joint states into one.
+Serialize messages about frames from arrays, and read serialized joint states into an array.
 
-This saves the message objects of rclpy, which take 200 ms for 10,000 transforms; for a JointState
-they take longer than all that the node does with it. The format is plain CDR, version 1: the four
-bytes 0 1 0 0 (or 0 0 0 0 if it is big-endian, which is only read), then the fields one after the
-other. Each number is at a multiple of its size, counted from behind the four bytes. A string is
-its length as uint32, its UTF-8 bytes and a zero, which the length includes. A sequence is its
-length as uint32 and its entries. Source: OMG, DDS-XTypes 1.3, chapter 7.4.1, and the definitions
-of TFMessage, TransformStamped, PoseStamped and JointState.
+This avoids the message objects of rclpy, which take 200 ms for 10,000 transforms; for a JointState
+they take longer than its processing. The format is plain CDR, version 1: the four bytes 0 1 0 0
+(or 0 0 0 0 if it is big-endian, which is only read), then the fields one after the other. Each
+number is at a multiple of its size, counted from behind the four bytes. A string is its length as
+uint32, its UTF-8 bytes and a zero, which the length includes. A sequence is its length as uint32
+and its entries. Source: OMG, DDS-XTypes 1.3, chapter 7.4.1, and the definitions of TFMessage,
+TransformStamped, PoseStamped and JointState.
 """
 
 from __future__ import annotations
@@ -33,16 +33,16 @@ _STAMP = 8
 _NUMBERS = 7 * 8
 _BYTES_AT_A_TIME = 100_000
 _HEADER = 8
-"""Room before the fields of a message: four bytes of padding, then the four fixed ones."""
+"""Bytes before the fields of a message: four bytes of padding, then the four fixed ones."""
 
 _ORDERS = {b'\0\0': '>', b'\0\1': '<'}
 """The order of bytes in plain CDR, by the first two bytes."""
 
 MOST_BYTES = 1_000_000
-"""The size of a message that is read; other callbacks wait meanwhile."""
+"""Largest size of a message that is read; other callbacks wait meanwhile."""
 
 _START = 4
-"""Where the fields begin in a message, and what alignment is counted from."""
+"""Offset of the fields in a message, from which alignment is counted."""
 
 
 class StampedMessages(NamedTuple):
@@ -55,7 +55,7 @@ class StampedMessages(NamedTuple):
     numbers: NDArray[np.int64]
     """Indices of the seven numbers behind each stamp, in a buffer of numbers; shape (n, 7)."""
     bounds: Sequence[tuple[int, int]]
-    """Offsets of the first byte of each message, and of the one behind its last."""
+    """Offsets of the first byte of each message and of the byte behind its last one."""
 
     def with_stamp(self, sec: int, nanosec: int) -> list[bytes]:
         """
@@ -121,12 +121,12 @@ def _records(
 
     :param columns: sequences of as many strings as there are records.
     :param poses: the seven numbers of each record.
-    :param room: bytes to leave free at the beginning of each record.
+    :param room: number of free bytes at the beginning of each record.
     :param start: offset of the first record in the buffer, a multiple of 8. All others follow at
         multiples of 8, since each one ends with the numbers.
-    :return: a buffer with the records, which have zeros for stamps; the indices of the stamp and
-        of the numbers of each record, as :class:`StampedMessages` takes them; and the offset
-        behind its last byte.
+    :return: a buffer with the records, with zero stamps; the indices of the stamp and of the
+        numbers of each record, as in :class:`StampedMessages`; and the offset behind its last
+        byte.
     """
     # Offsets in a record at first, one for each record.
     offsets = room + _STAMP
@@ -150,7 +150,7 @@ def _records(
         bounds = np.append(0, np.cumsum(lengths))
         # Each byte moves as far as the first one of its string.
         moves = begins + place + _LENGTH - bounds[:-1]
-        # The indices of all bytes at once would take many times the memory of long strings.
+        # The indices of all bytes at once would take many times the memory of the strings.
         parts = np.searchsorted(bounds[:-1], np.arange(0, len(data), _BYTES_AT_A_TIME))
         for first, last in pairwise([*parts.tolist(), len(lengths)]):
             begin, end = bounds[[first, last]].tolist()
@@ -163,14 +163,14 @@ def _records(
 
 
 class JointStateBytes(NamedTuple):
-    """What is read of a message."""
+    """The fields of a JointState that are read."""
 
     stamp: tuple[int, int]
     """Seconds and nanoseconds."""
     names: tuple[str, ...]
     positions: NDArray[np.float64]
     serialized_names: bytes
-    """The bytes that align the names may differ from message to message."""
+    """Bytes of alignment between the names may differ from message to message."""
 
 
 def joint_state_from_bytes(data: bytes, before: JointStateBytes | None = None) -> JointStateBytes:
@@ -178,7 +178,7 @@ def joint_state_from_bytes(data: bytes, before: JointStateBytes | None = None) -
     Read a message.
 
     :param data: the serialized message.
-    :param before: a message before; if the names are the same, they need not be read again.
+    :param before: an earlier message; equal names are not read again.
     :raises ValueError: if it is not a whole message in plain CDR, or if it is too large.
     """
     if len(data) > MOST_BYTES:
@@ -205,7 +205,7 @@ def joint_state_from_bytes(data: bytes, before: JointStateBytes | None = None) -
                 read.append(data[place + 4:end - 1].decode(errors='replace'))
             names = tuple(read)
         (count,) = struct.unpack_from(f'{order}I', data, _aligned(end, 4))
-        # Numbers are aligned to eight bytes, counted from where the fields begin.
+        # Numbers are aligned to eight bytes, counted from the beginning of the fields.
         numbers = _aligned(_aligned(end, 4) + 4 - _START, 8) + _START
         positions = np.frombuffer(data, f'{order}f8', count, numbers)
     except (struct.error, ValueError) as error:

@@ -1,9 +1,9 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Publish on ``/diagnostics`` what is served, and whether the last load succeeded.
+Publish on ``/diagnostics`` the state of the node and the result of the last load.
 
-The package diagnostic_updater is not used because it would add parameters of its own to the node.
+The package diagnostic_updater is not used because it would add parameters to the node.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ PERIOD_S = 2.0
 """
 Seconds between two messages.
 
-Monitors call a status stale after five seconds. Waking the executor is most of what an idle node
-costs.
+Monitors call a status stale after five seconds. Waking the executor takes most of the processor
+time of an idle node.
 """
 
 
@@ -50,7 +50,7 @@ class Diagnostics:
         self._message = DiagnosticArray()
 
     def switch(self, *, on: bool) -> None:
-        """Publish from now on, or no more."""
+        """Start or stop publishing."""
         if on and self._publisher is None:
             self._publisher = new_publisher(
                 self._node, Topic('/diagnostics', DiagnosticArray, depth=10, is_latched=False))
@@ -61,10 +61,9 @@ class Diagnostics:
 
     def update(self, loaded: LoadedScene, failure: Sequence[str] = ()) -> None:
         """
-        Publish another status from now on.
+        Change the status.
 
-        :param failure: what was wrong at the last load, one line for each error; empty if the
-            last load succeeded.
+        :param failure: the errors of the last load, one line each; empty if it succeeded.
         """
         self._last = loaded, failure
         self.publish()
@@ -85,12 +84,12 @@ def status_from_scene(
     loaded: LoadedScene, failure: Sequence[str], unreported_joints: Sequence[str], name: str,
 ) -> DiagnosticStatus:
     """
-    Describe what is served in a status.
+    Return the status of the node.
 
-    :param failure: what was wrong at the last load; empty if it succeeded.
+    :param failure: the errors of the last load; empty if it succeeded.
     :param unreported_joints: the names of joints whose positions are missing.
-    :return: ERROR if the last load failed, while what was loaded before is still served; WARN if
-        what is served has warnings, or joints without positions; otherwise OK.
+    :return: ERROR if the last load failed, so that the scene before it is still published; WARN if
+        the scene has warnings or joints without positions; otherwise OK.
     """
     warnings = loaded.warnings
     loaded_at = datetime.datetime.fromtimestamp(
@@ -111,7 +110,7 @@ def status_from_scene(
     }
     if failure:
         level = DiagnosticStatus.ERROR
-        text = f'the last load failed, what was loaded before is served: {failure[0]}'
+        text = f'the last load failed, the scene before it is published: {failure[0]}'
     elif unreported_joints:
         level = DiagnosticStatus.WARN
         text = line_about_unreported_joints(unreported_joints)

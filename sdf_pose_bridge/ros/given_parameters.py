@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Take the values that parameters are given: when the node is started, and later."""
+"""Convert values of parameters to settings, at the start of the node and later."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ def settings_from_node(
     node: Node, defaults: Mapping[str, Value] | None = None, file: str = '',
 ) -> Settings:
     """
-    Declare all parameters on a node with the values that it was given, and convert these.
+    Declare all parameters on a node with their given values, and convert these.
 
     :param defaults: defaults of parameters, where they differ from those of their declarations.
-    :param file: the file to publish, unless parameters say what to publish.
+    :param file: the file to publish, unless parameters name a file or a text.
     :raises SettingsError: if a value has the wrong type or is not allowed.
     """
     given = _given_parameters(node)
@@ -63,7 +63,7 @@ def settings_from_values(values: Mapping[str, Any]) -> Settings:
     """
     Convert values of parameters without a node.
 
-    :param values: values by the names of parameters; the others have their defaults.
+    :param values: values by the names of parameters; other parameters have their defaults.
     :raises SettingsError: if a value has the wrong type or is not allowed.
     """
     given = {name: Parameter(name, value=value) for name, value in values.items()}
@@ -110,8 +110,8 @@ def warnings_about_unknown_parameters(
     """
     Find parameters that were given when the node was started, but that it does not have.
 
-    :param known_elsewhere: names that mean nothing here, and need no warning.
-    :param only_misspelt: whether to leave out those that are not like the name of a parameter.
+    :param known_elsewhere: names of parameters of other nodes, which cause no warning.
+    :param only_misspelt: whether to leave out names that are not similar to that of a parameter.
     """
     hints = {
         name: hint_from_names(name, DECLARATIONS) for name in _given_parameters(node)
@@ -123,14 +123,14 @@ def warnings_about_unknown_parameters(
 
 
 def _given_parameters(node: Node) -> Mapping[str, Parameter]:
-    """Return what was given when the node was started, by names."""
+    """Return the parameters that were given when the node was started, by names."""
     given: Mapping[str, Parameter] | None = getattr(node, '_parameter_overrides', None)
     return _given_declared_parameters(node) if given is None else given
 
 
 def _given_declared_parameters(node: Node) -> Mapping[str, Parameter]:
     """
-    Return values of those parameters that are declared here, in the public way of rclpy.
+    Return values of the parameters that are declared here, by the public interface of rclpy.
 
     It takes longer, and does not show parameters that are not declared here.
     """
@@ -153,7 +153,7 @@ def _parameters_at_start(
         if parameter is not None and parameter.type_ is not Parameter.Type.NOT_SET:
             type_, value = parameter.type_, parameter.value
         elif parameter is not None and type_ is Parameter.Type.STRING_ARRAY:
-            # rclpy reads an empty list on the command line as no value.
+            # rclpy treats an empty list on the command line as no value.
             value = []
         parameters.append(parameter_with_type(Parameter(name, type_, value), declaration.type_))
     return parameters
@@ -191,7 +191,7 @@ def _converted(given: Parameter, *, shows_command_line: bool) -> Any:
 
 def parameter_with_type(given: Parameter, wanted: Parameter.Type) -> Parameter:
     """
-    Give a value another type in which it has the same meaning.
+    Convert a value to another type of the same meaning.
 
     :return: an integer as a number, or an empty list of any type as a list of strings, if that is
         the wanted type; otherwise the value as it was given.
@@ -206,7 +206,7 @@ def parameter_with_type(given: Parameter, wanted: Parameter.Type) -> Parameter:
 
 def words_about_wrong_type(given: Parameter, wanted: Parameter.Type) -> str:
     """
-    Explain that a value has the wrong type.
+    Return a message about a value of the wrong type.
 
     :return: the words that follow "parameter <name>" in a sentence.
     """
@@ -218,7 +218,7 @@ def words_about_wrong_type(given: Parameter, wanted: Parameter.Type) -> str:
 
 def hint_about_command_line(given: Parameter, wanted: Parameter.Type) -> str:
     """
-    Show how to write a value of the wrong type on the command line.
+    Return a hint for writing a value of the wrong type on the command line.
 
     :return: the end of a sentence; empty if there is nothing to show.
     """

@@ -21,7 +21,7 @@ from sdf_pose_bridge.tf.tree import elements_in_model
 from sdf_pose_bridge.tf.tree import TfTree
 
 MOST_LINES = 20
-"""How many errors, warnings or names are logged; a broken generated file may have thousands."""
+"""Largest number of errors, warnings or names in the log; a generated file may have thousands."""
 
 
 def lines_from_error(error: Exception) -> list[str]:
@@ -42,7 +42,7 @@ def lines_from_warnings(warnings: Sequence[object]) -> list[str]:
     """
     Return one line for each warning.
 
-    :param warnings: objects that ``str`` makes a text of.
+    :param warnings: objects with a text for ``str``.
     :return: at most ``MOST_LINES`` lines, and one more if there are more warnings.
     """
     return _first_lines(warnings, 'warning')
@@ -52,18 +52,18 @@ def names_in_line(names: Sequence[str]) -> str:
     """
     Return names separated by commas.
 
-    :return: at most ``MOST_LINES`` names, and how many more there are.
+    :return: at most ``MOST_LINES`` names, and the number of the others.
     """
     return printable(quoted_names(names, MOST_LINES))
 
 
 def lines_about_lost_frames(before: TfTree, after: TfTree) -> list[str]:
     """
-    Name the frames that had a transform and have none now, which TF cannot forget.
+    Return lines about frames that have lost their transforms; TF cannot forget them.
 
     :param before: the tree that was published before.
     :param after: the tree that is published now.
-    :return: a line about those that have vanished, and one about those without a parent, if any.
+    :return: a line about removed frames, and one about frames without a parent, if any.
     """
     lost = _children(before) - _children(after)
     detached = sorted(lost.intersection(after.frame_ids))
@@ -81,12 +81,12 @@ def lines_about_lost_frames(before: TfTree, after: TfTree) -> list[str]:
 
 
 def line_about_detached_models(tree: TfTree, scene: Scene) -> str:
-    """Name the roots of trees below no other frame; return '' if there are none."""
+    """Return a line with the roots of trees without a parent frame; '' if there are none."""
     is_parent = np.isin(np.arange(len(tree.parents)), tree.parents)
     roots: dict[int, list[int]] = {}
     for frame in np.flatnonzero(tree.parents == NO_PARENT).tolist():
         roots.setdefault(_top_level_element(frame, tree, scene), []).append(frame)
-    # Frames beside the root of a model have no parent where their links are not published.
+    # Other frames of a model have no parent if their links are not published.
     names = [
         tree.frame_ids[frame] for frames in roots.values()
         for frame in [each for each in frames if is_parent[each]] or frames[:1]]
@@ -99,27 +99,27 @@ def line_about_detached_models(tree: TfTree, scene: Scene) -> str:
 
 
 def line_about_gazebo(count: int) -> str:
-    """Count warnings about what only Gazebo would do; return '' if there are none."""
+    """Return a line with the number of warnings for Gazebo only; '' if there are none."""
     if not count:
         return ''
     return (
-        f'{count_in_words(count, "warning")} about what only Gazebo would do with this URDF '
+        f'{count_in_words(count, "warning")} for use with Gazebo only '
         f'{"is" if count == 1 else "are"} not shown; "sdf_pose check" shows '
         f'{"it" if count == 1 else "them"}')
 
 
 def line_about_unreported_joints(names: Sequence[str]) -> str:
-    """Say how many joints, one at least, nobody has reported, and name the first one."""
+    """Return a line with the number of joints without reported positions, at least one."""
     have = 'has' if len(names) == 1 else 'have'
     return (
         f'{count_in_words(len(names), "joint")} {have} not been reported yet, for example '
-        f'{names_in_line(names[:1])}; what a joint moves has no transform until a message on '
-        'joint_states names the joint')
+        f'{names_in_line(names[:1])}; frames that a joint moves have no transforms until a '
+        'message on joint_states names the joint')
 
 
 def line_about_joints_at_rest(scene: Scene, model: str) -> str:
     """
-    Say that joints stand still; return '' if no joint can move.
+    Return a line that joints do not move; '' if no joint can move.
 
     :param model: the scoped name of the only model that is published; empty for everything.
     """
@@ -133,7 +133,8 @@ def line_about_joints_at_rest(scene: Scene, model: str) -> str:
     return (
         f'{count_in_words(len(names), "joint")} that can move, for example '
         f'{names_in_line(names[:1])}, {"stays" if len(names) == 1 else "stay"} where the file '
-        'says; with the parameter use_joint_states joints follow the topic joint_states')
+        f'puts {"it" if len(names) == 1 else "them"}; with the parameter use_joint_states, joints '
+        'follow the topic joint_states')
 
 
 def count_in_words(number: int, what: str) -> str:

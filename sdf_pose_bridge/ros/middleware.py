@@ -3,8 +3,8 @@
 """
 Choose the profile of Fast DDS, the default middleware of ROS 2.
 
-With its default settings the first message arrives late in many starts; the profiles of this
-package say why.
+With its default settings, the first message arrives late in many starts, as the profiles of this
+package explain.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from ament_index_python.packages import get_package_share_directory
 
 
 class Profile(NamedTuple):
-    """A profile of this package, and what the Fast DDS that it is for reads by itself."""
+    """A profile of this package, and the other sources of profiles of its Fast DDS."""
 
     file: str
-    """The profile, below the share directory of this package."""
+    """Path of the profile in the share directory of this package."""
     variable: str
-    """The environment variable that names the file of profiles to use."""
+    """The environment variable with the path of a file of profiles."""
     local_file: str
-    """The file of profiles that is used if it is in the working directory."""
+    """The name of a file of profiles that is used in the working directory."""
 
 
 FAST_DDS_2 = Profile(
@@ -35,10 +35,10 @@ FAST_DDS_3 = Profile(
     'config/fastdds3_profile.xml', 'FASTDDS_DEFAULT_PROFILES_FILE', 'DEFAULT_FASTDDS_PROFILES.xml')
 
 PROFILES = {'jazzy': FAST_DDS_2, 'kilted': FAST_DDS_3, 'lyrical': FAST_DDS_3}
-"""The profile for each distribution of ROS 2; each Fast DDS refuses that of the other one."""
+"""The profile for each distribution of ROS 2; their Fast DDS reject each other's."""
 
 VARIABLES = (FAST_DDS_2.variable, FAST_DDS_3.variable)
-"""The environment variables; each Fast DDS ignores that of the other one."""
+"""The environment variables; each Fast DDS ignores the other one."""
 
 _FAST_DDS = ('', 'rmw_fastrtps_cpp', 'rmw_fastrtps_dynamic_cpp')
 

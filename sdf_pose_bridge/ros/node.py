@@ -61,12 +61,12 @@ if TYPE_CHECKING:
 
 
 RETRY_PERIOD_S = 1.0
-"""Seconds until the files are read again after a failure that may pass."""
+"""Seconds until the files are read again after a temporary failure."""
 
 
 class SdfPoseBridge:
     """
-    What the node does once the first scene is published.
+    The node after the first scene is published.
 
     :param node: the node, with declared parameters and an executor.
     :param frames: the frames of the scene, which are published.
@@ -82,18 +82,18 @@ class SdfPoseBridge:
         self._loaded = loaded
         self._reader = SceneReader()
         self._failure: list[str] = []
-        # A failure that was not reported yet, because the file may still be being written.
+        # Not reported yet, because another program may still be writing the file.
         self._pending_failure: list[str] = []
-        # When to read the files again after a failure that may pass without a change of them.
+        # Time to read the files again after a temporary failure.
         self._retry_time = math.inf
         self._diagnostics = Diagnostics(node, self._unreported_joints)
         self._has_told_of_joints = False
         self._watcher = FileWatcher()
         self._watcher.watch(loaded.files, loaded.read_since_ns)
-        # All callbacks that change what is published: one runs after the other.
+        # All callbacks that change the published scene run one after the other.
         self._changes = MutuallyExclusiveCallbackGroup()
-        # Held while anything is published on all topics. A timer that is always due would keep
-        # the callbacks of its group from ever running, so that it has a group of its own.
+        # Held while publishing on all topics. A timer that is always due would block the callbacks
+        # of its group, so it has a separate group.
         self._publishing = CoroutineLock(node)
         self._again_group = MutuallyExclusiveCallbackGroup()
         # Simulated time may stand still.
@@ -137,10 +137,10 @@ class SdfPoseBridge:
             self._node, lambda: self._reader.loaded_scene(settings.load_request))
 
     async def _show(self, loaded: LoadedScene) -> None:
-        """Publish a scene, with the topics that the settings ask for."""
+        """Publish a scene on the topics of the settings."""
         frames = await _frames_of_scene(self._node, loaded, self._settings, self._frames)
         async with self._publishing:
-            # Joints have gone on moving while messages were made.
+            # Joints have moved while messages were made.
             frames.take_over(self._frames)
             before, self._loaded, self._frames = self._loaded, loaded, frames
             self._follow_joints()
@@ -159,7 +159,7 @@ class SdfPoseBridge:
             self._visuals.replace(loaded)
 
     def _follow_joints(self) -> None:
-        """Let ``joint_states`` move the frames, if joints follow it."""
+        """Subscribe to ``joint_states`` if moving frames follow it."""
         moving, current = self._frames.moving, self._joint_states
         rule = self._settings.publish_frequency, self._settings.ignore_timestamp
         if current is not None and current.rule == rule and moving:
@@ -169,13 +169,13 @@ class SdfPoseBridge:
             current.destroy()
             self._joint_states = None
         if moving is not None:
-            # Imported here because it takes 8 ms, and most often joints do not move.
+            # Imported here because it takes 8 ms, and joints do not move by default.
             from sdf_pose_bridge.ros.joint_states import JointStates
             self._joint_states = JointStates(
                 self._node, moving, rule[0], ignores_stamps=rule[1])
 
     def _current_lookup(self) -> PoseLookup:
-        """Return what poses are looked up in, with the positions of all messages so far."""
+        """Return the current look-up of poses, with the positions of all messages so far."""
         if self._joint_states is not None:
             self._joint_states.take_waiting()
         return self._loaded.lookup
@@ -212,7 +212,7 @@ class SdfPoseBridge:
         self._diagnostics.update(loaded)
 
     async def _reload(self) -> list[str]:
-        """Read the file again; return the errors, which leave everything as it was."""
+        """Read the file again; return the errors, after which nothing has changed."""
         try:
             await self._show(await self._load(self._settings))
         except Exception as error:  # noqa: BLE001 - includes defects
@@ -255,7 +255,7 @@ class SdfPoseBridge:
     async def _answer_to_set_pose(
         self, request: SetPose.Request, response: SetPose.Response,
     ) -> SetPose.Response:
-        """Write a measured pose, and answer when it is published."""
+        """Write a measured pose, and respond when it is published."""
         if self._joint_states is not None:
             self._joint_states.take_waiting()
         loaded = self._loaded
@@ -282,8 +282,8 @@ class SdfPoseBridge:
         """
         Reload if a file has changed.
 
-        Somebody may still be writing the file, so a failure is reported only if the files do not
-        change during the next period, or if the next reload fails in the same way.
+        Another program may still be writing the file, so a failure is reported only if the files
+        do not change during the next period, or if the next reload fails in the same way.
         """
         try:
             before = self._pending_failure
@@ -351,7 +351,7 @@ class SdfPoseBridge:
         seconds = time.perf_counter() - begin
         if seconds * self._settings.publish_rate > 1.0:
             if self._again_timer is not None:
-                # What was due meanwhile is left out.
+                # Missed periods are left out.
                 self._again_timer.reset()
             self._logger.warning(
                 f'publish_rate {self._settings.publish_rate} Hz is not reached: to publish '
@@ -362,7 +362,7 @@ async def start_bridge(
     node: Node, frames: PublishedFrames, settings: Settings, loaded: LoadedScene,
 ) -> None:
     """
-    Publish a scene on all topics that it does not have yet, and serve it.
+    Publish a scene on all other topics, and start the services.
 
     :param node: the node, with declared parameters and an executor.
     :param frames: the frames of the scene, which are published on ``/tf_static``.
@@ -375,11 +375,11 @@ async def start_bridge(
 async def _frames_of_scene(
     node: Node, loaded: LoadedScene, settings: Settings, before: PublishedFrames,
 ) -> PublishedFrames:
-    """Return the frames of a scene, with their topics, which are not published yet."""
+    """Return the frames of a scene with their topics; nothing is published."""
     name = node.get_fully_qualified_name()
 
     def prepared_topics() -> PoseTopics:
-        # The first look for a name makes the index of all names.
+        # The first search for a name makes the index of all names.
         loaded.scene.has('')
         return pose_topics_from_patterns(loaded.tree.frame_ids, settings.pose_topics, name)
 

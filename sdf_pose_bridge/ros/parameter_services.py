@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Offer the services by which parameters are read and set; calls are refused by their size."""
+"""Offer the services that read and set parameters; calls that are too large are rejected."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.ros.setting_rules import MOST_VALUES
 
 MOST_REASONS = 20
-"""How many results of a call that sets parameters have the reason why none is set."""
+"""Number of results of a rejected call that contain the reason."""
 
 MOST_CHARACTERS_OF_REPEATED = 1_000_000
-"""How long the values may be together in an answer that has some of them several times."""
+"""Largest number of characters of all values in a response that repeats some of them."""
 
 WARNING_PERIOD_S = 10.0
 
@@ -50,14 +50,13 @@ def add_parameter_services(
     """
     Offer the parameter services of a node; a call that sets parameters sets all of them or none.
 
-    rclpy's own services set the parameters of a call one after the other, without waiting: the
-    file would be read for each of them, in states that nobody asked for, while no other callback
-    runs.
+    rclpy's services set the parameters of a call one after the other and block the executor: the
+    file would be read for each of them, with settings that nobody requested.
 
-    Calls are refused by their size before anything is done for them.
+    Calls that are too large are rejected first.
 
     :param group: callback group of the services that set parameters.
-    :param set_parameters: sets declared parameters, and returns what the services answer.
+    :param set_parameters: sets declared parameters, and returns the result for the response.
     """
     async def result(messages: Sequence[ParameterMessage]) -> SetParametersResult:
         try:
@@ -94,9 +93,9 @@ def add_parameter_services(
 
 
 def _reading_services(node: Node) -> list[tuple[type, str, Callable[[Any, Any], Any]]]:
-    """Return types, names and callbacks of the services that show parameters, as rclpy's do."""
+    """Return types, names and callbacks of the services that read parameters, as rclpy's do."""
     def has_too_much(names: Sequence[str], values: Sequence[object] = ()) -> bool:
-        """Return whether an answer would be too large; it has no place for the reason then."""
+        """Return whether a response would be too large; it has no field for the reason."""
         reason = ''
         if len(names) > MOST_VALUES:
             reason = f'{len(names)} names; it can have at most {MOST_VALUES}'
@@ -110,7 +109,7 @@ def _reading_services(node: Node) -> list[tuple[type, str, Callable[[Any, Any], 
                 throttle_duration_sec=WARNING_PERIOD_S)
         return bool(reason)
 
-    # Of names that are not declared, or have no value, these services return nothing at all.
+    # If a name is not declared, or has no value, these services return nothing at all.
     def describe(
         request: DescribeParameters.Request, response: DescribeParameters.Response,
     ) -> DescribeParameters.Response:
@@ -159,10 +158,10 @@ def _parameters_from_messages(
     node: Node, messages: Sequence[ParameterMessage],
 ) -> list[Parameter]:
     """
-    Return the parameters that a call wants to set.
+    Return the parameters of a call.
 
-    :return: the parameters, without read-only ones that keep their values, which "ros2 param load"
-        of a dump sets too.
+    :return: the parameters, without read-only ones that keep their values, such as those of a dump
+        that "ros2 param load" sets.
     :raises ValueError: if there is no such parameter, or no such type, or if there are too many
         parameters or values.
     """

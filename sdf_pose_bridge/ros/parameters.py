@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-The parameters of the node, and the values that they can have.
+The parameters of the node and their values.
 
 Each parameter is declared once, as an attribute of :class:`Settings`.
 """
@@ -49,7 +49,7 @@ Choice = TypeVar('Choice', bound=enum.Enum)
 
 class SettingsError(ValueError):
     """
-    Values that parameters cannot have.
+    Values of parameters that are not allowed.
 
     :param sentences: one for each value, with the parameter, the value and the rule.
     """
@@ -66,9 +66,9 @@ class Declaration(Generic[Setting]):
     default: Value
     """The default value, which also gives the type."""
     description: str
-    """What the parameter is for."""
+    """The purpose of the parameter."""
     constraint: str
-    """The values that it can have."""
+    """The allowed values."""
     convert: Callable[[Any], Setting]
     """Makes the setting of a value. If the value is not allowed, it raises ValueError with the
     words that follow "parameter <name>" in a sentence."""
@@ -120,12 +120,12 @@ def _rate(
     """
     Declare a parameter whose values are rates in Hz.
 
-    :param zero: what 0.0 is for.
+    :param zero: the meaning of 0.0.
     """
     rule = f'0.0 {zero}, or from {LOWEST_RATE} to {highest}'
 
     def setting(value: float) -> float:
-        # What is not a number is out of any range.
+        # NaN is out of any range.
         if value and not LOWEST_RATE <= value <= highest:
             raise refusal(value, rule)
         return value
@@ -156,25 +156,25 @@ class Settings:
     )
     publish_robot_description = _switch(
         True,
-        'Publishes the text of sdf_file, or that of robot_description, on the topic '
-        'robot_description, unless it is a world.',
+        'Publishes the text of a model or URDF on the topic robot_description.',
         needs_load=False,
     )
     description_format = _choice(
         DescriptionFormat.AS_GIVEN,
-        'Content of the topic robot_description: "as_given" is the text of a model or URDF as it '
-        'is; with "urdf" it is URDF made of the model that is published, whose links are its '
-        'frames, also where that is one of a world, and TF has frames where it has joints.',
+        'Content of the topic robot_description: "as_given" is the unchanged text of a model or '
+        'URDF; "urdf" is URDF made of the published model, also of a world. Its links are the '
+        'frames on TF, and TF also has frames at its joints.',
     )
     publish_transforms = _switch(
         True, 'Publishes all transforms one by one on ~/transforms.', needs_load=False,
     )
     publish_visuals = _switch(
-        True, 'Publishes what the links look like on ~/visuals, while somebody listens.',
+        True, 'Publishes the shapes of the links on ~/visuals while there is a subscriber.',
         needs_load=False,
     )
     publish_diagnostics = _switch(
-        True, 'Publishes on /diagnostics what is served, and what was wrong.', needs_load=False,
+        True, 'Publishes the state of the node and the errors of the last load on /diagnostics.',
+        needs_load=False,
     )
     root_frame = Declaration(
         'world',
@@ -184,22 +184,22 @@ class Settings:
     )
     anchor_models = Declaration(
         AnchorModels.AUTO.value,
-        'Which top-level models get a transform from root_frame; odometry or localization can '
-        'publish that of the others. "auto" is "static" for a model file or URDF, and "all" for a '
-        'world.',
+        'The top-level models that get a transform from root_frame; odometry or localization can '
+        'publish those of the others. "auto" is "static" for a model file or URDF, and "all" for '
+        'a world.',
         'one of auto, all, static, none, or glob patterns of the names of models, separated by '
         'commas, such as table*,fence; static may be one of them',
         anchors_setting,
     )
     model = Declaration(
         '',
-        'Publish only this model of a world; everything if empty.',
+        'Publishes only this model of a world; everything if empty.',
         'the name of a model as in SDF: robot, or robot::arm for a nested one',
         str,
     )
     frame_names = _choice(
         FrameNames.AUTO,
-        'How frame ids are made: "scoped" keeps the names of all models (robot/arm/tool), '
+        'Names of models in frame ids: "scoped" keeps the names of all models (robot/arm/tool), '
         '"relative" leaves out that of the top-level model (arm/tool), "auto" is relative for a '
         'model file and scoped for a world.',
     )
@@ -212,15 +212,15 @@ class Settings:
     )
     frame_prefix = Declaration(
         '',
-        'Precedes every frame id but that of root_frame, with nothing in between; also that of '
-        'the link "world" of a URDF.',
+        'Precedes every frame id except that of root_frame, without a separator; also that of the '
+        'link "world" of a URDF.',
         'no leading slash, at most 255 characters',
         prefix_setting,
     )
     kinds = Declaration(
         [name for name, kind in PUBLISHED_KINDS.items() if kind in DEFAULT_KINDS],
-        'Which kinds of element become frames; "auto" is link for URDF, and model, link, frame '
-        'and sensor for SDFormat.',
+        'The kinds of elements that become frames; "auto" is link for URDF, and model, link, '
+        'frame and sensor for SDFormat.',
         f'{AUTO_KINDS}, or some of {", ".join(PUBLISHED_KINDS)}',
         kinds_setting,
     )
@@ -232,10 +232,10 @@ class Settings:
     )
     pose_topics = Declaration(
         ['*'],
-        'Which frames get a topic ~/poses/<frame> with their pose in pose_frame.',
+        'The frames that get a topic ~/poses/<frame> with their pose in pose_frame.',
         'glob patterns for frame ids, such as robot/* (which matches robot/arm/tool too); '
-        'none if empty; at most 1000 of them, of at most 255 characters; * alone means none '
-        'where there are more than 1000 frames, ?* means all',
+        'none if empty; at most 1000 patterns of at most 255 characters; * alone means none if '
+        'there are more than 1000 frames, ?* means all',
         patterns_setting,
         needs_load=False,
     )
@@ -251,8 +251,8 @@ class Settings:
     )
     unreported_joints = _choice(
         UnreportedJoints.NONE,
-        'Where joints are that no message on joint_states has named: with "none" the frames that '
-        'they move are not published, with "zero" they are where the file puts them.',
+        'For joints that no message on joint_states has named: with "none", the frames that they '
+        'move are not published; with "zero", they are where the file puts them.',
     )
     resource_paths = Declaration(
         [],
@@ -262,19 +262,19 @@ class Settings:
         directories_setting,
     )
     publish_frequency = _rate(
-        'How often a transform that joints move is published on /tf at most, in Hz; 0.0 for each '
-        'message on joint_states.',
+        'Highest rate in Hz at which a transform that joints move is published on /tf; 0.0 for '
+        'each message on joint_states.',
         'for each message', HIGHEST_FREQUENCY,
     )
     ignore_timestamp = _switch(
         False,
-        'Publishes each message on joint_states, also one with the stamp of the last one, and '
-        'whatever publish_frequency is.',
+        'Publishes for each message on joint_states, even if it has the stamp of the last one, '
+        'and independently of publish_frequency.',
         needs_load=False,
     )
     publish_rate = _rate(
-        'How often everything that joints do not move is published again, in Hz, for listeners '
-        'that cannot be latched; 0.0 for once, which is enough for all others.',
+        'Rate in Hz at which the transforms that joints do not move are published again, for '
+        'listeners that cannot use latched topics; 0.0 to publish them once.',
         'for never', HIGHEST_RATE,
     )
     watch = _switch(
@@ -284,8 +284,8 @@ class Settings:
     )
     on_missing_include = _choice(
         MissingInclude.ERROR,
-        'How to treat an include that cannot be found: "error" rejects the file, "skip" '
-        'leaves the include out with a warning.',
+        'Treatment of an include that is not found: "error" rejects the file, "skip" leaves the '
+        'include out with a warning.',
     )
 
     allow_set_pose = Declaration(
@@ -307,7 +307,7 @@ class Settings:
 
     @property
     def load_request(self) -> LoadRequest:
-        """What is read with these settings."""
+        """The request for a load with these settings."""
         return LoadRequest(
             self.sdf_file, self.robot_description, self.resource_paths, self.on_missing_include,
             self.tf_options, self.unreported_joints, self.description_format)
@@ -326,4 +326,4 @@ class Settings:
 
 DECLARATIONS: dict[str, Declaration[Any]] = {
     name: each for name, each in vars(Settings).items() if isinstance(each, Declaration)}
-"""All parameters by their names, in the order in which they are explained to people."""
+"""All parameters by their names, in the order of the documentation."""

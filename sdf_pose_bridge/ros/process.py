@@ -46,7 +46,7 @@ import sdf_pose_bridge_interfaces  # noqa: F401 - if it is missing, say so befor
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 LONGEST_STOP_S = 10.0
-"""How long what is being done may go on after a signal, before the process is ended."""
+"""Time in s for the current work to end after a signal, before the process is ended."""
 
 
 def run(args: Sequence[str], program_name: str) -> int:
@@ -54,11 +54,11 @@ def run(args: Sequence[str], program_name: str) -> int:
     Run the node until a signal ends it.
 
     :param args: the command line with the program's name first.
-    :param program_name: which of :data:`PROGRAMS` it is.
+    :param program_name: a key of :data:`PROGRAMS`.
     :return: exit code: 0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
-    # From now on a signal waits until it is unblocked or asked for, and a second one is ignored.
-    # Threads that are started later inherit this.
+    # From now on, a signal stays pending until it is unblocked or waited for, and a second one is
+    # ignored. Threads that are started later inherit this.
     signal.pthread_sigmask(signal.SIG_BLOCK, STOP_SIGNALS)
     program = PROGRAMS[program_name]
     sentence_about_profile = use_profile(os.environ)
@@ -75,7 +75,7 @@ def run(args: Sequence[str], program_name: str) -> int:
             return 1
         node = Node(program.node_name, start_parameter_services=False)
     except InvalidParameterTypeException as error:
-        # Of one that rclpy itself declares, such as use_sim_time. Its name comes last again.
+        # A parameter of rclpy, such as use_sim_time. Its name comes last again.
         _complain(program, str(error).rpartition(': ')[0])
         return 1
     except RuntimeError as error:
@@ -121,7 +121,7 @@ def _exit_code_from_node(node: Node, program: Program, file: str = '') -> int:
 @contextmanager
 def _interrupted_by_signals() -> Iterator[None]:
     """
-    Let signals interrupt what is done meanwhile.
+    Let signals interrupt the block.
 
     :raises KeyboardInterrupt: if a signal comes, or came before.
     """
@@ -140,7 +140,7 @@ def _spin_until_signal(executor: SingleThreadedExecutor, node: Node, start: Task
     def wait_for_signal() -> None:
         signal.sigwait(STOP_SIGNALS)
         has_to_stop.set()
-        # Without memory, neither the task can be made nor the executor go on.
+        # Without memory, the executor cannot continue.
         with contextlib.suppress(MemoryError):
             executor.create_task(has_to_stop.set)
         if not has_stopped.wait(LONGEST_STOP_S):
@@ -153,7 +153,7 @@ def _spin_until_signal(executor: SingleThreadedExecutor, node: Node, start: Task
         except Exception as error:
             if start.exception() is not None:
                 raise
-            # A defect, or a message that rclpy itself refuses: a negative time on /clock.
+            # A defect, or a message that rclpy rejects: a negative time on /clock.
             node.get_logger().error(
                 f'internal error in a callback: {error}\n{traceback.format_exc()}',
                 throttle_duration_sec=60.0)
@@ -169,7 +169,7 @@ def _sentence_from_ros_error(error: RuntimeError) -> str:
     # The class cannot be imported by a public name.
     if type(error).__name__ == 'UnknownROSArgsError':
         return f'unknown arguments after --ros-args: {error}'
-    # The rest of the message names lines of the source of ROS.
+    # The rest of the message names source lines of ROS.
     return str(error).partition(', at /')[0]
 
 

@@ -17,13 +17,13 @@ class Program(NamedTuple):
 
     node_name: str
     defaults: Mapping[str, Value]
-    """The defaults of parameters, where they differ from those of their declarations."""
+    """The defaults of parameters that differ from those of their declarations."""
     usage: str
     takes_file: bool = False
     """Whether the command line may name a file, before the arguments of ROS."""
     known_elsewhere: Container[str] = ()
-    """Names of parameters of older releases, which are not here and need no warning. Where there
-    are any, files of parameters may be for other nodes too."""
+    """Names of parameters of older releases, which cause no warning. If there are any, files of
+    parameters may be for other nodes too."""
 
 
 BRIDGE = Program(
@@ -54,4 +54,4 @@ parameter sdf_file. "ros2 param describe /robot_state_publisher <name>" explains
 the running node.""", takes_file=True, known_elsewhere=('use_tf_static',))
 
 PROGRAMS = {'bridge': BRIDGE, 'robot_state_publisher': ROBOT_STATE_PUBLISHER}
-"""By the names of the executables."""
+"""The executables by their names."""

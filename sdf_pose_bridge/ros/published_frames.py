@@ -4,7 +4,7 @@
 The frames of a TF tree on their topics.
 
 These are ``/tf_static``, ``/tf``, ``~/transforms`` and ``~/poses/...``. Fixed frames are published
-once; moving frames, whose transforms joints change, again and again.
+once, moving frames repeatedly.
 """
 
 from __future__ import annotations
@@ -41,16 +41,16 @@ class PublishedFrames:
     """
     The frames of a tree on their topics.
 
-    Messages are made when they are needed first, so that nothing delays ``/tf_static``, or before
-    in another thread by :meth:`lay_out`.
+    Messages are made when they are first needed, so that nothing delays ``/tf_static``, or earlier
+    by :meth:`lay_out` in another thread.
 
-    :param publishers: the publishers of the node. Those of topics that other frames had before
-        are kept, if these frames have the topics too.
+    :param publishers: the publishers of the node. Publishers of the frames before are kept if
+        these frames have the same topics.
     :param positions: the positions of its joints; None if joints move nothing.
     :param pose_topics: the names of the topics of poses, by frame id.
     :param has_transforms: whether to publish on ``~/transforms``.
-    :param before: the frames that these ones replace. Joints with the same names continue where
-        they are; the stamp stays if the tree does.
+    :param before: the frames that these ones replace. Joints with the same names keep their
+        positions; the stamp stays if the tree does.
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class PublishedFrames:
 
     def lay_out(self, *, with_tf: bool) -> None:
         """
-        Make the messages of fixed frames, which takes long where there are many.
+        Make the messages of fixed frames, which takes long for many frames.
 
         :param with_tf: whether to make that of ``/tf_static`` too.
         """
@@ -87,7 +87,7 @@ class PublishedFrames:
         self._fixed_poses  # noqa: B018
 
     def take_over(self, before: PublishedFrames) -> None:
-        """Continue where the joints of the frames are that these ones replace now."""
+        """Take the positions of joints from the frames that these ones replace."""
         if self.moving is not None and before.moving is not None:
             self.moving.take_over(before.moving)
 
@@ -155,8 +155,8 @@ class PublishedMovingFrames:
     The moving frames of a tree on their topics.
 
     :param pose_topics: the topics of poses, by frame id.
-    :param before: the moving frames that these ones replace. Joints with the same names continue
-        where they are.
+    :param before: the moving frames that these ones replace. Joints with the same names keep their
+        positions.
     """
 
     def __init__(
@@ -168,7 +168,7 @@ class PublishedMovingFrames:
         self._tree = tree
         self.frames = moving
         self.positions = positions
-        """The positions of the joints, which others set."""
+        """The positions of the joints; the caller sets them."""
         self.stamp: Stamp | None = None
         """The stamp of these positions; None before the first message of ``joint_states``."""
         if before is not None:
@@ -198,7 +198,7 @@ class PublishedMovingFrames:
         """
         Prepare a message for ``/tf``.
 
-        :param rows: which of the moving transforms it has.
+        :param rows: indices of the moving transforms in it.
         :return: the message, for :meth:`publish_tf`.
         """
         return tf_message(*_transforms(self._tree, self.frames.indices[rows]))
@@ -209,7 +209,7 @@ class PublishedMovingFrames:
         """
         Publish on ``/tf``.
 
-        :param rows: which of the moving transforms the message has.
+        :param rows: indices of the moving transforms in the message.
         :param message: the message, whose transforms are set.
         """
         message.set_poses(self.frames.transforms(self.positions.values)[rows])
@@ -217,16 +217,16 @@ class PublishedMovingFrames:
         self._tf.publish(data)
 
     def publish_all(self) -> None:
-        """Publish on ``/tf`` all that moves and has a position, with the time of the node."""
+        """Publish all moving frames with known positions on ``/tf``, with the time of the node."""
         rows = np.flatnonzero(self.has_transform)
         if len(rows):
             self.publish_tf(rows, self.tf_message(rows), self._publishers.now())
 
     def publish_topics(self, *, only_listeners: bool) -> None:
         """
-        Publish on ``~/transforms`` and ``~/poses/...`` what has a position.
+        Publish all moving frames with known positions on ``~/transforms`` and ``~/poses/...``.
 
-        :param only_listeners: whether to leave out topics that nobody listens to.
+        :param only_listeners: whether to leave out topics without subscribers.
         """
         def wanted_publisher(topic: Topic) -> Publisher | None:
             publisher = self._publishers.existing(topic)
@@ -263,7 +263,7 @@ def _transforms_topic(count: int, part: str) -> Topic:
     """
     Return ``~/transforms`` for a publisher that keeps as many messages as there are transforms.
 
-    New messages replace all old ones then. For another number of transforms there is another
-    publisher, which does not have the old messages.
+    So new messages replace all old ones. Another number of transforms needs another publisher,
+    which does not have the old messages.
     """
     return Topic('~/transforms', TransformStamped, depth=max(1, count), part=part)

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The publishers of a node, by which it publishes on its topics."""
+"""The publishers of a node."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from sdf_pose_bridge.ros.background import run_other_callbacks
 from sdf_pose_bridge.ros.qos_overrides import overriding_options
 from sdf_pose_bridge.ros.qos_overrides import POLICIES_OF_PUBLISHER
 
-# How many are published, or made, before other callbacks run: in a few milliseconds.
+# Number of messages or publishers, made in a few milliseconds, before other callbacks run.
 MESSAGES_AT_ONCE = 500
 PUBLISHERS_AT_ONCE = 40
 
@@ -32,22 +32,22 @@ Stamp: TypeAlias = tuple[int, int]
 
 
 class Topic(NamedTuple):
-    """What one publisher is made for. Two topics with equal fields share their publisher."""
+    """A topic with the settings of its publisher. Equal topics share a publisher."""
 
     name: str
     message_type: type
     depth: int = 1
-    """How many messages the publisher keeps."""
+    """Number of messages that the publisher keeps."""
     is_latched: bool = True
-    """Whether the messages that it keeps reach listeners that come later."""
+    """Whether later listeners receive these messages."""
     part: str = ''
-    """Tells publishers on one topic apart."""
+    """Distinguishes publishers on one topic."""
     is_overridable: bool = False
     """Whether parameters can override its quality of service."""
 
 
 class Publishers:
-    """The publishers of a node, by their topics; those that the next scene has too are kept."""
+    """The publishers of a node, by their topics."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -63,7 +63,7 @@ class Publishers:
         return self._publishers.get(topic)
 
     def opened(self, topic: Topic) -> Publisher:
-        """Return the publisher of a topic, which is made if there is none."""
+        """Return the publisher of a topic; make it if there is none."""
         publisher = self._publishers.get(topic)
         if publisher is None:
             publisher = self._publishers[topic] = new_publisher(self._node, topic)
@@ -71,7 +71,7 @@ class Publishers:
 
     async def replace(self, topics: Collection[Topic]) -> None:
         """
-        Have publishers of these topics and of no others.
+        Make the publishers of these topics, and destroy all others.
 
         Other callbacks of the node run meanwhile.
         """
@@ -104,7 +104,7 @@ def new_publisher(
     node: Node, topic: Topic, matched: Callable[[QoSPublisherMatchedInfo], None] | None = None,
 ) -> Publisher:
     """
-    Make a publisher, which is reliable.
+    Make a reliable publisher.
 
     :param matched: called when a listener comes or goes.
     """
@@ -112,8 +112,8 @@ def new_publisher(
         history=HistoryPolicy.KEEP_LAST, depth=topic.depth, reliability=ReliabilityPolicy.RELIABLE,
         durability=DurabilityPolicy.TRANSIENT_LOCAL if topic.is_latched
         else DurabilityPolicy.VOLATILE)
-    # The default callbacks only report listeners that ask for more than is offered, and more
-    # cannot be offered; but the executor waits for each, a thousand of them in a large scene.
+    # The default callbacks only report incompatible listeners, and the executor waits for each
+    # callback, a thousand of them in a large scene.
     return node.create_publisher(
         topic.message_type, topic.name, quality,
         qos_overriding_options=overriding_options(
@@ -124,7 +124,7 @@ def new_publisher(
 
 class TextPublisher:
     """
-    Publishes a text on a latched topic of std_msgs/String, which exists while there is a text.
+    Publishes a text on a latched topic of std_msgs/String; without a text there is no topic.
 
     :param name: the name of the topic.
     """
@@ -140,8 +140,8 @@ class TextPublisher:
         """
         Publish a text.
 
-        :param text: the text; if it is empty, there is no topic, so that nobody gets a text of the
-            past.
+        :param text: the text; if it is empty, the topic is removed, so that nobody gets an old
+            text.
         """
         if text:
             self._publisher = self._publisher or new_publisher(self._node, self._topic)

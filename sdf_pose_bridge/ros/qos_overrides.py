@@ -1,10 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Parameters that override the quality of service of topics, as nodes of rclcpp and rclpy have them.
+Parameters that override the quality of service of topics, as in nodes of rclcpp and rclpy.
 
-Their names are ``qos_overrides.<topic>.<publisher or subscription>.<policy>``. They are declared
-where they are given.
+Their names are ``qos_overrides.<topic>.<publisher or subscription>.<policy>``. Only given ones are
+declared.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from rclpy.qos import ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
 QOS_OVERRIDES = 'qos_overrides.'
-"""How the names of these parameters begin."""
+"""Prefix of the names of these parameters."""
 
 POLICIES_OF_PUBLISHER = (
     QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
 POLICIES_OF_SUBSCRIPTION = (QoSPolicyKind.RELIABILITY, QoSPolicyKind.DURABILITY)
-"""Without the depth, which follows from how messages are taken."""
+"""Without the depth, which the node chooses."""
 
 _VALUES = {
     'reliability': ReliabilityPolicy, 'durability': DurabilityPolicy, 'history': HistoryPolicy}
@@ -36,15 +36,15 @@ def overriding_options(
     node: Node, topic: str, entity: str, policies: Sequence[QoSPolicyKind],
 ) -> QoSOverridingOptions | None:
     """
-    Return what parameters override for a topic.
+    Return the policies that parameters override for a topic.
 
     :param topic: its name, before it is remapped.
     :param entity: ``publisher`` or ``subscription``.
-    :param policies: what can be overridden.
+    :param policies: the policies that can be overridden.
     :return: the policies for which parameters are given; None if there are none.
     """
     begin = f'{QOS_OVERRIDES}{node.resolve_topic_name(topic)}.{entity}.'
-    # rclpy shows in no public way what was given.
+    # rclpy has no public interface to the given parameters.
     given = [
         policy for policy in policies
         if begin + policy.name.lower() in node._parameter_overrides]  # noqa: SLF001
@@ -53,9 +53,9 @@ def overriding_options(
 
 def sentences_about_overrides(given: Mapping[str, Parameter]) -> list[str]:
     """
-    Find values that are not those of their policy.
+    Find values that their policy does not have.
 
-    :param given: what was given when the node was started, by names.
+    :param given: the parameters that were given when the node was started, by names.
     :return: a sentence for each, with the parameter, the value and the rule.
     """
     sentences = []

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Have files read by a process with limits, for the running node."""
+"""Read files in a process with limits, for the running node."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ if TYPE_CHECKING:
 ALLOWANCE = Allowance(
     memory_bytes=1_000_000_000, processor_s=20.0, wall_s=60.0,
     memory_bytes_per_megabyte=200_000_000, seconds_per_megabyte=10.0)
-"""What to read a file may take: several times what the largest files take on slow machines."""
+"""Limits for reading a file: several times the use of the largest files on slow machines."""
 
 _Result = TypeVar('_Result')
 
 
 class SceneReader:
     """
-    Has files read by a process of its own.
+    Reads files in a separate process.
 
-    All methods may be called in any thread, where they wait for the process. They raise what the
-    functions raise that they call there; and
+    All methods are thread-safe and wait for the process. They raise the exceptions of the
+    functions that they call there, and
 
-    :raises LimitError: if to read the file takes more than it may.
-    :raises FileReadError: if the process ends meanwhile, or cannot be started.
+    :raises LimitError: if reading the file exceeds the limits.
+    :raises FileReadError: if the process ends during the call, or cannot be started.
     :raises MemoryError: if the process has not enough memory.
     """
 
@@ -51,7 +51,7 @@ class SceneReader:
         self._process = LimitedProcess(ALLOWANCE)
 
     def close(self) -> None:
-        """End the process; another one is started when it is needed."""
+        """End the process; another one is started when needed."""
         self._process.close()
 
     def loaded_scene(self, request: LoadRequest) -> LoadedScene:
@@ -71,7 +71,7 @@ class SceneReader:
     def frame_change(
         self, loaded: LoadedScene, frame: str, asked: Pose, reference: str,
     ) -> FrameChange:
-        """Find what a file must say, as :func:`frame_change_from_request` does."""
+        """Find the change of a file, as :func:`frame_change_from_request` does."""
         # Imported here because it takes 7 ms, and few nodes write files.
         from sdf_pose_bridge.tf.frame_setting import frame_change_from_request
         return self._result(

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The services that convert rotations and poses, look poses up and set them."""
+"""The services that convert rotations and poses, look up poses and set them."""
 
 from __future__ import annotations
 
@@ -39,24 +39,24 @@ Answer: TypeAlias = Callable[[Any, Any], Any]
 """Fills the response to a request and returns it."""
 
 SERVICE_QOS = qos_profile_parameters
-"""Keeps a thousand requests; the default keeps ten, and more callers at once would lose theirs."""
+"""Keeps 1000 requests; the default keeps ten, so that requests of more callers would be lost."""
 
 
 MOST_NUMBERS = 1_000_000
-"""How many numbers a call of ``~/convert_poses`` may have."""
+"""Largest number of values in a call of ``~/convert_poses``."""
 
 _FEW_NUMBERS = 10_000
-"""How many are converted at once, in a fraction of a millisecond."""
+"""This many are converted at once, in a fraction of a millisecond."""
 
 
 def add_services(node: Node, lookup: Callable[[], PoseLookup]) -> None:
     """
     Offer ``~/convert_rotation``, ``~/convert_poses`` and ``~/lookup_pose``.
 
-    :param lookup: returns what poses are looked up in.
+    :param lookup: returns the current look-up of poses.
     """
     logger, clock, group = node.get_logger(), node.get_clock(), ReentrantCallbackGroup()
-    # Requests that take longer are answered beside the callbacks, one after the other.
+    # Longer requests are answered in a thread, one after the other.
     turn = CoroutineLock(node)
 
     async def answered(answer: Answer, request: Any, response: Any, *, is_quick: bool) -> Any:
@@ -85,7 +85,7 @@ def add_services(node: Node, lookup: Callable[[], PoseLookup]) -> None:
     async def lookup_pose(request: LookupPose.Request, response: LookupPose.Response) -> Any:
         current = lookup()
         reference = request.relative_to
-        # To find the name that was probably meant takes long where there are many.
+        # Finding the nearest name takes long if there are many.
         return await answered(
             lambda request, response: answer_to_lookup_pose(request, response, current, clock),
             request, response,
@@ -123,7 +123,7 @@ def answer_to_convert_rotation(
 def answer_to_convert_poses(
     request: ConvertPoses.Request, response: ConvertPoses.Response,
 ) -> ConvertPoses.Response:
-    """Convert poses, ``MOST_NUMBERS`` numbers at most."""
+    """Convert poses with at most ``MOST_NUMBERS`` numbers."""
     if len(request.values) > MOST_NUMBERS:
         response.message = (
             f'values has {len(request.values)} numbers; a call can have at most {MOST_NUMBERS}')
@@ -149,7 +149,7 @@ def answer_to_lookup_pose(
     except (UnknownFrameError, JointPositionError) as error:
         response.message = error.message
         return response
-    # To fill the existing messages is faster than to make new ones.
+    # Filling the existing messages is faster than making new ones.
     pose = response.pose.pose
     position, orientation = pose.position, pose.orientation
     position.x, position.y, position.z = found.pose[:3]
@@ -164,16 +164,16 @@ def set_pose(
     request: SetPose.Request, loaded: LoadedScene, reader: SceneReader,
 ) -> SetPose.Response:
     """
-    Write into a file that a frame is where it was measured, unless it is a dry run.
+    Write the measured pose of a frame into its file, unless it is a dry run.
 
-    :param loaded: the scene that is published.
-    :param reader: finds what the file must say.
-    :return: the answer: what changes. With it the file is valid and can be published.
-    :raises SdfError: if the request is no pose, no pose in a file can say it, or the file cannot
-        be written.
+    :param loaded: the published scene.
+    :param reader: finds the change of the file.
+    :return: the response with the change; the changed file is valid and can be published.
+    :raises SdfError: if the request is not valid, no change of a single pose gives this pose, or
+        the file cannot be written.
     """
     if not loaded.request.sdf_file:
-        msg = 'the pose stands in the parameter robot_description, not in a file'
+        msg = 'the pose is in the parameter robot_description, not in a file'
         raise PoseNotSetError(msg, Place(str(loaded.path)))
     change = reader.frame_change(
         loaded, request.frame, _pose_from_request(request, loaded), request.pose.header.frame_id)
@@ -197,10 +197,10 @@ def _pose_from_request(request: SetPose.Request, loaded: LoadedScene) -> Pose:
 
 def never_raising(answer: Answer, log_error: Callable[[str], object]) -> Answer:
     """
-    Answer the client also when there is a defect; an exception in a callback would end the node.
+    Return a callback that also answers after a defect; an exception would end the node.
 
     :param answer: answers a request.
-    :param log_error: takes the traceback of what was raised.
+    :param log_error: takes the traceback of an exception.
     :return: a callback that answers ``success: false`` instead of raising.
     """
     def callback(request: Any, response: Any) -> Any:

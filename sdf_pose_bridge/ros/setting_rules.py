@@ -3,8 +3,8 @@
 """
 The rules for values of parameters.
 
-A function ``<rule>_setting`` makes the setting of a value. If the value is not allowed, it raises
-ValueError with the words that follow "parameter <name>" in a sentence.
+A function ``<rule>_setting`` returns the setting of a value. If the value is not allowed, it
+raises ValueError with the end of a sentence that begins with "parameter <name>".
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ PUBLISHED_KINDS = {
 """The kinds of element that can become frames, by their names."""
 
 AUTO_KINDS = 'auto'
-"""The name for the kinds that the format of the file decides."""
+"""The name for the default kinds of the format of the file."""
 
 LOWEST_RATE = 0.001
-"""The lowest rate in Hz that a parameter can have, but for 0.0."""
+"""The lowest rate in Hz, except 0.0."""
 
 HIGHEST_RATE = 100.0
 """The limit of ``publish_rate`` in Hz."""
@@ -36,42 +36,42 @@ HIGHEST_FREQUENCY = 1000.0
 """The limit of ``publish_frequency`` in Hz, as in robot_state_publisher."""
 
 MOST_VALUES = 1000
-"""How many patterns or directories a parameter may have. Each pattern is compared with each frame,
-and each directory is looked into for each include."""
+"""Largest number of patterns or directories of a parameter. Each pattern is compared with each
+frame, and each directory is searched for each include."""
 
 MOST_CHARACTERS = 255
-"""How long a name or a pattern may be; a prefix is a part of every frame id."""
+"""Largest length of a name or a pattern; a prefix is part of every frame id."""
 
 MOST_CHARACTERS_OF_PATH = 4096
-"""How long a path may be, as in Linux."""
+"""Largest length of a path, as in Linux."""
 
 MOST_CHARACTERS_OF_SEPARATOR = 8
-"""How long a separator may be, which stands many times in a frame id."""
+"""Largest length of a separator, which a frame id contains many times."""
 
 
 def root_frame_setting(value: str) -> str:
-    """Refuse what cannot be the frame id of the root."""
+    """Reject texts that are no frame id of the root."""
     if not value:
         raise refusal(value, 'a frame id, which is not empty')
     return prefix_setting(value)
 
 
 def prefix_setting(value: str) -> str:
-    """Refuse what frame ids cannot begin with."""
+    """Reject invalid beginnings of frame ids."""
     if value.startswith('/'):
         raise refusal(value, 'without a leading slash, which TF does not allow')
     return _name_setting(value, MOST_CHARACTERS)
 
 
 def separator_setting(value: str) -> str:
-    """Refuse what cannot separate the parts of frame ids."""
+    """Reject invalid separators of the parts of frame ids."""
     if not value:
         raise refusal(value, 'at least one character, or names run together')
     return _name_setting(value, MOST_CHARACTERS_OF_SEPARATOR)
 
 
 def kinds_setting(values: Sequence[str]) -> frozenset[Kind] | None:
-    """Make kinds of element of their names; None of ``auto`` alone."""
+    """Return the kinds of elements by their names; None for ``auto`` alone."""
     known = ', '.join(PUBLISHED_KINDS)
     if list(values) == [AUTO_KINDS]:
         return None
@@ -86,7 +86,7 @@ def kinds_setting(values: Sequence[str]) -> frozenset[Kind] | None:
 
 
 def patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
-    """Refuse too many patterns, and long ones."""
+    """Reject too many patterns, and long ones."""
     _check_count(values, 'patterns')
     for value in values:
         _check_length(value, MOST_CHARACTERS)
@@ -94,7 +94,7 @@ def patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
 
 
 def anchors_setting(value: str) -> AnchorModels | AnchorPatterns:
-    """Refuse what is neither a word nor patterns."""
+    """Reject texts that are neither a word nor patterns."""
     _check_count(value.split(','), 'patterns')
     _check_length(value, MOST_CHARACTERS_OF_PATH)
     try:
@@ -104,13 +104,13 @@ def anchors_setting(value: str) -> AnchorModels | AnchorPatterns:
 
 
 def path_setting(value: str) -> str:
-    """Refuse what is too long for a path."""
+    """Reject texts that are too long for a path."""
     _check_length(value, MOST_CHARACTERS_OF_PATH)
     return value
 
 
 def directories_setting(values: Sequence[str]) -> tuple[Path, ...]:
-    """Make paths, without those that are empty; refuse too many, and long ones."""
+    """Return the paths without empty ones; reject too many, and long ones."""
     _check_count(values, 'directories')
     return tuple(Path(path_setting(value)).expanduser() for value in values if value)
 
@@ -138,7 +138,7 @@ def refusal(value: object, rule: str) -> ValueError:
     """
     Return the error about a value that is not allowed.
 
-    :param rule: what follows "it must be".
+    :param rule: the end of a sentence with "it must be".
     """
     shown = f'"{printable(shortened(value))}"' if isinstance(value, str) else value
     return ValueError(f'is {shown}; it must be {rule}')

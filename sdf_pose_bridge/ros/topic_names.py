@@ -21,7 +21,7 @@ legal but hidden from ``ros2 topic list``). The rule for each level between slas
   the frame id.
 
 So two frame ids never have the same name (as surely as SHA-256 for names that were cut), and a
-name depends on nothing but its frame id and the limit.
+name depends only on its frame id and the limit.
 """
 
 from __future__ import annotations
@@ -34,20 +34,20 @@ from typing import NamedTuple
 from sdf_pose_bridge.ros.log_lines import names_in_line
 
 LONGEST_FULL_NAME = 246
-"""The most characters that the middleware allows in the full name of a topic."""
+"""Largest length of the full name of a topic in the middleware."""
 
 LONGEST_NAME = 160
 """Default limit of a name; the rest is for the node's namespace, its name and ``poses``."""
 
 SHORTEST_LIMIT = 48
-"""With a lower limit a cut name would have nothing readable before its hash."""
+"""With a lower limit, a cut name would have no readable part before its hash."""
 
 MOST_BY_DEFAULT = 1000
 """Largest number of topics that are made by default; each takes time and memory."""
 
 MOST_STEPS = 1_000_000_000
-"""The characters of all patterns with wildcards times those of all frame ids. To compare so many
-takes some seconds in the worst case, beside all else."""
+"""Largest product of the characters of all patterns with wildcards and of all frame ids. Comparing
+so many takes some seconds in the worst case, in a thread."""
 
 _WILDCARD = re.compile(r'[*?[]')
 
@@ -55,8 +55,8 @@ _ESCAPED = re.compile(r"""
     \A[0-9_][^A-Za-z0-9]*                             # a digit or underscores at the beginning
     | _*[^A-Za-z0-9_][^A-Za-z0-9]*                    # others, with the underscores beside them
     | __+
-    | (?=_?x(?:[0-9a-f]{2})+[^A-Za-z0-9])(?:\Ax|_)    # what reads as an escape
-    | \Ax_\Z                                          # what reads as an empty level
+    | (?=_?x(?:[0-9a-f]{2})+[^A-Za-z0-9])(?:\Ax|_)    # text that reads as an escape
+    | \Ax_\Z                                          # text that reads as an empty level
     """, re.VERBOSE)
 """The runs of characters in a level that are escaped."""
 
@@ -65,12 +65,12 @@ _CUT_LENGTH = len('_xh_') + 32
 
 
 class PoseTopics(NamedTuple):
-    """The topics of poses that patterns choose."""
+    """The pose topics of the frames that patterns choose."""
 
     names: dict[str, str]
     """The name of the topic of each chosen frame id, in the order of the frame ids."""
     warning: str = ''
-    """Patterns that match no frame id, or the reason if there are no topics at all."""
+    """A warning about patterns that match no frame id, or the reason if there are no topics."""
 
 
 def topic_name_from_frame_id(frame_id: str, limit: int = LONGEST_NAME) -> str:
@@ -78,7 +78,7 @@ def topic_name_from_frame_id(frame_id: str, limit: int = LONGEST_NAME) -> str:
     Return the name of a frame's topic by the rule above.
 
     :param frame_id: any text.
-    :param limit: the most characters that the name can have; at least ``SHORTEST_LIMIT``.
+    :param limit: largest length of the name; at least ``SHORTEST_LIMIT``.
     :return: a legal relative topic name without hidden levels.
     """
     name = '/'.join(_level_from_text(level) for level in frame_id.split('/'))

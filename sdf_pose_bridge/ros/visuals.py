@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Publish what the links look like, for RViz, while somebody listens."""
+"""Publish the shapes of the links for RViz while there is a subscriber."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ class VisualPublisher:
     """
     Publishes ``~/visuals``.
 
-    The topic exists once it is switched on. Shapes are read and markers made when somebody listens
-    for the first time, and again for each scene that replaces another one while somebody listens.
+    The topic exists once it is switched on. Shapes are read and markers made for the first
+    subscriber, and again for each new scene while there are subscribers.
 
     :param reader: reads shapes.
     """
@@ -46,7 +46,7 @@ class VisualPublisher:
         self._publisher: Publisher | None = None
 
     def switch(self, *, on: bool) -> None:
-        """Publish from now on, or no more."""
+        """Start or stop publishing."""
         if on and self._publisher is None:
             self._publisher = new_publisher(
                 self._node, Topic('~/visuals', MarkerArray),
@@ -85,10 +85,11 @@ def _message_and_warnings(
     try:
         found = reader.markers(loaded)
     except (SdfError, MemoryError) as error:
-        return None, [f'~/visuals stays as it is: {line}' for line in lines_from_error(error)]
+        return None, [f'~/visuals is not updated: {line}' for line in lines_from_error(error)]
     if found is None:
         return None, [
-            f'~/visuals stays as it is: what {loaded.path} includes has changed since it was read']
+            (f'~/visuals is not updated: a file that {loaded.path} includes has changed since it '
+             'was read')]
     markers, warnings = found
     return message_from_markers(markers, loaded.tree.root_frame), lines_from_warnings(warnings)
 
@@ -98,8 +99,8 @@ def message_from_markers(markers: Iterable[VisualMarker], root_frame: str) -> Ma
     Make the message of all markers.
 
     :param root_frame: frame id of the root.
-    :return: the message, which deletes all markers of earlier messages first. Stamps are zero, for
-        which RViz takes the latest transforms.
+    :return: the message; it first deletes all markers of earlier messages. Stamps are zero, so
+        that RViz uses the latest transforms.
     """
     delete_all = Marker(header=Header(frame_id=root_frame), action=Marker.DELETEALL)
     return MarkerArray(markers=[
@@ -110,7 +111,7 @@ def message_from_markers(markers: Iterable[VisualMarker], root_frame: str) -> Ma
 def _marker_message(marker: VisualMarker, number: int) -> Marker:
     x, y, z, qx, qy, qz, qw = marker.pose
     form = marker.form
-    # No color means that of the mesh itself.
+    # No color means the materials of the mesh itself.
     red, green, blue, alpha = marker.rgba or (0.0, 0.0, 0.0, 0.0)
     return Marker(
         header=Header(frame_id=marker.frame_id), frame_locked=True,

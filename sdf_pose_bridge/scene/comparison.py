@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Compare two scenes: which elements were added, removed, renamed and moved."""
+"""Compare two scenes: find elements that were added, removed, renamed or moved."""
 
 from __future__ import annotations
 

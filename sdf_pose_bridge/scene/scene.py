@@ -42,7 +42,7 @@ class Mimic(NamedTuple):
     joint: int
     """The joint of the leader, as an index into the scene."""
     axis: int
-    """Which axis of that joint: 0 for ``<axis>``, 1 for ``<axis2>``."""
+    """The axis of that joint: 0 for ``<axis>``, 1 for ``<axis2>``."""
     multiplier: float
     offset: float
     reference: float

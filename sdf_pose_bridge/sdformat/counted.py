@@ -1,10 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Do what can take longer than to read what asks for it, and count it against the limits of a load.
+Copies and look-ups that a few bytes can request, counted against the limits of a load.
 
-Trees are copied, links followed and directories listed nowhere else, which ``make lint`` checks.
-So a file that asks for them again and again reaches a limit, in whichever way it does so.
+No other module copies trees, follows links or lists directories; ``make lint`` checks this. So a
+file that requests them again and again reaches a limit.
 """
 
 from __future__ import annotations
@@ -29,28 +29,28 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 _COUNTS = tuple(etree.XPath(f'count({path})') for path in (
     'descendant-or-self::*', 'descendant-or-self::*[@name]', 'descendant::node()',
     'descendant-or-self::*/@*'))
-"""Count the elements, those with a name, the nodes and the attributes of what is copied."""
+"""Counts all elements, elements with a name, nodes and attributes of a copied element."""
 
 _MOST_LINKS = 40
-"""How many links may lead to one another; Linux follows no more."""
+"""Largest number of links that lead to one another, as in Linux."""
 
 _LONGEST_PATH = 4095
-"""How many bytes of a path Linux takes."""
+"""Largest number of bytes of a path, as in Linux."""
 
 _CHARACTERS_OF_WALK = 8
-"""How many characters of a path count for one step of a walk over its parts."""
+"""Following a path costs one step per this many characters."""
 
 _STEPS_OF_LOOK = 2
 """Steps to look at a file or directory for the first time."""
 
 _CHARACTERS_OF_LOOK = 64
-"""How many characters of its path count for one step more, as the system walks over it too."""
+"""The same costs one more step per this many characters of its path."""
 
 
 def steps_of_copy(xml: XmlElement) -> int:
-    """Return the work of copying an element with all that it holds, and of reading the copy."""
+    """Return the steps of work to copy an element with its content and to read the copy."""
     if not len(xml):
-        # Such as a pose, which many includes have.
+        # For example a pose, which many includes have.
         characters = len(xml.text or '') + sum(map(len, chain(xml.keys(), xml.values())))
         return STEPS_OF_ELEMENT * (1 + len(xml.attrib)) + characters // CHARACTERS_OF_STEP
     elements, named, nodes, attributes = (int(count(xml)) for count in _COUNTS)
@@ -65,41 +65,41 @@ def copy_of(
     xml: XmlElement, usage: Usage, place: Place | Callable[[], Place], steps: int | None = None,
 ) -> XmlElement:
     """
-    Copy an element with all that it holds, without the text behind it.
+    Copy an element with its content, without the text behind it.
 
-    :param place: where the copy is asked for.
-    :param steps: what :func:`steps_of_copy` returns for it, where that is known.
-    :raises LimitError: if that is more work than the load may do.
+    :param place: the place that requests the copy.
+    :param steps: the result of :func:`steps_of_copy` for it, if known.
+    :raises LimitError: if this exceeds the work of the load.
     """
     usage.add('work', steps_of_copy(xml) if steps is None else steps, place)
-    # A copy has the text behind the element too, which can be longer, and means nothing.
+    # lxml also copies the text behind the element, which has no meaning and can be longer.
     xml.tail = None
     return copy.deepcopy(xml)
 
 
 class _TooManyLinksError(Exception):
-    """More links lead to one another than are followed."""
+    """Too many links lead to one another."""
 
 
 class FileLookups(NamedTuple):
     """
-    Looks at the file system for one load, at each file, link and directory once.
+    Looks up files for one load, each file, link and directory once.
 
-    Paths are as long as a file writes them, and lead over links that can be longer. So each is
-    followed here, and not by the system, which does not tell how far it had to go.
+    Paths in files can be long, and lead over even longer links. So links are followed here and not
+    by the system, which does not report the length of the way.
     """
 
     usage: Usage
     place: Place
-    """Where the looks are asked for."""
+    """The place that requests the look-ups."""
     paths: dict[str, str | None]
-    """By paths: their :meth:`real_path`."""
+    """:meth:`real_path` by path."""
     steps: dict[str, str | None]
-    """The same by paths of which all but the last part has no link."""
+    """The same for paths in which only the last part can be a link."""
     directories: dict[str, bool]
-    """By real paths: whether they are directories."""
+    """Whether a real path is a directory."""
     lists: dict[str, Mapping[str, str]]
-    """By directories: their :meth:`entries`."""
+    """:meth:`entries` by directory."""
 
     def real_path(self, path: str) -> str | None:
         """Return the path of a file or directory without links; None if it does not exist."""
@@ -113,19 +113,19 @@ class FileLookups(NamedTuple):
             return None
 
     def is_directory(self, path: str) -> bool:
-        """Return whether something is a directory."""
+        """Return whether a path is a directory."""
         real_path = self.real_path(path)
         return real_path is not None and self._is_directory(real_path)
 
     def entries(self, directory: str) -> Mapping[str, str]:
-        """Return the names in a directory by these in lower case; nothing if it cannot be read."""
+        """Return the names in a directory by their lower case; empty if it cannot be read."""
         if directory not in self.lists:
             try:
                 names = os.listdir(directory)  # noqa: PTH208
             except (OSError, ValueError):  # ValueError: a zero character
                 names = []
             self.usage.add('work', len(names), self.place)
-            # Of names that differ in case alone the first one counts.
+            # If names differ in case only, the first one counts.
             self.lists[directory] = {name.lower(): name for name in reversed(names)}
         return self.lists[directory]
 
@@ -158,11 +158,11 @@ class FileLookups(NamedTuple):
         try:
             target = os.readlink(step)  # noqa: PTH115
         except OSError as error:
-            return step if error.errno == errno.EINVAL else None  # EINVAL: it is no link
+            return step if error.errno == errno.EINVAL else None  # EINVAL: not a link
         except ValueError:  # a zero character
             return None
         if link_count == _MOST_LINKS:
-            # Nothing of this way is remembered, as the end of it may exist.
+            # Do not remember any part of this path, as its end may exist.
             raise _TooManyLinksError
         folder = step.rpartition('/')[0]
         return self._followed(
@@ -179,5 +179,5 @@ class FileLookups(NamedTuple):
 
 
 def file_lookups(usage: Usage | None = None, place: Place = Place('')) -> FileLookups:  # noqa: B008
-    """Return lookups that have looked at nothing yet, which count as work of a load."""
+    """Return empty look-ups, which count as work of a load."""
     return FileLookups(Usage() if usage is None else usage, place, {}, {}, {}, {})

@@ -32,21 +32,20 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 _XACRO_DECLARATIONS = ('xacro:arg', 'xacro:property')
 _XACRO_EXPRESSION = re.compile(r'\$[({]')
 _LOCATIONS = ('uri', 'filename', '_map')
-"""Ends of tags whose text is the location of something that no frame depends on, unless they stand
-in an include."""
+"""Ends of tags whose text is a location on which no frame depends, except in an include."""
 
 
 class Document(NamedTuple):
     """One file as a tree."""
 
     path: str
-    """The path that it was opened by."""
+    """The path with which it was opened."""
     root: XmlElement
     """The ``sdf`` element."""
     has_gazebo_elements: bool = False
     """Whether it is URDF with ``<gazebo>`` elements."""
     urdf_root: str | None = None
-    """Of URDF that is read as ROS reads it: the name of the link that has no parent."""
+    """The name of the root link, for URDF that is read as ROS reads it; else None."""
 
 
 def document_from_file(
@@ -57,12 +56,11 @@ def document_from_file(
     Read a file.
 
     :param path: path of an SDFormat file, or the name of a text in ``sources.texts``.
-    :param sources: takes the file, the places of its elements, and what is wrong with it but does
-        not keep it from being read.
-    :param is_included: whether another file includes it, so that URDF is converted as libsdformat
-        does it.
-    :param gazebo_faults: lines of errors in a file that is URDF. What ``<gazebo>`` elements hold
-        is left out if it has any of them, and for None all of it.
+    :param sources: takes the file, the places of its elements, and warnings.
+    :param is_included: whether another file includes it, so that URDF is converted as by
+        libsdformat.
+    :param gazebo_faults: lines of errors in a URDF file. Children of ``<gazebo>`` elements with
+        these lines are left out; with None, all of them.
     :return: the file, in the newest version.
     :raises FileReadError: if it is missing, unreadable or not XML, or declares no version.
     :raises LimitError: if it is too large.
@@ -79,7 +77,7 @@ def document_from_file(
     gazebo_elements: list[XmlElement] = []
     urdf_root = None
     if root.tag == 'robot':
-        # Most files are not URDF and need not wait for this import.
+        # Most files are not URDF and do not need this import.
         from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
         gazebo_elements = root.findall('gazebo')
         for element in gazebo_elements:
@@ -92,7 +90,7 @@ def document_from_file(
         root, root_link = sdf_from_urdf(root, sources, is_included=is_included)
         if not is_included:
             urdf_root = root_link
-            # All links and joints are converted; what follows is about <gazebo> elements.
+            # All links and joints are converted; further problems are those of <gazebo> elements.
             sources.problems.are_for_gazebo = True
         sources.add_tree(path, root, file.lines)
     place = Place(path, sources.line(root))
@@ -135,9 +133,9 @@ def _check_is_expanded(root: XmlElement, path: str, sources: Sources) -> None:
     """
     Refuse a file that xacro has not expanded yet.
 
-    It would be read, and would mean something else: macros are not called, and what ``<xacro:if>``
-    holds is left out. Only declarations, and expressions in plugins, names of topics and locations
-    of meshes, change no frame; of such locations there is one warning.
+    Otherwise it would be read with another meaning: macros are not called, and the content of
+    ``<xacro:if>`` is left out. Only declarations, and expressions in plugins, names of topics and
+    locations of meshes, change no frame; such locations cause one warning.
     """
     name = Path(path).name
     locations = []
@@ -147,24 +145,23 @@ def _check_is_expanded(root: XmlElement, path: str, sources: Sources) -> None:
             continue
         target = name.removesuffix('.xacro') if name.endswith('.xacro') else f'expanded_{name}'
         command = f': xacro {shlex.quote(name)} -o {shlex.quote(target)}' if '.' in name else ''
-        msg = (f'{found} is for xacro, which has to be run before, and what it writes has to be '
-               f'read{command}')
+        msg = f'{found} is for xacro; run xacro first, and read the file that it writes{command}'
         raise ParsingError(msg, Place(path, sources.line(xml)))
     for xml, found in locations[:1]:
-        msg = (f'{found} is for xacro or launch files and stays as it is, so nothing is found '
-               'there; no frame depends on it')
+        msg = (f'{found} is for xacro or launch files and is not expanded, so the file there is '
+               'not found; no frame depends on it')
         sources.warning(xml, msg)
 
 
 def _is_location(xml: XmlElement, found: str) -> bool:
-    """Return whether what is left to do in an element says where a mesh or the like is."""
+    """Return whether an expression in an element is part of the location of a file."""
     parent = xml.getparent()
     return found.startswith('"') and written_tag(xml).endswith(_LOCATIONS) and (
         parent is not None and parent.tag != 'include')
 
 
 def _unexpanded(xml: XmlElement) -> Iterator[tuple[XmlElement, str]]:
-    """Find what is left to do; return each element, and what is in it."""
+    """Find unexpanded macros and expressions; return each element with its first one."""
     tag = written_tag(xml)
     if tag == 'plugin' or tag in _XACRO_DECLARATIONS:
         return

@@ -31,13 +31,13 @@ from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.sdformat.xml_tree import path_step
 
 NO_ELEMENT = -1
-"""Index that means no element."""
+"""Index for no element."""
 
 _MOST_PATHS_KNOWN = 1000
 
 
 class ModelDetails(NamedTuple):
-    """What only a model has."""
+    """Details of a model."""
 
     is_static: bool
     canonical_link: str
@@ -45,11 +45,11 @@ class ModelDetails(NamedTuple):
     placement_frame: str
     """The frame that the pose places; empty for the model frame."""
     urdf_texts: tuple[str, ...]
-    """The XML of the elements in it that are URDF."""
+    """The XML of elements of URDF in it."""
 
 
 class FrameDetails(NamedTuple):
-    """What only an explicit frame has."""
+    """Details of an explicit frame."""
 
     attached_to: str
     """Value of the attribute; empty for the frame of its scope."""
@@ -59,16 +59,16 @@ class FrameDetails(NamedTuple):
 
 
 class SensorDetails(NamedTuple):
-    """What only a sensor has."""
+    """Details of a sensor."""
 
     type: str
     """As written: ``camera``, ``gpu_lidar``, ..."""
     frame_id: str
-    """The frame id of the messages of Gazebo, where the file sets it; else empty."""
+    """The frame id of Gazebo's messages if the file sets it; else empty."""
     is_camera: bool
-    """Whether an optical frame belongs to it."""
+    """Whether it has an optical frame."""
     optical_frame_id: str
-    """The id of the optical frame, where the file sets it; else empty."""
+    """The id of the optical frame if the file sets it; else empty."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -76,7 +76,7 @@ class Elements:
     """
     All elements with a pose, each after its parent element, in the order of the file.
 
-    Entry i of each sequence and array is about element i.
+    Entry i of each sequence and array describes element i.
     """
 
     kinds: np.ndarray[Any, np.dtype[np.uint8]]
@@ -98,7 +98,7 @@ class Elements:
     paths: Sequence[str]
     """The files of the load."""
     has_shapes: bool = False
-    """Whether shapes were asked for."""
+    """Whether shapes were requested."""
     relative_to: Mapping[int, str] = field(default_factory=dict)
     """The frames that poses are relative to, where they are given."""
     models: Mapping[int, ModelDetails] = field(default_factory=dict)
@@ -106,14 +106,14 @@ class Elements:
     joints: Mapping[int, JointDetails] = field(default_factory=dict)
     sensors: Mapping[int, SensorDetails] = field(default_factory=dict)
     shapes: Mapping[int, Shape] = field(default_factory=dict)
-    """The shapes of visuals and collisions; empty unless they were asked for."""
+    """The shapes of visuals and collisions; empty unless they were requested."""
     inertials: Mapping[int, Inertial | AutomaticInertial] = field(default_factory=dict)
     """Without automatic ones that cannot be computed."""
     includes: Mapping[int, Place] = field(default_factory=dict)
-    """For each element that an include is about: the place of the ``<include>``."""
+    """The place of the ``<include>`` of each included element."""
     missing_includes: Mapping[int, Mapping[str, str]] = field(default_factory=dict)
-    """For each element with includes that were not found: names and URIs of what is missing. An
-    empty name is that of a merge, which could have had elements of any name."""
+    """Names and URIs of the missing models of elements with includes that were not found. An empty
+    name is that of a merge, which could have elements of any name."""
     _known_paths: dict[int, str] = field(default_factory=dict, init=False, repr=False)
     """Paths of some elements, which :meth:`place` has made."""
 
@@ -145,7 +145,7 @@ class Elements:
         if index < 0:
             return '/sdf'
         parent = int(self.parents[index])
-        # Many errors may be in one element that is nested deep.
+        # One deeply nested element may have many errors.
         parent_path = self._known_paths.get(parent)
         if parent_path is None:
             parent_path = self._element_path(parent)
@@ -164,7 +164,7 @@ class Elements:
 
 
 _FAR_M = 100.0
-"""A position in a model from which on it may be in millimetres."""
+"""Positions in a model that are at least this far away may be in millimetres."""
 
 
 class ElementsBuilder:
@@ -179,9 +179,9 @@ class ElementsBuilder:
         self.lines = array('i')
         self.pose_lines = array('i')
         self.details: defaultdict[str, dict[int, Any]] = defaultdict(dict)
-        """What only some elements have, by the fields of :class:`Elements`."""
+        """Details of elements, by the fields of :class:`Elements`."""
         self.has_pose = bytearray()
-        """For each element whether it has a pose, whichever line that is in."""
+        """For each element whether it has a pose, even one without a line."""
         self._scopes = array('i')
         self._paths = paths
         self._poses: defaultdict[PoseFormat, tuple[array[int], list[str]]] = defaultdict(
@@ -208,8 +208,8 @@ class ElementsBuilder:
         Set the pose of an element.
 
         :param text: the pose as written.
-        :param pose_format: how it is to be read.
-        :param line: its line; 0 for a pose that no file has.
+        :param pose_format: its format.
+        :param line: its line; 0 for a pose that is in no file.
         """
         self.pose_lines[index] = line
         self.has_pose[index] = True
@@ -221,8 +221,8 @@ class ElementsBuilder:
         """
         Return the table.
 
-        :param problems: takes the poses that are not valid, and therefore the identity, and those
-            that may mean another pose.
+        :param problems: takes errors about invalid poses, which become the identity, and warnings
+            about poses that may be mistakes.
         """
         table = Elements(
             kinds=np.array(self.kinds, dtype=np.uint8), names=self.names,
@@ -241,7 +241,7 @@ class ElementsBuilder:
         return table
 
     def _warn_of_millimetres(self, table: Elements, problems: Problems) -> None:
-        """Warn once of positions in models that are far away for metres."""
+        """Warn once of positions in models that are too far away for metres."""
         is_far = np.abs(table.poses[:, :3]).max(axis=1, initial=0.0) >= _FAR_M
         if not is_far.any():
             return

@@ -26,34 +26,34 @@ class FileChange(NamedTuple):
     path: str
     """The file."""
     old_text: bytes
-    """All that it holds."""
+    """Its whole content."""
     encoding: str
-    """Python's name of the encoding that this is in."""
+    """Python's name of its encoding."""
     begin: int
     """The first byte of the range."""
     end: int
     """The byte behind it."""
     new: bytes
-    """What is in the range then."""
+    """The new content of the range."""
 
     @property
     def new_text(self) -> bytes:
-        """All that the file holds then."""
+        """The whole new content of the file."""
         return b''.join([self.old_text[:self.begin], self.new, self.old_text[self.end:]])
 
     @property
     def undone(self) -> FileChange:
-        """The change that puts back what was in the range, once this one is written."""
+        """The change that restores the old content of the range after this one was written."""
         return FileChange(
             self.path, self.new_text, self.encoding, self.begin, self.begin + len(self.new),
             self.old_text[self.begin:self.end])
 
     def write(self) -> None:
         """
-        Write the file, which keeps its mode, owner, access list, attributes, and links to it.
+        Write the file; it keeps its mode, owner, access list, attributes, and links to it.
 
-        :raises FileWriteError: if it cannot be written, or has changed since it was read; it is as
-            before then.
+        :raises FileWriteError: if it cannot be written, or has changed since it was read; it is
+            unchanged then.
         """
         if self.new == self.old_text[self.begin:self.end]:
             return
@@ -67,8 +67,8 @@ class FileChange(NamedTuple):
         """
         The change as a unified diff; empty if there is none.
 
-        Whatever does not print has escapes, and of very long lines the part around the change is
-        shown.
+        Characters that cannot be printed are escaped; very long lines are shortened to the part
+        around the change.
         """
         before, old, behind, new = (text.decode(self.encoding) for text in (
             self.old_text[:self.begin], self.old_text[self.begin:self.end],
@@ -80,7 +80,7 @@ class FileChange(NamedTuple):
         tail, *below = rest[:_LINES_AROUND + 1]
         end = ''
         if len(rest) == 1 + len(below):
-            # The last of them is what stands behind the last line break of the file.
+            # The last one is the text behind the last line break of the file.
             if below and not below[-1]:
                 below.pop()
             else:
@@ -99,12 +99,12 @@ class FileChange(NamedTuple):
 
 
 def _end(line: str) -> str:
-    """Return the end of what stands before the change in its line."""
+    """Return the end of the text before the change in its line."""
     return line if len(line) <= _LONGEST_PART else f'...{line[-_LONGEST_PART:]}'
 
 
 def _beginning(line: str) -> str:
-    """Return the beginning of what stands behind the change in its line."""
+    """Return the beginning of the text behind the change in its line."""
     return line if len(line) <= _LONGEST_PART else f'{line[:_LONGEST_PART]}...'
 
 

@@ -1,12 +1,12 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Replace a range of bytes in a file; a program of its own, which :func:`replace_range` starts.
+Replace a range of bytes in a file, in a separate process that :func:`replace_range` starts.
 
-Whoever starts it may be killed at any time: the file has its old content or the new one, and no
-other file stays behind. The new content is written to a file without a name, where the file system
-has such files, and exchanged with the old one, where it can do that. The old content is compared
-again when nothing more can be written to the file by its name.
+The starting process may be killed at any time: the file has its old or its new content, and no
+other file is left behind. The new content is written to a file without a name, and exchanged with
+the old one, if the file system supports these. The old content is compared again after the
+exchange, when nothing more can be written to it by its name.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ _AT_FDCWD = -100
 
 
 class RefusedError(Exception):
-    """The reason, in a sentence, why the file stays as it is."""
+    """The file is not changed; the text is the reason."""
 
 
 class _State(NamedTuple):
-    """What must not change while a file is replaced."""
+    """The state of a file that must not change while it is replaced."""
 
     device: int
     inode: int
@@ -47,21 +47,21 @@ class _State(NamedTuple):
 
 def replace_range(path: str, old: bytes, begin: int, end: int, new: bytes) -> None:
     """
-    Let another process replace a range of bytes in a file, with all that belongs to the file kept.
+    Let another process replace a range of bytes in a file, and keep its attributes.
 
-    It has begun when this returns or raises, and goes on if this process is killed meanwhile.
+    The other process completes the replacement even if this one is killed.
 
     :param path: the file, or a link to it, which stays a link.
-    :param old: what the whole file holds, as far as the caller knows.
+    :param old: the whole content of the file as the caller knows it.
     :param begin: the first byte of the range.
     :param end: the byte behind it.
-    :param new: what it shall hold.
-    :raises RefusedError: if it cannot be written, or does not hold ``old``, or another process
-        writes it now; it is as before then.
+    :param new: the new content of the range.
+    :raises RefusedError: if it cannot be written, has another content than ``old``, or is being
+        written by another process; it is unchanged then.
     """
     arguments = [os.fspath(path), str(begin), str(end), new.hex()]
     try:
-        # To leave the block waits for the process, and does not kill it as subprocess.run would.
+        # Leaving the block waits for the process; subprocess.run would kill it.
         with subprocess.Popen(
                 [sys.executable, '-I', '-S', __file__, *arguments], start_new_session=True,
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
@@ -80,7 +80,7 @@ def _reason(error: OSError) -> str:
 
 
 def _replace(path: str, old: bytes, begin: int, end: int, new: bytes) -> None:
-    """Do what :func:`replace_range` is for, in this process."""
+    """Replace a range of bytes as :func:`replace_range`, in this process."""
     real_path = Path(path).resolve(strict=True)
     with os.fdopen(os.open(real_path, os.O_RDWR | os.O_NONBLOCK | os.O_NOCTTY), 'rb') as file:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -119,7 +119,7 @@ def _replace(path: str, old: bytes, begin: int, end: int, new: bytes) -> None:
                 temporary.replace(real_path)
             os.fsync(folder)
         except BaseException:
-            # What another process may have put there instead is not removed.
+            # A file that another process may have put there is not removed.
             if temporary.exists() and temporary.lstat().st_ino == os.fstat(target).st_ino:
                 temporary.unlink()
             raise
@@ -154,14 +154,15 @@ def _copy_attributes(source: int, target: int) -> None:
     for name in {**wanted, **existing}:
         try:
             if name not in wanted:
-                # Such as the access list that a folder gives to the files in it.
+                # For example the access list that a folder gives to its files.
                 os.removexattr(target, name)
             elif wanted[name] != existing.get(name):
                 os.setxattr(target, name, wanted[name])
         except OSError as error:
             msg = f'its attribute {name} cannot be kept: {_reason(error)}'
             raise RefusedError(msg) from error
-    # Last, as others change it. With an access list it has the mask instead of the group's rights.
+    # The mode comes last, as other attributes change it. With an access list, it has the mask
+    # instead of the rights of the group.
     if status.st_mode != os.fstat(target).st_mode:
         os.fchmod(target, stat.S_IMODE(status.st_mode))
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Notice changes of files with ``os.stat``, as the standard library watches no files."""
+"""Detect changes of files with ``os.stat``, as the standard library watches no files."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ Signature: TypeAlias = tuple[int, ...] | None
 """Device, inode, size, and both times of change of a file; None if there is no file."""
 
 _CHANGED: Signature = ()
-"""A signature that no file has."""
+"""The signature of no file."""
 
 _TICK_NS = 20_000_000
-"""How far the times of files may be behind the clock."""
+"""Largest difference between the clock and the times of files."""
 
 
 class FileWatcher:
     """
-    Compares files with what they were before.
+    Compares files with their earlier state.
 
     Editors replace a file, rename it, or write it in pieces; a file can vanish and come back. Each
-    of these changes what ``os.stat`` returns for the path.
+    of these changes the result of ``os.stat`` for the path.
     """
 
     def __init__(self) -> None:
@@ -36,7 +36,7 @@ class FileWatcher:
 
         A file that has changed since reading began counts as changed, once.
 
-        :param read_since_ns: when reading began, in nanoseconds since 1970.
+        :param read_since_ns: time at which reading began, in nanoseconds since 1970.
         """
         signatures = _signatures(paths)
         recent: dict[str, Signature] = {
@@ -51,13 +51,13 @@ class FileWatcher:
         """
         Watch more files and directories, until the next :meth:`watch`.
 
-        :param paths: their paths; a directory changes when something in it appears or vanishes.
+        :param paths: their paths; a directory changes when an entry appears or vanishes.
         """
         self._signatures = _signatures(set(paths).difference(self._signatures)) | self._signatures
 
     def has_changed(self) -> bool:
         """
-        Look at the files, remember them as they are now, and return whether any has changed.
+        Compare the files, remember their current state, and return whether any has changed.
 
         Other threads use :meth:`differs`.
         """
@@ -70,7 +70,7 @@ class FileWatcher:
         """
         Look at the files.
 
-        :return: what :meth:`has_changed` would return.
+        :return: the same as :meth:`has_changed`.
         """
         signatures = self._signatures
         return _signatures(signatures) != signatures
@@ -85,6 +85,6 @@ def _signature(path: str) -> Signature:
         status = os.stat(path)  # noqa: PTH116 - a third of the time of Path.stat
     except (OSError, ValueError):
         return None
-    # Nobody can set the last time, so it also shows files that were given their old time back.
+    # Nobody can set the last time, so it also shows changed files whose old time was restored.
     return (
         status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)

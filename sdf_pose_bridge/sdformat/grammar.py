@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-The grammar of SDFormat: what each element may hold, what it must have, and which values it takes.
+The grammar of SDFormat: the allowed and required content of each element, and its values.
 
 Elements with a pose are members of :class:`Kind`, all others are in
 :mod:`~sdf_pose_bridge.sdformat.specification`. The content of an element is a list of items,
@@ -15,8 +15,8 @@ separated by blanks:
 * ``:type``: the type of the value of the element itself.
 * ``*``: any children, which are not read.
 
-``!`` after a tag or a name: the element or attribute is required. Where a required child element
-is missing, libsdformat adds it with its default value, except in joints. ``+`` is the same for an
+``!`` after a tag or a name: the element or attribute is required. If a required child element is
+missing, libsdformat adds it with its default value, except in joints. ``+`` is the same for an
 element that may be repeated; its value may be blank, which a required value may not be otherwise.
 """
 
@@ -37,7 +37,7 @@ from sdf_pose_bridge.sdformat.specification import ELEMENTS
 
 
 class ValueType(enum.Enum):
-    """Type of a value: its name in definitions, what a value has to be, and how many numbers."""
+    """Type of a value: its name in definitions, the rule for values, and the number of numbers."""
 
     STRING = 'string', 'a text', 0
     BOOLEAN = 'bool', 'a boolean (true, false, 1 or 0)', 0
@@ -65,9 +65,9 @@ class Kind(enum.IntEnum):
     """
     Kind of an element that has a pose.
 
-    Each member has the elements in which the kind may stand, the definition of its content, and
+    Each member has the elements that may contain the kind, the definition of its content, and
     whether references can name elements of the kind. Such elements share a name space in their
-    scope. Other kinds have name spaces of their own among siblings.
+    scope. Each other kind has a separate name space among siblings.
     """
 
     parents: tuple[str, ...]
@@ -86,7 +86,7 @@ class Kind(enum.IntEnum):
         return member
 
     ROOT = '', ''
-    """The implicit root of a model file, in which its poses are resolved. No file writes it."""
+    """The implicit root of a model file, in which its poses are resolved. It has no tag."""
     WORLD = 'sdf', (
         '@name! audio wind include gravity!:vector3 magnetic_field!:vector3 atmosphere! gui '
         'physics+ scene! plugin road spherical_coordinates state population')
@@ -139,7 +139,7 @@ _ITEM = re.compile(
     r'(?P<value>:(?P<type>\w+)(?:\[(?P<minimum>[^,\]]*),(?P<maximum>[^,\]]*)\])?)?')
 _KINDS = {kind.label: kind for kind in Kind}
 _UNREAD = frozenset({'model_state', 'population', 'road', 'state'})
-"""Elements of which libsdformat makes no objects."""
+"""Elements that libsdformat does not load."""
 
 _VALUE_TYPES = {each.label: each for each in ValueType} | dict.fromkeys(CHOICES, ValueType.CHOICE)
 
@@ -150,7 +150,7 @@ class Attribute(NamedTuple):
     value_type: ValueType
     is_required: bool
     choice: Choice | None = None
-    """What the value can be, of a choice; None for an element that is not read."""
+    """The possible values of a choice; None for an element that is not read."""
 
 
 @cache
@@ -158,7 +158,7 @@ def _item(text: str) -> Mapping[str, str]:
     """
     Read an item of the content of an element.
 
-    :raises ValueError: if it is not written as this module describes, or has an unknown type.
+    :raises ValueError: if it is not in the notation of this module, or has an unknown type.
     """
     match = _ITEM.fullmatch(text)
     if match is None:
@@ -177,14 +177,14 @@ def _item(text: str) -> Mapping[str, str]:
 
 class Definition:
     """
-    Definition of an element in the element that holds it.
+    Definition of an element in its parent element.
 
     :param identifier: the tag, ``parent/tag`` or another name that tells definitions apart.
-    :param content: what the element holds, as this module describes it.
-    :param has_frames: whether kinds of elements are frames here. Otherwise they are parts of what
-        libsdformat compares with the specification, but does not read, such as a state.
+    :param content: the content of the element, in the notation of this module.
+    :param has_frames: whether kinds of elements are frames here. They are not in elements that
+        libsdformat checks but does not load, such as a state.
     :param is_required: whether the value may not be blank.
-    :raises ValueError: if the content is not written as this module describes.
+    :raises ValueError: if the content is not in the notation of this module.
     """
 
     def __init__(
@@ -199,9 +199,9 @@ class Definition:
         items = [*map(_item, content.split())]
         value = next((item for item in items if not item['name']), {})
         self.value_type = _VALUE_TYPES.get(value.get('type', ''))
-        """Type of the value; None for an element that holds others."""
+        """Type of the value; None for an element with child elements."""
         self.choice = CHOICES.get(value.get('type', ''))
-        """What the value can be, of a choice."""
+        """The possible values of a choice."""
         self.minimum = float(value.get('minimum') or -math.inf)
         self.maximum = float(value.get('maximum') or math.inf)
         # Python takes longer to look up a member of an Enum than to read an attribute.
@@ -210,7 +210,7 @@ class Definition:
         self.takes_any_number = (
             self.value_type is ValueType.NUMBER and self.minimum == -math.inf)
         self.takes_any_children = any(item['name'] == '*' for item in items)
-        """Whether the element may hold elements that are not defined."""
+        """Whether the element may contain undefined elements."""
         self.attributes: Mapping[str, Attribute] = {
             item['name']: Attribute(
                 _VALUE_TYPES[item['type'] or 'string'], bool(item['required']),
@@ -223,11 +223,12 @@ class Definition:
             (name, attribute) for name, attribute in self.attributes.items()
             if (attribute.is_required or attribute.value_type is not ValueType.STRING)
             and (name != 'name' or self.kind is None)]
-        """The attributes that are required or are no strings, without the names of frames."""
+        """The attributes that are required or have another type than string, without names of
+        frames."""
         self._child_items = [
             item for item in items if item['name'] not in ('', '*') and not item['attribute']]
         self.required_children = {item['name'] for item in self._child_items if item['required']}
-        """Tags of the child elements that libsdformat adds where they are missing."""
+        """Tags of the child elements that libsdformat adds if they are missing."""
 
     @cached_property
     def children(self) -> Mapping[object, Definition]:
@@ -269,9 +270,9 @@ def definition_of(
 
 def _check_definitions() -> None:
     """
-    Check the content of all elements, also of those that few files have.
+    Check the definitions of all elements.
 
-    :raises ValueError: if one is not written as this module describes.
+    :raises ValueError: if one is not in the notation of this module.
     """
     for content in (*ELEMENTS.values(), *(kind.content for kind in Kind)):
         for text in content.split():

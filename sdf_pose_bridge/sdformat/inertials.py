@@ -32,22 +32,22 @@ from sdf_pose_bridge.sdformat.xml_tree import first_child
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 DEFAULT_DENSITY_KG_M3 = 1000.0
-"""Density of a collision where neither it nor the inertial has one: that of water."""
+"""Default density of a collision, that of water."""
 
 MOMENTS = ('ixx', 'iyy', 'izz', 'ixy', 'ixz', 'iyz')
 """The tags of the moments of an :class:`Inertial`, in their order."""
 
 _MOMENTS_OF_NONE = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
-"""The moments of an inertial that has none, as libsdformat has them."""
+"""The default moments of libsdformat."""
 _DEFAULT_TEXTS = {'mass': '1'} | dict(
     zip(MOMENTS, map(str, _MOMENTS_OF_NONE), strict=True))
 _texts_of_numbers = itemgetter(*_DEFAULT_TEXTS)
 _TOLERANCE = 10.0 * sys.float_info.epsilon
-"""Of gz-math: by which part of half their sum moments may break a rule."""
+"""Tolerance of gz-math for rules of moments, relative to half their sum."""
 
 
 class Inertial(NamedTuple):
-    """A mass, with the frame of an ``<inertial>`` at its center."""
+    """A mass; its center is the frame of the ``<inertial>``."""
 
     mass_kg: float
     moments_kg_m2: tuple[float, ...]
@@ -55,10 +55,10 @@ class Inertial(NamedTuple):
 
     @property
     def is_valid(self) -> bool:
-        """Whether libsdformat accepts it: a body can have it (``MassMatrix3::IsValid``)."""
+        """Whether libsdformat accepts it, as a body can have it (``MassMatrix3::IsValid``)."""
         ixx, iyy, izz, ixy, ixz, iyz = self.moments_kg_m2
-        # Most matrices are plainly valid, and this decides it in a microsecond. What is left of
-        # the half trace beside each moment is an integral of squares, as each moment is.
+        # This recognises most valid matrices in a microsecond. The half trace minus a moment is an
+        # integral of squares, as each moment is.
         half = 0.5 * (ixx + iyy + izz)
         if self.mass_kg >= 0.0 and _is_positive(ixx, iyy, izz, ixy, ixz, iyz) and _is_positive(
                 half - ixx, half - iyy, half - izz, -ixy, -ixz, -iyz):
@@ -83,16 +83,16 @@ class CollisionMass(NamedTuple):
     center_z_m: float
     """The z of the center of mass in the frame of the collision; its x and y are 0."""
     moments_kg_m2: tuple[float, ...]
-    """About axes through the center of mass that are parallel to those of the collision."""
+    """Moments about axes through the center of mass, parallel to those of the collision."""
 
 
 class AutomaticInertial(NamedTuple):
-    """What an automatic inertial is computed from."""
+    """The masses from which an automatic inertial is computed."""
 
     collisions: tuple[CollisionMass, ...]
     """The masses of the collisions of its link, in file order."""
     mass_kg: float | None
-    """What they weigh together, where the file says it."""
+    """Their total mass, if the file has it."""
 
 
 def _is_positive(
@@ -142,15 +142,15 @@ def inertial_from_element(
     """
     Read an ``<inertial>`` in its link.
 
-    :param sources: gets a warning about an inertial that libsdformat refuses, since no pose
-        depends on it.
+    :param sources: takes a warning about an inertial that libsdformat rejects; no pose depends on
+        it.
     :return: the inertial; None for an automatic one that cannot be computed.
     """
     auto = xml.get('auto')
     if auto and boolean_from_text(auto):
         return _automatic_inertial(xml, sources)
-    # Values are checked where all others are. Here they are read with little effort, since every
-    # load does it.
+    # Values are checked with all others. They are read here with little effort, since every load
+    # does it.
     texts = _DEFAULT_TEXTS | {child.tag: child.text for child in xml.iterdescendants()}
     try:
         mass_kg, *moments = map(float, _texts_of_numbers(texts))
@@ -172,7 +172,7 @@ def inertial_from_element(
 
 
 def _automatic_inertial(inertial: XmlElement, sources: Sources) -> AutomaticInertial | None:
-    """Return what an automatic inertial is computed from; None if not each mass is known."""
+    """Return the masses for an automatic inertial; None if not each mass is known."""
     link = inertial.getparent()
     collisions = [] if link is None else list(child_elements(link, 'collision'))
     if not collisions:
@@ -192,7 +192,7 @@ def _automatic_inertial(inertial: XmlElement, sources: Sources) -> AutomaticIner
                    'of a mesh is not computed')
             sources.warning(collision, msg)
             return None
-        # An empty density is the default of the element, and not that of the inertial.
+        # An empty density means the default of the element, and not that of the inertial.
         has_density = first_child(collision, 'density') is not None
         (density,) = numbers_of_child(collision, 'density', (DEFAULT_DENSITY_KG_M3,))
         solid = None if shape is None else shape.solid

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Read what only joints have.
+Read the details of joints.
 
 Source: ``Joint::Load`` and ``JointAxis::Load`` of libsdformat 14.
 """
@@ -45,14 +45,14 @@ class MimicDetails(NamedTuple):
     joint: Reference
     """The joint of the leader."""
     axis: str
-    """Which axis of it: ``axis`` or ``axis2``."""
+    """The axis of the leader: ``axis`` or ``axis2``."""
     multiplier: float
     offset: float
     reference: float
 
 
 class Dynamics(NamedTuple):
-    """What a joint does against a motion; forces for those that slide, torques for others."""
+    """Limits, damping and friction of a joint; forces if it slides, else torques."""
 
     effort: float = math.inf
     """Largest force in newtons, or torque in newton metres; not negative."""
@@ -83,17 +83,16 @@ class AxisDetails(NamedTuple):
 
 
 class JointDetails(NamedTuple):
-    """What only a joint has."""
+    """Details of a joint."""
 
     type: str
     """As SDFormat spells it: ``revolute``, ``fixed``, ..."""
     parent: Reference
     child: Reference
     axes: tuple[AxisDetails | None, AxisDetails | None]
-    """``<axis>`` and ``<axis2>``, where they are given."""
+    """``<axis>`` and ``<axis2>``, if they are given."""
     screw_pitch_m: float
-    """How far a screw joint moves along its axis in one turn; positive for a right-handed
-    thread."""
+    """Movement of a screw joint along its axis in one turn; positive for a right-handed thread."""
 
 
 _NO_REFERENCE = Reference('')
@@ -121,7 +120,7 @@ def joint_details_from_element(
 
 
 def check_children_of_joint(xml: XmlElement, sources: Sources, tags: Sequence[str]) -> None:
-    """Check that a joint without a frame, such as one in a state, has what it must have."""
+    """Check that a joint without a frame, such as one in a state, has its required children."""
     for tag in tags:
         if attribute_of(xml, 'type') != 'ball' and first_child(xml, tag) is None:
             sources.error(ElementMissingError, xml, f'the joint has no <{tag}>')
@@ -131,7 +130,7 @@ def _end(xml: XmlElement, tag: str, joint_type: str, sources: Sources) -> Refere
     element = first_child(xml, tag)
     if element is None:
         # The parser of libsdformat gives a ball joint an end with a default name, which no frame
-        # has; any other joint it refuses.
+        # has; it rejects any other joint.
         error = ElementMissingError if joint_type != 'ball' else (
             JointParentError if tag == 'parent' else JointChildError)
         sources.error(error, xml, f'the joint has no <{tag}>; it must name a frame')
@@ -184,7 +183,7 @@ def _dynamics(axis: XmlElement) -> Dynamics:
             continue
         for name in names:
             (value,) = numbers_of_child(part, name, (values[name],))
-            # A limit below zero is how older files say that there is none.
+            # In older files, a limit below zero means no limit.
             values[name] = math.inf if tag == 'limit' and value < 0.0 else value
     return Dynamics(**values)
 

@@ -3,8 +3,8 @@
 """
 Change a pose in the text of a file, and no other byte.
 
-The reader says where a pose stands by the line in which its start tag begins. Several tags can
-begin in one line. So the place is read from the same text with a line for each tag.
+The reader gives the place of a pose by the line in which its start tag begins. Several tags can
+begin in one line, so the reader gets the same text with one line per tag.
 """
 
 from __future__ import annotations
@@ -49,8 +49,7 @@ class PoseText:
 
     :param content: the bytes of the file.
     :param path: its path, for errors.
-    :raises SdfError: if it is not SDFormat 1.4 or newer as it stands: no XML, XML that has to be
-        repaired, URDF, or an older version.
+    :raises SdfError: if it is not well-formed SDFormat 1.4 or newer.
     """
 
     def __init__(self, content: bytes, path: str) -> None:
@@ -78,7 +77,7 @@ class PoseText:
             raise PoseNotSetError(msg, Place(path))
 
     def with_a_line_for_each_tag(self) -> bytes:
-        """Return a text of the same meaning, in which no two start tags begin in one line."""
+        """Return a text of the same meaning with at most one start tag per line."""
         parts = []
         position = 0
         for _, end in self._tags:
@@ -100,12 +99,12 @@ class PoseText:
         lines = np.searchsorted(breaks, starts) + np.arange(len(starts)) + 1
         element = int(np.searchsorted(lines, line))
         if element == len(lines) or lines[element] != line:
-            msg = 'the file does not say by itself where this element is'
+            msg = 'the file alone does not place this element'
             raise PoseNotSetError(msg, Place(self._path))
         return element
 
     def line(self, element: int) -> int:
-        """Return the line in which the start tag of an element begins, in the text as it is."""
+        """Return the line in which the start tag of an element begins, in the unchanged text."""
         return self._text.count(b'\n', 0, self._tags[element][0]) + 1
 
     def pose(self, element: int) -> Pose:
@@ -114,7 +113,7 @@ class PoseText:
 
         :param element: the number of a ``<pose>``.
         :return: the pose as written.
-        :raises PoseNotSetError: if it is not a ``<pose>``, or not written in plain numbers.
+        :raises PoseNotSetError: if it is not a ``<pose>``, or does not consist of plain numbers.
         """
         try:
             pose_format = self._format(element)
@@ -129,7 +128,7 @@ class PoseText:
 
         :param element: the number of a ``<pose>``.
         :param pose: the new pose, in the frame that this pose is relative to.
-        :param tolerance: how much the written pose may differ from it, in metres and radians.
+        :param tolerance: largest difference of the written pose, in metres and radians.
         :return: the change of the file: other numbers in this pose.
         :raises PoseNotSetError: as :meth:`pose`.
         """
@@ -153,12 +152,12 @@ class PoseText:
 
     def with_new_pose(self, element: int, pose: Pose, tolerance: float) -> FileChange:
         """
-        Insert a pose, indented like what follows it.
+        Insert a pose, indented like the next line.
 
         :param element: the number of the element that it places.
         :param pose: as for :meth:`with_pose`.
         :param tolerance: as for :meth:`with_pose`.
-        :return: the change of the file: a ``<pose>`` more.
+        :return: the change of the file: one more ``<pose>``.
         """
         words = _words_from_pose(pose, PoseFormat(), tolerance)
         new = b'<pose>%s</pose>' % ' '.join(words).encode()
@@ -219,9 +218,9 @@ def _words_from_pose(
     pose: Pose, pose_format: PoseFormat, tolerance: float, old_words: Sequence[str] = (), *,
     keeps_rotation: bool = False,
 ) -> list[str]:
-    """Write a pose in the shortest numbers; those that are right already stay."""
+    """Write a pose in the shortest numbers; numbers that are right already stay."""
     numbers = [*pose[:3]]
-    # An error of each number contributes to that of the pose at most as much as this divides.
+    # Together, the errors of all numbers stay within the tolerance.
     tolerances = [tolerance / 2.0] * 3
     if pose_format.is_quaternion:
         numbers += pose[3:]

@@ -3,10 +3,10 @@
 """
 Read the texts of ``<pose>``: x y z and a unit quaternion.
 
-The attributes ``rotation_format`` and ``degrees`` say what the numbers are (``pose.sdf`` of
-http://sdformat.org/spec). Of the numbers that C's ``strtod`` takes, a pose may have only decimal
-ones here: no ``0x10``, no ``1.5abc``. A comma may follow each number, as in ``1, 2, 3``, but it
-separates nothing. Quaternions are normalised, which libsdformat does not do.
+The attributes ``rotation_format`` and ``degrees`` define the numbers (``pose.sdf`` of
+http://sdformat.org/spec). Only decimal numbers are accepted, unlike by C's ``strtod``: no
+``0x10``, no ``1.5abc``. A comma may follow each number, as in ``1, 2, 3``, but does not separate
+numbers. Quaternions are normalised, unlike by libsdformat.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ _LARGEST_NORM = 1e150
 """The squares of larger norms are beyond the range of a double."""
 
 _NORM_TOLERANCE = 1e-3
-"""A quaternion whose norm differs more from 1 is probably not what was meant."""
+"""A quaternion whose norm differs more from 1 is probably a mistake."""
 
 _LARGEST_ANGLE_RAD = 6.3
-"""A larger angle, of more than a turn, was probably meant in degrees."""
+"""A larger angle, of more than a turn, is probably in degrees."""
 
 _IDENTITY_TEXTS = {6: '0 0 0 0 0 0', 7: '0 0 0 0 0 0 1'}
 _DECIMAL_NUMBER = re.compile(rf'[+-]?{DECIMAL}')
@@ -50,7 +50,7 @@ _THREE_DIGIT_EXPONENT = re.compile(r'[eE][+-]?0*[1-9][0-9][0-9]')
 
 
 class PoseFormat(NamedTuple):
-    """How the numbers of a pose are to be read."""
+    """The format of the numbers of a pose."""
 
     is_quaternion: bool = False
     """True for ``rotation_format="quat_xyzw"``, False for ``euler_rpy``."""
@@ -72,9 +72,9 @@ class PoseTextError(ValueError):
 
 def pose_format_of(xml: XmlElement) -> PoseFormat:
     """
-    Read how the numbers of a ``<pose>`` are to be read.
+    Read the format of a ``<pose>``.
 
-    :raises PoseTextError: if ``rotation_format`` and ``degrees`` do not say it.
+    :raises PoseTextError: if ``rotation_format`` or ``degrees`` is not valid.
     """
     if not xml.keys():
         return _PLAIN_FORMAT
@@ -98,7 +98,7 @@ class PosesFromTexts(NamedTuple):
     failures: list[tuple[int, str]]
     """The index of each text that is not a pose, and the reason."""
     doubts: list[tuple[int, str]]
-    """The index of each text that may mean another pose, and the reason."""
+    """The index of each text that may be a mistake, and the reason."""
 
 
 def poses_from_texts(texts: Sequence[str], pose_format: PoseFormat) -> PosesFromTexts:
@@ -153,10 +153,9 @@ def text_from_pose(pose: Pose) -> str:
 
 def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> list[float]:
     """
-    Read the numbers of a text, without making a pose of them.
+    Read the numbers of a text.
 
-    :return: the numbers in the order of the layout; those of a quaternion that is too large are
-        scaled.
+    :return: the numbers in the order of the layout; a quaternion that is too large is scaled.
     :raises PoseTextError: if the text is not a pose.
     """
     layout = pose_format.layout
@@ -214,8 +213,8 @@ def _numbers_from_texts(texts: Sequence[str], count: int) -> NDArray[np.float64]
     """
     Read the numbers of many texts at once, which takes a tenth of the time.
 
-    :param count: how many numbers each should have.
-    :return: shape (n, count); None if any text needs a closer look.
+    :param count: the number of values of each text.
+    :return: shape (n, count); None if a text is not a list of plain numbers.
     """
     texts = [text or _IDENTITY_TEXTS[count] for text in texts]
     joined = ' '.join(texts)

@@ -3,8 +3,8 @@
 """
 Fill the table of elements in one walk over a tree.
 
-Every element is visited once. The grammar says what it is: an element with a frame becomes a row
-of the table, a value is checked, and what the grammar does not know is skipped.
+Every element is visited once. By the grammar, an element with a frame becomes a row of the table,
+a value is checked, and an unknown element is skipped.
 """
 
 from __future__ import annotations
@@ -68,15 +68,15 @@ from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _FRAME_ID_TAGS = ('frame_id', 'gz_frame_id', 'ignition_frame_id')
-"""Elements of a sensor that say which frame its messages are in; the first of them counts."""
+"""Elements of a sensor with the frame id of its messages; the first of them counts."""
 _READ_ALREADY = definition_of('plugin')
-"""A definition by which children are not read."""
+"""A definition without children, so that none is read."""
 _CHECKS = {'material': check_material, 'submesh': check_submesh}
 """Functions that check elements without a frame, by the identifiers of these."""
 _CHECKS_OF_UNREAD = {
     'joint': partial(check_children_of_joint, tags=('parent', 'child')),
     'old_joint_state': partial(check_children_of_joint, tags=('angle',))}
-"""The same for elements in what libsdformat does not read, such as a state."""
+"""The same for elements that libsdformat does not load, such as those in a state."""
 
 
 def elements_from_tree(root: XmlElement, sources: Sources, *, shapes: bool = False) -> Elements:
@@ -85,11 +85,11 @@ def elements_from_tree(root: XmlElement, sources: Sources, *, shapes: bool = Fal
 
     :param root: the ``sdf`` element of a tree in the newest version. An ``<include>`` in it is
         one that was not found.
-    :param sources: takes what is wrong with structure, names, attributes and values; references
-        are not looked up here.
+    :param sources: takes errors and warnings about structure, names, attributes and values;
+        references are not looked up here.
     :param shapes: whether to read the shapes of visuals and collisions.
-    :return: the elements. One with an error is kept if that is possible, so that other errors are
-        found and none follows from the first.
+    :return: the elements. An element with an error is kept if possible, so that further errors are
+        found and none only follows from the first.
     """
     sources = sources.of_unchanged_trees()
     if sources.may_hold_scoped_names:
@@ -103,11 +103,11 @@ def check_element(xml: XmlElement, definition: Definition, sources: Sources) -> 
 
 
 def _check_scoped_names(root: XmlElement, sources: Sources) -> None:
-    """Report names with ``::`` in files that must not have them, or are included by such files."""
+    """Report names with ``::`` in files without scoped names, and in files that they include."""
     xmls: list[XmlElement] = root.xpath('//*[contains(@name, "::")]')
     for xml in xmls:
         sources.count_work(sum(1 for _ in xml.iterancestors()), xml)
-        # The name may be written in the file that includes the element.
+        # The name may be in the file that includes the element.
         is_named_by_include = sources.origin(xml).is_named_by_include
         paths = islice(sources.enclosing_paths(xml), int(is_named_by_include), None)
         if is_foreign(xml) or all(allows_scoped_names(sources.versions[path]) for path in paths):
@@ -135,7 +135,8 @@ class _Reader:
             Kind.SENSOR: ('sensors', _sensor_details),
             Kind.INERTIAL: ('inertials', partial(inertial_from_element, sources=sources)),
         }
-        """What only some kinds have: the field of the elements, and what reads it or None."""
+        """Details of some kinds: the field of the elements, and the function that reads it or
+        None."""
         if shapes:
             for kind in (Kind.VISUAL, Kind.COLLISION):
                 self._readers_of_details[kind] = ('shapes', shape_of)
@@ -175,14 +176,14 @@ class _Reader:
                    'model, light or actor may')
             self._sources.error_in_name(ElementIncorrectTypeError, xml, msg)
 
-    # The walk. ``parent`` is the index of the parent element, if that has a frame, ``scope`` that
-    # of the model, world or root whose names references use, and ``path`` the file around.
+    # The walk. ``parent`` is the index of the parent element, if it has a frame, ``scope`` that of
+    # the model, world or root whose names references use, and ``path`` the file of the parent.
 
     def read(
         self, xml: XmlElement, definition: Definition, parent: int = NO_ELEMENT,
         scope: int = NO_ELEMENT, path: str = '', depth: int = 1,
     ) -> None:
-        """Read an element, with all that it holds."""
+        """Read an element and its content."""
         if definition.has_required_attributes or xml.keys():
             self._check_attributes(xml, definition)
         if definition.is_pose:
@@ -223,10 +224,10 @@ class _Reader:
         self, xml: XmlElement, definition: Definition, kind: Kind, parent: int, scope: int,
         path: str,
     ) -> tuple[Definition, int, int, str]:
-        """Add an element to the table; return by what to read its children."""
+        """Add an element to the table; return the arguments to read its children."""
         if parent >= 0 and self._builder.kinds[parent] == Kind.ACTOR:
-            # Links and joints of actors are read, but nothing can refer to them, so that their
-            # names may repeat: each has another parent.
+            # Links and joints of actors are checked, but nothing can refer to them, so their names
+            # may repeat: each gets another parent.
             self._of_actors = self._of_actors or _Reader(self._sources)
             number = len(self._of_actors._builder.names)  # noqa: SLF001
             self._of_actors.read(xml, definition, NO_ELEMENT - 1 - number, path=path)
@@ -317,7 +318,7 @@ class _Reader:
             builder.details['relative_to'][index] = relative_to
 
 
-# What only some kinds of elements have
+# Details of some kinds
 
 def _model_details(xml: XmlElement) -> ModelDetails:
     return ModelDetails(

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-The types of shapes: one table says all that depends on the type.
+The types of shapes, in one table.
 
 Sources: the classes of shapes of libsdformat 14, and for masses those of gz-math 7.
 """
@@ -21,12 +21,12 @@ from numpy.typing import NDArray
 from sdf_pose_bridge.geometry.rotations import Floats
 
 _SEGMENTS = 24
-"""How many sides a surface has that is round about its z axis."""
+"""Number of sides of a surface that is round about its z axis."""
 _NO_SIZES: Mapping[str, tuple[float, ...]] = {}
 
 
 class Primitive(enum.Enum):
-    """The bodies that others draw by themselves."""
+    """The bodies that RViz and URDF have."""
 
     BOX = enum.auto()
     CYLINDER = enum.auto()
@@ -35,17 +35,17 @@ class Primitive(enum.Enum):
 
 
 class Part(NamedTuple):
-    """A body of which a shape consists, with the axes of the shape."""
+    """A body that is a part of a shape, with the axes of the shape."""
 
     primitive: Primitive
     extent_m: tuple[float, float, float]
-    """Its whole length along x, y and z."""
+    """Its full length along x, y and z."""
     z_m: float = 0.0
-    """Where its center is on the z axis of the shape."""
+    """Position of its center on the z axis of the shape."""
 
 
 class Solid(NamedTuple):
-    """What a shape would weigh."""
+    """The mass properties of a solid shape."""
 
     volume_m3: float
     moments_m2: tuple[float, float, float]
@@ -66,22 +66,22 @@ class Surface(NamedTuple):
 
 class ShapeType(NamedTuple):
     """
-    All that depends on the type of a shape.
+    A type of shapes.
 
-    The functions take the sizes, which are positive where they have to be. What is None cannot be
-    said of the type.
+    The functions get the sizes, which are positive if required. A function is None if the type
+    does not support it.
     """
 
     sizes_m: Mapping[str, tuple[float, ...]] = _NO_SIZES
     """Tags of its sizes, with their defaults."""
     required_count: int = 3
-    """How many of the first sizes have to be positive."""
+    """Number of sizes, from the first, that have to be positive."""
     surface: Callable[..., Surface] | None = None
-    """Makes triangles. For a plane they have the normal z."""
+    """Makes triangles. Those of a plane have the normal z."""
     parts: Callable[..., tuple[Part, ...]] | None = None
-    """Lists the bodies of which it consists."""
+    """Lists its parts."""
     solid: Callable[..., Solid] | None = None
-    """Computes what it weighs."""
+    """Computes its mass properties."""
 
 
 def _box(x_m: float, y_m: float, z_m: float) -> tuple[Part, ...]:
@@ -189,8 +189,8 @@ def _round_surface(profile_m: Sequence[tuple[float, float]]) -> Surface:
     """
     Turn a line about the z axis.
 
-    :param profile_m: distance from the axis and z of each point, from the lowest to the highest,
-        which are on the axis.
+    :param profile_m: distance from the axis and z of each point, from the lowest to the highest;
+        the first and the last are on the axis.
     """
     angles = np.linspace(0.0, 2.0 * np.pi, _SEGMENTS, endpoint=False)
     radii, heights = np.array(profile_m, float).T[:, :, np.newaxis]
@@ -224,4 +224,4 @@ SHAPE_TYPES: Mapping[str, ShapeType] = {
     'image': ShapeType(),
     'polyline': ShapeType(),
 }
-"""The types of shapes by their tags, in the order in which the first one counts."""
+"""The types of shapes by their tags, in the order of precedence."""

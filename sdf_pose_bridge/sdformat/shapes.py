@@ -36,7 +36,7 @@ _UP = (0.0, 0.0, 1.0)
 
 
 class Shape(NamedTuple):
-    """What a visual or a collision looks like, in its own frame."""
+    """The shape of a visual or a collision, in its own frame."""
 
     type: str
     """Its tag, a key of :data:`SHAPE_TYPES`."""
@@ -49,14 +49,14 @@ class Shape(NamedTuple):
     mesh_uri: str
     """URI of a mesh, relative to the file of its element; empty for others."""
     submesh: str
-    """Name of the part of the mesh that is meant; empty for all of it."""
+    """Name of a part of the mesh; empty for all of it."""
     mesh_scale: tuple[float, ...]
     """Factors of a mesh along x, y and z; 1 for others."""
     rgba: tuple[float, float, float, float] | None
-    """Color of the material, its diffuse or else its ambient one, each component from 0 to 1.
-    None where the file gives none."""
+    """Color of the material, its diffuse or else its ambient one, each component from 0 to 1. None
+    if the file has none."""
     opacity: float = 1.0
-    """What ``<transparency>`` leaves of any color, from 0 to 1."""
+    """The opposite of ``<transparency>``, from 0 to 1."""
 
     @property
     def is_visible(self) -> bool:
@@ -64,13 +64,13 @@ class Shape(NamedTuple):
         return self.opacity > 0.0 and (self.rgba is None or self.rgba[3] > 0.0)
 
     def rgba_or(self, other: tuple[float, ...]) -> tuple[float, ...]:
-        """Return the color of its material, or else another one, as transparent as it is."""
+        """Return the color of its material, or else another one, with its transparency."""
         red, green, blue, alpha = self.rgba or other
         return red, green, blue, alpha * self.opacity
 
     @property
     def drawn_rgba(self) -> tuple[float, ...] | None:
-        """Its color for RViz: gray where it has none; None for the materials of a mesh itself."""
+        """Its color for RViz: gray if it has none; None for the materials of a mesh itself."""
         # STL has none, and a mesh without a color would be black. RViz cannot make them
         # transparent.
         has_materials = (
@@ -99,7 +99,7 @@ class Shape(NamedTuple):
 
     @property
     def surface(self) -> Surface:
-        """Its surface, if there is no reason why not."""
+        """Its surface, if :attr:`reason_without_surface` is empty."""
         make = SHAPE_TYPES[self.type].surface
         if make is None:
             raise ValueError(self.reason_without_surface)
@@ -108,13 +108,13 @@ class Shape(NamedTuple):
 
     @property
     def parts(self) -> tuple[Part, ...]:
-        """The bodies of which it consists; none where it cannot be said in them."""
+        """Its parts; none if its type has none."""
         parts = SHAPE_TYPES[self.type].parts
         return () if parts is None else parts(*self.sizes_m)
 
     @property
     def solid(self) -> Solid | None:
-        """What it would weigh; None where this is not computed, or a size is not positive."""
+        """Its mass properties; None if they cannot be computed, or a size is not positive."""
         solid = SHAPE_TYPES[self.type].solid
         return None if solid is None or not self._has_positive_sizes else solid(*self.sizes_m)
 
@@ -162,7 +162,7 @@ def check_submesh(xml: XmlElement, sources: Sources) -> None:
 
 
 def check_material(xml: XmlElement, sources: Sources) -> None:
-    """Check that the script and the shader of a material have what they need."""
+    """Check that the script and the shader of a material are complete."""
     script, shader = first_child(xml, 'script'), first_child(xml, 'shader')
     if script is not None:
         for tag, error in (('uri', ElementInvalidError), ('name', ElementMissingError)):

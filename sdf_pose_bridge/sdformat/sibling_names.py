@@ -29,7 +29,7 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 class SiblingNames:
     """
-    The names that are in use, by parent element and kind.
+    The used names, by parent element and kind.
 
     Links, joints, frames and models of one parent share a name space. Each other kind has its own.
     """
@@ -38,17 +38,17 @@ class SiblingNames:
         self._builder = builder
         self._sources = sources
         self._used: dict[tuple[int, Kind | None, str], tuple[Kind, int, bool]] = {}
-        """By parent, kind and name: the kind, the index, and whether the name is a new one."""
+        """Kind, index, and whether the name is a new one, by parent, kind and name."""
         self._renamed: set[tuple[int, Kind, str]] = set()
 
     def add(self, kind: Kind, xml: XmlElement, parent: int, parent_path: str) -> str | None:
         """
-        Add the name of the element that is added to the table next.
+        Add the name of the next element of the table.
 
         :param parent: index of its parent element; -1 for the file.
         :param parent_path: file of the parent element.
-        :return: its name. Below version 1.7 that is a new one if another kind of element has the
-            name. None if the name is missing or in use, which is then reported.
+        :return: its name; below version 1.7, a new one if another kind of element has the name.
+            None if the name is missing or in use, which is reported.
         """
         name = attribute_of(xml, 'name')
         if not name:

@@ -1,12 +1,12 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Remember where each XML element was written, and what is wrong with it.
+The files of a load, the places of their XML elements, and problems with them.
 
 A tree may be put together from several files.
 
-lxml knows the line of an element, but not its file, and neither lines beyond 65,535 nor the line
-in which a start tag begins that ends in another one.
+lxml knows the line of an element, but not its file. It does not know lines beyond 65,535, nor the
+first line of a start tag over several lines.
 """
 
 from __future__ import annotations
@@ -35,15 +35,15 @@ _MOST_PLACES_REMEMBERED = 1000
 
 
 PARAMS_TAG = 'experimental:params'
-"""The tag of what holds parameters of an include."""
+"""The tag of the parameters of an include."""
 
 
 class Origin(NamedTuple):
     """
-    Where an element was written, as far as that does not follow from its tree.
+    The place of an element, as far as it does not follow from its tree.
 
-    An included element stands where its pose is written. What it holds does not, and its version
-    is that of its own file.
+    The place of an included element is that of its pose. Its content keeps its own places, and its
+    version is that of its own file.
     """
 
     file: str | None = None
@@ -51,39 +51,40 @@ class Origin(NamedTuple):
     line: int = 0
     """Its line; 0 for the line that it was parsed in."""
     include: Place | None = None
-    """The include that it came from; None for an element in the included one."""
+    """The include of an included element; None for its content."""
     is_named_by_include: bool = False
-    """Whether its name is written in the file that includes it."""
+    """Whether its name is in the file that includes it."""
     pose: Place | None = None
-    """Where it is placed, if not in its own file."""
+    """The place of its pose, if this is not in its own file."""
     placement_frame: str = ''
-    """Of the frame that replaces a merged model's frame: the frame that the include places."""
+    """For the frame that replaces a merged model's frame: the frame that the include places."""
     missing: tuple[str, str] | None = None
-    """Of an include that was not replaced: the name that the included model would have, empty if
-    any unknown name may come from it, and the URI."""
+    """For an include that was not replaced: the name of the missing model, empty if any unknown
+    name may come from it, and the URI."""
 
 
 _PARSED = Origin()
-"""The origin of an element that was parsed with the tree in which it is."""
+"""The origin of an element that was parsed with its tree."""
 
 
 class Sources:
     """
-    The files of a load, where each XML element was written, and what is wrong with them.
+    The files of a load, the places of their XML elements, and problems with them.
 
-    An element stands in the file that :meth:`set_origin` gave to it or to its nearest ancestor.
+    The file of an element is the one that :meth:`set_origin` gave to it or to its nearest
+    ancestor.
 
-    :param limits: what the load may use.
-    :param texts: what to read instead of the files at some paths.
+    :param limits: the limits of the load.
+    :param texts: texts to read instead of the files at some paths.
     """
 
     def __init__(
         self, limits: Limits = DEFAULT_LIMITS, texts: Mapping[str, bytes | str] | None = None,
     ) -> None:
         self.usage = Usage(limits)
-        """What the load has used so far."""
+        """The use of the load so far."""
         self.texts = texts or {}
-        """What to read instead of the files at some paths; bytes are in the encoding that they
+        """Texts to read instead of the files at some paths; bytes are in the encoding that they
         declare."""
         self.paths: list[str] = []
         """All files that were read, in the order of reading."""
@@ -94,26 +95,26 @@ class Sources:
         self.includes: dict[str, Place] = {}
         """The place of the include that first led to each included file, by its path."""
         self.may_hold_scoped_names = False
-        """False if no name in these files can hold ``::``."""
+        """False if no name in these files can contain ``::``."""
         self.composed_trees: set[XmlElement] = set()
         """The outermost elements of trees whose elements have sources of their own."""
         self.problems = Problems(self.paths, self.includes)
-        """What is wrong with these files."""
+        """The errors and warnings of these files."""
         self._origins: dict[XmlElement, Origin] = {}
         self._parsed_lines: dict[XmlElement, int] = {}
         self._places: dict[XmlElement, Place] | None = None
 
     def with_own_problems(self) -> Sources:
-        """Return the same sources, whose problems become those of the load only when asked to."""
+        """Return the same sources with separate problems, to be added to those of the load."""
         part = copy.copy(self)
         part.problems = Problems(self.paths, parent=self.problems)
         return part
 
     def of_unchanged_trees(self) -> Sources:
         """
-        Return the same sources, which remember places.
+        Return the same sources with a cache of places.
 
-        With very long names, or very deep, each place takes long to make.
+        Making a place takes long if names are very long or deep.
         """
         part = copy.copy(self)
         part._places = {}  # noqa: SLF001
@@ -138,11 +139,11 @@ class Sources:
         self.problems.warning(message, self.place(xml), code, is_for_gazebo=is_for_gazebo)
 
     def count_work(self, steps: int, xml: XmlElement) -> None:
-        """Count work that an element makes, against the limits."""
+        """Count work for an element against the limits."""
         self.usage.add('work', steps, lambda: self.place(xml))
 
     def add_path(self, path: str) -> None:
-        """Add a file, unless it is known already."""
+        """Add a file, unless it is known."""
         if path not in self.file_indices:
             self.file_indices[path] = len(self.paths)
             self.paths.append(path)
@@ -151,7 +152,7 @@ class Sources:
         """
         Add the tree of a file.
 
-        :param lines: the lines of those of its elements whose lines lxml does not know.
+        :param lines: the lines of the elements whose lines lxml does not know.
         """
         self.set_origin(root, file=path)
         self._parsed_lines.update(lines)
@@ -159,11 +160,11 @@ class Sources:
             self.composed_trees.add(root)
 
     def set_source(self, xml: XmlElement, source: XmlElement) -> None:
-        """Set that an element, with those in it that have no other source, stands with another."""
+        """Give an element, with the content that has no other source, the place of another one."""
         self.set_origin(xml, file=self.path(source), line=self.line(source))
 
     def set_parsed_line(self, xml: XmlElement, source: XmlElement) -> None:
-        """Set that an element, in a tree that replaces another, has the line of one of that."""
+        """Give an element of a new tree the line of an element of the old one."""
         xml.sourceline = source.sourceline  # type: ignore[misc]  # it can be set
         if source in self._parsed_lines:
             self._parsed_lines[xml] = self._parsed_lines[source]
@@ -173,7 +174,7 @@ class Sources:
         self._origins[xml] = self.origin(xml)._replace(**changes)
 
     def origin(self, xml: XmlElement) -> Origin:
-        """Return where an element was written, as far as that does not follow from its tree."""
+        """Return the origin of an element."""
         return self._origins.get(xml, _PARSED)
 
     def path(self, xml: XmlElement) -> str:
@@ -181,7 +182,7 @@ class Sources:
         return next(self.enclosing_paths(xml))
 
     def enclosing_paths(self, xml: XmlElement) -> Iterator[str]:
-        """Iterate over the files that lead to an element, from its own to the outermost."""
+        """Iterate over the files around an element, from its own to the outermost."""
         files = (self.origin(each).file for each in with_ancestors(xml))
         return (file for file in files if file is not None)
 
@@ -196,7 +197,7 @@ class Sources:
         """
         Return the file and the line of an element, and its path in the tree.
 
-        :raises LimitError: if very many places are asked for, each for an error or a warning.
+        :raises LimitError: if too many places are requested, each for an error or a warning.
         """
         parent = xml.getparent()
         outer = Place('') if parent is None else self._place_in_tree(parent)
@@ -209,7 +210,7 @@ class Sources:
         return place
 
     def _place_in_tree(self, xml: XmlElement) -> Place:
-        """Return the file and the path of an element that holds another."""
+        """Return the file and the path of an ancestor of an element."""
         file, path = '', ''
         steps: list[str] = []
         for element in with_ancestors(xml):
@@ -231,9 +232,9 @@ class Sources:
         self, xml: XmlElement, user: XmlElement, steps: int | None = None,
     ) -> XmlElement:
         """
-        Copy an element with all that it holds into a tree of its own, written where it was.
+        Copy an element with its content and its places into a separate tree.
 
-        :param user: the element that asks for it.
+        :param user: the element that requests it.
         :param steps: as for :func:`~sdf_pose_bridge.sdformat.counted.copy_of`.
         """
         result = copy_of(xml, self.usage, lambda: self.place(user), steps)

@@ -1,9 +1,9 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-What SDFormat defines: types of joints, choices of values, and all elements that have no pose.
+Types of joints, choices of values, and all elements without a pose in SDFormat.
 
-What version 1.12 renamed is there by both names.
+Elements that version 1.12 renamed have both names.
 
 The elements are in the notation of the module ``grammar``. Facts of the specification, version
 1.11 (http://sdformat.org/spec).
@@ -17,24 +17,24 @@ from typing import NamedTuple
 
 
 class Motion(enum.Enum):
-    """What a joint does along or about an axis."""
+    """The motion of a joint along or about an axis."""
 
     TURN = enum.auto()
     """The position is an angle in radians."""
     SLIDE = enum.auto()
     """The position is a distance in metres."""
     SCREW = enum.auto()
-    """The position is an angle in radians; the pitch of the thread says how far that moves it."""
+    """The position is an angle in radians; the pitch of the thread gives the distance."""
 
 
 class DofType(NamedTuple):
-    """One of the ways in which joints of a type can move."""
+    """A degree of freedom of a type of joints."""
 
     motion: Motion
     axis: int | tuple[float, float, float] = 0
-    """Which axis of the joint it has, 0 or 1, or a fixed direction in the frame of the joint."""
+    """The axis of the joint, 0 or 1, or a fixed direction in the frame of the joint."""
     suffix: str = ''
-    """What its name in ``joint_states`` has after that of the joint."""
+    """Appended to the name of the joint for its name in ``joint_states``."""
 
 
 class JointType(NamedTuple):
@@ -45,7 +45,7 @@ class JointType(NamedTuple):
 
     @property
     def has_thread(self) -> bool:
-        """Whether the pitch of a thread says how it moves."""
+        """Whether it has the pitch of a thread."""
         return any(dof.motion is Motion.SCREW for dof in self.dofs)
 
 
@@ -53,10 +53,10 @@ class UrdfJointType(NamedTuple):
     """A type of joints in URDF."""
 
     sdformat: str
-    """The type that it becomes, a key of :data:`JOINT_TYPES`; empty if there is none."""
+    """The corresponding type of SDFormat, a key of :data:`JOINT_TYPES`; empty if there is none."""
     has_axis: bool
     has_limit: bool
-    """Whether it has, and must have, a ``<limit>`` of its position."""
+    """Whether it requires a ``<limit>`` of its position."""
 
 
 _ONE_TURN = JointType((DofType(Motion.TURN),))
@@ -76,7 +76,7 @@ JOINT_TYPES: Mapping[str, JointType] = {
     'screw': JointType((DofType(Motion.SCREW),)),
     'universal': _TWO_TURNS,
 }
-"""The types of joints by the names that they have in SDFormat."""
+"""The types of joints by their names in SDFormat."""
 
 URDF_JOINT_TYPES: Mapping[str, UrdfJointType] = {
     'continuous': UrdfJointType('revolute', has_axis=True, has_limit=False),
@@ -86,14 +86,14 @@ URDF_JOINT_TYPES: Mapping[str, UrdfJointType] = {
     'prismatic': UrdfJointType('prismatic', has_axis=True, has_limit=True),
     'revolute': UrdfJointType('revolute', has_axis=True, has_limit=True),
 }
-"""The types of joints by the names that they have in URDF."""
+"""The types of joints by their names in URDF."""
 
 URDF_TAGS = ('ros2_control', 'transmission', 'gazebo')
-"""The elements of URDF that users write into a ``<model>``, which SDFormat does not define."""
+"""The elements of URDF that users write into a ``<model>``; SDFormat does not define them."""
 
 
 class Choice(NamedTuple):
-    """The texts that a value can be."""
+    """The possible texts of a value."""
 
     texts: tuple[str, ...]
     ignores_case: bool = False

@@ -3,8 +3,8 @@
 """
 Warn of elements and attributes that SDFormat does not define; most of them are misspelt.
 
-libsdformat warns of the same ones (``readXml`` and ``readAttributes`` in ``parser.cc``). Nobody is
-warned of names with a prefix, and of the content of plugins.
+libsdformat warns of the same ones (``readXml`` and ``readAttributes`` in ``parser.cc``). Names
+with a prefix, and the content of plugins, cause no warning.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _ELEMENT_HINTS = {
 _PLACES = {
     kind.label: ' or '.join(f'<{parent}>' for parent in kind.parents)
     for kind in Kind if kind.parents}
-"""The elements in which each kind of element can stand."""
+"""The elements that can contain each kind of element."""
 
 _ATTRIBUTE_HINTS = {
     ('pose', 'frame'): 'since version 1.7 it is relative_to',
@@ -43,14 +43,14 @@ _ATTRIBUTE_HINTS = {
 
 
 class UndefinedReporter:
-    """Warns of what is not defined."""
+    """Warns of undefined elements and attributes."""
 
     def __init__(self, sources: Sources) -> None:
         self._sources = sources
         self._nearest: dict[tuple[str, str, str], str] = {}
 
     def report_content(self, xml: XmlElement, definition: Definition) -> None:
-        """Warn of the attributes and child elements of an element that are not defined."""
+        """Warn of the undefined attributes and child elements of an element."""
         self.report_attributes(xml, definition)
         for child in xml:
             if child.tag not in definition.children:
@@ -61,7 +61,7 @@ class UndefinedReporter:
         Warn of an element.
 
         :param xml: a child element, or a comment, that the definition of its parent does not know.
-        :param parent: the definition of the element that holds it.
+        :param parent: the definition of its parent element.
         """
         tag = written_tag(xml)
         parent_xml = xml.getparent()
@@ -69,7 +69,7 @@ class UndefinedReporter:
                 or parent_xml is None or self._is_only_counted()):
             return
         if tag == 'include':
-            # One that is read anywhere else was replaced, or is reported already.
+            # An <include> elsewhere was replaced, or is reported already.
             if parent.value_type is not None:
                 self._sources.warning(xml, f'<include> in <{written_tag(parent_xml)}> is not read')
             return
@@ -83,7 +83,7 @@ class UndefinedReporter:
         self._warn(xml, f'<{tag}> in <{written_tag(parent_xml)}>', hint)
 
     def report_attributes(self, xml: XmlElement, definition: Definition) -> None:
-        """Warn of the attributes of an element that are not defined."""
+        """Warn of the undefined attributes of an element."""
         names = xml.keys()
         for name in names:
             # lxml writes the namespace of a prefix in braces.
@@ -101,7 +101,7 @@ class UndefinedReporter:
         self._warn(xml, f'{name}="{xml.get(name)}" of <{written_tag(xml)}>', hint)
 
     def _is_only_counted(self) -> bool:
-        """Count a warning that is one too many to be kept, so that it need not be made."""
+        """Return whether the limit of warnings is reached, and count this one."""
         is_kept = self._sources.problems.keeps_warnings()
         if not is_kept:
             self._sources.problems.count_more(errors=0, warnings=1)
@@ -112,7 +112,7 @@ class UndefinedReporter:
         self._sources.warning(xml, f'{what} is not defined in SDFormat{ending}')
 
     def _did_you_mean(self, name: str, parent: str, names: Iterable[str], form: str) -> str:
-        # Most of what is undefined in a file has one of a few names.
+        # Most undefined elements of a file have one of a few names.
         key = form, parent, name
         if key not in self._nearest and self._sources.problems.allows_hint():
             index = self._sources.problems.name_index((form, parent), names)

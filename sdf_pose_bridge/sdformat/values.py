@@ -3,8 +3,8 @@
 """
 Read and check values as libsdformat does (``Param.cc``), by the types of the grammar.
 
-No pose depends on a friction coefficient. But Gazebo does not load a file with a wrong one, so
-such a file is refused here too.
+Values on which no pose depends, such as a friction coefficient, are checked too, because Gazebo
+does not load a file with a wrong one.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ DECIMAL = r'(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?'
 _C_NUMBER = re.compile(
     rf'[+-]?(?:0x(?:[0-9a-f]+\.?[0-9a-f]*|\.[0-9a-f]+)(?:p[+-]?[0-9]+)?|{DECIMAL}|inf(?:inity)?|nan)',
     re.IGNORECASE)
-"""What C's ``strtod`` takes from the beginning of a word; it drops the rest."""
+"""The beginning of a word that C's ``strtod`` reads; it drops the rest."""
 _C_INTEGER = re.compile(r'0x[0-9a-f]+|[+-]?[0-9]+', re.IGNORECASE)
 _STREAM_NUMBER = re.compile(rf'[{WHITE_SPACE}]*([+-]?{DECIMAL})')
-"""What a C++ stream takes; it leaves the rest for the next number."""
+"""The part that a C++ stream reads; it leaves the rest for the next number."""
 _STREAM_INTEGERS = re.compile(r'([+-]?[0-9]+)(\s+[+-]?[0-9]+|[+-][0-9]+)', re.ASCII)
-"""Two integers, as a C++ stream takes them."""
+"""Two integers, as a C++ stream reads them."""
 _PLAIN_NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,2})?')
-"""A number that everybody reads alike."""
+"""A number that all of these read alike."""
 _NOT_IN_DECIMALS = re.compile(rf'[^-+.0-9{WHITE_SPACE}]')
 _SHORTEST_AXIS = 1e-6
 LONGEST_PLAIN = 200
@@ -47,7 +47,7 @@ _FEWEST_COLOR_NUMBERS = 3
 _BOOLEANS = {'true': True, '1': True, 'false': False, '0': False}
 _INTEGER_RANGES = {
     ValueType.INTEGER: (-2 ** 31, 2 ** 31 - 1),
-    # A negative number is taken modulo 2 ** 64.
+    # A negative number counts modulo 2 ** 64.
     ValueType.UNSIGNED: (-2 ** 64 + 1, 2 ** 64 - 1),
 }
 _FLOATING_TYPES = (
@@ -71,27 +71,27 @@ def frame_of_attribute(xml: XmlElement, attribute: str) -> str:
     """
     Return the frame that an attribute names.
 
-    :return: the name; empty if there is none, and for the implicit root, which is an error that
-        the check of attributes reports.
+    :return: the name; empty if there is none, and for the implicit root, an error that the check
+        of attributes reports.
     """
     name = attribute_of(xml, attribute)
     return '' if name == ROOT_FRAME else name
 
 
 def choice_fault(text: str, choice: Choice) -> str:
-    """Return which texts a stripped value must be one of; empty if it is one of them."""
+    """Return the rule that a stripped value of a choice breaks; empty if it is valid."""
     value = text.lower() if choice.ignores_case else text
     return '' if value in choice.texts else f'must be one of {", ".join(choice.texts)}'
 
 
 def judged_value(text: str, definition: Definition) -> tuple[str, str]:
     """
-    Return what libsdformat makes of the value of an element.
+    Return the value of an element as libsdformat reads it.
 
     :param text: the value. If the element is not required, the default replaces a blank one.
     :param definition: the definition of the element; not that of a pose.
-    :return: the value and the rule that it breaks, empty if it is right; and how a value is read
-        that probably means something else, empty if it is plain.
+    :return: the value; the rule that it breaks, empty if it is valid; and the numbers that were
+        read, empty if they are those of the text.
     """
     value_type = definition.value_type
     if value_type is None or (
@@ -122,7 +122,7 @@ def judged_value(text: str, definition: Definition) -> tuple[str, str]:
 
 
 def _doubt(text: str, numbers: Sequence[float]) -> str:
-    """Return how numbers are read if they are not what the words of the text are."""
+    """Return the numbers that were read, if they differ from the words of the text."""
     if not numbers:
         return ''
     try:
@@ -153,10 +153,10 @@ def is_representable(text: str, number: float) -> bool:
 
 def is_of_type(text: str, value_type: ValueType) -> bool:
     """
-    Return whether libsdformat takes a text as a value of a type.
+    Return whether libsdformat accepts a text as a value of a type.
 
     :param text: the value, stripped and not empty.
-    :param value_type: any type but ``POSE``; of a choice any text is one.
+    :param value_type: any type but ``POSE``; any text is accepted for a choice.
     """
     return _is_of_type(text, numbers_from_text(text, value_type), value_type)
 
@@ -176,7 +176,8 @@ def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
     """
     Return the numbers of a value.
 
-    :return: as many as the type has, or three of a color; fewer if the text is not of the type.
+    :return: as many numbers as the type has, or three of a color; fewer if the text is not of the
+        type.
     """
     if value_type.count == 0:
         return ()
@@ -205,7 +206,7 @@ def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
 
 
 def _plain_numbers(text: str, value_type: ValueType) -> Sequence[float]:
-    """Return the numbers of a text that needs no closer look; none for any other text."""
+    """Return the numbers of a text of plain numbers; none for any other text."""
     if (value_type not in _FLOATING_TYPES or len(text) >= LONGEST_PLAIN
             or _NOT_IN_DECIMALS.search(text)):
         return ()
@@ -217,7 +218,7 @@ def _plain_numbers(text: str, value_type: ValueType) -> Sequence[float]:
 
 
 def number_from_word(word: str) -> Sequence[float]:
-    """Return the number that a text begins with, as ``std::stod`` reads it; or nothing."""
+    """Return the number at the beginning of a text, as ``std::stod`` reads it; or None."""
     match = _C_NUMBER.match(word)
     if match is None:
         return ()

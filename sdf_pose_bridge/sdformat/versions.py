@@ -1,11 +1,11 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-The versions of SDFormat: which are supported, what they allow, and what older ones mean.
+The supported versions of SDFormat, and the conversion of older ones to the newest one.
 
-The declared version switches nothing off: what newer versions brought works in every file. It
-decides what names and attributes of its time mean, and such files are converted to the newest one.
-Source: libsdformat's ``Converter.cc`` and ``sdf/*.convert``.
+Features of newer versions work in every file, whatever version it declares. The declared version
+decides the meaning of names and attributes that newer versions changed. Source: libsdformat's
+``Converter.cc`` and ``sdf/*.convert``.
 """
 
 from __future__ import annotations
@@ -53,8 +53,8 @@ _MOVED_ELEMENTS = (
     (Version(1, 6), 'world', 'physics/gravity', 'gravity'),
     (Version(1, 6), 'world', 'physics/magnetic_field', 'magnetic_field'),
 )
-"""Elements without poses: in files below a version, what an element at a path held as, and its
-tag in that element now."""
+"""Elements without poses that have moved: first version without them, path of their parent, their
+tag in the parent, and their new tag."""
 
 _DEPRECATED = (
     (Version(1, 10), 'joint', 'thread_pitch', '<screw_thread_pitch>, in metres per turn'),
@@ -65,10 +65,10 @@ _DEPRECATED = (
     (Version(1, 12), 'link_state', 'wrench', '<force> and <torque>'),
     (Version(1, 12), 'joint_state', 'angle', '<axis_state>'),
 )
-"""Elements that are deprecated from a version on: what holds them, their tag, and the new one."""
+"""Elements that are deprecated from a version on: their parent, their tag, and the new element."""
 
 _MODELS = ('model', 'world/model')
-"""Paths of the models that are in no other model."""
+"""Paths of models that are not in another model."""
 
 _SCOPED_TAGS = frozenset({'link', 'joint', 'frame', 'model', 'gripper'})
 _STEPS_COUNTED_TOGETHER = 1000
@@ -101,7 +101,7 @@ def version_from_text(text: str, place: Place) -> Version:
 
 
 def allows_scoped_names(version: tuple[int, int]) -> bool:
-    """Return whether names in a file may hold ``::``, which old libraries wrote below 1.8."""
+    """Return whether names in a file may contain ``::``, as before version 1.8."""
     return version < (1, 8)
 
 
@@ -125,7 +125,7 @@ def convert(root: XmlElement, version: Version, sources: Sources) -> None:
         _rename_frame_attributes(root)
         _convert_use_parent_model_frame(root, sources)
     if version < Version(1, 8):
-        # An <inertial> may be placed in nothing but its link; an empty attribute meant that.
+        # An <inertial> can only be relative to its link, which an empty attribute meant.
         for pose in root.xpath('.//inertial/pose[@relative_to=""]'):
             del pose.attrib['relative_to']
     if allows_scoped_names(version) and sources.may_hold_scoped_names:
@@ -156,14 +156,14 @@ def _move_elements(root: XmlElement, version: Version) -> None:
                 element.tag = new_tag
                 parent.append(element)
     if version < Version(1, 6):
-        # Its numbers become those of the noise of each axis.
+        # Its values become those of the noise of each axis.
         for path in _MODELS:
             for noise in root.xpath(f'{path}/link/sensor/imu/noise[1]'):
                 noise.getparent().remove(noise)
 
 
 def _express_axes_in_model(root: XmlElement, sources: Sources) -> None:
-    """1.4 to 1.5: axes are given in the model frame if nothing else is said."""
+    """1.4 to 1.5: axes are given in the model frame by default."""
     axes = '*[self::axis or self::axis2][not(use_parent_model_frame)]'
     for path in _MODELS:
         for axis in root.xpath(f'{path}/joint/{axes}'):
@@ -206,10 +206,10 @@ def _nest_scoped_elements(model: XmlElement, sources: Sources, depth: int = 1) -
     """
     1.7 to 1.8: move elements named ``nested::name`` into a new model ``nested``, recursively.
 
-    Old libraries could not nest models. They wrote the content of an included model into the
-    model around it, with such names, and a frame ``nested::__model__`` for its model frame.
-    libsdformat stops at the first model that is nested already: it nests elements of that one, but
-    no later ones of the model around, unless an earlier one has the same ``nested``.
+    Old libraries could not nest models. They wrote the content of an included model into the model
+    around it, with such names, and a frame ``nested::__model__`` for its model frame. libsdformat
+    stops at the first model that is nested already: it converts this model, but no later elements
+    of the outer model, unless an earlier element has the same ``nested``.
 
     :raises ConversionError: if a moved element refers to something outside its new model.
     """
@@ -265,7 +265,7 @@ def _remove_prefix_from_references(xml: XmlElement, prefix: str, sources: Source
         # References in it are to names in it.
         return
     for steps, element in enumerate(xml.iter(etree.Element), 1):
-        # Each model that becomes nested asks for all that is in it again.
+        # Each model that becomes nested visits its whole content again.
         if steps % _STEPS_COUNTED_TOGETHER == 0:
             sources.count_work(_STEPS_COUNTED_TOGETHER, xml)
         for attribute in _REFERENCE_ATTRIBUTES:

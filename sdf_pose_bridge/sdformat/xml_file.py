@@ -52,7 +52,7 @@ _FAULTS = {
     'AttValue: " or \' expected': 'the value of an attribute is not in quotation marks',
     'Attribute (.+) redefined': r'the attribute \1 is given twice',
 }
-"""What messages of libxml2 mean, by regular expressions for them."""
+"""Plain messages, by regular expressions for those of libxml2."""
 
 _IGNORED_ERRORS = frozenset({
     'NS_ERR_ATTRIBUTE_REDEFINED', 'NS_ERR_COLON', 'NS_ERR_EMPTY', 'NS_ERR_QNAME',
@@ -69,14 +69,14 @@ _LAST_LINE = 65_535
 START_TAG = re.compile(
     rb'<(?:([^/!?][^"\'>]*(?:"[^"]*"[^"\'>]*|\'[^\']*\'[^"\'>]*)*)>'
     rb'|!--.*?-->|!\[CDATA\[.*?\]\]>|![A-Z](?:[^"\'>]|"[^"]*"|\'[^\']*\')*>|\?.*?\?>)', re.DOTALL)
-"""A start tag, its inside as group 1, or what may hold something that looks like one."""
+"""A start tag, its inside as group 1, or a part of a file that may contain a similar text."""
 
 _NOT_TAGS_AND_BREAKS = bytes(set(range(256)) - set(b'<>\t\n'))
 _BREAK_IN_TAG = re.compile(rb'<[^/!?<>][^<>\t\n]*[\t\n]')
 """The beginning of a start tag over several lines, or with a tab, if no value before holds ">"."""
 
 _NAME_SPACE = re.compile(rb'"[^"]*"|\'[^\']*\'|(?<=\s)(xmlns)(?=[\s:=])')
-"""What declares a name space in a start tag, as group 1, or a value that may look like it."""
+"""A declaration of a name space in a start tag, as group 1, or a value that may look like one."""
 
 _NAME = re.compile(rb'(?<=\s)name\s*=\s*("[^"]*"|\'[^\']*\')')
 _BREAKS = {'\n': 'a line break', '\t': 'a tab'}
@@ -86,15 +86,15 @@ class XmlFile(NamedTuple):
     """A parsed file."""
 
     root: XmlElement
-    """The outermost element. Elements have the tags that are written, whatever ``xmlns`` says."""
+    """The outermost element. Elements have their written tags, independently of ``xmlns``."""
     warnings: tuple[SdfWarning, ...]
-    """What is wrong but is accepted."""
+    """Warnings about accepted faults."""
     lines: Mapping[XmlElement, int]
-    """The lines in which start tags begin, of those elements for which lxml has another one."""
+    """The lines of start tags, of the elements for which lxml has another line."""
     text: bytes
-    """What was parsed, in UTF-8."""
+    """The parsed text in UTF-8."""
     encoding: str
-    """Python's name of the encoding that the file is in."""
+    """Python's name of the encoding of the file."""
 
 
 def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> bytes:
@@ -102,7 +102,7 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
     Return the content of a file.
 
     :param usage: counts its bytes.
-    :param allows_pipe: whether it may be a pipe, such as that of the shell's ``<(command)``.
+    :param allows_pipe: whether it may be a pipe, as of the shell's ``<(command)``.
     :raises FileReadError: if it is missing, unreadable or not a regular file;
         :class:`~sdf_pose_bridge.errors.PassingReadError` if reading it again may help.
     :raises LimitError: if it is too large.
@@ -115,7 +115,7 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
             is_pipe = allows_pipe and stat.S_ISFIFO(status.st_mode)
             if not stat.S_ISREG(status.st_mode) and not is_pipe:
                 msg = 'the file cannot be read: it is not a regular file'
-                if path.startswith('/dev/'):  # /dev/stdin, or what a shell makes of <(xacro ...)
+                if path.startswith('/dev/'):  # /dev/stdin, or <(xacro ...) of a shell
                     msg += '; the node takes the text itself as its parameter robot_description'
                 raise FileReadError(msg, place)
             os.set_blocking(file.fileno(), True)
@@ -142,7 +142,7 @@ def xml_from_file(path: str, usage: Usage, text: bytes | str | None = None) -> X
     Read and parse a file.
 
     :param usage: counts its bytes and its elements.
-    :param text: what to read instead of the file.
+    :param text: a text to read instead of the file.
     :raises FileReadError: as :func:`bytes_from_file` and :func:`xml_from_bytes`.
     :raises LimitError: if it is too large.
     """
@@ -162,9 +162,9 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
     Parse XML.
 
     :param path: the name to use in errors.
-    :param encoding: ``utf-8`` if the text is that, whatever it declares; else None.
-    :raises FileReadError: if it is not well-formed, apart from what libsdformat accepts, or not in
-        an encoding that is supported.
+    :param encoding: ``utf-8`` for text in UTF-8 with any declaration; else None.
+    :raises FileReadError: if it is not well-formed and libsdformat does not accept it, or its
+        encoding is not supported.
     """
     decoded = text_from_bytes(text, path) if encoding is None else DecodedText(text, encoding)
     text = decoded.utf8
@@ -206,7 +206,7 @@ def _parsed(text: bytes, path: str) -> XmlElement:
     errors = [entry for entry in parser.error_log if entry.type_name not in _IGNORED_ERRORS]
     if errors:
         msg = f'this is not well-formed XML: {_fault_from_message(errors[0].message.strip())}'
-        # What is missing at the end is missed behind the last line break.
+        # libxml2 reports a missing end behind the last line break.
         last_line = text.count(b'\n') + (not text.endswith(b'\n'))
         raise FileReadError(msg, Place(path, min(errors[0].line, last_line)))
     if root is None:
@@ -218,7 +218,7 @@ def _parsed(text: bytes, path: str) -> XmlElement:
 
 
 def _fault_from_message(message: str) -> str:
-    """Return what a message of libxml2 means to the author of a file, where that is not plain."""
+    """Return a message of libxml2 in plain words."""
     for pattern, fault in _FAULTS.items():
         match = re.fullmatch(pattern, message)
         if match:
@@ -235,10 +235,10 @@ def _check_instructions(root: XmlElement, path: str) -> None:
 
 def _check_with_expat(text: bytes, path: str) -> None:
     """
-    Refuse declarations in the document type, and what libxml2 did not report.
+    Reject declarations in the document type, and faults that libxml2 did not report.
 
-    :raises FileReadError: for these, and if the text is not well-formed, apart from what follows
-        the outermost element.
+    :raises FileReadError: for these, and if the text up to the end of the outermost element is not
+        well-formed.
     """
     stripped = text.lstrip(WHITE_SPACE.encode())
     skipped = text.count(b'\n', 0, len(text) - len(stripped))
@@ -266,7 +266,7 @@ def _without_name_spaces(text: bytes) -> bytes:
     """
     Return text of the same length and meaning, in which no prefix has a name space.
 
-    SDFormat has none, and to copy an element libxml2 searches that of its prefix among all.
+    SDFormat has none, and libxml2 searches all of them when it copies an element with a prefix.
 
     :param text: well-formed XML.
     """
@@ -286,15 +286,15 @@ def _lines_and_warnings(
     root: XmlElement, text: bytes, path: str,
 ) -> tuple[dict[XmlElement, int], list[SdfWarning]]:
     """
-    Return what only the text tells of start tags.
+    Return the facts about start tags that only the text has.
 
-    :return: the lines in which those start tags begin that libxml2 gives another line, and
-        warnings about names with a line break or a tab.
+    :return: the lines of the start tags for which libxml2 has another line, and warnings about
+        names with a line break or a tab.
     """
-    # Most texts have nothing like it, which this tells in a fraction of the time of the search.
+    # Most texts have no such tag, which this finds in a fraction of the time of the search.
     rest = text.translate(None, _NOT_TAGS_AND_BREAKS)
     has_break = (b'<\n' in rest or b'<\t' in rest) and _BREAK_IN_TAG.search(text) is not None
-    # A value may hold a ">" before the break.
+    # A value may contain ">" before the break.
     has_break = has_break or rest.count(b'<') != rest.count(b'>')
     if not has_break and text.count(b'\n') < _LAST_LINE:
         return {}, []

@@ -1,18 +1,18 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Make well-formed XML in UTF-8 of the bytes of a file, as far as libsdformat would read them.
+Decode the bytes of a file, and repair XML that is not well-formed but that libsdformat reads.
 
-An encoding in which ``<`` or ``:`` can be written in other ways than in ASCII would get past every
-search of the bytes, so only a few encodings are known here. libsdformat reads everything as UTF-8.
+Only a few encodings are accepted, because others can hide ``<`` or ``:`` from a search of the
+bytes. libsdformat reads everything as UTF-8.
 
-TinyXML-2, and libsdformat with it, accepts text that is not well-formed XML, which is rewritten
-here. It knows the five predefined entities and takes any other ``&`` as text. It takes ``<`` in
+TinyXML-2, and so libsdformat, accepts text that is not well-formed XML; it is rewritten here.
+TinyXML-2 knows the five predefined entities and reads any other ``&`` as text. It accepts ``<`` in
 attribute values, ``]]>`` in text, two hyphens in comments, attributes without white space between
-them, bytes that are not UTF-8, and any XML version and encoding. In text and comments it takes
-characters that XML does not have, which are replaced here. It takes white space behind ``<``. It
-skips text before the outermost element, and what follows it if that is not text alone; behind an
-end tag that ends nothing it reads no further. Lines stay where they are.
+them, white space behind ``<``, bytes that are not UTF-8, and any XML version and encoding. In text
+and comments it accepts characters that XML does not have; they are replaced here. It skips text
+before the outermost element, and everything behind it that is not text alone. It stops at an end
+tag without a start tag. Lines are kept.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _MARKS = (
 _DECLARATION = re.compile(rb'\s*<\?xml[^>]*?encoding\s*=\s*["\']([A-Za-z0-9._-]+)["\']')
 
 _ALLOWED = re.compile(r'utf-(8|16|32)(-[bl]e)?|ascii|iso8859-[0-9]+|cp125[0-9]')
-"""The names that Python has for the encodings that are decoded."""
+"""Python's names of the accepted encodings."""
 
 _NAME = r'[^\W\d][\w:.\-]*|:[\w:.\-]*'
 _ATTRIBUTE = re.compile(rf'(\s*)((?:{_NAME})\s*=\s*)("[^"]*"|\'[^\']*\')')
@@ -54,17 +54,17 @@ _NOT_XML = re.compile('[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]')
 """A character that XML does not have."""
 _REPLACEMENT = '\ufffd'
 _LONGEST_REFERENCE = 9
-"""How many digits of a character reference are read; as many, not beginning with zero, are more
-than any character has."""
+"""Largest number of digits of a character reference that are read, without leading zeros; no
+character has as many."""
 
 
 class _Replacement(NamedTuple):
-    """What is replaced wherever it stands."""
+    """A text that is replaced everywhere."""
 
     pattern: re.Pattern[str]
     new: str | Callable[[re.Match[str]], str]
     fault: str
-    """A sentence, which can have the number of the first character in it."""
+    """A message, which can contain the number of the first character."""
 
 
 _CHARACTERS = _Replacement(
@@ -77,7 +77,7 @@ _AMPERSANDS = _Replacement(
 _ESCAPED_BYTES = _Replacement(
     re.compile('[\udc80-\udcff]'), lambda byte: chr(ord(byte[0]) - 0xdc00),
     'bytes that are not UTF-8, which are read as Latin-1')
-"""What the error handler ``surrogateescape`` makes of bytes that are not UTF-8."""
+"""Results of the error handler ``surrogateescape`` for bytes that are not UTF-8."""
 
 
 class DecodedText(NamedTuple):
@@ -88,12 +88,12 @@ class DecodedText(NamedTuple):
     encoding: str
     """Python's name of the encoding that the file is in."""
     fault: str = ''
-    """What is wrong with the encoding; the bytes stay, and may not be UTF-8."""
+    """A fault of the encoding; the bytes are unchanged, and may not be UTF-8."""
 
 
 def text_from_bytes(content: bytes, path: str) -> DecodedText:
     """
-    Decode XML, which is in the encoding that its first bytes show or that it declares.
+    Decode XML by its first bytes or the encoding that it declares.
 
     :param path: the name to use in errors.
     :raises FileReadError: for an encoding that is not supported.
@@ -118,12 +118,12 @@ def text_from_bytes(content: bytes, path: str) -> DecodedText:
 
 
 class Repair(NamedTuple):
-    """Well-formed XML with the meaning of text that is not."""
+    """Well-formed XML with the meaning of a text that is not well-formed."""
 
     text: bytes
     """In UTF-8, without a declaration."""
     faults: list[tuple[int, str]]
-    """What was wrong: the line and a sentence for each sort of fault."""
+    """The first line and a message for each sort of fault."""
 
 
 def repaired(text: bytes) -> Repair | None:
@@ -131,8 +131,8 @@ def repaired(text: bytes) -> Repair | None:
     Rewrite text.
 
     :param text: text that is not well-formed XML; it should be UTF-8.
-    :return: the repair; None if TinyXML-2 would not accept the text either. Nesting and names of
-        end tags are not checked.
+    :return: the repair; None if TinyXML-2 rejects the text too. Nesting and names of end tags are
+        not checked.
     """
     return _Repairer().repaired(text)
 
@@ -145,7 +145,7 @@ class _Repairer:
         self._depth = 0
         self._has_root = False
         self._open_after_root: list[str] = []
-        """The tags of elements behind the outermost one that have not ended yet."""
+        """The tags of open elements behind the outermost one."""
         self._may_declare = True
 
     def repaired(self, text: bytes) -> Repair | None:
@@ -167,7 +167,7 @@ class _Repairer:
                 if not token['end']:
                     self._open_after_root.append(token['tag'])
                 elif not self._open_after_root:
-                    self._note('an end tag that ends nothing; what follows it is not read')
+                    self._note('an end tag without a start tag; the text behind it is not read')
                     break
                 elif self._open_after_root.pop() != token['tag']:
                     return None
@@ -220,7 +220,7 @@ class _Repairer:
         elif not rest['empty']:
             self._depth += 1
         self._has_root = True
-        # White space may stand behind the name instead.
+        # White space behind the name is allowed.
         parts = [f'<{token["end"]}{token["tag"]}{_blank(token["space"])}']
         if token['space']:
             self._note('white space behind "<"')

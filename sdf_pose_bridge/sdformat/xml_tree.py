@@ -21,7 +21,7 @@ from sdf_pose_bridge.names import shortened
 XmlElement: TypeAlias = etree._Element  # noqa: SLF001  # lxml has no public name for it
 
 WHITE_SPACE = ' \t\n\r\f\v'
-"""ASCII white space. SDFormat knows no other, so a no-break space is part of a name."""
+"""ASCII white space. SDFormat has no other, so a no-break space is part of a name."""
 
 _WHITE_SPACE_RUN = re.compile(r'[ \t\n\r\f\v]+')
 _COMMENT: object = etree.Comment
@@ -42,7 +42,7 @@ def first_child(xml: XmlElement, tag: str) -> XmlElement | None:
 
 
 def written_tag(xml: XmlElement) -> str:
-    """Return the tag of an element as it is written, with its prefix where it has one."""
+    """Return the tag of an element as it is written, with its prefix."""
     tag = str(xml.tag)
     if not tag.startswith('{'):
         return tag
@@ -58,7 +58,7 @@ def is_foreign(xml: XmlElement) -> bool:
 
 
 def with_ancestors(xml: XmlElement) -> Iterator[XmlElement]:
-    """Iterate over an element and all that hold it, from itself to the outermost."""
+    """Iterate over an element and its ancestors, from itself to the outermost."""
     return chain([xml], xml.iterancestors())
 
 
@@ -85,17 +85,17 @@ def text_of(xml: XmlElement) -> str:
 
 def value_of(xml: XmlElement) -> str:
     """
-    Return the value of an element that holds a single word or name.
+    Return the value of an element with a single word or name.
 
     :return: its text, stripped, each run of white space in it as one blank.
     """
     text = text_of(xml)
-    # Most values are plain names, which this recognises in a tenth of the time.
+    # Most values are plain names; this recognises them in a tenth of the time.
     return text if text.isidentifier() else _WHITE_SPACE_RUN.sub(' ', text).strip(' ')
 
 
 def child_value(xml: XmlElement, tag: str, default: str = '') -> str:
-    """Return :func:`value_of` the first child element with a tag, or else the default."""
+    """Return :func:`value_of` the first child element with a tag, or the default."""
     child = first_child(xml, tag)
     return default if child is None else value_of(child)
 

@@ -87,7 +87,7 @@ class LoadedScene(NamedTuple):
     read_since_ns: int
     """Time at which reading began, in nanoseconds since 1970."""
     seconds: float
-    """How long reading took."""
+    """Duration of reading."""
 
 
 def loaded_scene_from_request(
@@ -96,7 +96,7 @@ def loaded_scene_from_request(
     """
     Read a file or a text.
 
-    :param texts: what to read instead of some files, by their paths.
+    :param texts: texts to read instead of some files, by their paths.
     :raises AddressError: if ``sdf_file`` is a URI of a file that is not found.
     :raises SdfError: if it is not valid, or cannot be published with these options.
     """
@@ -150,8 +150,8 @@ def _urdf(scene: Scene, request: LoadRequest) -> tuple[str, tuple[SdfWarning, ..
 
 
 def fingerprint_of_scene(scene: Scene) -> bytes:
-    """Return bytes that are the same for scenes with the same names and poses, and no others."""
-    # Imported here because it takes 3 ms, and few nodes have anything read again.
+    """Return bytes that are equal only for scenes with the same names and poses."""
+    # Imported here because it takes 3 ms, and few nodes read anything again.
     import hashlib
     return hashlib.blake2b(b'\0'.join([
         scene.poses.tobytes(), *(name.encode() for name in scene.names)])).digest()
@@ -162,7 +162,7 @@ def unicode_text(text: str | bytes) -> str:
     Return XML as text.
 
     :param text: XML; bytes are in the encoding that they declare.
-    :return: the text; of bytes that are not UTF-8 without the declaration, which is wrong for it.
+    :return: the text; for bytes in another encoding than UTF-8 without their declaration.
     """
     if isinstance(text, str):
         return text
@@ -180,9 +180,9 @@ def scene_from_text(
     Resolve every pose in a text.
 
     :param path: path of its file; for a text without one, the name of its parameter.
-    :param request: how it is read.
+    :param request: the settings of the load.
     :param shapes: whether to read the shapes of visuals and collisions too.
-    :param texts: what to read instead of some files, by their paths.
+    :param texts: texts to read instead of some files, by their paths.
     :raises SdfError: if it is not valid.
     """
     return load_text(
@@ -194,9 +194,8 @@ def files_behind_error(error: Exception, request: LoadRequest) -> list[str]:
     """
     Return the files that have to change before loading can succeed.
 
-    :param error: what :func:`loaded_scene_from_request` raised.
-    :return: the files with errors; if something was not found, also the directories in which it
-        was looked for.
+    :param error: the exception of :func:`loaded_scene_from_request`.
+    :return: the files with errors; if something was not found, also the searched directories.
     """
     errors = error.errors if isinstance(error, SdfError) else ()
     files = [each.place.file for each in errors]
@@ -213,7 +212,7 @@ def may_pass(error: Exception) -> bool:
     """
     Return whether reading the same files again may succeed.
 
-    :param error: what :func:`loaded_scene_from_request` raised.
+    :param error: the exception of :func:`loaded_scene_from_request`.
     """
     errors = error.errors if isinstance(error, SdfError) else (error,)
     return any(isinstance(each, MemoryError | PassingReadError) for each in errors)
@@ -223,7 +222,7 @@ def _file_from_request(
     request: LoadRequest,
 ) -> tuple[Path, tuple[str, ...], tuple[SdfWarning, ...]]:
     """
-    Return the path of the file, and the manifests and warnings met on the way to it.
+    Return the path of the file, and the manifests and warnings on the way to it.
 
     A text has the name of its parameter for a path.
     """

@@ -269,7 +269,7 @@ def _with_link_world(
 
 def elements_in_model(scene: Scene, name: str) -> NDArray[np.bool_]:
     """
-    Find a model with all that it holds.
+    Find a model with its content.
 
     :param name: scoped name of the model; empty for everything.
     :return: shape (n,), True for the model and the elements in it.
@@ -306,7 +306,7 @@ def _check_frame_ids(
             continue
         owner = owners[index]
         if not frame_id:
-            msg = (f'"{scene.names[owner]}" leaves no frame id: TF takes no leading slash and no '
+            msg = (f'"{scene.names[owner]}" leaves no frame id: TF allows no leading slash and no '
                    'empty name')
             problems.error(ElementInvalidError(msg, scene.place(owner)))
         elif other == ROOT_IS_PARENT:
@@ -319,7 +319,7 @@ def _check_frame_ids(
                    'frame_names "scoped", or another frame_separator, can tell them apart')
             problems.error(DuplicateNameError(msg, scene.place(owner)))
         else:
-            msg = f'the frame id "{frame_id}" holds white space, which some tools cannot take'
+            msg = f'the frame id "{frame_id}" contains white space, which some tools reject'
             problems.warning(msg, scene.place(owner))
 
 

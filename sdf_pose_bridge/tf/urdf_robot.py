@@ -196,7 +196,7 @@ class _RobotMaker:
         return tree.root_frame, -1
 
     def _is_anchored(self, element: int) -> bool:
-        """Return whether an element at the top is static, or a joint holds it."""
+        """Return whether a top-level element is static, or a joint connects it to the world."""
         parent = self._tf_parents.parents[element]
         return self._is_static(element) or (
             element in self._tf_parents.joints and self._scene.parents.item(parent) < 0)

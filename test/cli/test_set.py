@@ -101,7 +101,7 @@ def test_another_file_than_the_one_named_is_printed_first(run_main, path):
     path.with_name('model.sdf').write_text(
         '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>')
     done = run_main('set', 'cell.sdf', 'm::l', *'100000')
-    assert done.stdout.startswith('the pose stands in model.sdf\n--- model.sdf\n')
+    assert done.stdout.startswith('the pose is in model.sdf\n--- model.sdf\n')
 
 
 @pytest.mark.parametrize(('redirection', 'reason'), [
@@ -111,7 +111,7 @@ def test_an_output_that_fails_does_not_hide_that_the_file_is_written(
     done = sdf_pose_in_shell(f'set good.sdf f 9 0 0 0 0 0 {redirection}')
     assert '<pose>9 0 0 0 0 0</pose>' in path.read_text()
     assert (done.returncode, done.stderr) == (0, (
-        'sdf_pose set: good.sdf says this pose now, but the change cannot be printed: '
+        'sdf_pose set: good.sdf has the new pose, but the change cannot be printed: '
         f'{reason}\n'))
 
 

@@ -62,7 +62,7 @@ def test_a_failed_load_is_an_error_whatever_is_served(status_of):
     status = status_of(with_lights(1), 'cell.sdf:3: first', 'cell.sdf:4: second')
     assert status.level == DiagnosticStatus.ERROR
     assert status.message == (
-        'the last load failed, what was loaded before is served: cell.sdf:3: first')
+        'the last load failed, the scene before it is published: cell.sdf:3: first')
 
 
 def test_the_values_describe_what_is_served_and_what_is_wrong(status_of, tmp_path):

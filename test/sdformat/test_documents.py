@@ -158,7 +158,7 @@ def test_the_error_tells_the_command(tmp_path, name, command):
 def test_for_a_text_there_is_no_command():
     with pytest.raises(SdfError) as caught:
         load_text(sdf('<link name="${a}"/>'), 'robot_description')
-    assert caught.value.message.endswith('has to be read')
+    assert caught.value.message.endswith('and read the file that it writes')
 
 
 def test_an_included_file_is_refused_too(tmp_path):

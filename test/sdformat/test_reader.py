@@ -287,7 +287,7 @@ def test_reference_of_a_light_at_the_top_is_ignored_with_a_warning():
 
 # Depth: libxml2 allows 256 levels in one file, so more need several files
 
-TOO_DEEP = 'the file needs more than a load may use: the limit depth is 300'
+TOO_DEEP = 'the file exceeds the limits of a load: the limit depth is 300'
 
 
 def nested_models(depth, content):

@@ -4,8 +4,8 @@
 Find the elements of an included model by the ``element_id`` of parameters.
 
 An ``element_id`` joins names by ``::``, from the included model inwards. The search is that of
-libsdformat (``ParamPassing::getElementById``) with its limits: among siblings it remembers the one
-whose name is the longest beginning of the id, and goes on inside that one alone.
+libsdformat (``ParamPassing::getElementById``) with its limits: among siblings it selects the one
+whose name is the longest beginning of the id, and continues only inside this one.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def element_by_id(
 
     :param element_id: names from the included element, ``top``, inwards.
     :param tag: its tag, as written; empty for any.
-    :param count: is called with the number of children of each element that is searched.
+    :param count: called with the number of children of each searched element.
     """
     start = longest = 0
     match: XmlElement | None = top
@@ -66,8 +66,8 @@ def hint_for_id(top: XmlElement, element_id: str, tag: str, problems: Problems) 
     """
     Return the end of a message about an id that was not found.
 
-    :param problems: those of the load, which limit what is compared.
-    :return: a likely reason, or the nearest id that exists; else an empty string.
+    :param problems: those of the load, which limit the comparisons.
+    :return: a likely reason, or the nearest id; else an empty string.
     """
     if len(element_id) > _LONGEST_ID_COMPARED:
         return ''
@@ -81,7 +81,7 @@ def hint_for_id(top: XmlElement, element_id: str, tag: str, problems: Problems) 
     if tags:
         return f'; that is a <{tags[0]}>'
     wanted = (found_id for found_id, found_tag in ids if tag in ('', found_tag))
-    # Each parameter may change which elements there are, so each has an index of its own.
+    # Each parameter may change the elements, so each has a separate index.
     return problems.name_index(object(), wanted).hint(element_id)
 
 

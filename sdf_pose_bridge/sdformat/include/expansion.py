@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Replace every ``<include>`` by what it includes, so that one tree is left.
+Replace every ``<include>`` by the included element, so that one tree is left.
 
 Source: ``readXml`` and ``insertIncludedElement`` in libsdformat's ``parser.cc``. An include that
 is not found or not valid is reported and stays in the tree, so that no error follows from it.
@@ -62,21 +62,21 @@ from sdf_pose_bridge.sdformat.xml_tree import written_tag
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _MOST_TOPS_SHOWN = 5
-"""How many of the elements at the top of a file are named, where there should be one."""
+"""Largest number of elements at the top of a file that an error names."""
 
 _TOP_TAGS = ('model', 'actor', 'light')
-"""What can be included, in the order of preference."""
+"""The tags of elements that can be included, in the order of preference."""
 
 class IncludeExpansion:
     """
     Replaces includes, and reads each included file once.
 
     :param finder: finds the files that URIs name.
-    :param sources: takes the files, where elements were written, and what is wrong.
+    :param sources: takes the files, the places of elements, and problems.
     :param skips_missing: whether includes that are not found are warnings.
-    :param model_by_itself: checks a model file by itself, given its ``sdf`` element; returns None
-        if the file is not valid, which is then reported. Files that are merged have to be valid
-        by themselves.
+    :param model_by_itself: checks a model file by itself, given its ``sdf`` element. If the file
+        is not valid, it reports that and returns None. Merged files have to be valid by
+        themselves.
     """
 
     def __init__(
@@ -96,7 +96,7 @@ class IncludeExpansion:
         self._merged_models: dict[tuple[XmlElement, str, bytes], ModelByItself | None] = {}
         self._undefined = UndefinedReporter(sources)
         self._definitions: dict[XmlElement, Definition | None] = {}
-        """What the elements that hold includes, and those around them, may hold."""
+        """The definitions of the elements around includes."""
 
     def expand(self, document: Document) -> None:
         """
@@ -118,7 +118,7 @@ class IncludeExpansion:
                     self._mark_missing(include)
 
     def _definition_in_tree(self, xml: XmlElement) -> Definition | None:
-        """Return the definition of an element that may hold others; None if it is not read."""
+        """Return the definition of an element with children; None if it is not read."""
         known = self._definitions
         unknown = list(takewhile(lambda each: each not in known, with_ancestors(xml)))
         for each in reversed(unknown):
@@ -136,13 +136,13 @@ class IncludeExpansion:
         return known[xml]
 
     def _mark_missing(self, include: XmlElement) -> None:
-        """Keep of an include that stays which name and which URI are missing without it."""
+        """Record the name and the URI of an include that is not replaced."""
         uri, name = child_value(include, 'uri') or 'no URI', child_value(include, 'name')
         if boolean_from_text(include.get('merge', 'false')) is not False:
-            # What is merged has names of its own.
+            # The merged elements have other names.
             name = ''
         elif not name and not self._sources.problems.errors:
-            # Where the include is an error, nothing is lost by what its file may be called.
+            # The include is an error already, so a guess of the name is good enough.
             name = _name_from_uri(uri)
         self._sources.set_origin(include, missing=(name, uri))
 
@@ -175,7 +175,7 @@ class IncludeExpansion:
         else:
             self._insert(include, top)
 
-    # What an include names
+    # The file of an include
 
     def _uri(self, include: XmlElement) -> str:
         element = first_child(include, 'uri')
@@ -213,7 +213,7 @@ class IncludeExpansion:
         return self._files[real_path]
 
     def _model_file(self, directory: str, lookups: FileLookups) -> ModelFile | str:
-        """Return the file that a directory offers, or why there is none; each is read once."""
+        """Return the model file of a directory, read once, or why there is none."""
         key = lookups.real_path(directory) or directory
         chosen = self._model_files.get(key)
         if chosen is None:
@@ -241,7 +241,7 @@ class IncludeExpansion:
         return document
 
     def _check_depth(self, root: XmlElement) -> None:
-        """Check the depth before more is put around a tree; recursion over it is limited."""
+        """Check the depth before a tree is put into another one; recursion over it is limited."""
         depth = self._sources.usage.limits.depth
         too_deep = root.xpath('descendant::*[count(ancestor::*) > $depth][1]', depth=depth)
         for xml in too_deep:
@@ -256,7 +256,7 @@ class IncludeExpansion:
         self._missing_uris.add(uri)
 
     def _top(self, include: XmlElement, document: Document) -> XmlElement | None:
-        """Return the model, actor or light that a file is included for."""
+        """Return the model, actor or light at the top of an included file."""
         self._sources.count_work(len(document.root), include)
         tops = [xml for xml in child_elements(document.root) if xml.tag in _TOP_TAGS]
         if len(tops) > 1:
@@ -273,10 +273,10 @@ class IncludeExpansion:
             self._sources.error(ElementMissingError, include, msg)
         return None
 
-    # What an include overrides
+    # The parts that an include overrides
 
     def _override(self, include: XmlElement, top: XmlElement) -> None:
-        """Write the name, the pose and the rest of what an include has into what it includes."""
+        """Write the name, the pose and other children of an include into its element."""
         name = self._override_value(include, 'name')
         if name:
             top.set('name', name)
@@ -296,7 +296,7 @@ class IncludeExpansion:
         if static is None:
             return
         value = value_of(static)
-        # The value that a model takes over is checked in the model.
+        # The value that a model gets is checked in the model.
         if boolean_from_text(value) is None and (top.tag != 'model' or not value):
             msg = f'"{value}" is not a boolean (true, false, 1 or 0)'
             self._sources.error(ElementInvalidError, static, msg)
@@ -334,7 +334,7 @@ class IncludeExpansion:
             return placement
         return ''
 
-    # Where it goes
+    # The place of the included element
 
     def _is_merge(self, include: XmlElement) -> bool | None:
         written = include.get('merge', 'false')
@@ -345,7 +345,7 @@ class IncludeExpansion:
         return value
 
     def _merge(self, include: XmlElement, top: XmlElement, chosen: XmlElement) -> None:
-        """Merge a copy of a model; includes with the same text have the same one by itself."""
+        """Merge a copy of a model; includes with the same text share the check by itself."""
         text = etree.tostring(include, with_tail=False)
         key = chosen, self._sources.path(include), text
         self._sources.count_work(STEPS_OF_INCLUDE + STEPS_OF_MOVED_CHILD * len(top), include)

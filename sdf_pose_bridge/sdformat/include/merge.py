@@ -4,9 +4,9 @@
 Merge an included model into the model or world that includes it.
 
 The content of the model moves into the scope of its new parent. A proxy frame named
-``_merged__NAME__model__`` takes the place of its model frame. Where a placement frame puts that is
-decided here: parameters of an outer include, which change the placement frame later, do not move
-the proxy frame. Source: ``insertIncludedElement`` in libsdformat's ``parser.cc``.
+``_merged__NAME__model__`` takes the place of its model frame. A placement frame places the proxy
+frame here: parameters of an outer include that change the placement frame later do not move the
+proxy frame. Source: ``insertIncludedElement`` in libsdformat's ``parser.cc``.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _FORMAT_ATTRIBUTES = ('degrees', 'rotation_format')
 
 
 class ModelByItself(NamedTuple):
-    """What is known of the model of a file that is valid by itself."""
+    """The facts that a merge needs about the model of a valid file."""
 
     canonical_link: str
     """The name of its canonical link in it; empty if it has none."""
@@ -56,7 +56,7 @@ def merge(
     Replace an include by the content of the model that it merges, if that is valid.
 
     :param include: the ``<include merge="true">``.
-    :param model: the included element, with what the include overrides.
+    :param model: the included element, with the parts that the include overrides.
     :param model_by_itself: as for
         :class:`~sdf_pose_bridge.sdformat.include.expansion.IncludeExpansion`.
     """
@@ -84,7 +84,7 @@ def _proxy_frame(
     if pose is not None:
         proxy_pose = copy_of(pose, sources.usage, lambda: sources.place(include))
         sources.set_source(proxy_pose, pose)
-        # By itself, the model has nothing to be relative to.
+        # By itself, the model cannot be relative to a frame.
         pose.attrib.pop('relative_to', None)
     if attribute_of(proxy_pose, 'relative_to') == ROOT_FRAME:
         msg = f'relative_to="{ROOT_FRAME}" is not {ValueType.FRAME.description}'
@@ -165,7 +165,7 @@ def _replace_reference(
 
 
 def _warn_of_model_frame_in(xml: XmlElement, sources: Sources) -> None:
-    """Libsdformat does not adapt the poses of visuals and the like."""
+    """Libsdformat does not adapt the poses of visuals and similar elements."""
     if xml.tag not in ('link', 'joint'):
         return
     for pose in xml.xpath('*[not(self::inertial)]/pose'):

@@ -3,9 +3,8 @@
 """
 Change an included model by the parameters of its include (``<experimental:params>``).
 
-Each parameter names an element of the model by ``element_id`` and says by ``action`` what becomes
-of it: of the whole element, or of its children one by one. Source: libsdformat's
-``ParamPassing.cc``.
+Each parameter names an element of the model by ``element_id`` and a change by ``action``: of the
+whole element, or of its children one by one. Source: libsdformat's ``ParamPassing.cc``.
 """
 
 from __future__ import annotations
@@ -37,13 +36,13 @@ _OWN_ATTRIBUTES = ('element_id', 'action')
 _ACTIONS = ('add', 'modify', 'remove', 'replace')
 _POSE_FORMAT_ATTRIBUTES = frozenset({'degrees', 'rotation_format'})
 _PARTS = ('pose', 'parent', 'child', 'axis', 'axis2')
-"""Children that stand in the file of their parent element."""
+"""Children that are in the file of their parent element."""
 
 _STEPS_OF_SOURCE = 4
-"""Steps of work to set where a child of a changed element stands."""
+"""Steps of work to set the place of a child of a changed element."""
 
 _DEFAULT_JOINT_END = '__default__'
-"""The value of a joint's parent or child for which none is given."""
+"""The default value of a joint's parent or child."""
 
 
 def apply_params(include: XmlElement, top: XmlElement, sources: Sources) -> list[XmlElement]:
@@ -52,7 +51,7 @@ def apply_params(include: XmlElement, top: XmlElement, sources: Sources) -> list
 
     :param include: the include; it is not changed.
     :param top: the included element.
-    :param sources: takes what is wrong with the parameters. What has an error is not applied.
+    :param sources: takes errors and warnings. A parameter with an error is not applied.
     :return: the elements that were added.
     """
     params = next((xml for xml in child_elements(include) if written_tag(xml) == PARAMS_TAG), None)
@@ -171,7 +170,7 @@ class _Changer:
     def _modify(self, xml: XmlElement, target: XmlElement) -> None:
         text = text_of(xml)
         has_text = bool(text.strip())
-        # A text that comes with its attributes is read by them; one that stays is not read again.
+        # A new text is read with its attributes; an old text is not read again.
         self._change_attributes(xml, target, is_read_before=not has_text)
         if not has_text:
             for child in child_elements(xml):
@@ -195,7 +194,7 @@ class _Changer:
             is_end = written_tag(target) == 'joint' and found.tag in ('parent', 'child')
             definition = self._definition(found)
             if definition is not None and definition.is_required and not is_end:
-                # Without the element its default applies.
+                # Without the element, its default applies.
                 self._take_out(found)
                 return
             self._set_text(_DEFAULT_JOINT_END if is_end else '', xml, found)
@@ -211,7 +210,7 @@ class _Changer:
             parent.remove(target)
 
     def _check_before_change(self, target: XmlElement) -> None:
-        """Check what goes, as libsdformat reads the file, and each change, before the next one."""
+        """Check removed elements and changes, as libsdformat reads them before the next one."""
         if definition := self._definition(target):
             check_element(target, definition, self._sources)
 
@@ -246,7 +245,7 @@ class _Changer:
             self._set_source(target, xml)
 
     def _set_source(self, target: XmlElement, xml: XmlElement) -> None:
-        """Set that an element and those around it, up to the one with the id, stand in params."""
+        """Move the place of an element, and of ancestors up to that with the id, to the params."""
         path = self._sources.path(xml)
         while True:
             self._sources.count_work(_STEPS_OF_SOURCE * len(target), xml)

@@ -42,7 +42,7 @@ _PATH_VARIABLES = ('GZ_SIM_RESOURCE_PATH', 'SDF_PATH')
 
 
 _MOST_SHOWN = 5
-"""How many directories a message names."""
+"""Largest number of directories that a message names."""
 
 
 class AddressError(ValueError):
@@ -50,16 +50,16 @@ class AddressError(ValueError):
 
 
 class ResourceFinder(NamedTuple):
-    """Where to look for files."""
+    """Finds files in the directories of the user's settings."""
 
     search_paths: tuple[str, ...]
     """Directories that are searched first, for every scheme."""
     environment_paths: tuple[str, ...]
-    """Directories that are searched last but for the working directory."""
+    """Directories that are searched before the working directory, the last one."""
     package_prefixes: tuple[str, ...]
     """Installation prefixes of ROS packages."""
     fuel_cache: str
-    """Directory in which Gazebo keeps the models that it downloaded."""
+    """Directory of the models that Gazebo has downloaded."""
 
     def path_from_uri(
         self, uri: str, including_file: str, lookups: FileLookups | None = None,
@@ -72,7 +72,7 @@ class ResourceFinder(NamedTuple):
         relative path or ``file://``; the paths of the environment; the working directory.
 
         :param uri: such as ``model://box``, ``package://pkg/models/box`` or ``box.sdf``.
-        :param including_file: path of the file that holds the include.
+        :param including_file: path of the file with the include.
         :param lookups: those of the load; by default those of one of its own.
         """
         if lookups is None:
@@ -83,16 +83,16 @@ class ResourceFinder(NamedTuple):
         return next(found, None)
 
     def file_from_uri(self, uri: str, naming_file: str) -> str | None:
-        """Find a file that is no directory, such as a mesh, as by :meth:`path_from_uri`."""
+        """Find a file, such as a mesh, as :meth:`path_from_uri`, but no directory."""
         path = self.path_from_uri(uri, naming_file)
         return path if path is not None and os.path.isfile(path) else None  # noqa: PTH113
 
     def uri_for_others(self, uri: str, naming_file: str) -> str | None:
         """
-        Return the URI of a file, such as a mesh, for programs that do not look for files as here.
+        Return the URI of a file, such as a mesh, for programs with other search paths.
 
-        :return: ``package://`` as it is, since a program on another machine finds the package
-            elsewhere; else ``file://`` with an absolute path. None if there is no such file.
+        :return: ``package://`` unchanged, since the package is elsewhere on another machine; else
+            ``file://`` with an absolute path. None if there is no such file.
         """
         # ROS knows no third slash.
         if uri.startswith('package://') and not uri.startswith('package:///'):
@@ -102,7 +102,7 @@ class ResourceFinder(NamedTuple):
 
     def path_from_address(self, address: str) -> Path:
         """
-        Return the path that a user's address of a file means.
+        Return the path of a file from a user's address.
 
         :param address: an absolute path, a path relative to the working directory (``~`` is the
             home directory), ``file:///absolute/path``, ``package://name/path`` relative to the
@@ -144,9 +144,9 @@ class ResourceFinder(NamedTuple):
 
     def reason_not_found(self, uri: str, including_file: str) -> str:
         """
-        Return why :meth:`path_from_uri` has no path for a URI, and what to do about it.
+        Return the reason why :meth:`path_from_uri` finds no path for a URI, with a remedy.
 
-        :param including_file: path of the file that holds the include.
+        :param including_file: path of the file with the include.
         """
         if uri.lower().startswith(('http://', 'https://')):
             return ('it is not in the cache of Gazebo Fuel; fetch it with: gz fuel download -u '
@@ -176,8 +176,8 @@ class ResourceFinder(NamedTuple):
             return
         if not name:
             return
-        # Joined to another path, an absolute path stays as it is. A Path is made only of what is
-        # found, as that takes long for a name with many slashes. Gazebo ignores a third slash.
+        # Joined to another path, an absolute path is unchanged. A Path is made only of a path that
+        # is found, as this takes long for a name with many slashes. Gazebo ignores a third slash.
         relative = name.lstrip('/') if scheme_name in ('model', 'package') else name
         for directory in self.search_paths:
             yield os.path.join(directory, relative)  # noqa: PTH118
@@ -233,7 +233,7 @@ def resource_finder(
     resource_paths: Iterable[str | os.PathLike[str]], environment: Mapping[str, str],
 ) -> ResourceFinder:
     """
-    Read from the environment where to look.
+    Read the directories from the environment.
 
     :param resource_paths: directories to search first.
     :param environment: such as ``os.environ``: ``GZ_SIM_RESOURCE_PATH``, ``SDF_PATH``,
@@ -271,12 +271,12 @@ _DEPRECATED_NAME = 'manifest.xml'
 
 
 class ModelFile(NamedTuple):
-    """The file that a model directory offers."""
+    """The model file of a directory."""
 
     path: str
     """The SDFormat file."""
     manifest: str
-    """The file that names it."""
+    """The manifest that names it."""
     warnings: tuple[SdfWarning, ...]
 
 
@@ -290,7 +290,7 @@ def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
     :raises ParsingError: if the manifest does not name a file.
     :raises LimitError: if the manifest is too large.
     """
-    # Unlike Path.exists, this returns False for a directory that may not be read.
+    # Unlike Path.exists, this returns False for a directory without permission.
     manifests = [
         name for name in (_NAME, _DEPRECATED_NAME)
         if os.path.exists(Path(directory, name))]  # noqa: PTH110

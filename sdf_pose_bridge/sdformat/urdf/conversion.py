@@ -1,18 +1,18 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Convert URDF to SDFormat: in an include as libsdformat does, or else as ROS reads it.
+Convert URDF to SDFormat: in an include as libsdformat does, otherwise as ROS reads it.
 
-In an include a robot has the poses that Gazebo gives it. A link that a fixed joint holds is lumped
-into its parent link: what it has moves there, and two frames with the names of the joint and of
-the link remain. A link without a mass is left out. ``<gazebo>`` elements hold SDFormat for the
-link or joint that they refer to, or for the model. Source: libsdformat's ``parser_urdf.cc``.
+In an include, a robot has the poses of Gazebo. The child link of a fixed joint is lumped into its
+parent link: its content moves there, and two frames with the names of the joint and of the link
+remain. A link without a mass is left out. ``<gazebo>`` elements contain SDFormat for the link or
+joint that they refer to, or for the model. Source: libsdformat's ``parser_urdf.cc``.
 
-A file that is not included keeps its tree: every link is a link, below the one that its joint
-names, and a joint may have the name of a link. What ``<gazebo>`` elements hold adds to it only
-what is below a link or a joint.
+A file that is not included keeps its tree: every link stays a link, below the parent of its joint,
+and a joint may have the name of a link. Of ``<gazebo>`` elements, only children of links and
+joints are added.
 
-Materials, and what only physics needs, are not converted.
+Materials, and values that only physics needs, are not converted.
 """
 
 from __future__ import annotations
@@ -73,11 +73,11 @@ class ConvertedRobot(NamedTuple):
     root: XmlElement
     """The ``sdf`` element."""
     root_link: str
-    """The name of the link that has no parent."""
+    """The name of the link without a parent."""
 
 
 class _Base(NamedTuple):
-    """The link that another one is lumped into; of a link that is not, itself."""
+    """The link that another one is lumped into; for other links, the link itself."""
 
     link: Link
     pose: Pose
@@ -90,10 +90,10 @@ def sdf_from_urdf(root: XmlElement, sources: Sources, *, is_included: bool) -> C
     """
     Convert a file.
 
-    :param root: the ``robot`` element; what ``<gazebo>`` elements hold is taken out of it.
+    :param root: the ``robot`` element; the children of ``<gazebo>`` elements are removed from it.
     :param sources: has the lines of its elements, and takes those of the new ones.
-    :param is_included: whether to convert as libsdformat does, and not to read as ROS does.
-    :raises SdfError: if the file is not valid; ``errors`` on it has all errors.
+    :param is_included: whether to convert as libsdformat does, instead of reading as ROS does.
+    :raises SdfError: if the file is not valid; its ``errors`` has all errors.
     """
     robot = robot_from_tree(root, sources)
     if not is_included:
@@ -114,7 +114,7 @@ class _Conversion:
         self._robot = robot
         self._sources = sources
         self._write = ElementWriter(sources, for_ros=for_ros)
-        # libsdformat reads what <gazebo> elements hold in this version.
+        # libsdformat reads the content of <gazebo> elements in this version.
         self._sdf = etree.Element('sdf', version='1.11')
         sources.set_parsed_line(self._sdf, root)
         self._model = self._write.add(self._sdf, 'model', root, name=robot.name)
@@ -134,7 +134,8 @@ class _Conversion:
         self._add_links()
         static = self._gazebo.static
         if self._for_ros:
-            # Its joints move. Without links, as of the link "world" alone, only that is valid.
+            # Its joints move. A model without links, as of the link "world" alone, has to be
+            # static.
             static = None if first_child(self._model, 'link') is not None else 'true'
         if static is not None:
             self._write.add(self._model, 'static', self._root, text=static)
@@ -164,7 +165,7 @@ class _Conversion:
         return self._bases[link.name].link is not link
 
     def _lump_inertial(self, link: Link) -> None:
-        """Add the mass of a link that is lumped to that of its parent."""
+        """Add the mass of a lumped link to that of its parent."""
         inertial = self._inertials[link.name]
         if inertial is None or not self._is_lumped(link):
             return
@@ -194,7 +195,7 @@ class _Conversion:
         return left_out
 
     def _keep_tree(self) -> None:
-        """Lump no links, and leave out what would change the tree of the robot."""
+        """Lump no links, and leave out elements that would change the tree of the robot."""
         self._bases = {link.name: _Base(link, Pose(), [link]) for link in self._links}
         self._inertials = {link.name: link.inertial for link in self._links}
         kept = []
@@ -346,7 +347,7 @@ class _Conversion:
             self._model.remove(pose)
         self._write.add_pose(self._model, origin, self._robot.origin, rpy_by_urdfdom)
 
-    # What <gazebo> elements hold
+    # Content of <gazebo> elements
 
     def _add_extensions(self, xml: XmlElement, reference: str) -> None:
         for child in self._gazebo.extensions.pop(reference, ()):
@@ -354,7 +355,7 @@ class _Conversion:
             xml.append(child)
 
     def _move_extension(self, xml: XmlElement, link: Link) -> None:
-        """Change the pose of what belongs to a link that is lumped."""
+        """Change the pose of an element of a lumped link."""
         pose = first_child(xml, 'pose')
         if xml.tag not in _MOVED_TAGS or not self._is_lumped(link) or (
                 pose is not None and pose.get('relative_to') is not None):
@@ -389,5 +390,5 @@ class _Conversion:
     def _report_unused_extensions(self) -> None:
         for reference, children in self._gazebo.extensions.items():
             self._sources.warning(
-                children[0], f'what <gazebo reference="{reference}"> holds is left out: the '
+                children[0], f'the content of <gazebo reference="{reference}"> is left out: the '
                 'converted model has no link or joint of that name', is_for_gazebo=self._for_ros)

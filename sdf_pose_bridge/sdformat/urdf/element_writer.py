@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Write elements of SDFormat that have the lines of the URDF elements they are made from."""
+"""Write elements of SDFormat with the lines of their URDF elements."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class ElementWriter:
         return element
 
     def counted(self, name: str, xml: XmlElement) -> str:
-        """Count a name that may be longer than all that is written where it goes."""
+        """Count a name that may be longer than the text of the file at its new place."""
         self._sources.count_work(STEPS_OF_ELEMENT + len(name) // CHARACTERS_OF_STEP, xml)
         return name
 

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Add the mass of a link that a fixed joint holds to that of its parent link.
+Add the mass of the child link of a fixed joint to that of the parent link.
 
 Source: ``ReduceInertialToParent`` of libsdformat's ``parser_urdf.cc``.
 """
@@ -25,8 +25,7 @@ def lumped_inertial(parent: Inertial, lumped: Inertial) -> Inertial:
     Add two inertials.
 
     :param lumped: with its frame in the parent link.
-    :return: their sum, with the axes of the first one; its center is not a number if nothing has a
-        mass.
+    :return: their sum, with the axes of the first one; its center is NaN if both masses are zero.
     """
     mass = parent.mass + lumped.mass
     if not mass:

@@ -1,12 +1,12 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Read the robot that a URDF file describes: links, joints and what ``<gazebo>`` elements hold.
+Read the robot of a URDF file: links, joints and the content of ``<gazebo>`` elements.
 
-Nothing is read that poses do not need.
+Values that poses do not need are not read.
 
-What is accepted is what the parser of libsdformat accepts, which is that of urdfdom: a joint with
-a fault is an error, but in a link the parser stops at the fault and keeps what it has read.
+Files are accepted as by the parser of libsdformat, that of urdfdom: a joint with a fault is an
+error, but in a link the parser stops at the fault and keeps the part that it has read.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class Shape(NamedTuple):
     """A visual or a collision."""
 
     name: str
-    """As written; empty if it has none."""
+    """Its name as written; empty if it has none."""
     origin: Pose
     """Its pose in its link."""
     geometry: XmlElement
@@ -92,7 +92,7 @@ class Link(NamedTuple):
 
 
 class Joint(NamedTuple):
-    """A joint; the frame of its child link is the joint's."""
+    """A joint; its frame is that of its child link."""
 
     xml: XmlElement
     name: str
@@ -110,10 +110,10 @@ class Robot(NamedTuple):
 
     name: str
     origin: Pose
-    """Where the file places it."""
+    """Its pose in the file."""
     links: Mapping[str, Link]
     links_in_order: Sequence[Link]
-    """Those in the tree, each before its children, which are in the order of their joints."""
+    """The links in the tree, each before its children, which are in the order of their joints."""
     parent_joints: Mapping[str, Joint]
     """By the name of the child link, ordered by their own names."""
     joint_names: Mapping[str, str]
@@ -121,24 +121,23 @@ class Robot(NamedTuple):
 
 
 class GazeboElements(NamedTuple):
-    """What the ``<gazebo>`` elements of a robot hold."""
+    """The content of the ``<gazebo>`` elements of a robot."""
 
     static: str | None
     """The text of ``<static>`` of the model; None if there is none."""
     kept_joints: Set[str]
     """Names of fixed joints that remain joints."""
     revolute_joints: Set[str]
-    """Those of them that become revolute joints."""
+    """The kept joints that become revolute joints."""
     extensions: dict[str, list[XmlElement]]
-    """Elements of SDFormat by the name of the link or joint that they are for, which is empty for
-    the model."""
+    """Elements of SDFormat by the name of their link or joint; the name is empty for the model."""
 
 
 def robot_from_tree(root: XmlElement, sources: Sources) -> Robot:
     """
     Read a robot from the ``robot`` element.
 
-    :raises SdfError: if it is not valid; ``errors`` on it has all errors.
+    :raises SdfError: if it is not valid; its ``errors`` has all errors.
     """
     return _RobotReader(root, sources).robot()
 

@@ -22,11 +22,11 @@ _LEADING_NUMBER = re.compile(
     re.IGNORECASE)
 _URDFDOM_GIMBAL_LOCK = 1e-5
 _GZ_MATH_GIMBAL_LOCK = 1e-15
-"""Where 1 - |sin(pitch)| is less, libsdformat writes angles that are only nearly the same."""
+"""If 1 - abs(sin(pitch)) is less, libsdformat writes angles that are only nearly the same."""
 
 
 class NotFiniteError(ValueError):
-    """Numbers that URDF may have, but not the SDFormat that it is converted to."""
+    """Numbers that URDF may have, but SDFormat may not."""
 
 
 def is_true(xml: XmlElement) -> bool:
@@ -40,7 +40,7 @@ def is_true(xml: XmlElement) -> bool:
 
 
 def leading_numbers(text: str, count: int) -> Sequence[float]:
-    """Return the numbers that the first words of a text begin with, none for other words."""
+    """Return the numbers that the first words begin with; other words have none."""
     matches = map(_LEADING_NUMBER.match, text.split()[:count])
     return [float(number[0]) for number in matches if number]
 
@@ -68,7 +68,7 @@ def numbers_of(xml: XmlElement, attributes: str) -> dict[str, list[float]]:
 
 
 def _numbers_from_text(text: str, count: int, what: str) -> list[float]:
-    # What follows a single number does not matter.
+    # Text behind a single number is ignored.
     words = [text.lstrip(WHITE_SPACE)] if count == 1 else text.split()
     numbers = [number for word in words for number in number_from_word(word)]
     if not len(numbers) == len(words) == count:
@@ -89,8 +89,8 @@ def pose_from_xyz_rpy(
 
     :param xyz: x y z in metres; finite.
     :param rpy: roll pitch yaw in radians; finite.
-    :return: the pose. Its quaternion has the sign that libsdformat gives it, because the angles
-        that ``rpy_by_urdfdom`` makes of it depend on the sign, and with them how they are rounded.
+    :return: the pose. Its quaternion has the sign of libsdformat's, because the angles of
+        ``rpy_by_urdfdom`` and their rounding depend on the sign.
     """
     x, y, z = xyz
     halves = [angle / 2.0 for angle in rpy]
@@ -101,7 +101,7 @@ def pose_from_xyz_rpy(
 
 
 def text_from_numbers(numbers: Sequence[float], digits: int = 16) -> str:
-    """Write numbers, each with so many significant digits."""
+    """Write numbers with a number of significant digits."""
     return ' '.join([f'%.{digits}g'] * len(numbers)) % tuple(numbers)
 
 
