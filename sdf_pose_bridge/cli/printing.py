@@ -103,11 +103,20 @@ METRES, MILLIMETRES = Unit('m', 1.0, 4), Unit('mm', 1000.0, 1)
 RADIANS, DEGREES = Unit('rad', 1.0, 4), Unit('deg', math.degrees(1.0), 2)
 
 
+POSE_LABELS = ('x', 'y', 'z', 'roll', 'pitch', 'yaw')
+"""Labels of the numbers of a pose."""
+
+
 class Units(NamedTuple):
     """Units of the poses that a command shows."""
 
     length: Unit = METRES
     angle: Unit = RADIANS
+
+    @property
+    def of_pose(self) -> list[Unit]:
+        """The units of x, y, z, roll, pitch and yaw."""
+        return 3 * [self.length] + 3 * [self.angle]
 
     def texts(self, pose: Pose) -> list[str]:
         """
@@ -119,7 +128,7 @@ class Units(NamedTuple):
         # Adding zero removes negative zeros.
         return [
             f'{round(value * unit.factor, unit.digits) + 0.0:.{unit.digits}f}'
-            for value, unit in zip(values, 3 * [self.length] + 3 * [self.angle], strict=True)]
+            for value, unit in zip(values, self.of_pose, strict=True)]
 
 
 def add_output_argument(

@@ -88,21 +88,21 @@ def run(options: argparse.Namespace) -> int:
     path, read_since_ns = options.files[0], time.time_ns()
     scene = scene_of(path, options, shapes=True)
     page = viewer.Page(
-        0 if options.output else options.port, tf_options_from_arguments(options),
-        Units(options.length_unit, options.angle_unit),
+        viewer.ShownScene(scene, tf_options_from_arguments(options)),
+        0 if options.output else options.port, Units(options.length_unit, options.angle_unit),
         resource_finder(options.resource_paths, os.environ),
         partial(set_pose, options=options) if options.edit else None,
         # A page in a file has no switches.
         viewer.HIDDEN_AT_FIRST - ({'all names'} if options.output else set()))
     try:
-        for line in page.show(scene):
+        for line in page.reasons:
             print(f'sdf_pose view: {line}', file=sys.stderr)
         if options.output is None:
             _open(page.address)
             watcher = FileWatcher()
             # The standard input cannot be read again.
             watcher.watch(() if is_input else scene.files, read_since_ns)
-            _follow(page, watcher, options)
+            _follow(viewer, page, watcher, options)
         else:
             html = page.html(path)
             options.output.write_bytes(
@@ -164,7 +164,9 @@ def _open(address: str) -> None:
               file=sys.stderr)
 
 
-def _follow(page: Any, watcher: FileWatcher, options: argparse.Namespace) -> None:
+def _follow(
+    viewer: ModuleType, page: Any, watcher: FileWatcher, options: argparse.Namespace,
+) -> None:
     """Show the file again whenever it or an included file changes; never returns."""
     while True:
         page.act(_PERIOD_S)
@@ -173,7 +175,7 @@ def _follow(page: Any, watcher: FileWatcher, options: argparse.Namespace) -> Non
             try:
                 scene = scene_from_file(options.files[0], options, shapes=True)
                 watcher.watch(scene.files, read_since_ns)
-                page.show(scene)
+                page.show(viewer.ShownScene(scene, tf_options_from_arguments(options)))
             except SdfError as error:
                 page.show_errors(map(str, error.errors))
 

@@ -93,22 +93,29 @@ def enter(page, element, text):
     }})({element})""")
 
 
+def control(label):
+    """Return the input element with a label."""
+    return f"""(label => {{
+      let node = [...document.querySelectorAll('label')].find(
+        each => each.textContent.trim() === label);
+      while (node && !node.querySelector('input:not([type=hidden])')) node = node.parentElement;
+      return node?.querySelector('input:not([type=hidden])');
+    }})('{label}')"""
+
+
 def test_slider_moves_frames_and_those_that_mimic(page):
     select(page, 'slide')
     assert page.run("document.body.innerText.includes('arm/second')") is False
-    enter(page, "[...document.querySelectorAll('input')].filter("
-                "input => ['decimal', 'numeric'].includes(input.inputMode))[1]", '0.5')
+    enter(page, control('rail [m]'), '0.5')
     page.wait_for("document.body.innerText.includes('xyz 0.0000 0.0000 0.5000 m')")
     select(page, 'follower')
     page.wait_for("document.body.innerText.includes('xyz 0.0000 0.0000 1.0000 m')")
 
 
 def test_search(page):
-    search = ("[...document.querySelectorAll('input')].find("
-              "input => input.type === 'text' && ['', 'SLI'].includes(input.value))")
-    enter(page, search, 'SLI')
+    enter(page, control('search'), 'SLI')
     page.wait_for(f'{ROWS}.length === 1')
-    enter(page, search, '')
+    enter(page, control('search'), '')
     page.wait_for(f'{ROWS}.length === 5')
 
 
@@ -185,6 +192,20 @@ def test_frame_is_dragged_and_written(page, shown):
     page.run(f"{button('undo the last write')}.click()")
     page.wait_for(f"!{button('undo the last write')}")
     assert shown.file.read_text() == TEXT
+
+
+def test_numbers_are_typed_and_written(page, shown):
+    select(page, HOSTILE)
+    page.wait_for(f"{control('z [m]')}?.disabled === false")
+    # At once, and each is heard.
+    for label, value in (('y [m]', '0.5'), ('z [m]', '0.25'), ('yaw [rad]', '1.5')):
+        enter(page, control(label), value)
+    page.wait_for("""['+0.5000', '+0.2500', '+1.5000'].every(text =>
+      document.querySelector('.difference')?.innerText.includes(text))""")
+    page.run(f"{button('write to file')}.click()")
+    page.wait_for(f"!{button('write to file')}")
+    assert load(shown.file).pose(HOSTILE)[:3] == pytest.approx((1.0, 0.5, 0.25), abs=1e-12)
+    assert '<pose>1 0.5 0.25 0 0 1.5</pose>' in shown.file.read_text()
 
 
 def test_name_is_shown_at_the_pointer(page):

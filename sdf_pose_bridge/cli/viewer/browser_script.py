@@ -1,9 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-What viser does not do in the browser: frames on top of bodies, names at the pointer, and copying.
+What viser does not do in the browser.
 
-The scene is found as the developer tools of three.js find it.
+These are frames on top of bodies, names at the pointer, copying, and changes of several controls
+at once. The scene is found as the developer tools of three.js find it.
 """
 
 from __future__ import annotations
@@ -14,6 +15,10 @@ import json
 
 _TITLE = '<title>Viser</title>'
 _SCRIPT = """<script>(() => {
+  // viser sends a change at most every 50 ms, and of several in between only the last one: when
+  // two controls change, one is lost.
+  const wait = window.setTimeout;
+  window.setTimeout = (action, ms, ...rest) => wait(action, ms === 50 ? 0 : ms, ...rest);
   let frames, camera;
   window.__THREE_DEVTOOLS__ ??= new EventTarget();
   __THREE_DEVTOOLS__.addEventListener('observe', ({detail: scene}) => {

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from collections.abc import Sequence
 from typing import Any
@@ -18,12 +19,12 @@ from sdf_pose_bridge.cli.printing import kind_labels_of
 from sdf_pose_bridge.cli.viewer.labels import labels_from_names
 from sdf_pose_bridge.cli.viewer.meshes import MeshPart
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
+from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene
+from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.cli.viewer.view_point import bounds_of_interest
 from sdf_pose_bridge.cli.viewer.view_point import bounds_of_points
-from sdf_pose_bridge.cli.viewer.view_point import FIELD_OF_VIEW_RAD
 from sdf_pose_bridge.cli.viewer.view_point import grid_spacing_m
 from sdf_pose_bridge.cli.viewer.view_point import home_view
-from sdf_pose_bridge.cli.viewer.view_point import View
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.rotations import Floats
@@ -74,184 +75,188 @@ class Surface(NamedTuple):
 
 class Drawing:
     """
-    The nodes that show a scene.
+    The nodes that show a scene, until they are removed.
 
-    :param server: the server that shows them.
+    :param nodes: where they are added.
+    :param name: the name of the node above them; not that of the drawing before, as a browser
+        mixes up nodes that are removed and added again at once.
     :param meshes: reads the meshes.
+    :param shown: the scene.
+    :param posed: the same at the positions of its joints.
+    :param hidden: the groups, kinds of frames and models that are not drawn.
+    :param opacity: that of surfaces, from 0 to 1, where 1 is opaque.
     :param select: is called with the frame that is clicked, an index into the TF tree.
     """
 
     def __init__(
-        self, server: viser.ViserServer, meshes: MeshReader, select: Callable[[int], None],
+        self, nodes: viser.SceneApi, name: str, meshes: MeshReader, shown: ShownScene,
+        posed: PosedScene, hidden: set[str], opacity: float, select: Callable[[int], None],
     ) -> None:
-        self._server, self._meshes, self._select = server, meshes, select
-        self.gizmo: Any = None
-        """The gizmo, which is not visible at first."""
-        self.opacity = 1.0
-        """That of surfaces; see :meth:`set_opacity`."""
-        self._camera: Any = None
-        self._marked = -1
-        self._labels: list[viser.LabelHandle] = []
-
-    def look_from(self, camera: viser.CameraHandle) -> None:
-        """Place names for this camera from the next :meth:`place` on."""
-        self._camera = camera
-
-    def draw(
-        self, scene: Scene, tree: TfTree, is_shown: NDArray[np.bool_],
-        is_in_robot: NDArray[np.bool_], hidden: set[str],
-    ) -> list[str]:
-        """
-        Draw a scene instead of the one before.
-
-        :param is_shown: whether to draw each element of the scene.
-        :param is_in_robot: whether each element is in a model that moves.
-        :param hidden: the groups and kinds of frames that are not drawn.
-        :return: why visuals and collisions are not drawn as the file means them, for each of them.
-        """
-        nodes, self._hidden = self._server.scene, hidden
-        # Other nodes replace those of their name. Of these there may be fewer now.
-        for name in ('/visuals', '/collisions'):
-            nodes.remove_by_name(name)
+        scene, tree = posed
+        self._nodes, self._name, self._select = nodes, name, select
+        self._node = nodes.add_frame(name, show_axes=False)
+        self._has_all_lines = 'all lines to parents' not in hidden
+        self._has_all_names = 'all names' not in hidden
+        is_shown = shown.is_shown(hidden)
         # An optical frame is shown with its parent.
         elements = np.where(
             tree.elements < 0, tree.elements[np.maximum(tree.parents, 0)], tree.elements)
         self.frames = np.array([
             frame for frame, label in enumerate(kind_labels_of(scene, tree))
             if label not in hidden and is_shown[elements[frame]]], int)
+        """The frames that are drawn, indices into the TF tree."""
         origins = tree.poses[:, :3]
         extent_m = float(np.ptp(origins, axis=0).max()) if len(origins) else 0.0
+        self.frame_names = [printable(tree.frame_ids[frame]) for frame in self.frames]
+        """The names of these."""
         surfaces, reasons = surfaces_from_scene(
             scene, [element for element in scene.shapes if is_shown[element]
                     and f'{Kind(scene.kinds[element]).label}s' not in hidden],
-            extent_m or 1.0, self._meshes)
+            extent_m or 1.0, meshes)
+        self.reasons = [
+            f'{"1 shape is" if number == 1 else f"{number} shapes are"} not drawn as the file '
+            f'means it: {printable(reason)}' for reason, number in Counter(reasons).items()]
+        """Lines that say which visuals and collisions are not drawn as the file means them."""
         boxes = boxes_of_surfaces(scene, surfaces)
-        size_m = float(np.ptp(bounds_of_points(
-            np.concatenate([origins, np.zeros((1, 3)), boxes.reshape(-1, 3)])), axis=0).max())
-        size_m = size_m or 1.0
+        self.size_m = float(np.ptp(bounds_of_points(
+            np.concatenate([origins, np.zeros((1, 3)), boxes.reshape(-1, 3)])), axis=0).max()
+            ) or 1.0
+        """The extent of everything."""
         self.bounds = bounds_of_interest(
-            origins[self.frames], is_in_robot[elements[self.frames]], boxes)
-        view_m = float(np.linalg.norm(self.bounds[1] - self.bounds[0])) or size_m
+            origins[self.frames], shown.is_in_robot[elements[self.frames]], boxes)
+        """The lowest and the highest corner of what the first view shows, shape (2, 3)."""
+        view_m = float(np.linalg.norm(self.bounds[1] - self.bounds[0])) or self.size_m
         self.home = home_view(self.bounds, origins[self.frames], boxes)
-        self._add_surroundings(view_m, size_m)
-        if self._camera is None:
-            self._look_at(self.home, size_m)
+        """The first view."""
+        self._add_surroundings(view_m, has_grid='grid' not in hidden)
         self.axes_length_m = length_m = _length_of_axes(tree, view_m)
         self._marker = nodes.add_frame(
-            '/selected', axes_length=2.0 * length_m, axes_radius=0.06 * length_m, visible=False)
-        self.gizmo = nodes.add_transform_controls(
-            '/gizmo', 2.5 * length_m, depth_test=False, visible=False)
+            f'{name}/selected', axes_length=2.0 * length_m, axes_radius=0.06 * length_m,
+            visible=False)
         self._lines = nodes.add_line_segments(
-            '/lines to parents', _lines(tree, self._lined(tree)), _LINE_COLOR, thickness=2.0,
+            f'{name}/lines to parents', np.zeros((0, 2, 3)), _LINE_COLOR, thickness=2.0,
             thickness_units='screen')
         self._axes = nodes.add_batched_axes(
-            '/frames', *_places(tree.poses[self.frames]), axes_length=length_m,
+            f'{name}/frames', *_places(tree.poses[self.frames]), axes_length=length_m,
             axes_radius=0.035 * length_m)
         self._select_by_click(self._axes, self.frames)
         self._copies = [
-            (self._add_surface(number, surface, scene, tree), surface.elements)
+            (self._add_surface(number, surface, posed, opacity), surface.elements)
             for number, surface in enumerate(surfaces)]
-        self.place(scene, tree)
-        return reasons
 
-    def place(self, scene: Scene, tree: TfTree) -> None:
-        """Move what is drawn to the poses of a scene that differs in nothing else."""
+    def remove(self) -> None:
+        """Remove the nodes."""
+        self._node.remove()
+
+    def place(self, posed: PosedScene) -> None:
+        """Move what is drawn to other positions of joints."""
+        scene, tree = posed
         self._axes.batched_wxyzs, self._axes.batched_positions = _places(tree.poses[self.frames])
         for copies, elements in self._copies:
             copies.batched_wxyzs, copies.batched_positions = _places(scene.poses[elements])
-        self._lines.points = _lines(tree, self._lined(tree))
-        self._place_names(tree)
 
-    def mark(self, frame: int, pose: Pose | None) -> None:
+    def mark(self, tree: TfTree, frame: int, pose: Pose | None) -> None:
         """
-        Show larger axes, the name, and the lines to the ancestors of a frame.
+        Show larger axes for a frame, and lines to its ancestors, or all lines if they are on.
 
         :param frame: its index, or -1 for none.
         :param pose: where the axes are, in the root frame.
         """
-        self._marked = frame
         self._marker.visible = pose is not None
         if pose is not None:
             self._marker.position, self._marker.wxyz = pose[:3], (pose.qw, *pose[3:6])
+        self._lines.points = _lines(
+            tree, self.frames if self._has_all_lines else _ancestry(tree, frame))
+
+    def names(
+        self, tree: TfTree, frame: int, eye: Floats, look_at: Floats,
+    ) -> list[tuple[str, Floats]]:
+        """
+        Return the names that are shown, and where.
+
+        :param frame: index of a frame whose name is shown at any rate, or -1.
+        :param eye: where the camera is.
+        :param look_at: what is in the middle of the picture.
+        """
+        frames = self.frames[:MOST_NAMES].tolist() if self._has_all_names else []
+        if frame >= 0 and frame not in frames:
+            frames.append(frame)
+        names = [
+            printable(shortened(tree.frame_ids[frame].rpartition('/')[2])) for frame in frames]
+        return labels_from_names(names, tree.poses[frames, :3], eye, look_at)
 
     def set_opacity(self, opacity: float) -> None:
         """Let surfaces be seen through, from 0 to 1, where 1 is opaque."""
-        self.opacity = opacity
         for copies, _ in self._copies:
             copies.opacity = None if opacity >= 1.0 else opacity
 
-    def _lined(self, tree: TfTree) -> NDArray[np.intp]:
-        """Return the frames with a line to their parents."""
-        if 'all lines to parents' not in self._hidden:
-            return self.frames
-        lined, frame = [], self._marked
-        while frame >= 0:
-            lined.append(frame)
-            frame = int(tree.parents[frame])
-        return np.array(lined, int)
-
-    def _place_names(self, tree: TfTree) -> None:
-        frames = [] if 'all names' in self._hidden else self.frames[:MOST_NAMES].tolist()
-        if self._marked >= 0 and self._marked not in frames:
-            frames.append(self._marked)
-        names = [
-            printable(shortened(tree.frame_ids[frame].rpartition('/')[2])) for frame in frames]
-        labels = labels_from_names(
-            names, tree.poses[frames, :3], self._camera.position, self._camera.look_at)
-        # A browser leaves a label that is removed and added again at once where it was.
-        while len(self._labels) < len(labels):
-            self._labels.append(self._server.scene.add_label(f'/names/{len(self._labels)}', ''))
-        for number, label in enumerate(self._labels):
-            label.visible = number < len(labels)
-            if label.visible:
-                label.text, label.position = labels[number]
-
-    def _look_at(self, view: View, size_m: float) -> None:
-        """Choose what a browser sees at first."""
-        self._camera = camera = self._server.initial_camera
-        camera.position, camera.look_at = view
-        camera.fov = FIELD_OF_VIEW_RAD
-        camera.near, camera.far = 0.001 * size_m, 100.0 * size_m
-
-    def _add_surroundings(self, view_m: float, size_m: float) -> None:
+    def _add_surroundings(self, view_m: float, *, has_grid: bool) -> None:
         """Add light from above and from one side, and a grid on the ground."""
-        nodes = self._server.scene
-        nodes.add_light_hemisphere('/light/sky', ground_color=_LIGHT_FROM_BELOW, intensity=1.7)
+        nodes, name = self._nodes, self._name
+        nodes.add_light_hemisphere(
+            f'{name}/sky', ground_color=_LIGHT_FROM_BELOW, intensity=1.7)
         # Far away and without decay, so that its rays are parallel.
         nodes.add_light_point(
-            '/light/sun', intensity=1.9, decay=0.0,
-            position=tuple(100.0 * size_m * np.array(_DIRECTION_TO_LIGHT)))
-        spacing_m, has_grid = grid_spacing_m(view_m), 'grid' not in self._hidden
+            f'{name}/sun', intensity=1.9, decay=0.0,
+            position=tuple(100.0 * self.size_m * np.array(_DIRECTION_TO_LIGHT)))
+        if not has_grid:
+            return
+        spacing_m = grid_spacing_m(view_m)
         middle = np.round(self.bounds.mean(axis=0)[:2] / spacing_m) * spacing_m
         width_m = 2.0 * spacing_m * np.ceil(view_m / spacing_m)
         # A little above the floors that many files have there.
         height_m = 0.001 * view_m
         nodes.add_grid(
-            '/grid', width_m, width_m, cell_size=spacing_m, section_size=5.0 * spacing_m,
+            f'{name}/grid', width_m, width_m, cell_size=spacing_m, section_size=5.0 * spacing_m,
             cell_color=_GRID_COLOR, section_color=_GRID_SECTION_COLOR, shadow_opacity=0.0,
-            fade_distance=4.0 * view_m, position=(*middle, height_m), visible=has_grid)
+            fade_distance=4.0 * view_m, position=(*middle, height_m))
         to_camera = 0.3 * (self.home.position - self.home.look_at)[:2]
         nodes.add_label(
-            '/grid spacing', f'grid {spacing_m:g} m', font_screen_scale=0.8, visible=has_grid,
+            f'{name}/grid spacing', f'grid {spacing_m:g} m', font_screen_scale=0.8,
             position=(*(middle + spacing_m * np.round(to_camera / spacing_m)), height_m))
 
-    def _add_surface(self, number: int, surface: Surface, scene: Scene, tree: TfTree) -> Any:
+    def _add_surface(
+        self, number: int, surface: Surface, posed: PosedScene, opacity: float,
+    ) -> Any:
         is_collision = surface.kind == Kind.COLLISION
         rgba = np.clip(surface.rgba, 0.0, 1.0)
         if is_collision:
             rgba[:] = _COLLISION_RGBA
-        copies = self._server.scene.add_batched_meshes_simple(
-            f'/{surface.kind.label}s/{number}', surface.part.points, surface.part.faces,
-            *_places(scene.poses[surface.elements]), batched_scales=surface.scales,
+        copies = self._nodes.add_batched_meshes_simple(
+            f'{self._name}/{surface.kind.label}s/{number}', surface.part.points,
+            surface.part.faces, *_places(posed.scene.poses[surface.elements]),
+            batched_scales=surface.scales,
             batched_colors=np.round(255.0 * rgba[:, :3]).astype(np.uint8),
             batched_opacities=rgba[:, 3] if (rgba[:, 3] < 1.0).any() else None,
-            opacity=None if self.opacity >= 1.0 else self.opacity, lod='off',
+            opacity=None if opacity >= 1.0 else opacity, lod='off',
             wireframe=is_collision, flat_shading=not is_collision, side='double')
-        self._select_by_click(copies, tree.nearest_frames[surface.elements])
+        self._select_by_click(copies, posed.tree.nearest_frames[surface.elements])
         return copies
 
     def _select_by_click(self, copies: Any, frames: NDArray[Any]) -> None:
         copies.on_click(lambda event: self._select(int(frames[event.instance_index or 0])))
+
+
+class Labels:
+    """
+    Texts in the scene.
+
+    :param nodes: where they are added.
+    """
+
+    def __init__(self, nodes: viser.SceneApi) -> None:
+        self._nodes = nodes
+        self._labels: list[viser.LabelHandle] = []
+
+    def show(self, texts: Sequence[tuple[str, Floats]]) -> None:
+        """Show texts at points instead of those before."""
+        # A browser leaves a label that is removed and added again at once where it was.
+        while len(self._labels) < len(texts):
+            self._labels.append(self._nodes.add_label(f'/names/{len(self._labels)}', ''))
+        for number, label in enumerate(self._labels):
+            label.visible = number < len(texts)
+            if label.visible:
+                label.text, label.position = texts[number]
 
 
 def _places(poses: PoseArray) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
@@ -266,6 +271,15 @@ def _lines(tree: TfTree, shown: NDArray[np.intp]) -> Floats:
     origins = np.concatenate([tree.poses[:, :3], np.zeros((1, 3))])
     assert ROOT_IS_PARENT == -1
     return np.stack([origins[tree.parents[frames]], origins[frames]], axis=1)
+
+
+def _ancestry(tree: TfTree, frame: int) -> NDArray[np.intp]:
+    """Return a frame and its ancestors in TF; nothing for -1."""
+    frames = []
+    while frame >= 0:
+        frames.append(frame)
+        frame = int(tree.parents[frame])
+    return np.array(frames, int)
 
 
 def _length_of_axes(tree: TfTree, size_m: float) -> float:

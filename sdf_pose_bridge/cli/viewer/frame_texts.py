@@ -14,6 +14,7 @@ import shlex
 from xml.sax.saxutils import quoteattr
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
+from sdf_pose_bridge.cli.printing import POSE_LABELS
 from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.viewer.browser_script import html_of_copy_button
 from sdf_pose_bridge.geometry.formats import converted_poses
@@ -110,24 +111,19 @@ def _relative_to(scene: Scene, tree: TfTree, frame: int, reference: int) -> str:
     return f' relative_to={quoteattr(name.removeprefix(scope))}'
 
 
-def html_of_difference(
-    tree: TfTree, frame: int, new: Pose, reference: int, units: Units,
-) -> str:
+def html_of_difference(old: Pose, new: Pose, reference: Pose, units: Units) -> str:
     """
-    Write the pose of a frame as it is and as it would be, and the difference, side by side.
+    Write two poses of a frame, as it is and as it would be, and the difference, side by side.
 
-    :param new: the pose in the root frame as it would be.
-    :param reference: index of the frame that both are relative to, or ``ROOT_IS_PARENT``.
+    :param reference: the pose of the frame that they are shown relative to; all three are in the
+        root frame.
     """
-    other = Pose() if reference == ROOT_IS_PARENT else Pose(*tree.poses[reference].tolist())
-    old = Pose(*tree.poses[frame].tolist())
-    columns = [units.texts(relative_pose(other, pose)) for pose in (old, new)]
-    labels = ('x', 'y', 'z', 'roll', 'pitch', 'yaw')
+    columns = [units.texts(relative_pose(reference, pose)) for pose in (old, new)]
     rows = ''.join(
         f'<tr><td>{label} [{unit.name}]</td><td>{before}</td><td>{after}</td>'
         f'<td>{float(after) - float(before):+.{unit.digits}f}</td></tr>'
         for label, unit, before, after in zip(
-            labels, 3 * [units.length] + 3 * [units.angle], *columns, strict=True))
+            POSE_LABELS, units.of_pose, *columns, strict=True))
     return (f'<table class="difference" style="font-size:0.8em;margin:0 1em;text-align:right">'
             f'<tr><td></td><td>old</td><td>new</td><td>change</td></tr>{rows}</table>')
 

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
 from collections.abc import Mapping
 from functools import partial
 import math
@@ -14,8 +13,8 @@ from typing import NamedTuple
 
 import viser
 
-from sdf_pose_bridge.cli.printing import Unit
 from sdf_pose_bridge.cli.printing import Units
+from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom
 
@@ -25,9 +24,9 @@ half a metre to either side."""
 
 
 class JointRange(NamedTuple):
-    """Where a joint can be, in radians or metres, and the unit in which it is shown."""
+    """Where a joint can be, in radians or metres."""
 
-    unit: Unit
+    is_angle: bool
     lower: float
     upper: float
 
@@ -41,48 +40,57 @@ class JointRange(NamedTuple):
         return 0.5 * (self.lower + self.upper)
 
 
-def range_of_dof(dof: DegreeOfFreedom, units: Units) -> JointRange:
+def range_of_dof(dof: DegreeOfFreedom) -> JointRange:
     """Return where a degree of freedom can be."""
-    unit, most, axis = units.length, 0.5, dof.axis
-    if dof.rad_per_unit:
-        unit, most = units.angle, math.pi
+    is_angle, axis = bool(dof.rad_per_unit), dof.axis
     if axis.upper - axis.lower >= _LARGEST_RANGE:
-        return JointRange(unit, -most, most)
-    return JointRange(unit, axis.lower, max(axis.lower, axis.upper))
+        most = math.pi if is_angle else 0.5
+        return JointRange(is_angle, -most, most)
+    return JointRange(is_angle, axis.lower, max(axis.lower, axis.upper))
 
 
-def add_joint_sliders(
-    gui: viser.GuiApi, ranges: Mapping[str, JointRange], positions: dict[str, float],
-    when: Callable[[Callable[..., object], Callable[[], object]], None],
-) -> None:
+class JointSliders:
     """
-    Add a folder with a slider for each joint, and buttons that move all of them.
+    A folder with a slider for each joint, and buttons that move all of them.
 
-    :param ranges: where each joint can be, by the names in ``positions``.
-    :param positions: their positions in radians or metres, which the sliders change.
-    :param when: lets an event call a function.
+    :param ranges: where each joint can be.
+    :param positions: where joints are, in radians or metres; those of others do not count, and
+        joints without one start at zero, or at the nearest limit.
+    :param units: the units of the sliders.
+    :param events: those of the page.
     """
-    short_names = Counter(name.rpartition('/')[2] for name in ranges)
-    sliders: dict[str, Any] = {}
-    with gui.add_folder('Joints'):
-        buttons = gui.add_button_group(
-            'all joints', ('home', 'middle'),
-            hint='home is zero, or the nearest limit; middle is between the limits')
-        for name, (unit, lower, upper) in ranges.items():
-            short = name.rpartition('/')[2]
-            sliders[name] = slider = gui.add_slider(
-                f'{printable(short if short_names[short] == 1 else name)} [{unit.name}]',
-                lower * unit.factor, upper * unit.factor,
-                max((upper - lower) * unit.factor / 1000.0, 1e-9), positions[name] * unit.factor,
-                hint=printable(name))
-            when(slider.on_update, partial(_take_position, slider, positions, name, unit))
 
-    def move_all() -> None:
-        for name, limits in ranges.items():
-            position = limits.middle if buttons.value == 'middle' else limits.clipped(0.0)
-            sliders[name].value = position * limits.unit.factor
-    when(buttons.on_click, move_all)
+    def __init__(
+        self, gui: viser.GuiApi, ranges: Mapping[str, JointRange],
+        positions: Mapping[str, float], units: Units, events: Events,
+    ) -> None:
+        self.positions = {
+            name: limits.clipped(positions.get(name, 0.0)) for name, limits in ranges.items()}
+        """The positions of the joints, in radians or metres."""
+        if not ranges:
+            return
+        short_names = Counter(name.rpartition('/')[2] for name in ranges)
+        sliders: dict[str, tuple[Any, float]] = {}
+        with gui.add_folder('Joints'):
+            buttons = gui.add_button_group(
+                'all joints', ('home', 'middle'),
+                hint='home is zero, or the nearest limit; middle is between the limits')
+            for name, (is_angle, lower, upper) in ranges.items():
+                unit = units.angle if is_angle else units.length
+                factor, short = unit.factor, name.rpartition('/')[2]
+                slider = gui.add_slider(
+                    f'{printable(short if short_names[short] == 1 else name)} [{unit.name}]',
+                    lower * factor, upper * factor, max((upper - lower) * factor / 1000.0, 1e-9),
+                    self.positions[name] * factor, hint=printable(name))
+                sliders[name] = slider, factor
+                events.when(slider.on_update, partial(self._take_position, name, slider, factor))
 
+        def move_all() -> None:
+            for name, (slider, factor) in sliders.items():
+                limits = ranges[name]
+                slider.value = factor * (
+                    limits.middle if buttons.value == 'middle' else limits.clipped(0.0))
+        events.when(buttons.on_click, move_all)
 
-def _take_position(slider: Any, positions: dict[str, float], name: str, unit: Unit) -> None:
-    positions[name] = slider.value / unit.factor
+    def _take_position(self, name: str, slider: Any, factor: float) -> None:
+        self.positions[name] = slider.value / factor

@@ -1,18 +1,21 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-The server of the page, which only who knows the address of the page can use.
+The server of the page, which only who knows the address of the page can use, and its events.
 
 Everything that has no public name in viser is used here alone.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from collections.abc import Iterator
 import contextlib
 from dataclasses import replace
 from http import HTTPStatus
 import logging
+from queue import Empty
+from queue import SimpleQueue
 import secrets
 from typing import Any
 from typing import NamedTuple
@@ -43,6 +46,32 @@ class PageServer(NamedTuple):
     viser: viser.ViserServer
     address: str
     """It has a secret in its path, without which nothing is answered."""
+
+
+class Events:
+    """What browsers ask for: viser hears it in its own threads, and one thread does it."""
+
+    def __init__(self) -> None:
+        self._actions: SimpleQueue[Callable[[], object]] = SimpleQueue()
+
+    def put(self, action: Callable[[], object]) -> None:
+        """Add a function to :meth:`asked`."""
+        self._actions.put(action)
+
+    def when(self, happens: Callable[..., object], action: Callable[[], object]) -> None:
+        """Add a function to :meth:`asked` at each event, such as ``button.on_click``."""
+        async def put(_: object) -> None:
+            self.put(action)
+        happens(put)
+
+    def asked(self, seconds: float) -> list[Callable[[], object]]:
+        """Return what is to be done; wait for it, but no longer than this."""
+        actions = []
+        with contextlib.suppress(Empty):
+            actions.append(self._actions.get(timeout=seconds))
+            while True:
+                actions.append(self._actions.get_nowait())
+        return actions
 
 
 def server_for_its_owner(port: int) -> PageServer:

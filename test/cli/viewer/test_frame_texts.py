@@ -79,9 +79,8 @@ def test_name_is_copied_as_it_is_shown(scene):
 def test_old_and_new_pose_side_by_side(scene):
     tree = tf_tree_from_scene(scene)
     frame, reference = (tree.frame_ids.index(name) for name in ('m/f', 'm/l'))
-    new = Pose(*tree.poses[frame].tolist())
-    new = new._replace(z=new.z - 0.25)
-    text = html_of_difference(tree, frame, new, reference, Units())
+    old, other = (Pose(*tree.poses[index].tolist()) for index in (frame, reference))
+    text = html_of_difference(old, old._replace(z=old.z - 0.25), other, Units())
     rows = re.findall('<tr><td>(.*?)</td><td>(.*?)</td><td>(.*?)</td><td>(.*?)</td></tr>', text)
     assert rows[1] == ('x [m]', '0.5000', '0.5000', '+0.0000')
     assert rows[3] == ('z [m]', '0.0000', '-0.2500', '-0.2500')

@@ -3,17 +3,19 @@
 """How far sliders move joints; integration/test_view_page.py moves one in a browser."""
 
 import math
+import time
 
 import pytest
 
 pytest.importorskip('viser', reason='needs viser')
 import viser
 
-from sdf_pose_bridge.cli.printing import METRES
+from sdf_pose_bridge.cli.printing import DEGREES
 from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.viewer.joint_sliders import add_joint_sliders
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointRange
+from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
 from sdf_pose_bridge.cli.viewer.joint_sliders import range_of_dof
+from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
@@ -25,7 +27,7 @@ def joint_range(kind, limit=''):
         <axis><xyz>0 0 1</xyz>{limit}</axis></joint></model></sdf>"""
     scene = load_text(text.encode(), 'm.sdf')
     (dof,) = JointMotion(scene, tf_parents_from_scene(scene)).dofs
-    return range_of_dof(dof, Units())
+    return range_of_dof(dof)
 
 
 @pytest.mark.parametrize(('kind', 'most'), [('revolute', math.pi), ('prismatic', 0.5)])
@@ -44,26 +46,24 @@ def test_home_is_where_the_limits_allow_it(lower, upper, home):
 
 
 @pytest.fixture
-def added():
-    """Returns the positions, the controls by their labels, and what each event calls."""
+def gui():
     server = viser.ViserServer('127.0.0.1', 0, verbose=False)
-    ranges = {'m/j': JointRange(METRES, -3.0, -1.0), 'm/k': JointRange(METRES, 0.0, 1.0)}
-    positions, called = {'m/j': -1.0, 'm/k': 0.0}, []
-    add_joint_sliders(
-        server.gui, ranges, positions, lambda happens, action: called.append((happens, action)))
-    yield positions, {happens.__self__.label: (happens.__self__, action)
-                      for happens, action in called}
+    yield server.gui
     server.stop()
 
 
-def test_all_joints_go_home_and_to_the_middle(added):
-    positions, controls = added
-    buttons, move_all = controls['all joints']
-    sliders = [controls[label] for label in ('j [m]', 'k [m]')]
+def test_all_joints_go_home_and_to_the_middle(gui):
+    ranges = {'m/j': JointRange(False, -3.0, -1.0), 'm/k': JointRange(True, 0.0, 1.0)}
+    events = Events()
+    joints = JointSliders(gui, ranges, {'m/k': 0.5, 'gone': 1.0}, Units(angle=DEGREES), events)
+    assert joints.positions == {'m/j': -1.0, 'm/k': 0.5}
+    buttons, first, second = gui._gui_input_handle_from_uuid.values()
+    assert (first.label, second.label) == ('j [m]', 'k [deg]')
     for value, expected in (('middle', [-2.0, 0.5]), ('home', [-1.0, 0.0])):
         buttons.value = value
-        move_all()
-        assert [slider.value for slider, _ in sliders] == expected
-        for _, take in sliders:
-            take()
-        assert list(positions.values()) == expected
+        end = time.monotonic() + 20.0
+        while list(joints.positions.values()) != expected and time.monotonic() < end:
+            for action in events.asked(0.1):
+                action()
+        assert list(joints.positions.values()) == expected
+        assert second.value == pytest.approx(math.degrees(expected[1]))

@@ -8,73 +8,69 @@ pytest.importorskip('viser', reason='needs viser')
 from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.viewer.page import Page
-from sdf_pose_bridge.errors import ElementInvalidError
-from sdf_pose_bridge.scene.pose_setting import PoseChange
-from sdf_pose_bridge.sdformat.file_change import FileChange
+from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf.tree import TfOptions
 
-TEXT = """<sdf version="1.11"><model name="m"><link name="l"/>
-  <frame name="free"><pose>0 0 1 0 0 0</pose></frame><frame name="fixed"/></model></sdf>"""
-
-
-def put(scene, element, pose, measured, *, dry_run):
-    """Refuse to place one of the frames, as the file cannot say some poses."""
-    if scene.names[element].endswith('fixed'):
-        raise ElementInvalidError('no', scene.place(element))
-    change = FileChange(scene.path, b'', 'utf-8', 0, 0, b'')
-    return PoseChange(change, 1, scene)
+TEXT = """<sdf version="1.11"><model name="m"><link name="l"/></model></sdf>"""
+MESH = '<geometry><mesh><uri>&lt;b&gt;</uri></mesh></geometry>'
 
 
 @pytest.fixture
-def page():
-    """A page, the frames of which can be dragged."""
-    shown = Page(0, TfOptions(), Units(), resource_finder([], {}), put)
-    yield shown
-    shown.close()
+def page_of(tmp_path):
+    """Returns the page of a file whose link has this content."""
+    pages = []
+
+    def make(content):
+        (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{content}</link>'))
+        scene = load(tmp_path / 'm.sdf', shapes=True)
+        pages.append(Page(
+            ShownScene(scene, TfOptions()), 0, Units(), resource_finder([], {})))
+        return pages[-1]
+    yield make
+    for page in pages:
+        page.close()
 
 
-def test_page_says_what_it_does_not_draw(page, tmp_path):
-    geometry = '<visual name="v"><geometry><mesh><uri>&lt;b&gt;</uri></mesh></geometry></visual>'
-    (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{geometry}</link>'))
-    assert page.show(load(tmp_path / 'm.sdf', shapes=True)) == [
-        '1 shape is not drawn as the file means it: the mesh "<b>": it is not found']
-    assert '&lt;b&gt;&quot;: it is not found' in page._reasons.content
-
-
-def test_gizmo_is_there_for_frames_that_can_be_placed_only(page, tmp_path):
-    (tmp_path / 'm.sdf').write_text(TEXT)
-    assert page.show(load(tmp_path / 'm.sdf', shapes=True)) == []
-    frames = page._tree.frame_ids
-    for name, has_gizmo in (('free', True), ('fixed', False), ('free', True)):
-        page._select(frames.index(name))
-        assert page._server.scene.get_handle_by_name('/gizmo').visible is has_gizmo
-
-
-def test_what_is_switched_off_is_not_drawn(page, tmp_path):
-    box = '<visual name="v"><geometry><box/></geometry></visual>'
-    (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{box}</link>'))
-    page.show(load(tmp_path / 'm.sdf', shapes=True))
-    grid = page._server.scene.get_handle_by_name('/grid')
-    assert grid.visible
-    assert page._server.scene.get_handle_by_name('/visuals/0') is not None
-    for switch in page._server.gui._gui_input_handle_from_uuid.values():
-        if switch.value is True:
-            switch.value = False
-    while not page._actions.empty() or {'visuals', 'grid'} - page._hidden:
+def set_switches(page, value, *labels):
+    for switch in list(page._server.gui._gui_input_handle_from_uuid.values()):
+        if switch.label in labels:
+            switch.value = value
+    while not page._events._actions.empty() or any(
+            (label in page._hidden) is value for label in labels):
         page.act(0.1)
-    assert not page._server.scene.get_handle_by_name('/grid').visible
-    assert page._server.scene.get_handle_by_name('/visuals/0') is None
 
 
-def test_page_says_so_when_collisions_are_switched_on(page, tmp_path):
-    mesh = '<collision name="c"><geometry><mesh><uri>a</uri></mesh></geometry></collision>'
-    (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{mesh}</link>'))
-    assert page.show(load(tmp_path / 'm.sdf', shapes=True)) == []
-    (switch,) = (
-        switch for switch in page._server.gui._gui_input_handle_from_uuid.values()
-        if switch.label == 'collisions')
-    switch.value = True
-    while 'collisions' in page._hidden:
-        page.act(0.1)
+def nodes(page, *names):
+    prefix = page._drawing._name
+    return [page._server.scene.get_handle_by_name(f'{prefix}/{name}') for name in names]
+
+
+def test_page_says_what_it_does_not_draw(page_of):
+    page = page_of(f'<visual name="v">{MESH}</visual>')
+    (reason,) = page.reasons
+    assert reason.startswith('1 shape is not drawn as the file means it: the mesh "<b>": ')
+    assert '&lt;b&gt;&quot;: ' in page._reasons.content
+
+
+def test_what_is_switched_off_is_not_drawn(page_of):
+    page = page_of('<visual name="v"><geometry><box/></geometry></visual>')
+    assert all(nodes(page, 'grid', 'visuals/0'))
+    set_switches(page, False, 'visuals', 'grid')
+    assert not any(nodes(page, 'grid', 'visuals/0'))
+
+
+def test_drawing_shares_no_name_with_the_one_before(page_of):
+    page = page_of('<visual name="v"><geometry><box/></geometry></visual>')
+    (before,) = nodes(page, 'visuals/0')
+    page.show(page._shown)
+    (after,) = nodes(page, 'visuals/0')
+    assert before.name != after.name
+    assert page._server.scene.get_handle_by_name(before.name) is None
+
+
+def test_page_says_so_when_collisions_are_switched_on(page_of):
+    page = page_of(f'<collision name="c">{MESH}</collision>')
+    assert page.reasons == []
+    set_switches(page, True, 'collisions')
     assert '1 shape is not drawn as the file means it' in page._reasons.content

@@ -1,0 +1,205 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The gizmo and the numbers that move the selected frame, and the buttons that write its pose."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from collections.abc import Iterable
+import math
+from typing import NamedTuple
+
+import viser
+
+from sdf_pose_bridge.cli.printing import POSE_LABELS
+from sdf_pose_bridge.cli.printing import Units
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_change
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_difference
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_lines
+from sdf_pose_bridge.cli.viewer.server import Events
+from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.geometry.poses import pose_product
+from sdf_pose_bridge.geometry.poses import relative_pose
+from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
+from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
+from sdf_pose_bridge.scene.pose_setting import PoseChange
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.file_change import FileChange
+
+SetPose = Callable[..., PoseChange]
+"""Puts a pose into a file, as ``sdf_pose_bridge.cli.set.set_pose`` does, of which it has the
+arguments but for the options."""
+
+_STEPS = tuple((step_m, math.radians(100.0 * step_m)) for step_m in (0.0001, 0.001, 0.01, 0.1))
+"""Steps of the numbers, in metres and radians."""
+
+
+class EditedFrame(NamedTuple):
+    """A frame that is to be edited."""
+
+    scene: Scene
+    """The scene as it was loaded."""
+    element: int
+    pose: Pose
+    """Its pose in the root frame."""
+    reference: Pose
+    """The pose, in the root frame, of the frame relative to which numbers are."""
+    gizmo_m: float
+    """The size of the gizmo."""
+    measured: Callable[[Scene, int], Pose]
+    """Returns the pose of an element of a scene in the root frame."""
+
+
+class PoseEdit:
+    """
+    The folder in which the pose of the selected frame is changed, and the gizmo at the frame.
+
+    :param set_pose: puts a pose into the file.
+    :param changed: is called when the new pose has changed.
+    """
+
+    def __init__(
+        self, server: viser.ViserServer, set_pose: SetPose, events: Events,
+        changed: Callable[[], object],
+    ) -> None:
+        self._set_pose, self._changed = set_pose, changed
+        self._frame: EditedFrame | None = None
+        self._file: PoseChange | list[str] = []
+        self._errors: Iterable[str] = ()
+        self._undone: FileChange | None = None
+        self._units, self._shown = Units(), [0.0] * 6
+        self.pose: Pose | None = None
+        """The new pose in the root frame; None until something is changed."""
+        self._gizmo = server.scene.add_transform_controls(
+            '/gizmo', depth_test=False, visible=False)
+        gui = server.gui
+        with gui.add_folder('Edit'):
+            self._numbers = [gui.add_number(label, 0.0, disabled=True) for label in POSE_LABELS]
+            self._steps = gui.add_dropdown('steps', ('',))
+            self._text = gui.add_html('')
+            write, cancel, undo = self._write, self._cancel, self._undo = [
+                gui.add_button(label, visible=False)
+                for label in ('write to file', 'cancel', 'undo the last write')]
+        events.when(self._gizmo.on_update, self._take_gizmo)
+        for number in self._numbers:
+            events.when(number.on_update, self._take_numbers)
+        events.when(self._steps.on_update, self._set_steps)
+        events.when(write.on_click, self._write_pose)
+        events.when(cancel.on_click, lambda: self._set(None))
+        events.when(undo.on_click, self._undo_write)
+        self._set_units(self._units)
+
+    def begin(self, frame: EditedFrame | None, units: Units) -> None:
+        """
+        Edit a frame, or none.
+
+        The new pose stays if it is that of the same frame of the same scene.
+        """
+        before, self._frame = self._frame, frame
+        if units != self._units:
+            self._set_units(units)
+        if frame is None or before is None or frame[:2] != before[:2]:
+            self.pose, self._errors = None, ()
+            self._file = [] if frame is None else self._change(frame.pose, dry_run=True)
+        self._show()
+        self._show_numbers()
+
+    def _set_units(self, units: Units) -> None:
+        self._units = units
+        for number, label, unit in zip(self._numbers, POSE_LABELS, units.of_pose, strict=True):
+            number.label = f'{label} [{unit.name}]'
+            number.precision = unit.digits + 2
+        self._steps.options = tuple(
+            f'{step * units.length.factor:g} {units.length.name}, '
+            f'{step_rad * units.angle.factor:g} {units.angle.name}' for step, step_rad in _STEPS)
+        self._steps.value = self._steps.options[1]
+        self._set_steps()
+
+    def _set_steps(self) -> None:
+        steps = _STEPS[self._steps.options.index(self._steps.value)]
+        for index, (number, unit) in enumerate(zip(
+                self._numbers, self._units.of_pose, strict=True)):
+            number.step = steps[index // 3] * unit.factor
+
+    def _take_gizmo(self) -> None:
+        if self._gizmo.visible:
+            w, x, y, z = self._gizmo.wxyz.tolist()
+            self._set(Pose(*(*self._gizmo.position.tolist(), x, y, z, w)))
+
+    def _take_numbers(self) -> None:
+        """Take the numbers that were typed; the others stay as exact as they are."""
+        typed = [number.value for number in self._numbers]
+        if self._frame is not None and typed != self._shown:
+            at = relative_pose(self._frame.reference, self.pose or self._frame.pose)
+            values = [
+                exact if number == shown else number / unit.factor
+                for exact, number, shown, unit in zip(
+                    (*at[:3], *rpy_from_quaternion(at[3:])), typed, self._shown,
+                    self._units.of_pose, strict=True)]
+            self._shown = typed
+            self._take(pose_product(self._frame.reference, Pose(
+                *(*values[:3], *quaternion_from_rpy(tuple(values[3:]))))))
+
+    def _set(self, pose: Pose | None) -> None:
+        """Set the new pose, and show it in the numbers."""
+        self._take(pose)
+        self._show_numbers()
+
+    def _take(self, pose: Pose | None) -> None:
+        self.pose, self._errors = pose, ()
+        self._show()
+        self._changed()
+
+    def _show_numbers(self) -> None:
+        if self._frame is not None:
+            pose = relative_pose(self._frame.reference, self.pose or self._frame.pose)
+            # The numbers tell of this change too, and are not taken then.
+            self._shown = [float(text) for text in self._units.texts(pose)]
+            for number, value in zip(self._numbers, self._shown, strict=True):
+                number.value = value
+
+    def _show(self) -> None:
+        frame, text = self._frame, ''
+        is_possible = isinstance(self._file, PoseChange)
+        for number in self._numbers:
+            number.disabled = not is_possible
+        self._gizmo.visible = is_possible
+        if frame is not None:
+            pose = self.pose or frame.pose
+            self._gizmo.scale = frame.gizmo_m
+            self._gizmo.position, self._gizmo.wxyz = pose[:3], (pose.qw, *pose[3:6])
+            if self.pose is not None:
+                text = html_of_difference(frame.pose, pose, frame.reference, self._units)
+            text += html_of_lines('errors', self._errors) + html_of_change(self._file)
+        self._text.content = text
+        self._write.visible = self._cancel.visible = self.pose is not None
+        self._undo.visible = self._undone is not None
+
+    def _write_pose(self) -> None:
+        if self.pose is not None:
+            change = self._change(self.pose, dry_run=False)
+            if isinstance(change, PoseChange):
+                self._undone = change.file.undone
+            else:
+                self._errors = change
+            self._show()
+
+    def _undo_write(self) -> None:
+        if self._undone is not None:
+            try:
+                self._undone.write()
+                self._undone = None
+            except SdfError as error:
+                self._errors = list(map(str, error.errors))
+            self._show()
+
+    def _change(self, pose: Pose, *, dry_run: bool) -> PoseChange | list[str]:
+        """Put the frame there, in the file; return why if this is not possible."""
+        assert self._frame is not None
+        try:
+            return self._set_pose(
+                self._frame.scene, self._frame.element, pose, self._frame.measured,
+                dry_run=dry_run)
+        except SdfError as error:
+            return list(map(str, error.errors))

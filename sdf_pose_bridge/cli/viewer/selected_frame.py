@@ -1,0 +1,126 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""The tree of frames in the page, and what it says about the one that is selected."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from itertools import islice
+from typing import Any
+
+import viser
+
+from sdf_pose_bridge.cli.printing import Units
+from sdf_pose_bridge.cli.viewer.frame_texts import escaped
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_frame
+from sdf_pose_bridge.cli.viewer.frame_texts import rows_of_tree
+from sdf_pose_bridge.cli.viewer.server import Events
+from sdf_pose_bridge.cli.viewer.server import id_of_button
+from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
+from sdf_pose_bridge.tf.tree import TfTree
+
+MOST_ROWS = 300
+"""How many rows of the tree of frames are in the page at once; a search finds the others."""
+
+_MOST_CHOICES = 1000
+_ROWS_STYLE = ('<style>.rows{max-height:40vh;overflow:auto;margin:0 1em;font-size:0.8em}'
+               '.rows label{display:block;cursor:pointer;white-space:pre}'
+               '.rows .selected{font-weight:bold}div:has(>.rows)~*{display:none}</style>')
+_HOW_TO_SELECT = '<div style="margin:0 1em;font-size:0.8em">Click one above or in the scene.</div>'
+
+
+class SelectedFrame:
+    """
+    The folders with the tree of frames and with the selected frame.
+
+    :param changed: is called when another frame is selected, or its pose is asked for relative to
+        another one.
+    """
+
+    def __init__(
+        self, gui: viser.GuiApi, tree: TfTree, events: Events, changed: Callable[[], object],
+    ) -> None:
+        self._gui, self._events, self._changed = gui, events, changed
+        self._tree, self._frame_id = tree, ''
+        self._row_frames: list[int] = []
+        # The rows are labels of these buttons, which are not shown: HTML cannot do more.
+        self._buttons: list[Any] = []
+        self._folder = gui.add_folder('Frames')
+        with self._folder:
+            self._search = gui.add_text('search', '')
+            self._rows = gui.add_html('')
+        with gui.add_folder('Selected frame'):
+            self._choice = gui.add_dropdown(
+                'relative to', (tree.root_frame,), hint='for the pose and the distance')
+            measure = gui.add_button(
+                'measure from this frame', hint='to the frames that are selected next')
+            self._description = gui.add_html(_HOW_TO_SELECT)
+        events.when(self._search.on_update, self._show_rows)
+        events.when(self._choice.on_update, changed)
+        events.when(measure.on_click, self._measure_from_here)
+        self.list_frames(tree)
+
+    @property
+    def frame(self) -> int:
+        """Index of the selected frame, or -1 for none."""
+        ids = self._tree.frame_ids
+        return ids.index(self._frame_id) if self._frame_id in ids else -1
+
+    @property
+    def reference(self) -> int:
+        """Index of the frame to which its pose is relative, or ``ROOT_IS_PARENT``."""
+        other, ids = self._choice.value, self._tree.frame_ids
+        return ids.index(other) if other in ids else ROOT_IS_PARENT
+
+    def list_frames(self, tree: TfTree) -> None:
+        """List the frames of another tree; the one that is selected stays."""
+        self._tree = tree
+        self._choice.options = (tree.root_frame, *tree.frame_ids[:_MOST_CHOICES])
+        with self._folder:
+            for number in range(len(self._buttons), min(len(tree.frame_ids), MOST_ROWS)):
+                self._buttons.append(self._gui.add_button('select'))
+                self._events.when(self._buttons[-1].on_click, partial(self._select_row, number))
+        self._show_rows()
+
+    def select(self, frame: int) -> None:
+        """Select a frame, unless it is gone."""
+        if frame < len(self._tree.frame_ids):
+            self._frame_id = self._tree.frame_ids[frame]
+            self._show_rows()
+            self._changed()
+
+    def describe(self, posed: PosedScene, pose: Pose | None, units: Units) -> None:
+        """Describe the selected frame, which is or would be at a pose in the root frame."""
+        if pose is None:
+            self._description.content = _HOW_TO_SELECT
+            return
+        poses = posed.tree.poses.copy()
+        poses[self.frame] = pose
+        self._description.content = html_of_frame(
+            posed.scene, replace(posed.tree, poses=poses), self.frame, self.reference, units)
+
+    def _show_rows(self) -> None:
+        rows = list(islice(rows_of_tree(self._tree, self._search.value), len(self._buttons)))
+        self._row_frames = [frame for frame, _, _ in rows]
+        ids = self._tree.frame_ids
+        content = ''.join(
+            f'<label for="{id_of_button(button)}" style="padding-left:{depth}em"'
+            f'{" class=selected" if ids[frame] == self._frame_id else ""}>'
+            f'{escaped(text)}</label>'
+            for button, (frame, depth, text) in zip(self._buttons, rows, strict=False))
+        if not self._search.value and len(rows) < len(ids):
+            content += f'{len(ids) - len(rows)} more, to be found by the search'
+        self._rows.content = f'{_ROWS_STYLE}<div class="rows">{content}</div>'
+
+    def _select_row(self, number: int) -> None:
+        # What was clicked may be gone by now.
+        if number < len(self._row_frames):
+            self.select(self._row_frames[number])
+
+    def _measure_from_here(self) -> None:
+        if self.frame >= 0 and self._frame_id in self._choice.options:
+            self._choice.value = self._frame_id

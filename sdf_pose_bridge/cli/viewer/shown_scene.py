@@ -1,0 +1,85 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Prepare a scene for the page: its models, its joints, and its frames at positions of joints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sdf_pose_bridge.cli.printing import kind_labels_of
+from sdf_pose_bridge.cli.viewer.joint_sliders import JointRange
+from sdf_pose_bridge.cli.viewer.joint_sliders import range_of_dof
+from sdf_pose_bridge.geometry.chains import ends_from_pointers
+from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.joint_motion import JointMotion
+from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.joint_positions import scene_at_positions
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
+from sdf_pose_bridge.tf.parents import tf_parents_from_scene
+from sdf_pose_bridge.tf.tree import elements_in_model
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.tree import TfTree
+
+
+class PosedScene(NamedTuple):
+    """A scene at some positions of its joints, and its TF tree there."""
+
+    scene: Scene
+    tree: TfTree
+
+    def pose_of(self, frame: int) -> Pose:
+        """Return the pose of a frame in the root frame, for which ``ROOT_IS_PARENT`` stands."""
+        return Pose() if frame == ROOT_IS_PARENT else Pose(*self.tree.poses[frame].tolist())
+
+
+class ShownScene:
+    """
+    A scene as the page shows it.
+
+    :param loaded: the scene, loaded with its shapes.
+    :param options: which elements are frames, and how they are named.
+    :raises SdfError: if the scene has no TF tree, or a model to show does not exist.
+    """
+
+    def __init__(self, loaded: Scene, options: TfOptions) -> None:
+        tree = tf_tree_from_scene(loaded, options)
+        dofs = JointMotion(loaded, tf_parents_from_scene(loaded)).dofs
+        self.loaded, self._options = loaded, options
+        self._is_in_model = elements_in_model(loaded, options.model) & (loaded.roots == 0)
+        # The outermost element around each, below the world or the implicit root.
+        self._tops = ends_from_pointers(
+            np.where(loaded.parents[loaded.parents] < 0, -1, loaded.parents))
+        self.kinds: tuple[str, ...] = tuple(dict.fromkeys(kind_labels_of(loaded, tree)))
+        """The labels of the kinds of its frames."""
+        self.models: dict[str, int] = {
+            f'model {loaded.names[element]}': element
+            for element in np.unique(self._tops).tolist()
+            if loaded.kinds[element] == Kind.MODEL and self._is_in_model[element]}
+        """Its outermost models."""
+        self.joints: dict[str, JointRange] = {
+            name: range_of_dof(dof)
+            for name, dof in zip(JointPositions(loaded, dofs).names, dofs, strict=True)
+            if self._is_in_model[dof.joint.element] and dof.axis.mimic is None}
+        """Where each degree of freedom can be that does not follow another."""
+        self.is_in_robot: NDArray[np.bool_] = np.isin(
+            self._tops, self._tops[[dof.joint.element for dof in dofs]])
+        """Shape (n,): whether each element is in a model that moves."""
+
+    def is_shown(self, hidden: Iterable[str]) -> NDArray[np.bool_]:
+        """Return whether each element is in a model that is not hidden, shape (n,)."""
+        elements = [element for name, element in self.models.items() if name in hidden]
+        shown: NDArray[np.bool_] = self._is_in_model & ~np.isin(self._tops, elements)
+        return shown
+
+    def at(self, positions: Mapping[str, float]) -> PosedScene:
+        """Return the scene with its joints at positions, in radians or metres."""
+        scene = scene_at_positions(self.loaded, positions)
+        return PosedScene(scene, tf_tree_from_scene(scene, self._options))
