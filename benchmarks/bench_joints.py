@@ -135,6 +135,7 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
     from sdf_pose_bridge.ros.joint_states import JointStates
     from sdf_pose_bridge.ros.published_frames import PublishedFrames
     from sdf_pose_bridge.ros.publishers import Publishers
+    from sdf_pose_bridge.ros.topic_names import JointStateTopics
     with node() as ros:
         scene = sdf_pose_bridge.load_text(chain_text(100))
         tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
@@ -142,13 +143,16 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
         positions = JointPositions(scene, tree.moving.dofs)
         frames = PublishedFrames(Publishers(ros), tree, positions, {}).moving
         assert frames is not None
-        follower = JointStates(ros, frames, 0.0)
+        JointStates(ros, frames, JointStateTopics({'joint_states': ''}), (0.0, False))
+        (subscription,) = ros.subscriptions
         broadcaster = JointBroadcaster(ros, 100, '/tf_of_counterpart')
         messages = joint_states(100)
         # The counterpart gets objects, which rclpy would have to make first.
         serialized = itertools.cycle(
             [serialize_message(each) for each in itertools.islice(messages, 1000)])
-        yield lambda: follower.take(next(serialized)), lambda: broadcaster.take(next(messages))
+        yield (
+            lambda: subscription.callback(next(serialized), {'source_timestamp': 0}),
+            lambda: broadcaster.take(next(messages)))
 
 
 @contextlib.contextmanager

@@ -61,7 +61,8 @@ def test_option(command, option):
 
 @pytest.mark.parametrize('topic', TOPICS)
 def test_topic(topic):
-    assert topic.replace('*', '<frame>') in names_in('ros_interface.md')
+    topic = topic.replace('*/', '<model>/').replace('*', '<frame>')
+    assert topic in names_in('ros_interface.md')
 
 
 @pytest.mark.parametrize('service', SERVICES)

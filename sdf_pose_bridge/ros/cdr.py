@@ -63,7 +63,16 @@ class StampedMessages(NamedTuple):
 
         :param nanosec: nanoseconds of the stamp, from 0 to 999,999,999.
         """
-        self.buffer.view('<i4')[self.stamps] = sec, nanosec
+        return self.with_stamps(np.array([sec, nanosec]))
+
+    def with_stamps(self, stamps: NDArray[np.int64]) -> list[bytes]:
+        """
+        Return the messages with a stamp for each pose or transform.
+
+        :param stamps: shape (n, 2), seconds and nanoseconds from 0 to 999,999,999; shape (2,) if
+            all are the same.
+        """
+        self.buffer.view('<i4')[self.stamps] = stamps
         data = self.buffer.tobytes()
         return [data[begin:end] for begin, end in self.bounds]
 

@@ -85,7 +85,10 @@ def line_about_detached_models(tree: TfTree, scene: Scene) -> str:
     is_parent = np.isin(np.arange(len(tree.parents)), tree.parents)
     roots: dict[int, list[int]] = {}
     for frame in np.flatnonzero(tree.parents == NO_PARENT).tolist():
-        roots.setdefault(_top_level_element(frame, tree, scene), []).append(frame)
+        element = int(tree.elements[frame])
+        # An optical frame has none.
+        top = scene.top_level_element(element) if element >= 0 else element
+        roots.setdefault(top, []).append(frame)
     # Other frames of a model have no parent if their links are not published.
     names = [
         tree.frame_ids[frame] for frames in roots.values()
@@ -140,14 +143,6 @@ def line_about_joints_at_rest(scene: Scene, model: str) -> str:
 def count_in_words(number: int, what: str) -> str:
     """Return a number with a noun in the singular or the plural."""
     return f'{number} {what}' if number == 1 else f'{number} {what}s'
-
-
-def _top_level_element(frame: int, tree: TfTree, scene: Scene) -> int:
-    """Return the element below the root that a frame is in; -1 for an optical frame."""
-    element = int(tree.elements[frame])
-    if element < 0:
-        return element
-    return [element, *scene.with_ancestors(element)][-2]
 
 
 def _children(tree: TfTree) -> set[str]:

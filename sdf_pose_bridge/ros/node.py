@@ -46,6 +46,7 @@ from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.ros.services import add_services
 from sdf_pose_bridge.ros.services import SERVICE_QOS
 from sdf_pose_bridge.ros.services import set_pose
+from sdf_pose_bridge.ros.topic_names import joint_state_topics_from_patterns
 from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
 from sdf_pose_bridge.ros.topic_names import PoseTopics
 from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
@@ -159,20 +160,23 @@ class SdfPoseBridge:
             self._visuals.replace(loaded)
 
     def _follow_joints(self) -> None:
-        """Subscribe to ``joint_states`` if moving frames follow it."""
-        moving, current = self._frames.moving, self._joint_states
-        rule = self._settings.publish_frequency, self._settings.ignore_timestamp
-        if current is not None and current.rule == rule and moving:
-            current.replace(moving)
-            return
-        if current is not None:
+        """Subscribe to joint states if moving frames follow them."""
+        settings, moving, current = self._settings, self._frames.moving, self._joint_states
+        rule = settings.publish_frequency, settings.ignore_timestamp
+        if current is not None and (not moving or current.rule != rule):
             current.destroy()
-            self._joint_states = None
-        if moving is not None:
+            current = self._joint_states = None
+        if moving is None:
+            return
+        topics = joint_state_topics_from_patterns(
+            settings.joint_states_topics, self._loaded.tree.world, moving.positions.models,
+            self._node.resolve_topic_name)
+        if current is not None:
+            current.replace(moving, topics)
+        else:
             # Imported here because it takes 8 ms, and joints do not move by default.
             from sdf_pose_bridge.ros.joint_states import JointStates
-            self._joint_states = JointStates(
-                self._node, moving, rule[0], ignores_stamps=rule[1])
+            self._joint_states = JointStates(self._node, moving, topics, rule)
 
     def _current_lookup(self) -> PoseLookup:
         """Return the current look-up of poses, with the positions of all messages so far."""

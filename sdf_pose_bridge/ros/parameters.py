@@ -34,6 +34,7 @@ from sdf_pose_bridge.ros.setting_rules import PUBLISHED_KINDS
 from sdf_pose_bridge.ros.setting_rules import refusal
 from sdf_pose_bridge.ros.setting_rules import root_frame_setting
 from sdf_pose_bridge.ros.setting_rules import separator_setting
+from sdf_pose_bridge.ros.setting_rules import topic_patterns_setting
 from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
@@ -248,6 +249,17 @@ class Settings:
         False,
         'Makes moving joints follow the topic joint_states: their transforms are on /tf instead '
         'of /tf_static.',
+    )
+    joint_states_topics = Declaration(
+        ['joint_states', '{model}/joint_states'],
+        'Topics of joint states, with use_joint_states. {model} stands for each top-level model '
+        'of a world that has moving joints, and messages on its topic name joints of this model '
+        'alone; {world} stands for the world.',
+        'names of topics, such as joint_states or /world/{world}/model/{model}/joint_state; those '
+        'with {model} or {world} count only for a world; at most 1000 of them, of at most 255 '
+        'characters',
+        topic_patterns_setting,
+        needs_load=False,
     )
     unreported_joints = _choice(
         UnreportedJoints.NONE,

@@ -38,6 +38,7 @@ ROBOT_STATE_PUBLISHER = Program(
     'robot_state_publisher',
     {
         'use_joint_states': True,
+        'joint_states_topics': ['joint_states'],
         'publish_frequency': 20.0,
         'kinds': [AUTO_KINDS],
         'pose_topics': [],

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from collections.abc import Sequence
 from functools import cached_property
+from functools import lru_cache
 from itertools import compress
 
 from geometry_msgs.msg import PoseStamped
@@ -21,20 +22,27 @@ from numpy.typing import NDArray
 from rclpy.publisher import Publisher
 from tf2_msgs.msg import TFMessage
 
+from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.ros.cdr import stamped_messages
 from sdf_pose_bridge.ros.cdr import StampedMessages
 from sdf_pose_bridge.ros.cdr import tf_message
+from sdf_pose_bridge.ros.publishers import NANOSECONDS
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.publishers import Stamp
 from sdf_pose_bridge.ros.publishers import Topic
+from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.joint_positions import NEVER
 from sdf_pose_bridge.tf.moving_frames import MovingFrames
 from sdf_pose_bridge.tf.tree import TfTree
 
 TF_STATIC = Topic('/tf_static', TFMessage, is_overridable=True)
 TF = Topic('/tf', TFMessage, depth=100, is_latched=False, is_overridable=True)
 """With the quality of service that it has in tf2_ros."""
+
+_MOST_MESSAGES = 100
+"""How many messages for ``/tf`` are kept, to be sent again with other poses."""
 
 
 class PublishedFrames:
@@ -169,11 +177,10 @@ class PublishedMovingFrames:
         self.frames = moving
         self.positions = positions
         """The positions of the joints; the caller sets them."""
-        self.stamp: Stamp | None = None
-        """The stamp of these positions; None before the first message of ``joint_states``."""
         if before is not None:
             self.take_over(before)
         self._tf = publishers.opened(TF)
+        self._tf_message = lru_cache(_MOST_MESSAGES)(self._new_tf_message)
         self.transforms_topic = _transforms_topic(len(moving.indices), 'moving')
         self._transform_messages = stamped_messages(*_transforms(tree, moving.indices))
         topics = [pose_topics.get(tree.frame_ids[index]) for index in moving.posed_indices]
@@ -185,7 +192,6 @@ class PublishedMovingFrames:
 
     def take_over(self, before: PublishedMovingFrames) -> None:
         """Continue with the positions of joints with the same names."""
-        self.stamp = before.stamp
         if before.positions is not self.positions:
             self.positions.take_over(before.positions)
 
@@ -194,33 +200,39 @@ class PublishedMovingFrames:
         """Which of the moving transforms follow from known positions."""
         return self.frames.has_transform(self.positions.is_known)
 
-    def tf_message(self, rows: NDArray[np.intp]) -> StampedMessages:
+    def publish_tf(self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64]) -> None:
         """
-        Prepare a message for ``/tf``.
+        Publish one message on ``/tf``.
 
         :param rows: indices of the moving transforms in it.
-        :return: the message, for :meth:`publish_tf`.
+        :param stamps_ns: the stamp of each of these, in nanoseconds; or one for all.
         """
-        return tf_message(*_transforms(self._tree, self.frames.indices[rows]))
-
-    def publish_tf(
-        self, rows: NDArray[np.intp], message: StampedMessages, stamp: Stamp,
-    ) -> None:
-        """
-        Publish on ``/tf``.
-
-        :param rows: indices of the moving transforms in the message.
-        :param message: the message, whose transforms are set.
-        """
+        message = self._tf_message(rows.tobytes())
         message.set_poses(self.frames.transforms(self.positions.values)[rows])
-        (data,) = message.with_stamp(*stamp)
+        (data,) = message.with_stamps(_stamps_from_ns(stamps_ns))
         self._tf.publish(data)
+
+    def _new_tf_message(self, rows: bytes) -> StampedMessages:
+        indices = self.frames.indices[np.frombuffer(rows, np.intp)]
+        return tf_message(*_transforms(self._tree, indices))
 
     def publish_all(self) -> None:
         """Publish all moving frames with known positions on ``/tf``, with the time of the node."""
         rows = np.flatnonzero(self.has_transform)
         if len(rows):
-            self.publish_tf(rows, self.tf_message(rows), self._publishers.now())
+            self.publish_tf(rows, np.array(self._publishers.now_ns()))
+
+    def _stamps(self, dofs: Indices, dof_of_reference: int = NO_DOF) -> NDArray[np.int64]:
+        """
+        Return the stamps of poses, as messages take them.
+
+        :param dofs: the last degree of freedom before each frame; -1 for none.
+        :param dof_of_reference: that before the frame in which all of them are given.
+        :return: the newer stamp of both, or the time of the node where there is none.
+        """
+        known = np.append(self.positions.stamps_ns, NEVER)
+        newest = np.maximum(known[dofs], known[dof_of_reference])
+        return _stamps_from_ns(np.where(newest == NEVER, self._publishers.now_ns(), newest))
 
     def publish_topics(self, *, only_listeners: bool) -> None:
         """
@@ -234,22 +246,29 @@ class PublishedMovingFrames:
                 return None
             return publisher
 
-        stamp = self.stamp or self._publishers.now()
         publisher = wanted_publisher(self.transforms_topic)
         if publisher is not None:
             self._transform_messages.set_poses(self.frames.transforms(self.positions.values))
+            stamps = self._stamps(self.frames.last_dofs)
             for message in compress(
-                    self._transform_messages.with_stamp(*stamp), self.has_transform):
+                    self._transform_messages.with_stamps(stamps), self.has_transform):
                 publisher.publish(message)
         publishers = list(map(wanted_publisher, self._posed_topics))
         if any(publishers):
             self._pose_messages.set_poses(
                 self.frames.poses(self.positions.values)[self._posed_rows])
             has_pose = self.frames.has_pose(self.positions.is_known)[self._posed_rows]
+            stamps = self._stamps(
+                self.frames.posed_last_dofs[self._posed_rows], self.frames.last_dof_of_pose_frame)
             for publisher, message, is_known in zip(
-                    publishers, self._pose_messages.with_stamp(*stamp), has_pose, strict=True):
+                    publishers, self._pose_messages.with_stamps(stamps), has_pose, strict=True):
                 if publisher is not None and is_known:
                     publisher.publish(message)
+
+
+def _stamps_from_ns(stamps_ns: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return seconds and nanoseconds, in a last dimension of two."""
+    return np.stack(np.divmod(stamps_ns, NANOSECONDS), axis=-1)
 
 
 def _transforms(

@@ -30,6 +30,9 @@ PUBLISHERS_AT_ONCE = 40
 Stamp: TypeAlias = tuple[int, int]
 """Seconds and nanoseconds."""
 
+NANOSECONDS = 1_000_000_000
+"""In a second."""
+
 
 class Topic(NamedTuple):
     """A topic with the settings of its publisher. Equal topics share a publisher."""
@@ -57,6 +60,11 @@ class Publishers:
         """Return the time of the node."""
         stamp: Stamp = self._node.get_clock().now().seconds_nanoseconds()
         return stamp
+
+    def now_ns(self) -> int:
+        """Return the time of the node in nanoseconds."""
+        time_ns: int = self._node.get_clock().now().nanoseconds
+        return time_ns
 
     def existing(self, topic: Topic) -> Publisher | None:
         """Return the publisher of a topic if there is one."""

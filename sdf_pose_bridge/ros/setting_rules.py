@@ -12,6 +12,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from rclpy.exceptions import InvalidTopicNameException
+from rclpy.validate_topic_name import validate_topic_name
+
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -25,6 +28,9 @@ PUBLISHED_KINDS = {
 
 AUTO_KINDS = 'auto'
 """The name for the default kinds of the format of the file."""
+
+MODEL_FIELD, WORLD_FIELD = '{model}', '{world}'
+"""What stands for a model and for the world in ``joint_states_topics``."""
 
 LOWEST_RATE = 0.001
 """The lowest rate in Hz, except 0.0."""
@@ -90,6 +96,25 @@ def patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
     _check_count(values, 'patterns')
     for value in values:
         _check_length(value, MOST_CHARACTERS)
+    return tuple(values)
+
+
+def topic_patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
+    """Refuse what does not become names of topics."""
+    if not values:
+        raise refusal([], 'at least one name of a topic')
+    for value in patterns_setting(values):
+        name = value.replace(MODEL_FIELD, 'model').replace(WORLD_FIELD, 'world')
+        if '{' in name or '}' in name:
+            raise refusal(
+                value, f'the name of a topic with no other braces than {MODEL_FIELD} and '
+                f'{WORLD_FIELD}')
+        try:
+            validate_topic_name(name)
+        except InvalidTopicNameException as error:
+            # The other lines show the name and the place.
+            reason = str(error).partition('\n')[0].partition(': ')[2].rstrip(':')
+            raise refusal(value, f'the name of a topic: {reason}') from None
     return tuple(values)
 
 

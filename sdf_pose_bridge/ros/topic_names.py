@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Choose the frames that get a pose topic, and name the topics.
+Choose the frames that get a pose topic, and name the topics; name the topics of joint states.
 
 A frame id may contain any character that XML allows. A level of a topic name consists of ASCII
 letters, digits and underscores and starts with a letter (if it starts with an underscore, it is
@@ -26,12 +26,15 @@ name depends only on its frame id and the limit.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
 import re
 from typing import NamedTuple
 
 from sdf_pose_bridge.ros.log_lines import names_in_line
+from sdf_pose_bridge.ros.setting_rules import MODEL_FIELD
+from sdf_pose_bridge.ros.setting_rules import WORLD_FIELD
 
 LONGEST_FULL_NAME = 246
 """Largest length of the full name of a topic in the middleware."""
@@ -71,6 +74,16 @@ class PoseTopics(NamedTuple):
     """The name of the topic of each chosen frame id, in the order of the frame ids."""
     warning: str = ''
     """A warning about patterns that match no frame id, or the reason if there are no topics."""
+
+
+class JointStateTopics(NamedTuple):
+    """The topics of joint states."""
+
+    models: dict[str, str]
+    """The top-level model whose joints are on each topic, by the name of the topic before it is
+    remapped; empty where they can be those of all models."""
+    warnings: tuple[str, ...] = ()
+    """A sentence about each topic that is not as the patterns say."""
 
 
 def topic_name_from_frame_id(frame_id: str, limit: int = LONGEST_NAME) -> str:
@@ -138,6 +151,63 @@ def pose_topics_from_patterns(
         names,
         f'no ~/poses/... topics for {names_in_line(unmatched)} in pose_topics: no frame id matches'
         if unmatched else '')
+
+
+def joint_state_topics_from_patterns(
+    patterns: Sequence[str], world: str, models: Sequence[str],
+    full_name: Callable[[str], str],
+) -> JointStateTopics:
+    """
+    Name the topics of joint states.
+
+    :param patterns: names of topics, in which ``{model}`` and ``{world}`` stand for names. They
+        are those of a world, so patterns with them name no topic if there is none.
+    :param world: the name of the world; empty for a model file.
+    :param models: its top-level models with moving joints.
+    :param full_name: returns the full name of a topic, after it is remapped.
+    """
+    warnings = []
+    if len(models) > MOST_BY_DEFAULT and any(MODEL_FIELD in pattern for pattern in patterns):
+        warnings.append(
+            f'no topics of joint states for single models: {len(models)} models with moving '
+            f'joints are more than {MOST_BY_DEFAULT}; publish some of them by another node')
+        models = ()
+    names = []
+    for pattern in dict.fromkeys(patterns):
+        if MODEL_FIELD not in pattern and (world or WORLD_FIELD not in pattern):
+            names.append((pattern, ''))
+        elif MODEL_FIELD in pattern:
+            names += [
+                (pattern.replace(MODEL_FIELD, topic_name_from_frame_id(each)), each)
+                for each in models]
+    places: dict[str, list[tuple[str, str]]] = {}
+    for pattern, model in names:
+        name = pattern.replace(WORLD_FIELD, topic_name_from_frame_id(world))
+        places.setdefault(full_name(name), []).append((name, model))
+    too_long = [
+        model for full, found in places.items() if len(full) > LONGEST_FULL_NAME
+        for _, model in found]
+    if too_long:
+        warnings.append(
+            f'no topic of joint states for {names_in_line(too_long)}: its name would be longer '
+            'than the middleware allows')
+    topics = {}
+    for full, found in places.items():
+        name, model = found[0]
+        owners = dict.fromkeys(model for _, model in found)
+        if len(owners) > 1:
+            warnings.append(
+                f'joint_states_topics has {full} for '
+                f'{names_in_line([each or "all models" for each in owners])}, so that it can '
+                'move the joints of all models')
+            model = ''
+        if len(full) <= LONGEST_FULL_NAME:
+            topics[name] = model
+    if not names:
+        warnings.append(
+            'joint_states_topics names no topic, because there is no world with a model that has '
+            'moving joints; joint_states names one for all joints')
+    return JointStateTopics(topics, tuple(warnings))
 
 
 def _level_from_text(text: str) -> str:

@@ -244,6 +244,10 @@ class Scene:
             yield index
             index = int(self.parents[index])
 
+    def top_level_element(self, index: int) -> int:
+        """Return the element below its root that an element is in, or is; of a root itself."""
+        return [index, *self.with_ancestors(index)][-2]
+
     @cached_property
     def default_references(self) -> Indices:
         """The frame that the pose of each is relative to by default."""

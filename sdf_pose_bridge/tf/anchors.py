@@ -81,7 +81,7 @@ def detached_bodies(
             scene, anchors.patterns, problems)
     is_body = np.isin(scene.kinds, (Kind.LINK, Kind.MODEL))
     for body in np.flatnonzero(is_body & (scene.parents < 0)[tf_parents.parents]).tolist():
-        *_, model, _ = scene.with_ancestors(body)
+        model = scene.top_level_element(body)
         is_static = body not in tf_parents.free_bodies or model in scene.static_models
         # Children of the link "world" of a URDF keep their parent.
         is_detached[body] = not (

@@ -10,6 +10,7 @@ models around it can be left out if the rest is unambiguous. A second axis is ca
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from collections.abc import Mapping
 from collections.abc import Sequence
 import dataclasses
@@ -28,6 +29,7 @@ from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene.scene import Mimic
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom
@@ -45,6 +47,9 @@ _MOST_STEPS = 10
 """Largest number of innermost steps of a name that can replace it."""
 
 _MOST_NAMES_SHOWN = 6
+
+NEVER = -1
+"""A time before all others, in nanoseconds."""
 
 
 class UnreportedJoints(enum.Enum):
@@ -100,6 +105,11 @@ class JointPositions:
         """The position of each degree of freedom, in radians or metres."""
         self.is_reported = np.zeros(len(dofs), np.bool_)
         """Whether each has a reported position, or follows from one that has."""
+        self.stamps_ns = np.full(len(dofs), NEVER)
+        """The stamp of the last message about the top-level model of each."""
+        # Which topic has given each position, and when that was sent.
+        self._topics = np.zeros(len(dofs), np.intp)
+        self._sent_ns = np.full(len(dofs), NEVER)
         self._unreported = unreported
         self.dofs = tuple(dofs)
         joints = np.array([each.joint.element for each in dofs], np.int32)
@@ -107,11 +117,19 @@ class JointPositions:
         self.names = tuple(
             name + each.suffix for name, each in zip(names, dofs, strict=True))
         """The name of each degree of freedom."""
-        self._indices = _indices_from_names(self.names, scene, dofs, model)
+        self._top_level_elements = np.array(
+            [scene.top_level_element(joint) for joint in joints.tolist()], np.intp)
+        self._indices = _indices_from_names(
+            self.names, scene, dofs, self._top_level_elements.tolist(), model)
         self._followers = _followers(dofs)
         self._slides = frozenset(
             name + SLIDE_SUFFIX for name, each in zip(self.names, dofs, strict=True)
             if each.rad_per_unit and each.m_per_unit)
+
+    @property
+    def models(self) -> tuple[str, ...]:
+        """The top-level models of a world that have such names; none in a model file."""
+        return tuple(filter(None, self._indices))
 
     @property
     def is_known(self) -> NDArray[np.bool_]:
@@ -128,10 +146,15 @@ class JointPositions:
             self.names[dof] for dof in np.flatnonzero(~self.is_known).tolist()
             if dof not in followers)
 
-    def selection(self, names: Sequence[str]) -> Selection:
-        """Look up names."""
-        rows = [row for row, name in enumerate(names) if name in self._indices]
-        dofs = [self._indices[names[row]] for row in rows]
+    def selection(self, names: Sequence[str], model: str = '') -> Selection:
+        """
+        Look up names.
+
+        :param model: one of :attr:`models`, if only joints inside it are meant; else empty.
+        """
+        indices = self._indices[model]
+        rows = [row for row, name in enumerate(names) if name in indices]
+        dofs = [indices[names[row]] for row in rows]
         reached = dict.fromkeys(dofs)
         followers: list[Follower] = []
         for leader in (waiting := list(reached)):
@@ -143,15 +166,40 @@ class JointPositions:
         return Selection(
             np.array(rows, np.intp), np.array(dofs, np.intp), tuple(followers),
             tuple(name for name in names
-                  if name not in self._indices and name not in self._slides))
+                  if name not in indices and name not in self._slides))
 
-    def hint(self, name: str) -> str:
+    def dofs_beside(self, dofs: Iterable[int]) -> NDArray[np.intp]:
+        """Return all degrees of freedom in the top-level models of some."""
+        return np.flatnonzero(
+            np.isin(self._top_level_elements, self._top_level_elements[list(dofs)]))
+
+    def hint(self, name: str, model: str = '') -> str:
         """
         Return the end of a message about an unknown or ambiguous name.
 
+        :param model: as for :meth:`selection`.
         :return: the nearest name, or the possible names; else an empty string.
         """
-        return hint_from_names(name, self._indices)
+        return hint_from_names(name, self._indices[model])
+
+    def take_newer(
+        self, selection: Selection, topic: int, sent_ns: int,
+    ) -> NDArray[np.bool_]:
+        """
+        Decide which positions of a message count, and take note of their sender.
+
+        :param selection: what the message names.
+        :param topic: a number that tells topics apart.
+        :param sent_ns: when the message was sent.
+        :return: for each of :attr:`Selection.rows` whether no other topic has given a position
+            that was sent later. Messages on one topic count in the order in which they come.
+        """
+        dofs = selection.dofs
+        is_newer: NDArray[np.bool_] = (
+            (self._topics[dofs] == topic) | (self._sent_ns[dofs] <= sent_ns))
+        self._topics[dofs[is_newer]] = topic
+        self._sent_ns[dofs[is_newer]] = sent_ns
+        return is_newer
 
     def update(self, selection: Selection, values: NDArray[np.float64]) -> list[str]:
         """
@@ -189,6 +237,7 @@ class JointPositions:
             if name in rows:
                 self.values[dof] = before.values[rows[name]]
                 self.is_reported[dof] = before.is_reported[rows[name]]
+                self.stamps_ns[dof] = before.stamps_ns[rows[name]]
 
 
 def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
@@ -228,30 +277,50 @@ def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
 
 
 def _indices_from_names(
-    names: Sequence[str], scene: Scene, dofs: Sequence[DegreeOfFreedom], model: str,
-) -> dict[str, int]:
+    names: Sequence[str], scene: Scene, dofs: Sequence[DegreeOfFreedom],
+    top_level_elements: Sequence[int], model: str,
+) -> dict[str, dict[str, int]]:
     """
     Return all names of the degrees of freedom, with their indices.
 
     In URDF and in old SDFormat, a joint may have the name of a link; it is then renamed. Its own
     name is still accepted.
+
+    :return: the names for ``''``, and for each top-level model of a world those that mean its own
+        degrees of freedom, whatever other models have.
     """
-    own: dict[str, int] = {}
-    shorter: dict[str, set[int]] = {}
-    for index, (name, dof) in enumerate(zip(names, dofs, strict=True)):
+    aliases: dict[int, set[str]] = {}
+    members: dict[str, list[int]] = {'': []}
+    for index, (dof, top) in enumerate(zip(dofs, top_level_elements, strict=True)):
         scoped = scene.names[dof.joint.element]
         if scene.roots[dof.joint.element] or (
                 model and not scoped.startswith(model + SEPARATOR)):
             continue
-        own.setdefault(name, index)
         before = scoped.removesuffix(JOINT_SUFFIX)
+        found = aliases[index] = set()
         for each in {scoped, before} if scene.has(before) else {scoped}:
             steps = each.split(SEPARATOR)
             # All endings of deeply nested names would take the square of their memory.
             for count in {0, *range(max(len(steps) - _MOST_STEPS, 0), len(steps))}:
                 for separator in (SEPARATOR, '/'):
-                    alias = separator.join(steps[count:]) + dof.suffix
-                    shorter.setdefault(alias, set()).add(index)
+                    found.add(separator.join(steps[count:]) + dof.suffix)
+        members[''].append(index)
+        if scene.world_names and scene.kinds[top] == Kind.MODEL:
+            members.setdefault(scene.names[top], []).append(index)
+    return {
+        each: _unambiguous_names(names, aliases, indices) for each, indices in members.items()}
+
+
+def _unambiguous_names(
+    names: Sequence[str], aliases: Mapping[int, set[str]], indices: Sequence[int],
+) -> dict[str, int]:
+    """Return the names of some degrees of freedom, and those aliases that mean one of them."""
+    own: dict[str, int] = {}
+    shorter: dict[str, set[int]] = {}
+    for index in indices:
+        own.setdefault(names[index], index)
+        for alias in aliases[index]:
+            shorter.setdefault(alias, set()).add(index)
     return {name: min(found) for name, found in shorter.items() if len(found) == 1} | own
 
 

@@ -51,6 +51,11 @@ class MovingFrames:
         self.posed_indices = np.flatnonzero(
             last != (NO_DOF if pose_frame < 0 else last[pose_frame]))
         """The frames that move in the frame that poses are given in."""
+        self.last_dofs = last[self.indices]
+        """The last degree of freedom between the root and each of :attr:`indices`."""
+        self.posed_last_dofs = last[self.posed_indices]
+        """The same for each of :attr:`posed_indices`; -1 for none."""
+        self.last_dof_of_pose_frame = NO_DOF if pose_frame < 0 else int(last[pose_frame])
         self._pose_frame = pose_frame
         self._poses, self._elements = poses, elements
         self._crossed = [
@@ -125,8 +130,7 @@ class MovingFrames:
         # The root comes last, at the index -1.
         previous = np.append(self._motion.previous, NO_DOF)
         is_unknown = np.append(~is_known, False)
-        reference = NO_DOF if self._pose_frame < 0 else self.last_dof_of_frame(self._pose_frame)
-        common = self._with_previous(reference)
+        common = self._with_previous(self.last_dof_of_pose_frame)
         needed = [dof for dof in common if is_unknown[dof]][:1]
         is_common = np.isin(np.arange(len(previous)), common)
         # Those between the root and the reference count only for frames that are not behind them.

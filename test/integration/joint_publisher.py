@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Publish on ``joint_states``, in a process of its own, what lines of standard input say."""
+"""Publish joint states, in a process of its own, as lines of standard input say."""
 
 import json
 import subprocess
@@ -18,7 +18,7 @@ class JointPublisher:
             [sys.executable, __file__], stdin=subprocess.PIPE, text=True, pass_fds=claims())
         self._sec = 1000
 
-    def send(self, positions, *, sec=None, nanosec=0, names=None):
+    def send(self, positions, *, sec=None, nanosec=0, names=None, topic='joint_states'):
         """
         Publish one message.
 
@@ -26,11 +26,13 @@ class JointPublisher:
         :param sec: the stamp; the last one and 1 if there is none.
         :param nanosec: the nanoseconds of the stamp.
         :param names: other names than those of the positions.
+        :param topic: the name of the topic.
         :return: the stamp.
         """
         self._sec = self._sec + 1 if sec is None else sec
         self._process.stdin.write(json.dumps(
-            [names or list(positions), list(positions.values()), self._sec, nanosec]) + '\n')
+            [topic, names or list(positions), list(positions.values()), self._sec, nanosec])
+            + '\n')
         self._process.stdin.flush()
         return self._sec
 
@@ -48,15 +50,17 @@ def main():
     from sensor_msgs.msg import JointState
     rclpy.init()
     node = rclpy.create_node('joints')
-    publisher = node.create_publisher(JointState, 'joint_states', 10)
+    publishers = {}
     for line in sys.stdin:
+        topic, names, positions, sec, nanosec = json.loads(line)
+        if topic not in publishers:
+            publishers[topic] = node.create_publisher(JointState, topic, 10)
         # Until the bridge is there, nobody would get the message.
-        while not publisher.get_subscription_count():
+        while not publishers[topic].get_subscription_count():
             rclpy.spin_once(node, timeout_sec=0.1)
-        names, positions, sec, nanosec = json.loads(line)
         message = JointState(name=names, position=list(map(float, positions)))
         message.header.stamp.sec, message.header.stamp.nanosec = sec, nanosec
-        publisher.publish(message)
+        publishers[topic].publish(message)
     node.destroy_node()
     rclpy.shutdown()
 

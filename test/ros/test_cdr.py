@@ -199,6 +199,14 @@ def test_messages_can_be_stamped_again(rows, first, second):
     assert before == stamped_messages(*columns(rows)).with_stamp(*first)
 
 
+@given(rows=ROWS)
+def test_each_pose_can_have_its_stamp(rows):
+    messages = stamped_messages(*columns(rows))
+    stamps = np.stack([np.arange(len(rows)), np.arange(len(rows)) + 7], axis=-1)
+    assert messages.with_stamps(stamps) == [
+        messages.with_stamp(row, row + 7)[row] for row in range(len(rows))]
+
+
 def test_no_transforms_are_one_empty_message():
     messages = tf_message([[], []], np.empty((0, 7))).with_stamp(1, 2)
     assert messages == [bytes([0, 1, 0, 0, 0, 0, 0, 0])]

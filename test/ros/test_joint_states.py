@@ -24,9 +24,11 @@ from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.joint_states import JointStates
+from sdf_pose_bridge.ros.joint_states import SUBSCRIPTIONS_AT_ONCE
 from sdf_pose_bridge.ros.joint_states import TOPICS_PERIOD_S
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
+from sdf_pose_bridge.ros.topic_names import JointStateTopics
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
@@ -42,6 +44,7 @@ ARM = """<sdf version="1.11"><model name="arm">
   <axis><xyz>1 0 0</xyz></axis></joint>
 </model></sdf>"""
 JOINTS = ('turn', 'lift', 'grip')
+TOPICS = JointStateTopics({'joint_states': ''})
 LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 NOW = 10**9
 """Seconds of a time that the clock has passed."""
@@ -51,6 +54,24 @@ def joint_state(sec, positions):
     return JointState(
         header=Header(stamp=Time(sec=sec)), name=list(positions),
         position=list(positions.values()))
+
+
+def frames_by_stamp(message):
+    """Return the seconds of each stamp in a message for ``/tf``, and the frames that have it."""
+    frames = {}
+    for each in message.transforms:
+        frames.setdefault(each.header.stamp.sec, set()).add(each.child_frame_id)
+    return sorted(frames.items())
+
+
+def topic_of(states, name='joint_states'):
+    (topic,) = (each for key, each in states._topics.items() if key[0] == name)
+    return topic
+
+
+def update(states, data, name='joint_states'):
+    """Have a serialized message taken, as an executor does."""
+    states._receive(topic_of(states, name), data, {'source_timestamp': 0})
 
 
 @pytest.fixture(name='moving_frames')
@@ -72,7 +93,7 @@ def make_moving_frames(make_node):
 
 @pytest.fixture(name='states')
 def joint_states(moving_frames):
-    return JointStates(*moving_frames(ARM), 0.0)
+    return JointStates(*moving_frames(ARM), TOPICS, (0.0, False))
 
 
 @pytest.fixture
@@ -104,15 +125,14 @@ def make_published(listener, wait_until, states):
     found = []
 
     def add(message):
-        first = message.transforms[0].header.stamp.sec
-        found.append((first, {each.child_frame_id for each in message.transforms}))
+        found.extend(frames_by_stamp(message))
 
     listener.create_subscription(TFMessage, '/tf', add, 100)
     wait_until(lambda: found, found)  # what is published before the first message
 
     def published(*messages):
         for message in messages:
-            states.update_from_message(serialize_message(message))
+            update(states, serialize_message(message))
         wait_until(lambda: found[-1][0] == messages[-1].header.stamp.sec, found)
         return [each for each in found if each[0] < NOW]
 
@@ -130,7 +150,7 @@ def test_messages_with_another_number_of_positions_are_ignored(published, capfd)
 def test_publishers_that_are_best_effort_are_heard(states, frequency):
     node = states._node
     states.destroy()
-    JointStates(node, states._frames, frequency)
+    JointStates(node, states._frames, TOPICS, (frequency, False))
     subscription, = node.subscriptions
     assert node.resolve_topic_name('joint_states') == subscription.topic_name
     assert subscription.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
@@ -150,7 +170,7 @@ def published_when_reported(published, states, moving_frames):
     """Does what ``published`` does, with joints that have no position before a message."""
     published(joint_state(1, dict.fromkeys(JOINTS, 0.0)))
     _, frames = moving_frames(ARM, UnreportedJoints.NONE)
-    states.replace(frames)
+    states.replace(frames, TOPICS)
 
     def published_since(*messages):
         return [each for each in published(*messages) if each[0] > 1]
@@ -173,13 +193,13 @@ def test_a_value_that_is_no_position_reports_no_joint(published_when_reported):
 
 def test_joints_that_stay_unreported_are_named_once_and_then_that_none_is(
         states, moving_frames, wait_until, capfd):
-    states.replace(moving_frames(ARM, UnreportedJoints.NONE)[1])
-    states.update_from_message(serialize_message(joint_state(5, {'lift': 0.5})))
+    states.replace(moving_frames(ARM, UnreportedJoints.NONE)[1], TOPICS)
+    update(states, serialize_message(joint_state(5, {'lift': 0.5})))
     assert states.unreported == ()
     wait_until(lambda: states.unreported, 'two seconds')
     assert states.unreported == ('turn', 'grip')
     for sec in (6, 7):
-        states.update_from_message(serialize_message(joint_state(sec, dict.fromkeys(JOINTS, 0.0))))
+        update(states, serialize_message(joint_state(sec, dict.fromkeys(JOINTS, 0.0))))
     log = capfd.readouterr().err
     assert log.count('2 joints have not been reported yet, for example "turn"') == 1
     assert log.count('all joints have been reported now') == 1
@@ -194,15 +214,15 @@ def test_of_joints_that_are_known_those_that_move_are_published(published):
 
 def test_a_message_without_a_stamp_gets_the_time_of_the_node(published, states):
     published(joint_state(0, {'turn': 0.5}), joint_state(6, {'turn': 0.25}))
-    states.update_from_message(serialize_message(joint_state(0, {'turn': 0.5})))
-    assert states._frames.stamp[0] > NOW
+    update(states, serialize_message(joint_state(0, {'turn': 0.5})))
+    assert (states._frames.positions.stamps_ns > NOW * NOW).all()
 
 
 def test_the_same_names_can_move_other_frames_later(published, states, moving_frames):
     positions = {'turn': 0.5, 'lift': 0.5, 'grip': 0.5}
     published(joint_state(5, positions))
     _, frames = moving_frames(ARM.replace('type="revolute"', 'type="fixed"'))
-    states.replace(frames)
+    states.replace(frames, TOPICS)
     assert published(joint_state(6, positions))[-1] == (6, {'slide', 'finger'})
 
 
@@ -210,14 +230,14 @@ def test_bytes_that_align_names_mean_nothing(published, states):
     for sec, padding in (5, b'\0\0'), (6, b'ab'), (7, b'cd'):
         data = serialize_message(joint_state(sec, {'slide': 0.5, 'lift': 0.5}))
         begin = data.index(b'slide\0') + 6
-        states.update_from_message(data[:begin] + padding + data[begin + 2:])
-    assert len(states._plans) == 1, 'as each takes time'
+        update(states, data[:begin] + padding + data[begin + 2:])
+    assert len(topic_of(states)._plans) == 1, 'as each takes time'
     assert published(joint_state(8, {'lift': 0.5}))[-1] == (8, {'slide', 'upper', 'finger'})
 
 
 def test_a_message_that_is_not_one_is_ignored(published, states):
-    states.update_from_message(b'')
-    states.update_from_message(serialize_message(joint_state(5, {'turn': 0.5}))[:30])
+    update(states, b'')
+    update(states, serialize_message(joint_state(5, {'turn': 0.5}))[:30])
     assert [sec for sec, _ in published(joint_state(6, {'turn': 0.5}))] == [6]
 
 
@@ -232,7 +252,7 @@ def test_topics_have_few_of_many_messages_and_the_last_one_again_at_rest(
     wait_until(lambda: stamps, stamps)
     begin = time.monotonic()
     for sec in range(1, 201):
-        states.update_from_message(serialize_message(joint_state(sec, {'turn': 0.5})))
+        update(states, serialize_message(joint_state(sec, {'turn': 0.5})))
     seconds = time.monotonic() - begin
     wait_until(lambda: stamps[-2:] == [200, 200], stamps)
     assert stamps[1] == 1
@@ -247,7 +267,7 @@ def test_after_a_message_frames_have_its_time_alone(listener, wait_until, states
         TransformStamped, '/bridge/transforms',
         lambda each: on_transforms.append(each.header.stamp.sec), LATCHED)
     wait_until(lambda: on_tf, on_tf)
-    states.update_from_message(serialize_message(joint_state(5, {'turn': 0.5})))
+    update(states, serialize_message(joint_state(5, {'turn': 0.5})))
     # At once, and again at rest, for three frames.
     wait_until(lambda: 5 in on_tf and on_transforms.count(5) == 6, on_transforms)
     assert on_tf[on_tf.index(5):] == [5]
@@ -257,7 +277,7 @@ def test_after_a_message_frames_have_its_time_alone(listener, wait_until, states
 def test_what_was_created_for_it_is_destroyed_with_it(states, frequency):
     node = states._node
     states.destroy()
-    JointStates(node, states._frames, frequency).destroy()
+    JointStates(node, states._frames, TOPICS, (frequency, False)).destroy()
     assert [*node.timers, *node.subscriptions] == []
 
 
@@ -272,18 +292,17 @@ def make_slow_states(request, monkeypatch, states, listener, wait_until):
     """
     if request.param == 'here':
         monkeypatch.setattr(
-            'sdf_pose_bridge.ros.joint_states._take_message_from_subscription',
+            'sdf_pose_bridge.ros.joint_state_topic._take_message_from_subscription',
             lambda subscription: None)
 
     def start(frequency):
         states.destroy()
-        slow, found = JointStates(states._node, states._frames, frequency), []
+        slow, found = JointStates(
+            states._node, states._frames, TOPICS, (frequency, False)), []
         publisher = listener.create_publisher(JointState, 'joint_states', 100)
 
         def add(message):
-            stamp = message.transforms[0].header.stamp.sec
-            if stamp < NOW:
-                found.append((stamp, {each.child_frame_id for each in message.transforms}))
+            found.extend(each for each in frames_by_stamp(message) if each[0] < NOW)
 
         listener.create_subscription(TFMessage, '/tf', add, 100)
         # The first ones are lost until both have discovered each other.
@@ -315,7 +334,7 @@ def test_each_waiting_message_keeps_its_stamp(slow_states, wait_until):
 def test_a_message_after_a_period_without_any_is_published_at_once(slow_states, wait_until):
     slow, publisher, found = slow_states(50.0)
     for sec in (NOW - 2, NOW - 1):
-        wait_until(lambda: slow._gate.is_open, 'the end of a period')
+        wait_until(lambda: topic_of(slow).is_open, 'the end of a period')
         publisher.publish(joint_state(sec, {'turn': 0.5}))
         wait_until(lambda sec=sec: found[-1:] == [(sec, {'upper'})], found)
 
@@ -352,10 +371,131 @@ def test_a_period_is_one_of_simulated_time(slow_states, states, listener, wait_u
     # A period of 1000 seconds.
     slow, _, _ = slow_states(0.001)
     seconds = count(3000, 2000)
-    assert not slow._gate.is_open
+    assert not topic_of(slow).is_open
 
     def is_over():
         is_at(next(seconds))
-        return slow._gate.is_open
+        return topic_of(slow).is_open
 
     wait_until(is_over, 'the end of the period')
+
+
+# Several topics
+
+TWO_ARMS = '<sdf version="1.11"><world name="w">{}{}</world></sdf>'.format(*(
+    ARM.partition('">')[2].replace('</sdf>', '').replace('"arm"', f'"{name}"') for name in 'ab'))
+TWO_TOPICS = JointStateTopics({'a/joint_states': 'a', 'b/joint_states': 'b'})
+
+
+@pytest.fixture(name='two_arms')
+def make_two_arms(states, moving_frames, listener, wait_until):
+    """
+    Follows the topics of two arms with a highest rate; ``two_arms(frequency)``.
+
+    Returns it, publishers of messages by the names of the arms, and a list that gets what each
+    message on ``/tf`` has, as :func:`frames_by_stamp` returns it.
+    """
+    def start(frequency):
+        states.destroy()
+        both = JointStates(
+            *moving_frames(TWO_ARMS, UnreportedJoints.NONE), TWO_TOPICS, (frequency, False))
+        publishers = {
+            name: listener.create_publisher(JointState, f'{name}/joint_states', 1000)
+            for name in 'ab'}
+        found = []
+        listener.create_subscription(
+            TFMessage, '/tf', lambda message: found.append(frames_by_stamp(message)), 100)
+
+        def are_connected():
+            if {frame for each in found for _, frames in each for frame in frames} >= {
+                    'a/upper', 'b/upper'}:
+                return True
+            for publisher in publishers.values():
+                publisher.publish(joint_state(1 + len(found), {'turn': 0.0}))
+            return False
+
+        wait_until(are_connected, found)
+
+        def are_open():
+            both._end_period()
+            return all(each.is_open for each in both._topics.values())
+
+        wait_until(are_open, 'the end of a period without messages')
+        found.clear()
+        return both, publishers, found
+    return start
+
+
+def test_what_waits_at_the_end_of_a_period_is_one_message_with_the_stamp_of_each(
+        two_arms, wait_until):
+    _, publishers, found = two_arms(2.0)
+    for sec in range(NOW - 20, NOW):
+        publishers['a'].publish(joint_state(sec, {'turn': 0.5}))
+        publishers['b'].publish(joint_state(sec - 1000, {'turn': 0.5}))
+    last = [(NOW - 1001, {'b/upper'}), (NOW - 1, {'a/upper'})]
+    wait_until(lambda: last in found, found)
+    assert len(found) < 10
+
+
+def test_messages_of_one_robot_do_not_delay_those_of_another(two_arms, wait_until):
+    _, publishers, found = two_arms(0.01)
+    for robot in 'ab':
+        publishers[robot].publish(joint_state(NOW - 1, {'turn': 0.5}))
+        wait_until(lambda robot=robot: found[-1:] == [[(NOW - 1, {f'{robot}/upper'})]], found)
+
+
+def test_too_many_messages_of_one_robot_leave_time_for_another(two_arms, wait_until):
+    both, publishers, _ = two_arms(0.001)
+
+    class Flooded:
+        """A topic whose messages come faster than they are taken."""
+
+        def take_one(self):
+            return True
+
+    both._topics = {'flooded': Flooded(), **both._topics}
+    for topic in list(both._topics.values())[1:]:
+        topic.is_open = False
+    publishers['b'].publish(joint_state(NOW, {'turn': 0.75}))
+
+    def is_taken():
+        both.take_waiting()
+        return 0.75 in both._frames.positions.values
+
+    wait_until(is_taken, both._frames.positions.values)
+    del both._topics['flooded']
+
+
+def test_topics_come_and_go_with_the_frames(states, moving_frames):
+    _, frames = moving_frames(TWO_ARMS)
+
+    def subscribed(topics):
+        states.replace(frames, JointStateTopics(topics))
+        return sorted(each.topic_name for each in states._node.subscriptions)
+
+    assert subscribed({'joint_states': '', 'a/j': 'a'}) == ['/a/j', '/joint_states']
+    before = {id(each) for each in states._node.subscriptions}
+    assert subscribed({'joint_states': '', 'a/j': 'a', 'b/j': 'b'}) == [
+        '/a/j', '/b/j', '/joint_states']
+    assert before < {id(each) for each in states._node.subscriptions}
+    assert subscribed({'b/j': 'b'}) == ['/b/j']
+
+
+def test_many_topics_are_made_between_other_callbacks(states, moving_frames, wait_until):
+    _, frames = moving_frames(TWO_ARMS)
+    states.replace(frames, JointStateTopics({f'a_{number}': 'a' for number in range(100)}))
+    subscriptions = states._node._subscriptions
+    assert len(subscriptions) == SUBSCRIPTIONS_AT_ONCE
+    wait_until(lambda: len(subscriptions) == 100, subscriptions)
+
+
+def test_a_topic_that_cannot_be_made_is_reported_and_the_others_are_made(
+        states, moving_frames, capfd):
+    _, frames = moving_frames(TWO_ARMS)
+    topics = JointStateTopics({'{nowhere}/j': 'a', 'b/j': 'b'}, ('a warning',))
+    for _ in range(2):
+        states.replace(frames, topics)
+    assert [each.topic_name for each in states._node.subscriptions] == ['/b/j']
+    log = capfd.readouterr().err
+    assert 'no subscription to {nowhere}/j: ' in log
+    assert log.count('a warning') == 1

@@ -18,6 +18,7 @@ from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.qos_overrides import sentences_about_overrides
+from sdf_pose_bridge.ros.topic_names import JointStateTopics
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
@@ -32,7 +33,8 @@ def qualities(node):
     frames = PublishedFrames(
         Publishers(node), tree, JointPositions(scene, tree.moving.dofs), {})
     for frequency in (20.0, 0.0):
-        states = JointStates(node, frames.moving, frequency)
+        states = JointStates(
+            node, frames.moving, JointStateTopics({'joint_states': ''}), (frequency, False))
         subscription, = node.subscriptions
         if frequency:
             states.destroy()

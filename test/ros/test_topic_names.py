@@ -13,6 +13,8 @@ from hypothesis import strategies as st
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
+from sdf_pose_bridge.ros.parameters import DECLARATIONS
+from sdf_pose_bridge.ros.topic_names import joint_state_topics_from_patterns
 from sdf_pose_bridge.ros.topic_names import LONGEST_FULL_NAME
 from sdf_pose_bridge.ros.topic_names import LONGEST_NAME
 from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
@@ -198,3 +200,65 @@ def test_as_many_patterns_as_are_taken_do_not_take_long():
     topics = pose_topics_from_patterns(frame_ids, [f'*{"a" * 250}b'], '/n')
     assert 'no frame id matches' in topics.warning
     assert time.process_time() - begin < 10.0
+
+
+# Topics of joint states
+
+DEFAULT = DECLARATIONS['joint_states_topics'].default
+GAZEBO = '/world/{world}/model/{model}/joint_state'
+
+
+def joint_state_topics(patterns, world='w', models=('r1', 'r2'), remapped=None):
+    """Name topics for a node in the name space ``/n``, some of which are remapped."""
+    def full_name(name):
+        full = name if name.startswith('/') else f'/n/{name}'
+        return (remapped or {}).get(full, full)
+    return joint_state_topics_from_patterns(patterns, world, models, full_name)
+
+
+@pytest.mark.parametrize(('patterns', 'world', 'models', 'topics'), [
+    (DEFAULT, 'w', ['r1', 'r2'],
+     {'joint_states': '', 'r1/joint_states': 'r1', 'r2/joint_states': 'r2'}),
+    (DEFAULT, 'w', [], {'joint_states': ''}),
+    (DEFAULT, '', [], {'joint_states': ''}),
+    ([GAZEBO], 'my shop', ['r-1'],
+     {'/world/my_x20_shop/model/r_x2d_1/joint_state': 'r-1'}),
+    (['a', GAZEBO, '/world/{world}/all'], '', [], {'a': ''}),
+    (['/world/{world}/all'], 'w', ['r1'], {'/world/w/all': ''}),
+    (['fleet_{model}', 'fleet_{model}'], 'w', ['1', '{world}'],
+     {'fleet_x31_': '1', 'fleet_x7b_world_x7d_': '{world}'}),
+])
+def test_topics_of_joint_states(patterns, world, models, topics):
+    assert joint_state_topics(patterns, world, models) == (topics, ())
+
+
+@pytest.mark.parametrize(('patterns', 'models', 'topics', 'words'), [
+    (['a/{model}', '{model}/b'], ['a', 'b'], {'a/a': 'a', 'a/b': '', 'b/b': 'b'},
+     'joint_states_topics has /n/a/b for "b", "a", so that it can move the joints of all models'),
+    (['joint_states', 'joint_{model}'], ['states', 'r'], {'joint_states': '', 'joint_r': 'r'},
+     'joint_states_topics has /n/joint_states for "all models", "states", so that'),
+    (['{model}/s'], ['r1', 'r2'], {'r1/s': ''}, 'has /n/s for "r1", "r2", so that'),
+])
+def test_a_topic_of_two_models_is_one_of_all(patterns, models, topics, words):
+    named, (warning,) = joint_state_topics(
+        patterns, models=models, remapped={'/n/r1/s': '/n/s', '/n/r2/s': '/n/s'})
+    assert named == topics
+    assert words in warning
+
+
+def test_a_model_whose_topic_would_have_too_long_a_name_has_none():
+    named, (warning,) = joint_state_topics(['a' * 200 + '/{model}'], models=['r', 'm' * 60])
+    assert list(named.values()) == ['r']
+    assert f'no topic of joint states for "{"m" * 60}": its name would be longer' in warning
+
+
+def test_the_default_does_not_mean_thousands_of_topics_of_joint_states():
+    named, (warning,) = joint_state_topics(DEFAULT, models=[f'r{i}' for i in range(1001)])
+    assert named == {'joint_states': ''}
+    assert '1001 models with moving joints are more than 1000' in warning
+
+
+def test_patterns_that_name_no_topic_of_a_model_file_are_reported():
+    named, (warning,) = joint_state_topics(['{model}/joint_states'], '', [])
+    assert named == {}
+    assert 'joint_states_topics names no topic' in warning

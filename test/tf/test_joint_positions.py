@@ -71,6 +71,60 @@ def test_names_of_joints_in_a_world_are_scoped():
     assert positions.selection(['j']).unknown == ('j',)
 
 
+def test_names_inside_one_model_are_not_those_of_others():
+    positions = positions_of(world_file(
+        model('x') + f'<model name="y"><model name="z">{LINKS}'
+        f'{joint(ENDS, "k", "revolute")}</model>{LINKS}{joint(ENDS, "j", "revolute")}</model>'))
+    assert positions.models == ('x', 'y')
+    names = ['j', 'y/j', 'y::z::k', 'z/k', 'k', 'x/j']
+    selection = positions.selection(names, 'y')
+    found = [positions.names[dof] for dof in selection.dofs]
+    assert found == ['y/j', 'y/j', 'y/z/k', 'y/z/k', 'y/z/k']
+    assert selection.unknown == ('x/j',)
+    assert positions.hint('jj', 'y') == '; did you mean "j"?'
+
+
+@pytest.mark.parametrize('text', [
+    model_file(LINKS + joint(ENDS, 'j', 'revolute')),
+    world_file(f'<model name="m"><static>true</static>{LINKS}</model>'),
+    world_file('<model name="m"><link name="a"/></model><model name="n"><link name="a"/></model>'
+               '<joint name="j" type="revolute"><parent>m::a</parent><child>n::a</child>'
+               '<axis><xyz>0 0 1</xyz></axis></joint>'),
+])
+def test_only_models_of_a_world_with_joints_that_move_are_listed(text):
+    assert positions_of(text).models == ()
+
+
+def test_the_models_are_those_that_are_published():
+    assert positions_of(world_file(model('x') + model('y')), model='y').models == ('y',)
+
+
+def test_degrees_of_freedom_beside_others_are_those_of_their_model():
+    second = joint('<parent>b</parent><child>c</child>', 'k', 'revolute')
+    positions = positions_of(world_file(model('x', second) + model('y')))
+    assert positions.dofs_beside([0]).tolist() == [0, 1]
+    assert positions.dofs_beside([]).tolist() == []
+
+
+# Several topics
+
+def test_a_position_of_another_topic_that_was_sent_earlier_does_not_count():
+    positions = positions_of(world_file(model('x') + model('y')))
+    both, one = positions.selection(['x/j', 'y/j']), positions.selection(['j'], 'x')
+    assert positions.take_newer(both, 1, 5).tolist() == [True, True]
+    assert positions.take_newer(one, 2, 7).tolist() == [True]
+    assert positions.take_newer(both, 1, 6).tolist() == [False, True]
+    assert positions.take_newer(both, 1, 7).tolist() == [True, True]
+
+
+def test_messages_of_one_topic_count_in_the_order_in_which_they_come():
+    positions = positions_of(world_file(model('x')))
+    selection = positions.selection(['j'])
+    for sent_ns in (5, 3):
+        assert positions.take_newer(selection, 1, sent_ns).tolist() == [True]
+    assert positions.take_newer(selection, 2, 4).tolist() == [True]
+
+
 def test_the_second_joint_that_a_screw_joint_has_in_urdf_is_not_unknown():
     text = model_file(
         '<link name="a"/><link name="b"/>'

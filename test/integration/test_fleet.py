@@ -1,0 +1,177 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""A bridge that follows the joint states of several robots of a world, each on its own topic."""
+
+from math import cos
+from math import isclose
+from math import sin
+
+import pytest
+
+pytest.importorskip('rclpy', reason='needs ROS 2')
+
+from changes import BRIDGE
+from changes import replace
+from changes import set_parameters
+from joint_publisher import JointPublisher
+from test_joint_states import pose_of
+from test_joint_states import TfListener
+
+ROBOT = """<sdf version="1.11"><model name="robot">
+<link name="base"/><link name="arm"><pose>1 0 0 0 0 0</pose></link>
+<joint name="turn" type="revolute"><parent>base</parent><child>arm</child>
+  <axis><xyz>0 0 1</xyz></axis></joint>
+<joint name="lift" type="prismatic"><parent>arm</parent>
+  <child>hand</child><axis><xyz>0 0 1</xyz></axis></joint>
+<link name="hand"><pose>2 0 0 0 0 0</pose></link>
+</model></sdf>"""
+INCLUDE = (
+    '<include><uri>robot.sdf</uri><name>{name}</name><pose>{x} 0 0 0 0 0</pose></include>')
+FENCE = '<model name="fence"><static>true</static><link name="post"/></model>'
+
+
+def fleet(**robots):
+    """Write a world with robots at some x, and with a model that does not move."""
+    includes = ''.join(INCLUDE.format(name=name, x=x) for name, x in robots.items())
+    return f'<sdf version="1.11"><world name="shop">{includes}{FENCE}</world></sdf>'
+
+
+@pytest.fixture(name='file')
+def write_file(tmp_path):
+    (tmp_path / 'robot.sdf').write_text(ROBOT, encoding='utf-8')
+    path = tmp_path / 'shop.sdf'
+    path.write_text(fleet(r1=10, r2=20, r3=30), encoding='utf-8')
+    return path
+
+
+@pytest.fixture(name='joints')
+def joint_publisher(ros_domain):
+    publisher = JointPublisher()
+    yield publisher
+    publisher.end()
+
+
+@pytest.fixture(name='tf')
+def listen_to_moving_frames(start_listener):
+    return TfListener(start_listener())
+
+
+@pytest.fixture(name='start')
+def make_start(start_bridge, file):
+    def start(*parameters):
+        arguments = [f'sdf_file:={file}', 'use_joint_states:=true', *parameters]
+        return start_bridge('--ros-args', *(
+            word for each in arguments for word in ('-p', each))).wait_until_started()
+    return start
+
+
+def joint_topics(tf):
+    """Return the topics of joint states that the bridge follows."""
+    try:
+        names = tf.listener.node.get_subscriber_names_and_types_by_node(BRIDGE[1:], '/')
+    except RuntimeError:  # the node is not known yet
+        return set()
+    return {name for name, types in names if types == ['sensor_msgs/msg/JointState']}
+
+
+def wait_for_topics(tf, *topics):
+    tf.listener.wait(lambda: joint_topics(tf) == set(topics), lambda: joint_topics(tf))
+
+
+def move(joints, tf, topic, robot, turn, lift):
+    """Send positions until the frames of a robot have the stamp of the message."""
+    stamps = set()
+
+    def has_moved():
+        # The first messages are lost, until the bridge has discovered the publisher.
+        stamps.add(joints.send({'turn': turn, 'lift': lift}, topic=topic))
+        found = [tf.last.get(f'{robot}/{link}') for link in ('arm', 'hand')]
+        return all(each is not None and each.header.stamp.sec in stamps for each in found)
+
+    tf.listener.wait(has_moved, lambda: tf.last)
+
+
+def check_poses(tf, **robots):
+    """Compare poses in the world with x of the base and the positions of the joints."""
+    for robot, (x, turn, lift) in robots.items():
+        hand = pose_of(tf, f'{robot}::hand')
+        wanted = (x + 1 + cos(turn), sin(turn), lift)
+        assert all(map(isclose, (hand.x, hand.y, hand.z), wanted)), (robot, hand)
+        arm = tf.last[f'{robot}/arm'].transform
+        assert isclose(arm.rotation.z, sin(turn / 2))
+        assert tf.last[f'{robot}/hand'].transform.translation.z == lift
+
+
+def test_each_robot_follows_its_own_topic_also_after_a_reload(start, file, joints, tf):
+    start('publish_frequency:=20.0')
+    wait_for_topics(
+        tf, '/joint_states', '/r1/joint_states', '/r2/joint_states', '/r3/joint_states')
+    for number in (1, 2, 3):
+        move(joints, tf, f'r{number}/joint_states', f'r{number}', 0.1 * number, 0.5 * number)
+    check_poses(tf, r1=(10, 0.1, 0.5), r2=(20, 0.2, 1.0), r3=(30, 0.3, 1.5))
+    replace(file, fleet(r1=10, r3=30, r4=40, r5=50))
+    wait_for_topics(
+        tf, '/joint_states', '/r1/joint_states', '/r3/joint_states', '/r4/joint_states',
+        '/r5/joint_states')
+    move(joints, tf, 'r4/joint_states', 'r4', 0.4, 2.0)
+    move(joints, tf, 'r5/joint_states', 'r5', 0.5, 2.5)
+    move(joints, tf, 'r1/joint_states', 'r1', 0.6, 3.0)
+    check_poses(
+        tf, r1=(10, 0.6, 3.0), r3=(30, 0.3, 1.5), r4=(40, 0.4, 2.0), r5=(50, 0.5, 2.5))
+
+
+def test_both_topics_of_a_robot_move_it(start, joints, tf):
+    start()
+    move(joints, tf, 'r1/joint_states', 'r1', 0.1, 0.5)
+    stamps = {joints.send({'r1/turn': 0.75})}
+    tf.listener.wait(
+        lambda: tf.last['r1/arm'].header.stamp.sec in stamps or (
+            stamps.add(joints.send({'r1/turn': 0.75}))), lambda: tf.last)
+    check_poses(tf, r1=(10, 0.75, 0.5))
+    move(joints, tf, 'r1/joint_states', 'r1', 0.25, 0.5)
+    check_poses(tf, r1=(10, 0.25, 0.5))
+
+
+def test_topics_of_gazebo_can_be_followed_and_changed(start, joints, tf):
+    start("joint_states_topics:=['/world/{world}/model/{model}/joint_state']", 'model:=r2')
+    wait_for_topics(tf, '/world/shop/model/r2/joint_state')
+    move(joints, tf, '/world/shop/model/r2/joint_state', 'r2', 0.5, 0.25)
+    check_poses(tf, r2=(20, 0.5, 0.25))
+    result, = set_parameters(tf.listener, joint_states_topics=['{robot}/j'])
+    assert not result.successful
+    assert result.reason.startswith(
+        'parameter joint_states_topics is "{robot}/j"; it must be the name of a topic with no')
+    result, = set_parameters(tf.listener, joint_states_topics=['{model}/j', 'j'])
+    assert result.successful, result.reason
+    wait_for_topics(tf, '/j', '/r2/j')
+    move(joints, tf, 'r2/j', 'r2', 0.75, 0.25)
+
+
+@pytest.mark.parametrize(('program', 'arguments'), [
+    ('start_bridge', ['-p', 'use_joint_states:=true', '-p', 'sdf_file:={folder}/robot.sdf']),
+    ('start_robot_state_publisher', ['-p', 'sdf_file:={folder}/shop.sdf']),
+])
+def test_a_model_file_and_robot_state_publisher_have_the_one_topic(
+        request, program, arguments, tmp_path, file, tf):
+    start = request.getfixturevalue(program)
+    start('--ros-args', '-r', f'__node:={BRIDGE[1:]}', *(
+        each.format(folder=tmp_path) for each in arguments)).wait_until_started()
+    wait_for_topics(tf, '/joint_states')
+
+
+def test_topics_that_become_one_are_reported_and_lose_nothing(start_bridge, file, joints, tf):
+    bridge = start_bridge(
+        '--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true',
+        '-r', 'r1/joint_states:=/both', '-r', 'r2/joint_states:=/both').wait_until_started()
+    wait_for_topics(tf, '/joint_states', '/both', '/r3/joint_states')
+    bridge.wait_for_line(
+        'joint_states_topics has /both for "r1", "r2", so that it can move the joints of all '
+        'models')
+    stamps = set()
+
+    def have_moved():
+        stamps.add(joints.send({'r1/turn': 0.5, 'r2/turn': 0.25}, topic='both'))
+        return {'r1/arm', 'r2/arm'} <= tf.last.keys()
+
+    tf.listener.wait(have_moved, lambda: tf.last)
+    move(joints, tf, 'r3/joint_states', 'r3', 0.5, 0.5)
