@@ -72,6 +72,16 @@ def ip(*arguments):
         ['ip', *arguments], check=True, capture_output=True, text=True).stdout
 
 
+def counted_by_kernel(host):
+    """Return what the kernel has counted of a host's IP packets, by the names of RFC 1213."""
+    names, values = ip('netns', 'exec', host, 'grep', 'Ip:', '/proc/net/snmp').splitlines()
+    return dict(zip(names.split()[1:], map(int, values.split()[1:]), strict=True))
+
+
+def world_with_many_frames():
+    return world(1, extra=''.join(f'<frame name="f{number}"/>' for number in range(FRAMES - 2)))
+
+
 def wait_for_link(hosts):
     """Wait for the kernel to report the cable as running; Fast DDS looks once, at its start."""
     deadline = time.monotonic() + 10.0
@@ -178,10 +188,16 @@ def test_a_link_that_is_cut_for_longer_than_the_lease_and_restored(
     listener.wait_for_line('all transforms', 3)
 
 
+def test_the_kernel_need_not_split_packets(hosts, start_bridge_on, start_listener_on, file):
+    file.write_text(world_with_many_frames(), encoding='utf-8')
+    start_bridge_on('a')
+    listener = start_listener_on('b', FRAMES)
+    listener.wait_for_line('all transforms')
+    assert counted_by_kernel(hosts['a'])['FragCreates'] == 0
+
+
 def test_many_frames_arrive_whole_where_packets_are_lost(
-        hosts, start_bridge_on, start_listener_on, file, monkeypatch):
-    # Else Fast DDS sends pieces of 64 kB, each of which is lost if one of its 45 packets is.
-    monkeypatch.setenv('FASTDDS_BUILTIN_TRANSPORTS', 'DEFAULT?max_msg_size=1400')
+        hosts, start_bridge_on, start_listener_on, file):
     for host in hosts.values():
         # The module of the kernel for netem is often not installed.
         for arguments in (['qdisc', 'add', 'dev', 'cable', 'clsact'],
@@ -189,8 +205,7 @@ def test_many_frames_arrive_whole_where_packets_are_lost(
                            'bytecode', LOSE_5_PERCENT]):
             if subprocess.run(['tc', '-n', host, *arguments], check=False).returncode:
                 pytest.skip('this machine has no BPF for tc')
-    file.write_text(world(1, extra=''.join(
-        f'<frame name="f{number}"/>' for number in range(FRAMES - 2))), encoding='utf-8')
+    file.write_text(world_with_many_frames(), encoding='utf-8')
     start_bridge_on('a')
     listener = start_listener_on('b', FRAMES)
     listener.wait_for_line(f'tree {FRAMES} 1.0')
