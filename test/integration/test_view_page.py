@@ -106,7 +106,7 @@ def control(label):
 def test_slider_moves_frames_and_those_that_mimic(page):
     select(page, 'slide')
     assert page.run("document.body.innerText.includes('arm/second')") is False
-    enter(page, control('rail [m]'), '0.5')
+    enter(page, control('rail'), '0.5')
     page.wait_for("document.body.innerText.includes('xyz 0.0000 0.0000 0.5000 m')")
     select(page, 'follower')
     page.wait_for("document.body.innerText.includes('xyz 0.0000 0.0000 1.0000 m')")
@@ -144,7 +144,8 @@ def test_names_and_errors_are_text(page, shown):
 
 def point_on_screen(page, point):
     """Return where a point of the scene is in the picture, as the camera stands at first."""
-    width, height = page.run('[window.innerWidth, window.innerHeight]')
+    width, height = page.run(
+        "(canvas => [canvas.clientWidth, canvas.clientHeight])(document.querySelector('canvas'))")
     view = view_of_bounds(np.array([(-0.1, -0.1, -0.1), (1.0, 0.1, 0.1)]), (0.75, -0.5, 0.45))
     to_scene = view.look_at - view.position
     forward = to_scene / np.linalg.norm(to_scene)
@@ -220,6 +221,25 @@ def test_name_is_shown_at_the_pointer(page):
         time.sleep(0.1)
     assert move() == HOSTILE
     assert page.run('window.wasRun') is None
+
+
+def test_long_name_of_a_joint_has_one_line(page, shown):
+    name = 'left_outer_finger_joint_of_the_gripper'
+    shown.file.write_text(TEXT.replace('"rail"', f'"{name}"'))
+    page.wait_for(control(name))
+    long, short = (page.run(
+        f"[...document.querySelectorAll('label')].find(each => each.textContent === '{label}')"
+        '.parentElement.clientHeight') for label in (name, 'opacity'))
+    assert long == short
+
+
+def test_narrow_window_shows_the_scene(shown, tmp_path):
+    with browser(tmp_path / 'browser') as narrow:
+        narrow.size(600, 800)
+        narrow.open(shown.address)
+        narrow.wait_for("document.querySelector('canvas')?.clientWidth > 500")
+        assert narrow.run(f'{ROWS}.length') == 0
+        assert narrow.run('document.elementFromPoint(300, 400).tagName') == 'CANVAS'
 
 
 def test_page_asks_for_nothing_elsewhere(page, shown):

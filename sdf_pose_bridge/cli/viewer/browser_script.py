@@ -14,6 +14,14 @@ import html
 import json
 
 _TITLE = '<title>Viser</title>'
+_STYLE = """<style>
+  /* A joint has one line; of a long name, the end is seen. */
+  .mantine-Flex-root:has(> div .mantine-Slider-root) > div:first-child {width: 9em !important}
+  p:has(> label) {white-space: nowrap; overflow: hidden; text-overflow: ellipsis;
+    direction: rtl; text-align: left}
+  p > label {direction: ltr; unicode-bidi: isolate}
+  p > label wbr {display: none}
+</style>"""
 _SCRIPT = """<script>(() => {
   // viser sends a change at most every 50 ms, and of several in between only the last one: when
   // two controls change, one is lost.
@@ -80,11 +88,12 @@ _SCRIPT = """<script>(() => {
 
 def page_with_script(page: str, title: str = 'sdf_pose view', frame_names: str = '') -> str:
     """
-    Add the script to a page of viser.
+    Add the style and the script to a page of viser.
 
     :param frame_names: an element with the names of frames; see :func:`html_of_frame_names`.
     """
-    return page.replace(_TITLE, f'<title>{html.escape(title)}</title>{frame_names}{_SCRIPT}', 1)
+    added = f'<title>{html.escape(title)}</title>{frame_names}{_STYLE}{_SCRIPT}'
+    return page.replace(_TITLE, added, 1)
 
 
 def html_of_frame_names(names: Sequence[str]) -> str:

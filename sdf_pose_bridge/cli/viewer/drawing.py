@@ -7,6 +7,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from collections.abc import Sequence
+from itertools import islice
+import textwrap
 from typing import Any
 from typing import NamedTuple
 
@@ -50,6 +52,7 @@ GROUPS = ('visuals', 'collisions', 'all names', 'all lines to parents', 'grid')
 HIDDEN_AT_FIRST = frozenset(('collisions', 'all names', 'all lines to parents'))
 """Those that a page does not show until they are switched on."""
 
+_REASON_WIDTH = 60
 _WXYZ = [6, 3, 4, 5]
 _GRAY = (0.52, 0.54, 0.57, 1.0)
 """The color of what has none, which shows on a light and on a dark ground."""
@@ -71,6 +74,8 @@ class Surface(NamedTuple):
     """Shape (n, 3): the factors of each copy along x, y and z."""
     rgba: NDArray[np.float64]
     """Shape (n, 4): the color of each copy, components from 0 to 1."""
+    reason: str
+    """Why this stands for a mesh; empty if it is what the file means."""
 
 
 class Drawing:
@@ -117,6 +122,11 @@ class Drawing:
             f'{"1 shape is" if number == 1 else f"{number} shapes are"} not drawn as the file '
             f'means it: {printable(reason)}' for reason, number in Counter(reasons).items()]
         """Lines that say which visuals and collisions are not drawn as the file means them."""
+        self._reasons = dict(islice((
+            (element, '\n'.join(textwrap.wrap(
+                printable(surface.reason), _REASON_WIDTH, max_lines=4, placeholder=' ...')))
+            for surface in surfaces if surface.reason for element in surface.elements),
+            MOST_NAMES))
         boxes = boxes_of_surfaces(scene, surfaces)
         self.size_m = float(np.ptp(bounds_of_points(
             np.concatenate([origins, np.zeros((1, 3)), boxes.reshape(-1, 3)])), axis=0).max()
@@ -168,22 +178,25 @@ class Drawing:
         self._lines.points = _lines(
             tree, self.frames if self._has_all_lines else _ancestry(tree, frame))
 
-    def names(
-        self, tree: TfTree, frame: int, eye: Floats, look_at: Floats,
+    def texts(
+        self, posed: PosedScene, frame: int, eye: Floats, look_at: Floats,
     ) -> list[tuple[str, Floats]]:
         """
-        Return the names that are shown, and where.
+        Return the names that are shown, the reasons why meshes are not, and where these stand.
 
         :param frame: index of a frame whose name is shown at any rate, or -1.
         :param eye: where the camera is.
         :param look_at: what is in the middle of the picture.
         """
+        scene, tree = posed
         frames = self.frames[:MOST_NAMES].tolist() if self._has_all_names else []
         if frame >= 0 and frame not in frames:
             frames.append(frame)
         names = [
             printable(shortened(tree.frame_ids[frame].rpartition('/')[2])) for frame in frames]
-        return labels_from_names(names, tree.poses[frames, :3], eye, look_at)
+        points = [tree.poses[frames, :3], scene.poses[list(self._reasons), :3]]
+        return labels_from_names(
+            [*self._reasons.values(), *names], np.concatenate(points[::-1]), eye, look_at)
 
     def set_opacity(self, opacity: float) -> None:
         """Let surfaces be seen through, from 0 to 1, where 1 is opaque."""
@@ -330,7 +343,7 @@ def surfaces_from_scene(
         surfaces += [
             Surface(kind, part, same, scales, np.array([
                 part.rgba if mesh.reason else shape.rgba_or(part.rgba or _GRAY)
-                for shape in shapes]))
+                for shape in shapes]), mesh.reason)
             for part in mesh.parts]
     return surfaces, reasons
 

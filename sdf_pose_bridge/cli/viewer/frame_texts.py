@@ -124,16 +124,27 @@ def html_of_difference(old: Pose, new: Pose, reference: Pose, units: Units) -> s
         f'<td>{float(after) - float(before):+.{unit.digits}f}</td></tr>'
         for label, unit, before, after in zip(
             POSE_LABELS, units.of_pose, *columns, strict=True))
-    return (f'<table class="difference" style="font-size:0.8em;margin:0 1em;text-align:right">'
+    return (f'<table class="difference" cellpadding="3" '
+            f'style="font-size:0.8em;margin:0 1em;text-align:right">'
             f'<tr><td></td><td>old</td><td>new</td><td>change</td></tr>{rows}</table>')
 
 
-def html_of_change(change: PoseChange | list[str]) -> str:
-    """Tell which file a frame can be written to, or why it cannot."""
-    if not isinstance(change, PoseChange):
-        return html_of_lines('errors_of_setting', change)
-    path = str(Path(change.file.path).resolve())
-    return f'<div class="file" style="{_FILE_STYLE}">in the file {escaped(path)}</div>'
+def html_of_edit(names: Sequence[str], change: PoseChange | list[str]) -> str:
+    """
+    Tell what is edited, and in which file.
+
+    :param names: the names of the frame and of the frame that its pose is relative to; empty if no
+        frame that can be edited is selected.
+    :param change: what the file would say, or why it cannot.
+    """
+    if not names:
+        return f'<div style="{_FILE_STYLE}">Select a frame, then drag it or type numbers.</div>'
+    text = ' in '.join(f'<b>{escaped(name)}</b>' for name in names)
+    if isinstance(change, PoseChange):
+        text += f'<br>in the file {escaped(str(Path(change.file.path).resolve()))}'
+        change = []
+    return (f'<div class="file" style="{_FILE_STYLE}">{text}</div>'
+            + html_of_lines('errors_of_setting', change))
 
 
 def html_of_lines(name: str, lines: Iterable[str]) -> str:

@@ -75,13 +75,17 @@ class JointSliders:
             buttons = gui.add_button_group(
                 'all joints', ('home', 'middle'),
                 hint='home is zero, or the nearest limit; middle is between the limits')
-            for name, (is_angle, lower, upper) in ranges.items():
-                unit = units.angle if is_angle else units.length
+            for name, limits in ranges.items():
+                unit = units.angle if limits.is_angle else units.length
                 factor, short = unit.factor, name.rpartition('/')[2]
+                ends = limits.lower * factor, limits.upper * factor
                 slider = gui.add_slider(
-                    f'{printable(short if short_names[short] == 1 else name)} [{unit.name}]',
-                    lower * factor, upper * factor, max((upper - lower) * factor / 1000.0, 1e-9),
-                    self.positions[name] * factor, hint=printable(name))
+                    printable(short if short_names[short] == 1 else name), *ends,
+                    max((ends[1] - ends[0]) / 1000.0, 1e-9), self.positions[name] * factor,
+                    hint=printable(name), marks=(
+                        (ends[0], f'{ends[0]:.4g}'), (limits.middle * factor, unit.name),
+                        (ends[1], f'{ends[1]:.4g}')))
+                slider.precision = unit.digits
                 sliders[name] = slider, factor
                 events.when(slider.on_update, partial(self._take_position, name, slider, factor))
 

@@ -30,7 +30,8 @@ class _Label(NamedTuple):
     def lines(self) -> list[str]:
         """Return the lines of the text."""
         more = len(self.names) - _MOST_IN_A_LABEL
-        return self.names[:_MOST_IN_A_LABEL] + ([f'and {more} more'] if more > 0 else [])
+        names = self.names[:_MOST_IN_A_LABEL] + ([f'and {more} more'] if more > 0 else [])
+        return '\n'.join(names).split('\n')
 
     def is_at(self, other: _Label) -> bool:
         """Return whether the points of both are at one place."""
@@ -53,7 +54,7 @@ def labels_from_names(
     Names of frames that are at one place are lines of one text. Of other names that would lie on
     one another, the one that is nearest to the camera stands, and the others are left out.
 
-    :param names: the names of frames.
+    :param names: the names of frames, or other texts, which may have several lines.
     :param points: shape (n, 3), their origins.
     :param eye: shape (3,), where the camera is.
     :param look_at: shape (3,), what is in the middle of the picture, not above or below the eye.

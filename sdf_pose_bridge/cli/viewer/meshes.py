@@ -119,7 +119,7 @@ class MeshReader:
     def _mesh_of_file(self, shape: Shape, file: str) -> Mesh:
         path = self._finder.file_from_uri(shape.mesh_uri, file)
         if path is None:
-            return Mesh(reason='it is not found')
+            return Mesh(reason=self._finder.reason_not_found(shape.mesh_uri, file))
         status = os.stat(path)  # noqa: PTH116
         version = status.st_mtime_ns, status.st_size
         kept = self._kept.pop((path, shape.submesh), None)

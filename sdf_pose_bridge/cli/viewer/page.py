@@ -164,7 +164,9 @@ class Page:
             return None
         return EditedFrame(
             self._shown.loaded, int(tree.elements[frame]), self._posed.pose_of(frame),
-            self._posed.pose_of(reference), 2.5 * self._drawing.axes_length_m,
+            self._posed.pose_of(reference),
+            (tree.frame_ids[frame], (*tree.frame_ids, tree.root_frame)[reference]),
+            2.5 * self._drawing.axes_length_m,
             lambda scene, element: scene_at_positions(scene, positions).pose_of(element))
 
     def _describe(self) -> None:
@@ -176,8 +178,8 @@ class Page:
         self._selected.describe(self._posed, pose, self._units)
 
     def _show_names(self) -> None:
-        self._labels.show(self._drawing.names(
-            self._posed.tree, self._selected.frame, self._camera.position, self._camera.look_at))
+        self._labels.show(self._drawing.texts(
+            self._posed, self._selected.frame, self._camera.position, self._camera.look_at))
 
     def _look_from(self, camera: viser.CameraHandle) -> None:
         self._camera = camera

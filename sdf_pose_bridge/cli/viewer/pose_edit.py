@@ -6,15 +6,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from collections.abc import Iterable
-import math
 from typing import NamedTuple
 
 import viser
 
 from sdf_pose_bridge.cli.printing import POSE_LABELS
 from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.viewer.frame_texts import html_of_change
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_difference
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_edit
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_lines
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.errors import SdfError
@@ -31,8 +30,8 @@ SetPose = Callable[..., PoseChange]
 """Puts a pose into a file, as ``sdf_pose_bridge.cli.set.set_pose`` does, of which it has the
 arguments but for the options."""
 
-_STEPS = tuple((step_m, math.radians(100.0 * step_m)) for step_m in (0.0001, 0.001, 0.01, 0.1))
-"""Steps of the numbers, in metres and radians."""
+_STEPS = (1.0, 10.0, 100.0, 1000.0)
+"""How far the arrows beside a number go, in units of its last digit."""
 
 
 class EditedFrame(NamedTuple):
@@ -45,6 +44,8 @@ class EditedFrame(NamedTuple):
     """Its pose in the root frame."""
     reference: Pose
     """The pose, in the root frame, of the frame relative to which numbers are."""
+    names: tuple[str, str]
+    """The names of both frames."""
     gizmo_m: float
     """The size of the gizmo."""
     measured: Callable[[Scene, int], Pose]
@@ -75,6 +76,7 @@ class PoseEdit:
             '/gizmo', depth_test=False, visible=False)
         gui = server.gui
         with gui.add_folder('Edit'):
+            self._title = gui.add_html('')
             self._numbers = [gui.add_number(label, 0.0, disabled=True) for label in POSE_LABELS]
             self._steps = gui.add_dropdown('steps', ('',))
             self._text = gui.add_html('')
@@ -110,17 +112,15 @@ class PoseEdit:
         for number, label, unit in zip(self._numbers, POSE_LABELS, units.of_pose, strict=True):
             number.label = f'{label} [{unit.name}]'
             number.precision = unit.digits + 2
-        self._steps.options = tuple(
-            f'{step * units.length.factor:g} {units.length.name}, '
-            f'{step_rad * units.angle.factor:g} {units.angle.name}' for step, step_rad in _STEPS)
+        self._steps.options = tuple(', '.join(
+            f'{step * 0.1 ** unit.digits:g} {unit.name}' for unit in units) for step in _STEPS)
         self._steps.value = self._steps.options[1]
         self._set_steps()
 
     def _set_steps(self) -> None:
-        steps = _STEPS[self._steps.options.index(self._steps.value)]
-        for index, (number, unit) in enumerate(zip(
-                self._numbers, self._units.of_pose, strict=True)):
-            number.step = steps[index // 3] * unit.factor
+        step = _STEPS[self._steps.options.index(self._steps.value)]
+        for number, unit in zip(self._numbers, self._units.of_pose, strict=True):
+            number.step = step * 0.1 ** unit.digits
 
     def _take_gizmo(self) -> None:
         if self._gizmo.visible:
@@ -171,8 +171,9 @@ class PoseEdit:
             self._gizmo.position, self._gizmo.wxyz = pose[:3], (pose.qw, *pose[3:6])
             if self.pose is not None:
                 text = html_of_difference(frame.pose, pose, frame.reference, self._units)
-            text += html_of_lines('errors', self._errors) + html_of_change(self._file)
-        self._text.content = text
+        self._title.content = html_of_edit(
+            () if frame is None else frame.names, self._file)
+        self._text.content = text + html_of_lines('errors', self._errors)
         self._write.visible = self._cancel.visible = self.pose is not None
         self._undo.visible = self._undone is not None
 

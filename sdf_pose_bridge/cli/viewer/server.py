@@ -35,6 +35,8 @@ from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
 
 _ADDRESS = '127.0.0.1'
 _NAMES = (_ADDRESS, 'localhost')
+_PANEL_WIDTH, _LEAST_WIDTH = 360, 720
+"""The width of the panel, and that of a window in which it is open at first, in pixels."""
 _NOT_KNOWN = (
     f'viser {viser.__version__} does not work as the releases that this is tested with '
     f'({LIBRARIES[0]})')
@@ -88,6 +90,12 @@ def server_for_its_owner(port: int) -> PageServer:
     with _requests_need(secret):
         server = viser.ViserServer(_ADDRESS, port, verbose=False)
     server.gui.configure_theme(show_logo=False, show_share_button=False)
+    # Beside the scene, not on it; where there is little room, it is folded.
+    server.gui.main_panel.dock_right()
+    server.gui.main_panel.set_width(_PANEL_WIDTH)
+    server.on_client_connect(
+        lambda client: client.gui.main_panel.minimize()
+        if client.camera.image_width < _LEAST_WIDTH else None)
     # The picture of surroundings that viser lights a scene with makes every color pale.
     server.scene.configure_environment_map(None)
     server.scene.configure_default_lights(enabled=False)

@@ -20,5 +20,5 @@ def test_names_are_escaped():
 
 def test_title_is_escaped_and_the_rest_stays():
     page = page_with_script('<head><title>Viser</title></head><body>', HOSTILE)
-    assert page.startswith('<head><title>&quot;&gt;&lt;script&gt;</title><script>')
+    assert page.startswith('<head><title>&quot;&gt;&lt;script&gt;</title><style>')
     assert page.endswith('</script></head><body>')

@@ -48,7 +48,8 @@ def test_shape_that_is_not_supported(drawn):
 def test_missing_mesh_is_a_small_box(drawn):
     _, (surface,), (reason,) = drawn(MESH)
     assert np.ptp(surface.part.points, axis=0) * surface.scales[0] == pytest.approx(0.06)
-    assert reason == 'the mesh "a.stl": it is not found'
+    assert reason.startswith('the mesh "a.stl": it is not in "')
+    assert surface.reason == reason
 
 
 def test_more_surfaces_than_are_drawn(drawn, monkeypatch):
