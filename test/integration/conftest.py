@@ -42,6 +42,21 @@ def start_bridge(ros_domain):
 
 
 @pytest.fixture
+def file(tmp_path):
+    """File of a small world, which a test may change."""
+    from changes import world
+    path = tmp_path / 'cell.sdf'
+    path.write_text(world(1), encoding='utf-8')
+    return path
+
+
+@pytest.fixture
+def bridge(start_bridge, file):
+    """Bridge on that file."""
+    return start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
+
+
+@pytest.fixture
 def start_robot_state_publisher(ros_domain):
     """Starts the executable of that name; ``start_robot_state_publisher(*arguments)``."""
     with ended_later(partial(BridgeProcess, program='robot_state_publisher')) as start:

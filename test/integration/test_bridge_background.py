@@ -34,18 +34,6 @@ def make_slow_file(tmp_path):
     return SlowFile(tmp_path / 'slow.sdf')
 
 
-@pytest.fixture(name='file')
-def write_file(tmp_path):
-    path = tmp_path / 'cell.sdf'
-    path.write_text(world(1), encoding='utf-8')
-    return path
-
-
-@pytest.fixture(name='bridge')
-def bridge_on_file(start_bridge, file):
-    return start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
-
-
 @pytest.fixture(name='slow_again')
 def start_on_slow_file(start_bridge, tmp_path):
     slow = SlowFile(tmp_path / 'slow.sdf', world(1))

@@ -28,18 +28,6 @@ from sizes import size
 from tf2_msgs.msg import TFMessage
 
 
-@pytest.fixture(name='file')
-def write_file(tmp_path):
-    path = tmp_path / 'cell.sdf'
-    path.write_text(world(1))
-    return path
-
-
-@pytest.fixture(name='bridge')
-def start(start_bridge, file):
-    return start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
-
-
 def value_of(listener, name):
     request = GetParameters.Request(names=[name])
     (value,) = listener.call(GetParameters, '/sdf_pose_bridge/get_parameters', request).values

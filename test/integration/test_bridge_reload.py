@@ -43,13 +43,6 @@ def config(file):
     return f'<model><name>box</name><sdf version="1.10">{file}</sdf></model>'
 
 
-@pytest.fixture(name='file')
-def write_file(tmp_path):
-    path = tmp_path / 'cell.sdf'
-    path.write_text(world(1), encoding='utf-8')
-    return path
-
-
 @pytest.fixture(name='start')
 def start_with_file(start_bridge, tmp_path):
     """Starts a bridge; ``start(path, *parameters)``."""

@@ -112,18 +112,6 @@ rclpy.spin(node)
 """
 
 
-@pytest.fixture(name='file')
-def write_file(tmp_path):
-    path = tmp_path / 'cell.sdf'
-    path.write_text(world(1), encoding='utf-8')
-    return path
-
-
-@pytest.fixture(name='bridge')
-def bridge_on_file(start_bridge, file):
-    return start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
-
-
 def test_whatever_is_asked_is_answered(bridge, start_listener):
     listener = start_listener()
 

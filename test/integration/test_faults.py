@@ -50,13 +50,6 @@ rclpy.spin(node)
 """
 
 
-@pytest.fixture(name='file')
-def write_file(tmp_path):
-    path = tmp_path / 'cell.sdf'
-    path.write_text(world(1), encoding='utf-8')
-    return path
-
-
 @pytest.fixture(name='start')
 def start_with_file(start_bridge):
     """Starts a bridge on a file; ``start(path, *parameters)``."""

@@ -137,13 +137,6 @@ def start_on(hosts, monkeypatch):
         process.end()
 
 
-@pytest.fixture(name='file')
-def write_file(tmp_path):
-    path = tmp_path / 'cell.sdf'
-    path.write_text(world(1), encoding='utf-8')
-    return path
-
-
 @pytest.fixture
 def start_bridge_on(start_on, file):
     def start(host):
