@@ -5,6 +5,7 @@
 import numpy as np
 import pytest
 
+pytest.importorskip('viser', reason='needs viser')
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
