@@ -109,6 +109,8 @@ def _exit_code_from_node(node: Node, program: Program, file: str = '') -> int:
     frames.publish_tf()
     # Imported here because listeners would wait for /tf_static 5 ms longer.
     from sdf_pose_bridge.ros.node import start_bridge
+    # Modules and the first scene are not garbage. To search them would stop all threads for 20 ms.
+    gc.freeze()
     gc.enable()
     executor = SingleThreadedExecutor()
     executor.add_node(node)
