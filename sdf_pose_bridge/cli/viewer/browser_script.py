@@ -17,7 +17,7 @@ _TITLE = '<title>Viser</title>'
 _STYLE = """<style>
   /* A joint has one line; of a long name, the end is seen. */
   .mantine-Flex-root:has(> div .mantine-Slider-root) > div:first-child {width: 9em !important}
-  p:has(> label) {white-space: nowrap; overflow: hidden; text-overflow: ellipsis;
+  p.mantine-Text-root:has(> label) {white-space: nowrap; overflow: hidden; text-overflow: ellipsis;
     direction: rtl; text-align: left}
   p > label {direction: ltr; unicode-bidi: isolate}
   p > label wbr {display: none}
