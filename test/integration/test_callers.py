@@ -201,7 +201,7 @@ def test_very_many_values_for_a_parameter_are_refused_in_one_sentence(bridge, st
         name='sdf_file', value=value_of(integer_array_value=array.array('q', [7]) * 50_000))]
     parameters += [
         Parameter(name='publish_rate', value=value_of(double_value=0.0)) for _ in range(999)]
-    waiting = Waiting(listener)
+    waiting = Waiting(listener, bridge.pid)
     future = asked(listener, SetParameters, 'set_parameters', SetParameters.Request(
         parameters=parameters))
     waiting.check_until(future.done)
@@ -243,7 +243,7 @@ def test_a_large_value_is_not_repeated(start_bridge, start_listener, tmp_path):
     (value,) = listener.call(
         GetParameters, f'{BRIDGE}/get_parameters', GetParameters.Request(names=[name])).values
     assert value.string_value == text
-    waiting = Waiting(listener)
+    waiting = Waiting(listener, bridge.pid)
     future = asked(
         listener, GetParameters, 'get_parameters', GetParameters.Request(names=[name] * 1000))
     waiting.check_until(future.done)
@@ -276,7 +276,7 @@ def bridge_on_long_names(start_bridge, tmp_path):
 
 def test_a_name_that_was_probably_meant_is_searched_beside(large_bridge, start_listener):
     listener = start_listener()
-    waiting = Waiting(listener)
+    waiting = Waiting(listener, large_bridge.pid)
     future = asked(
         listener, LookupPose, 'lookup_pose', LookupPose.Request(frame=f'{LONG_NAME}x'))
     waiting.check_until(future.done)
@@ -286,7 +286,7 @@ def test_a_name_that_was_probably_meant_is_searched_beside(large_bridge, start_l
 def test_many_patterns_for_many_frames_are_answered(large_bridge, start_listener):
     listener = start_listener()
     patterns = [f'*{number}{"a" * 200}b' for number in range(1000)]
-    waiting = Waiting(listener)
+    waiting = Waiting(listener, large_bridge.pid)
     future = asked(listener, SetParameters, 'set_parameters', SetParameters.Request(parameters=[
         Parameter(name='pose_topics', value=value_of(string_array_value=patterns))]))
     waiting.check_until(future.done)

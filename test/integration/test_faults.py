@@ -249,7 +249,7 @@ def test_a_file_that_needs_too_much_keeps_nobody_waiting(
     try:
         wait_for_x(listener, 1.0)
         assert reload(listener).success
-        waiting = Waiting(listener)
+        waiting = Waiting(listener, bridge.pid)
         parameter = Parameter('sdf_file', value=str(large)).to_parameter_msg()
         client = listener.node.create_client(SetParameters, f'{BRIDGE}/set_parameters')
         listener.wait(client.service_is_ready, lambda: 'the service')

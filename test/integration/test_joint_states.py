@@ -456,7 +456,7 @@ def test_new_unknown_names_in_each_message_keep_nobody_waiting(
         '--ros-args', '-p', f'sdf_file:={path}', '-p', 'use_joint_states:=true',
         '-p', 'pose_topics:=[""]').wait_until_started()
     listener, publisher = start_listener(), JointPublisher()
-    waiting = Waiting(listener)
+    waiting = Waiting(listener, bridge.pid)
     try:
         for number in range(12):
             for row in range(5):
