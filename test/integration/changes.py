@@ -98,8 +98,9 @@ class Waiting:
     """
     Asks for something small again and again, and checks that it never waits long.
 
-    Time in which the node or this process waited for a processor is not counted, because that
-    depends on what else the machine does.
+    Time in which their threads waited for a processor is not counted, because that depends on what
+    else the machine does. Several may wait at the same time, so the time in which the executor of
+    the node worked is looked at too.
 
     :param listener: whose calls they are.
     :param pid: the process of the node.
@@ -107,26 +108,30 @@ class Waiting:
 
     def __init__(self, listener, pid):
         self._listener = listener
-        self._pids = (pid, os.getpid())
+        self._pid = pid
         self._call()
 
-    def _without_processor_s(self):
-        """Return how long the threads of both processes have waited for a processor."""
-        waited_ns = 0
-        for pid in self._pids:
+    def _scheduled(self):
+        """Return how long the executor has worked, and all threads have waited for a processor."""
+        worked_ns = waited_ns = 0
+        for pid in (self._pid, os.getpid()):
             for path in Path(f'/proc/{pid}/task').glob('*/schedstat'):
                 with contextlib.suppress(OSError):  # the thread has ended meanwhile
-                    waited_ns += int(path.read_text().split()[1])
-        return 1e-9 * waited_ns
+                    numbers = path.read_text().split()
+                    waited_ns += int(numbers[1])
+                    # The executor runs in the first thread.
+                    worked_ns += int(numbers[0]) if path.parent.name == str(self._pid) else 0
+        return 1e-9 * worked_ns, 1e-9 * waited_ns
 
     def _call(self):
         """Return how long a call takes."""
-        without_processor_s, begin = self._without_processor_s(), time.monotonic()
+        (worked_s, waited_s), begin = self._scheduled(), time.monotonic()
         assert self._listener.call(
             ConvertRotation, f'{BRIDGE}/convert_rotation', ConvertRotation.Request()).success
         took_s = time.monotonic() - begin
+        worked_after_s, waited_after_s = self._scheduled()
         # Threads that have ended are not counted any more.
-        return took_s - max(0.0, self._without_processor_s() - without_processor_s)
+        return max(took_s - max(0.0, waited_after_s - waited_s), worked_after_s - worked_s)
 
     def check_until(self, is_done):
         """Ask until something is done."""
