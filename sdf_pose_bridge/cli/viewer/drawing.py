@@ -57,6 +57,7 @@ _WXYZ = [6, 3, 4, 5]
 _GRAY = (0.52, 0.54, 0.57, 1.0)
 """The color of what has none, which shows on a light and on a dark ground."""
 _LINE_COLOR = (255, 146, 43)
+_MEASURED_COLOR = (230, 73, 128)
 _GRID_COLOR, _GRID_SECTION_COLOR = (173, 178, 184), (134, 141, 149)
 _COLLISION_RGBA = (0.05, 0.62, 0.55, 1.0)
 _LIGHT_FROM_BELOW = (120, 124, 130)
@@ -114,7 +115,7 @@ class Drawing:
         extent_m = float(np.ptp(origins, axis=0).max()) if len(origins) else 0.0
         self.frame_names = [printable(tree.frame_ids[frame]) for frame in self.frames]
         """The names of these."""
-        surfaces, reasons = surfaces_from_scene(
+        self._surfaces, reasons = surfaces_from_scene(
             scene, [element for element in scene.shapes if is_shown[element]
                     and f'{Kind(scene.kinds[element]).label}s' not in hidden],
             extent_m or 1.0, meshes)
@@ -125,9 +126,9 @@ class Drawing:
         self._reasons = dict(islice((
             (element, '\n'.join(textwrap.wrap(
                 printable(surface.reason), _REASON_WIDTH, max_lines=4, placeholder=' ...')))
-            for surface in surfaces if surface.reason for element in surface.elements),
+            for surface in self._surfaces if surface.reason for element in surface.elements),
             MOST_NAMES))
-        boxes = boxes_of_surfaces(scene, surfaces)
+        boxes = boxes_of_surfaces(scene, self._surfaces)
         self.size_m = float(np.ptp(bounds_of_points(
             np.concatenate([origins, np.zeros((1, 3)), boxes.reshape(-1, 3)])), axis=0).max()
             ) or 1.0
@@ -146,13 +147,16 @@ class Drawing:
         self._lines = nodes.add_line_segments(
             f'{name}/lines to parents', np.zeros((0, 2, 3)), _LINE_COLOR, thickness=2.0,
             thickness_units='screen')
+        self._measured = nodes.add_line_segments(
+            f'{name}/measured', np.zeros((0, 2, 3)), _MEASURED_COLOR, thickness=3.0,
+            thickness_units='screen')
         self._axes = nodes.add_batched_axes(
             f'{name}/frames', *_places(tree.poses[self.frames]), axes_length=length_m,
             axes_radius=0.035 * length_m)
         self._select_by_click(self._axes, self.frames)
         self._copies = [
             (self._add_surface(number, surface, posed, opacity), surface.elements)
-            for number, surface in enumerate(surfaces)]
+            for number, surface in enumerate(self._surfaces)]
 
     def remove(self) -> None:
         """Remove the nodes."""
@@ -165,13 +169,16 @@ class Drawing:
         for copies, elements in self._copies:
             copies.batched_wxyzs, copies.batched_positions = _places(scene.poses[elements])
 
-    def mark(self, tree: TfTree, frame: int, pose: Pose | None) -> None:
+    def mark(self, tree: TfTree, frame: int, pose: Pose | None, reference: Pose | None) -> None:
         """
         Show larger axes for a frame, and lines to its ancestors, or all lines if they are on.
 
         :param frame: its index, or -1 for none.
         :param pose: where the axes are, in the root frame.
+        :param reference: the pose of a frame to which there is a line.
         """
+        ends = [end[:3] for end in (reference, pose) if end is not None]
+        self._measured.points = np.array([ends] if len(ends) == 2 else []).reshape(-1, 2, 3)
         self._marker.visible = pose is not None
         if pose is not None:
             self._marker.position, self._marker.wxyz = pose[:3], (pose.qw, *pose[3:6])
@@ -197,6 +204,17 @@ class Drawing:
         points = [tree.poses[frames, :3], scene.poses[list(self._reasons), :3]]
         return labels_from_names(
             [*self._reasons.values(), *names], np.concatenate(points[::-1]), eye, look_at)
+
+    def boxes(self, posed: PosedScene, is_in: NDArray[np.bool_]) -> Floats:
+        """
+        Return the boxes around visuals and collisions, shape (n, 2, 3).
+
+        :param is_in: whether each element of the scene counts.
+        """
+        elements = [element for surface in self._surfaces for element in surface.elements]
+        boxes: Floats = boxes_of_surfaces(
+            posed.scene, self._surfaces)[is_in[np.array(elements, int)]]
+        return boxes
 
     def set_opacity(self, opacity: float) -> None:
         """Let surfaces be seen through, from 0 to 1, where 1 is opaque."""

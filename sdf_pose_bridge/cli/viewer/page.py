@@ -31,12 +31,14 @@ from sdf_pose_bridge.cli.viewer.selected_frame import SelectedFrame
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.server import server_for_its_owner
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
+from sdf_pose_bridge.cli.viewer.view_point import bounds_of_points
 from sdf_pose_bridge.cli.viewer.view_point import DIRECTIONS
 from sdf_pose_bridge.cli.viewer.view_point import FIELD_OF_VIEW_RAD
 from sdf_pose_bridge.cli.viewer.view_point import view_of_bounds
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.tf.joint_positions import scene_at_positions
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 
 _MOST_SWITCHES = 50
 _ANGLES = {unit.name: unit for unit in (RADIANS, DEGREES)}
@@ -66,12 +68,14 @@ class Page:
         self._errors, self._reasons, self._names = (gui.add_html('') for _ in range(3))
         self._edit = None if set_pose is None else PoseEdit(
             self._server, set_pose, self._events, self._describe)
+        place_of_selected = gui.add_folder(None)
         self._opacity = self._add_view_controls()
         self._folder = gui.add_folder(None)
         self._controls, self._joints = self._add_controls_of_scene({})
         self._posed = shown.at(self._joints.positions)
         self._positions = dict(self._joints.positions)
-        self._selected = SelectedFrame(gui, self._posed.tree, self._events, self._show_frame)
+        self._selected = SelectedFrame(
+            gui, place_of_selected, self._posed.tree, self._events, self._show_frame)
         self._labels, self._node_names = Labels(nodes), cycle(('/drawing', '/other drawing'))
         self._drawing = self._new_drawing()
         self._camera = camera = self._server.initial_camera
@@ -174,7 +178,10 @@ class Page:
         frame, pose = self._selected.frame, None if self._edit is None else self._edit.pose
         if frame >= 0 and pose is None:
             pose = self._posed.pose_of(frame)
-        self._drawing.mark(self._posed.tree, frame, pose)
+        reference = self._selected.reference
+        self._drawing.mark(
+            self._posed.tree, frame, pose,
+            None if reference == ROOT_IS_PARENT else self._posed.pose_of(reference))
         self._selected.describe(self._posed, pose, self._units)
 
     def _show_names(self) -> None:
@@ -238,16 +245,18 @@ class Page:
         return opacity
 
     def _look(self, name: str) -> None:
-        """Turn the cameras to a view, or to the selected frame for "zoom to"."""
+        """Turn the cameras to a view; "zoom to" shows the selected frame, link or model."""
         drawing = self._drawing
         view = drawing.home
         if name in DIRECTIONS:
             view = view_of_bounds(drawing.bounds, DIRECTIONS[name])
         elif name == 'zoom to' and self._selected.frame >= 0:
-            origin = self._posed.tree.poses[self._selected.frame, :3]
-            half_m = 3.0 * drawing.axes_length_m
-            view = view_of_bounds(
-                np.array([origin - half_m, origin + half_m]), view.position - view.look_at)
+            tree, frame = self._posed.tree, self._selected.frame
+            origin, half_m = tree.poses[frame, :3], 3.0 * drawing.axes_length_m
+            boxes = drawing.boxes(self._posed, self._shown.is_in(int(tree.elements[frame])))
+            view = view_of_bounds(bounds_of_points(np.concatenate([
+                [origin - half_m, origin + half_m], boxes.reshape(-1, 3)])),
+                view.position - view.look_at)
         for client in self._server.get_clients().values():
             with client.atomic():
                 client.camera.position, client.camera.look_at = view

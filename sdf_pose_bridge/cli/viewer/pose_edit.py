@@ -76,7 +76,7 @@ class PoseEdit:
             '/gizmo', depth_test=False, visible=False)
         gui = server.gui
         with gui.add_folder('Edit'):
-            self._title = gui.add_html('')
+            self._title = gui.add_html(html_of_edit((), []))
             self._numbers = [gui.add_number(label, 0.0, disabled=True) for label in POSE_LABELS]
             self._steps = gui.add_dropdown('steps', ('',))
             self._text = gui.add_html('')

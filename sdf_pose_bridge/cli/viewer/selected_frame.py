@@ -30,19 +30,20 @@ _MOST_CHOICES = 1000
 _ROWS_STYLE = ('<style>.rows{max-height:40vh;overflow:auto;margin:0 1em;font-size:0.8em}'
                '.rows label{display:block;cursor:pointer;white-space:pre}'
                '.rows .selected{font-weight:bold}div:has(>.rows)~*{display:none}</style>')
-_HOW_TO_SELECT = '<div style="margin:0 1em;font-size:0.8em">Click one above or in the scene.</div>'
 
 
 class SelectedFrame:
     """
     The folders with the tree of frames and with the selected frame.
 
+    :param place: where the selected frame is shown.
     :param changed: is called when another frame is selected, or its pose is asked for relative to
         another one.
     """
 
     def __init__(
-        self, gui: viser.GuiApi, tree: TfTree, events: Events, changed: Callable[[], object],
+        self, gui: viser.GuiApi, place: viser.GuiFolderHandle, tree: TfTree, events: Events,
+        changed: Callable[[], object],
     ) -> None:
         self._gui, self._events, self._changed = gui, events, changed
         self._tree, self._frame_id = tree, ''
@@ -51,14 +52,16 @@ class SelectedFrame:
         self._buttons: list[Any] = []
         self._folder = gui.add_folder('Frames')
         with self._folder:
-            self._search = gui.add_text('search', '')
+            self._search = gui.add_text('search', '', hint='frames are selected in the scene, too')
             self._rows = gui.add_html('')
-        with gui.add_folder('Selected frame'):
+        with place:
+            self._selected = gui.add_folder('Selected frame', visible=False)
+        with self._selected:
             self._choice = gui.add_dropdown(
                 'relative to', (tree.root_frame,), hint='for the pose and the distance')
             measure = gui.add_button(
                 'measure from this frame', hint='to the frames that are selected next')
-            self._description = gui.add_html(_HOW_TO_SELECT)
+            self._description = gui.add_html('')
         events.when(self._search.on_update, self._show_rows)
         events.when(self._choice.on_update, changed)
         events.when(measure.on_click, self._measure_from_here)
@@ -95,8 +98,8 @@ class SelectedFrame:
 
     def describe(self, posed: PosedScene, pose: Pose | None, units: Units) -> None:
         """Describe the selected frame, which is or would be at a pose in the root frame."""
+        self._selected.visible = pose is not None
         if pose is None:
-            self._description.content = _HOW_TO_SELECT
             return
         poses = posed.tree.poses.copy()
         poses[self.frame] = pose

@@ -79,6 +79,13 @@ class ShownScene:
         shown: NDArray[np.bool_] = self._is_in_model & ~np.isin(self._tops, elements)
         return shown
 
+    def is_in(self, element: int) -> NDArray[np.bool_]:
+        """Return whether each element is a given one, or in it, shape (n,)."""
+        is_end = np.arange(len(self.loaded.parents)) == element
+        inside: NDArray[np.bool_] = ends_from_pointers(
+            np.where(is_end, -1, self.loaded.parents)) == element
+        return inside
+
     def at(self, positions: Mapping[str, float]) -> PosedScene:
         """Return the scene with its joints at positions, in radians or metres."""
         scene = scene_at_positions(self.loaded, positions)

@@ -77,6 +77,24 @@ def test_drawing_shares_no_name_with_the_one_before(page_of):
     assert page._server.scene.get_handle_by_name(before.name) is None
 
 
+def test_line_joins_the_frames_that_are_measured(page_of):
+    page = page_of('<sensor name="s" type="imu"><pose>1 2 3 0 0 0</pose></sensor>')
+    frames = page._posed.tree.frame_ids
+    page._selected.select(frames.index('l'))
+    assert page._drawing._measured.points.shape == (0, 2, 3)
+    page._selected._measure_from_here()
+    page._selected.select(frames.index('l/s'))
+    assert page._drawing._measured.points.tolist() == [[[0, 0, 0], [1, 2, 3]]]
+
+
+def test_boxes_of_one_element(page_of):
+    box = '<visual name="{}"><pose>{} 0 0 0 0 0</pose><geometry><box/></geometry></visual>'
+    page = page_of(box.format('a', 0) + box.format('b', 5))
+    element = page._shown.loaded.names.index('m::l::b')
+    (found,) = page._drawing.boxes(page._posed, page._shown.is_in(element))
+    assert found.tolist() == [[4.5, -0.5, -0.5], [5.5, 0.5, 0.5]]
+
+
 def test_page_says_so_when_collisions_are_switched_on(page_of):
     page = page_of(f'<collision name="c">{MESH}</collision>')
     assert page.reasons == []

@@ -31,7 +31,8 @@ POSED = posed_scene('a', 'b', 'c')
 @pytest.fixture
 def selected():
     server = viser.ViserServer('127.0.0.1', 0, verbose=False)
-    yield SelectedFrame(server.gui, POSED.tree, Events(), lambda: None)
+    place = server.gui.add_folder(None)
+    yield SelectedFrame(server.gui, place, POSED.tree, Events(), lambda: None)
     server.stop()
 
 

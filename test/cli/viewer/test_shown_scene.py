@@ -42,6 +42,15 @@ def test_what_is_in_a_hidden_model_is_not_shown():
     assert names[scene.is_in_robot].tolist() == ['arm', 'arm::a', 'arm::b', 'arm::j']
 
 
+@pytest.mark.parametrize(('element', 'names'), [
+    ('table', ['table', 'table::l']), ('arm::a', ['arm::a']), (None, [])])
+def test_what_is_in_an_element(element, names):
+    scene = shown()
+    every = np.array(scene.loaded.names)
+    index = scene.loaded.names.index(element) if element else -2
+    assert every[scene.is_in(index)].tolist() == names
+
+
 def test_frames_at_positions():
     scene = shown()
     assert [*scene.joints] == ['arm/j']
