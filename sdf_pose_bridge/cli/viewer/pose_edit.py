@@ -96,14 +96,20 @@ class PoseEdit:
         """
         Edit a frame, or none.
 
-        The new pose stays if it is that of the same frame of the same scene.
+        The new pose stays while the frame is the same and has not moved, also where the file has
+        changed elsewhere.
         """
         before, self._frame = self._frame, frame
         if units != self._units:
             self._set_units(units)
-        if frame is None or before is None or frame[:2] != before[:2]:
+        is_same = frame is not None and before is not None and (
+            frame.names[0], frame.pose) == (before.names[0], before.pose)
+        if not is_same:
             self.pose, self._errors = None, ()
-            self._file = [] if frame is None else self._change(frame.pose, dry_run=True)
+        if frame is None:
+            self._file = []
+        elif before is None or frame.scene is not before.scene or frame.element != before.element:
+            self._file = self._change(frame.pose, dry_run=True)
         self._show()
         self._show_numbers()
 
@@ -178,10 +184,11 @@ class PoseEdit:
         self._undo.visible = self._undone is not None
 
     def _write_pose(self) -> None:
-        if self.pose is not None:
+        if self.pose is not None and self._frame is not None:
             change = self._change(self.pose, dry_run=False)
             if isinstance(change, PoseChange):
                 self._undone = change.file.undone
+                self._frame, self.pose = self._frame._replace(pose=self.pose), None
             else:
                 self._errors = change
             self._show()

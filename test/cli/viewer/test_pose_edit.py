@@ -23,8 +23,9 @@ from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.sdformat.file_change import FileChange
 
-SCENE = load_text(b"""<sdf version="1.11"><model name="m"><link name="l"/>
-  <frame name="free"/><frame name="fixed"/></model></sdf>""", 'm.sdf')
+TEXT = b"""<sdf version="1.11"><model name="m"><link name="l"/>
+  <frame name="free"/><frame name="fixed"/></model></sdf>"""
+SCENE = load_text(TEXT, 'm.sdf')
 POSE = Pose(*(0.123456789, 0.0, 0.0, *quaternion_from_rpy((0.0, 0.0, 0.123456789))))
 
 
@@ -81,6 +82,25 @@ def test_numbers_are_relative_to_the_reference(written):
     edit._numbers[0].value = -1.0
     edit._take_numbers()
     assert edit.pose[:3] == pytest.approx((0.0, 0.0, 0.0))
+
+
+def test_new_pose_stays_while_the_frame_does_not_move(written):
+    _, edit = written
+    edit.begin(edited('free'), Units())
+    edit._set(Pose(z=1.0))
+    edit.begin(edited('free')._replace(scene=load_text(TEXT, 'm.sdf')), Units())
+    assert edit.pose == Pose(z=1.0)
+    edit.begin(edited('free')._replace(pose=Pose()), Units())
+    assert edit.pose is None
+
+
+def test_what_is_written_is_the_old_pose_then(written):
+    poses, edit = written
+    edit.begin(edited('free'), Units())
+    edit._set(Pose(z=1.0))
+    edit._write_pose()
+    assert (poses, edit.pose) == ([Pose(z=1.0)], None)
+    assert edit._gizmo.position.tolist() == [0.0, 0.0, 1.0]
 
 
 def test_new_pose_stays_for_the_same_frame_only(written):
