@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The installed executable in a process of its own, as ``ros2 run`` would start it."""
 
+import contextlib
 import os
 from pathlib import Path
 import signal
@@ -93,8 +94,12 @@ class LoggedProcess:
 
     def children(self):
         """Return the ids of the processes that it has started."""
-        tasks = Path(f'/proc/{self.pid}/task').glob('*/children')
-        return [int(pid) for task in tasks for pid in task.read_text(encoding='ascii').split()]
+        pids = []
+        for task in Path(f'/proc/{self.pid}/task').glob('*/children'):
+            # A thread may end meanwhile.
+            with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+                pids += map(int, task.read_text(encoding='ascii').split())
+        return pids
 
     def send(self, number):
         if self._with_children and self._process.poll() is None:
