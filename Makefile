@@ -66,9 +66,9 @@ demo: setup
 test: setup
 	@$(in_shell) python -m pytest --numprocesses auto --dist worksteal $(ARGS)
 
-# What needs no ROS and starts no other program.
+# Tests that need no ROS and wait for no other process, so more processes than cores would not help.
 test_core: setup
-	@$(in_shell) python -m pytest --numprocesses auto --dist worksteal test/geometry test/sdformat test/scene test/tf $(ARGS)
+	@$(in_shell) python -m pytest --numprocesses $$(nproc) --dist worksteal test/geometry test/sdformat test/scene test/tf $(ARGS)
 
 # One after the other, as each of them loads the machine.
 test_long: setup

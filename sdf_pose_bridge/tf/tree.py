@@ -192,10 +192,13 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         frames = {element: frame for frame, element in enumerate(elements.tolist())}
         used = {options.root_frame, *frame_ids}
         for link in joint_links_from_motion(scene, motion, options.frame_names):
-            frame = frames.get(motion.moved_bodies[link.dof], NO_PARENT)
+            body = motion.moved_bodies[link.dof]
+            frame = frames.get(body, NO_PARENT)
+            parent = int(tf_parents.parents[body])
             frame_id = options.frame_prefix + link.name
+            # A joint to a link of another model that is not published is not in the URDF.
             if frame >= 0 and parents_of_elements[frame] != NO_PARENT and (
-                    frame_id not in used):
+                    parent in frames or scene.parents[parent] < 0) and frame_id not in used:
                 used.add(frame_id)
                 frame_ids.append(frame_id)
                 owners.append(len(scene.kinds) + link.dof)

@@ -5,6 +5,7 @@
 import pytest
 from sdf_texts import joint
 from sdf_texts import model_file
+from sdf_texts import world_file
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
@@ -45,3 +46,14 @@ def test_frames_at_joints_have_the_prefix():
 def test_there_are_none_unless_they_are_asked_for():
     assert 'j_frame' not in tf_tree_from_scene(load_text(model_file(
         '<link name="a"/><link name="b"/>' + joint(AWAY, 'j', 'revolute')))).frame_ids
+
+
+def test_a_joint_to_a_model_that_is_not_published_has_none():
+    text = world_file(
+        '<model name="base"><link name="l"/></model><model name="arm"><link name="l"/></model>'
+        '<joint name="j" type="revolute"><pose>0 1 0 0 0 0</pose><parent>base</parent>'
+        '<child>arm</child><axis><xyz>0 0 1</xyz></axis></joint>')
+    options = TfOptions(has_joint_links=True)
+    assert 'j_frame' in tf_tree_from_scene(load_text(text), options).frame_ids
+    assert 'j_frame' not in tf_tree_from_scene(
+        load_text(text), options._replace(model='arm')).frame_ids
