@@ -27,6 +27,10 @@ from sdf_pose_bridge.ros.qos_overrides import POLICIES_OF_PUBLISHER
 MESSAGES_AT_ONCE = 500
 PUBLISHERS_AT_ONCE = 40
 
+MOST_PUBLISHERS = 1010
+"""The recipes for networks in docs/ros_interface.md were measured with so many: the topics of the
+poses of 1000 frames, and a few others."""
+
 Stamp: TypeAlias = tuple[int, int]
 """Seconds and nanoseconds."""
 
@@ -81,7 +85,8 @@ class Publishers:
         """
         Make the publishers of these topics, and destroy all others.
 
-        Other callbacks of the node run meanwhile.
+        Other callbacks of the node run meanwhile. If there are more than :data:`MOST_PUBLISHERS`,
+        a warning is logged once.
         """
         unwanted = self._publishers.keys() - topics
         missing = [topic for topic in topics if topic not in self._publishers]
@@ -92,6 +97,11 @@ class Publishers:
                 self._node.destroy_publisher(self._publishers.pop(topic))
             else:
                 self.opened(topic)
+        if len(self._publishers) > MOST_PUBLISHERS:
+            self._node.get_logger().warning(
+                f'{len(self._publishers)} publishers are more than {MOST_PUBLISHERS}, the most '
+                'that was measured over networks; listeners may wait long for their first '
+                'message: choose fewer topics with pose_topics', once=True)
 
     async def send(self, topics: Sequence[Topic], messages: Sequence[bytes]) -> None:
         """

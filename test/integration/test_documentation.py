@@ -44,6 +44,7 @@ NOT_RUN = {
     'sdf_pose poses robot.sdf': "the file is the reader's",
     'sdf_pose poses --format json -I models cell.sdf': "the file is the reader's",
     'FASTDDS_': 'needs a network that loses packets, or a profile of the user',
+    'ROS_SUPER_CLIENT': 'the ros2 command line is not on PyPI',
     'export ROS_': "sets variables of the reader's shell",
     'export ': "sets variables of the reader's shell",
     'pip install': 'needs the network',

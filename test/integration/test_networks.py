@@ -218,3 +218,13 @@ def test_a_discovery_server_leads_to_everything(
     listener = start_listener_on('b')
     listener.wait_for_line('tree 2 1.0')
     listener.wait_for_line('all transforms')
+
+
+def test_static_peers_lead_to_everything_without_multicast(
+        start_bridge_on, start_listener_on, monkeypatch):
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    monkeypatch.setenv('ROS_STATIC_PEERS', ';'.join(ADDRESSES.values()))
+    start_bridge_on('a')
+    listener = start_listener_on('b')
+    listener.wait_for_line('tree 2 1.0')
+    listener.wait_for_line('all transforms')

@@ -13,6 +13,7 @@ from rclpy.qos import DurabilityPolicy
 from rclpy.qos import QoSProfile
 from std_msgs.msg import String
 
+from sdf_pose_bridge.ros import publishers as publishers_module
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.publishers import TextPublisher
 from sdf_pose_bridge.ros.publishers import Topic
@@ -60,6 +61,17 @@ def test_topics_are_replaced(node, publishers, finish):
     assert topics_of(node) == {'/bridge/b', '/bridge/c'}
     assert publishers.existing(a) is None
     assert publishers.existing(b) is kept
+
+
+def test_more_publishers_than_were_measured_cause_one_warning(
+        node, publishers, finish, monkeypatch, capfd):
+    monkeypatch.setattr(publishers_module, 'MOST_PUBLISHERS', 2)
+    a, b, c, d = (Topic(f'~/{name}', PoseStamped) for name in 'abcd')
+    finish(node.executor, publishers.replace, [a, b])
+    assert 'publishers are more than' not in capfd.readouterr().err
+    finish(node.executor, publishers.replace, [a, b, c])
+    finish(node.executor, publishers.replace, [a, b, d])
+    assert capfd.readouterr().err.count('3 publishers are more than 2') == 1
 
 
 def test_each_text_is_published_and_nothing_without_one(node):
