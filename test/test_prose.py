@@ -3,6 +3,7 @@
 """The documentation and the messages have no sentences that need a second reading."""
 
 import ast
+from itertools import chain
 from pathlib import Path
 import re
 
@@ -14,6 +15,9 @@ MODULES = sorted(ROOT.glob('sdf_pose_bridge/**/*.py'))
 
 STATEMENT_WITH_WHAT = r'(?:^|[.!?] |\* )What [^?.]*\.'
 """A sentence whose subject is a clause, such as "What cannot be read changes nothing."."""
+
+NOUN_WITH_WHAT = r'(?:^|:(?:param \w+|return):\s)[Ww]hat '
+"""A thing that a docstring describes by a clause, such as "What the file holds."."""
 
 PHRASES = {
     r'\b(?:is|are) not taken\b': 'is rejected, or is ignored',
@@ -29,16 +33,16 @@ def paragraphs_of_page(page):
     return [' '.join(each.split()) for each in re.split(r'\n\n|\n(?=[*|-] )', text)]
 
 
-def messages_of_module(module):
-    """Return all texts of a module but its docstrings."""
-    tree = ast.parse(module.read_text(encoding='utf-8'))
-    docstrings = {
-        id(node.value) for node in ast.walk(tree)
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)}
-    return [
-        node.value for node in ast.walk(tree)
-        if isinstance(node, ast.Constant) and isinstance(node.value, str)
-        and id(node) not in docstrings]
+def docstrings_and_messages(module):
+    """Return the docstrings of a module, also those of attributes, and all its other texts."""
+    nodes = list(ast.walk(ast.parse(module.read_text(encoding='utf-8'))))
+    texts = {
+        id(node): node.value for node in nodes
+        if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+    docstrings = [
+        texts.pop(id(node.value)) for node in nodes
+        if isinstance(node, ast.Expr) and id(node.value) in texts]
+    return docstrings, [*texts.values()]
 
 
 def found(pattern, texts):
@@ -48,6 +52,8 @@ def found(pattern, texts):
 def test_patterns():
     assert found(STATEMENT_WITH_WHAT, ['It ends. What cannot be read changes nothing.'])
     assert not found(STATEMENT_WITH_WHAT, ['What does it read?'])
+    assert found(NOUN_WITH_WHAT, ['What it holds.'])
+    assert found(NOUN_WITH_WHAT, ['Read.\n\n:param text: what to read.'])
     assert found('|'.join(PHRASES), ['the value is not taken'])
 
 
@@ -59,8 +65,11 @@ def test_page(page):
         assert not found(phrase, texts), better
 
 
-def test_messages():
-    texts = [text for module in MODULES for text in messages_of_module(module)]
-    assert not found(STATEMENT_WITH_WHAT, texts)
-    for phrase, better in PHRASES.items():
-        assert not found(phrase, texts), better
+def test_docstrings_and_messages():
+    docstrings, messages = (
+        list(chain(*texts)) for texts in zip(*map(docstrings_and_messages, MODULES), strict=True))
+    assert not found(NOUN_WITH_WHAT, [text.strip() for text in docstrings])
+    for texts in (docstrings, messages):
+        assert not found(STATEMENT_WITH_WHAT, texts)
+        for phrase, better in PHRASES.items():
+            assert not found(phrase, texts), better

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Take the messages of one topic of joint states, and set the positions that they give."""
+"""Process the messages of one topic of joint states, and set the positions in them."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _MOST_WAITING = 1000
 
 
 class Change(NamedTuple):
-    """What a message changes."""
+    """The changes of a message."""
 
     rows: NDArray[np.intp]
     """The moving transforms that have to be published."""
@@ -52,7 +52,7 @@ class Change(NamedTuple):
 
 @dataclass
 class _Plan:
-    """What messages with the same names change."""
+    """The changes of messages with the same names."""
 
     selection: Selection
     """The degrees of freedom that the names mean."""
@@ -61,14 +61,14 @@ class _Plan:
     rows: NDArray[np.intp]
     """The moving transforms to publish."""
     reported_count: int = -1
-    """How many joints had been reported when these were found; -1 if they were not."""
+    """Number of reported joints when these were found; -1 if they were not."""
 
 
 class _Gate(ReentrantCallbackGroup):
     """
     The group of a subscription whose messages wake the executor only while it is open.
 
-    What is closed lets the executor take messages all the same if nothing else can.
+    If no other callback can run, the executor processes messages of a closed group too.
     """
 
     def __init__(self) -> None:
@@ -85,13 +85,13 @@ class _Gate(ReentrantCallbackGroup):
 
 class JointStateTopic:
     """
-    Takes the messages of one topic.
+    Processes the messages of one topic.
 
     :param name: the name of the topic, before it is remapped.
     :param model: the top-level model whose joints the messages name; empty for all joints.
     :param number: a number that no other topic has.
     :param waits: whether messages may have to wait in the subscription.
-    :param receive: called with this topic, a message, and what rclpy knows about the message.
+    :param receive: called with this topic, a message, and its metadata from rclpy.
     """
 
     def __init__(
@@ -106,7 +106,7 @@ class JointStateTopic:
         self._number = number
         self._plans: dict[tuple[str, ...], _Plan] = {}
         self._last_message: JointStateBytes | None = None
-        # When names that mean nothing are logged again.
+        # Time to log unknown names again.
         self._unknown_due = 0.0
         self._gate = _Gate()
 
@@ -114,8 +114,9 @@ class JointStateTopic:
             receive(self, data, info)
 
         self._take = take
-        # A copy, which parameters may change. What is best effort and volatile fits every
-        # publisher, so there is nothing to report unless parameters change that.
+        # A copy, which parameters may change. A best effort and volatile subscription is
+        # compatible with every publisher, so there is nothing to report unless parameters change
+        # that.
         self._subscription = node.create_subscription(
             JointState, name, take,
             QoSProfile(depth=_MOST_WAITING, reliability=ReliabilityPolicy.BEST_EFFORT) if waits
@@ -151,7 +152,7 @@ class JointStateTopic:
         self._plans.clear()
 
     def take_one(self) -> bool:
-        """Take one message that waits in the subscription; return whether there was one."""
+        """Process one message that waits in the subscription; return whether there was one."""
         if self.is_open or self._take_message is None:
             return False  # the executor takes them
         with self._subscription.handle:
@@ -164,11 +165,11 @@ class JointStateTopic:
         self, frames: PublishedMovingFrames, data: bytes, sent_ns: int,
     ) -> Change | None:
         """
-        Set the positions that a message gives.
+        Set the positions of a message.
 
         :param data: a serialized message.
-        :param sent_ns: when it was sent.
-        :return: what has to be published; None if nothing has.
+        :param sent_ns: the time of sending.
+        :return: the changes to publish; None if there are none.
         """
         self.has_news = True
         message = self._valid_message(data)
@@ -248,13 +249,13 @@ class JointStateTopic:
                 f'{self.name} has {names_in_line(names)}, not the name of one '
                 f'moving joint{where}{positions.hint(names[0], self._model)}')
 
-        # To find the name that was probably meant takes long where there are many.
-        with contextlib.suppress(RuntimeError):  # there is no room for another thread
+        # Finding the nearest name takes long if there are many.
+        with contextlib.suppress(RuntimeError):  # no memory for another thread
             threading.Thread(target=warn, name='hint', daemon=True).start()
 
 
 def _rows_of_plan(plan: _Plan, frames: PublishedMovingFrames) -> NDArray[np.intp]:
-    """Return the transforms that the names of a plan move, and those that nobody reports."""
+    """Return the transforms that the names of a plan move, and those of unreported joints."""
     if not len(plan.selection.rows):
         return np.array([], np.intp)
     positions = frames.positions
@@ -266,8 +267,8 @@ def _rows_of_plan(plan: _Plan, frames: PublishedMovingFrames) -> NDArray[np.intp
 def _take_message_from_subscription(
     subscription: Subscription,
 ) -> Callable[[type, bool], tuple[bytes, object] | None] | None:
-    """Return what takes a waiting message from a subscription, if this release of rclpy has it."""
-    # Executors call it; rclpy has no public way.
+    """Return the function that takes a waiting message, if this release of rclpy has it."""
+    # Executors call it; rclpy has no public function for it.
     take: Callable[[type, bool], tuple[bytes, object] | None] | None = getattr(
         subscription.handle, 'take_message', None)
     return take

@@ -3,14 +3,15 @@
 """
 Follow topics of joint states, and publish the frames that their messages move.
 
-``/tf`` gets the transforms that a message changes, with the stamp of the message. What a joint
-moves that no message has named so far is not there; or, if such joints are at zero, it is there
-before the first message, and then with each message, so that TF is complete.
+The transforms that a message changes are published on ``/tf`` with the stamp of the message.
+Frames of joints that no message has named are not published. If such joints are at zero, all
+frames are published before the first message, and then these frames with each message, so that TF
+is complete.
 
-With a highest rate, the first message of a topic is published at once, and those that follow it
-wait in the subscription for the end of a period, which is the same for all topics, without waking
-the executor: to wake it takes ten times as long as everything that is done with a message. What
-has come by the end of a period is published in one message.
+With a highest rate, the first message of a topic is published at once. Later ones wait in the
+subscription for the end of a period, which is the same for all topics, without waking the
+executor: waking it takes ten times as long as processing a message. At the end of a period, all
+changes are published in one message.
 """
 
 from __future__ import annotations
@@ -32,16 +33,16 @@ from sdf_pose_bridge.ros.topic_names import JointStateTopics
 from sdf_pose_bridge.tf.joint_positions import NEVER
 
 INITIAL_PERIOD_S = 0.1
-"""How often ``/tf`` is published before the first message, if joints are at zero then."""
+"""Period of ``/tf`` before the first message, if joints are at zero then."""
 
 GRACE_S = 2.0
-"""After how long joints that no message has named are reported."""
+"""Seconds until joints that no message has named are reported."""
 
 TOPICS_PERIOD_S = 1.0 / 30.0
-"""How often the topics of moving frames are published at most."""
+"""Shortest period of the topics of moving frames."""
 
 SUBSCRIPTIONS_AT_ONCE = 40
-"""How many subscriptions are made before other callbacks run: in some 20 milliseconds."""
+"""Number of subscriptions, made in some 20 milliseconds, before other callbacks run."""
 
 _REST_S = 0.5
 
@@ -51,8 +52,8 @@ class JointStates:
     Follows topics of joint states.
 
     :param topics: the topics.
-    :param rule: how often each transform is published on ``/tf`` at most, in Hz, or 0.0 for each
-        message; and whether to publish each message anyway, also one with the last one's stamp.
+    :param rule: the highest rate of each transform on ``/tf`` in Hz, or 0.0 for each message; and
+        whether to publish for each message anyway, even with the stamp of the last one.
     """
 
     def __init__(
@@ -70,7 +71,7 @@ class JointStates:
         self._missing_topics: list[tuple[str, str]] = []
         self._warnings: tuple[str, ...] = ()
         self._topic_count = 0
-        # For each moving transform the stamp that it had last, and whether it has to be published.
+        # For each moving transform its last stamp, and whether it has to be published.
         self._stamps_ns = np.full(len(frames.frames.indices), NEVER)
         self._is_waiting = np.zeros(len(self._stamps_ns), np.bool_)
         self._topics_due = 0.0
@@ -103,7 +104,7 @@ class JointStates:
         self._follow(topics)
 
     def destroy(self) -> None:
-        """Stop following, and destroy what was created for it."""
+        """Stop following, and destroy the subscriptions and timers."""
         self._missing_topics.clear()
         for topic in self._topics.values():
             topic.destroy()
@@ -111,7 +112,7 @@ class JointStates:
             self._node.destroy_timer(timer)
 
     def replace(self, frames: PublishedMovingFrames, topics: JointStateTopics) -> None:
-        """Move other frames by the messages of these topics from now on."""
+        """Change the frames and the topics."""
         self._follow(topics)
         if frames is self._frames:
             return
@@ -127,13 +128,13 @@ class JointStates:
 
     @property
     def unreported(self) -> tuple[str, ...]:
-        """The joints that no message has named, although there was time."""
+        """The joints that no message has named in time."""
         return self._frames.positions.missing if self._is_grace_over else ()
 
     def take_waiting(self) -> None:
         """Take the messages that wait in subscriptions, for a 30th of a second at most."""
-        # Other callbacks would wait for ever for the end of messages that come too fast. Each
-        # topic has its turn, so that one with too many messages does not delay the others.
+        # If messages come too fast, other callbacks would wait forever. Topics take turns, so that
+        # one with too many messages does not delay the others.
         ends_at = time.monotonic() + TOPICS_PERIOD_S
         topics = list(self._topics.values())
         while topics and time.monotonic() < ends_at:
@@ -142,7 +143,7 @@ class JointStates:
     # Topics
 
     def _follow(self, topics: JointStateTopics) -> None:
-        """Have subscriptions of these topics and of no others."""
+        """Make the subscriptions of these topics, and destroy all others."""
         if topics.warnings != self._warnings:
             self._warnings = topics.warnings
             for line in topics.warnings:
@@ -174,9 +175,9 @@ class JointStates:
 
     def _receive(self, topic: JointStateTopic, data: bytes, info: Any) -> None:
         """
-        Take a message, and publish what it moves unless it has to wait.
+        Process a message, and publish the frames that it moves unless they have to wait.
 
-        :param info: what rclpy knows about the message.
+        :param info: metadata of the message from rclpy.
         """
         positions = self._frames.positions
         reported_count = np.count_nonzero(positions.is_reported)
@@ -189,7 +190,7 @@ class JointStates:
         if change is None:
             return
         rows = change.rows
-        # TF takes one transform for each time, and complains about a second one.
+        # TF accepts one transform for each stamp, and warns of a second one.
         self._is_waiting[rows] |= self._ignores_stamps or (
             self._stamps_ns[rows] != change.stamp_ns)
         self._stamps_ns[rows] = change.stamp_ns
@@ -203,7 +204,7 @@ class JointStates:
 
     def _publish(self, rows: NDArray[np.intp]) -> None:
         """
-        Publish what messages have changed.
+        Publish changed transforms.
 
         :param rows: the moving transforms to publish.
         """
@@ -213,7 +214,7 @@ class JointStates:
         self._publish_topics_if_due()
 
     def _end_period(self) -> None:
-        """Publish what has waited; of a topic without a message, publish the next one at once."""
+        """Publish waiting changes; without any on a topic, publish its next message at once."""
         self.take_waiting()
         rows = np.flatnonzero(self._is_waiting)
         if len(rows):

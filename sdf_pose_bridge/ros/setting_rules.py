@@ -30,7 +30,7 @@ AUTO_KINDS = 'auto'
 """The name for the default kinds of the format of the file."""
 
 MODEL_FIELD, WORLD_FIELD = '{model}', '{world}'
-"""What stands for a model and for the world in ``joint_states_topics``."""
+"""Placeholders for a model and for the world in ``joint_states_topics``."""
 
 LOWEST_RATE = 0.001
 """The lowest rate in Hz, except 0.0."""
@@ -100,7 +100,7 @@ def patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
 
 
 def topic_patterns_setting(values: Sequence[str]) -> tuple[str, ...]:
-    """Refuse what does not become names of topics."""
+    """Reject texts that do not become names of topics."""
     if not values:
         raise refusal([], 'at least one name of a topic')
     for value in patterns_setting(values):

@@ -83,7 +83,7 @@ class JointStateTopics(NamedTuple):
     """The top-level model whose joints are on each topic, by the name of the topic before it is
     remapped; empty where they can be those of all models."""
     warnings: tuple[str, ...] = ()
-    """A sentence about each topic that is not as the patterns say."""
+    """A sentence about each topic that differs from the patterns."""
 
 
 def topic_name_from_frame_id(frame_id: str, limit: int = LONGEST_NAME) -> str:

@@ -107,7 +107,7 @@ class JointPositions:
         """Whether each has a reported position, or follows from one that has."""
         self.stamps_ns = np.full(len(dofs), NEVER)
         """The stamp of the last message about the top-level model of each."""
-        # Which topic has given each position, and when that was sent.
+        # The topic of each position, and the time of sending.
         self._topics = np.zeros(len(dofs), np.intp)
         self._sent_ns = np.full(len(dofs), NEVER)
         self._unreported = unreported
@@ -188,9 +188,9 @@ class JointPositions:
         """
         Decide which positions of a message count, and take note of their sender.
 
-        :param selection: what the message names.
-        :param topic: a number that tells topics apart.
-        :param sent_ns: when the message was sent.
+        :param selection: the degrees of freedom of the message.
+        :param topic: a number that distinguishes topics.
+        :param sent_ns: the time of sending.
         :return: for each of :attr:`Selection.rows` whether no other topic has given a position
             that was sent later. Messages on one topic count in the order in which they come.
         """

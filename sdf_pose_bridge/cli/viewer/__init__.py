@@ -3,4 +3,4 @@
 """Show a scene in a browser, by viser; and the meshes in it, by trimesh."""
 
 LIBRARIES = ('viser>=1.1.1,<1.2', 'trimesh>=5.0,<6', 'pycollada>=0.7.2,<0.10')
-"""What only this room needs, in the releases that it is tested with; as in setup.py."""
+"""The libraries that only this room needs, in the tested releases; as in setup.py."""

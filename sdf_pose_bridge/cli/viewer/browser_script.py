@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-What viser does not do in the browser.
+Features of the page that viser does not have.
 
 These are frames on top of bodies, names at the pointer, copying, and changes of several controls
 at once. The scene is found as the developer tools of three.js find it.

@@ -41,21 +41,21 @@ from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
 MOST_SURFACES = 5_000
-"""How many surfaces that differ are drawn."""
+"""Largest number of different surfaces."""
 MOST_TRIANGLES = 3_000_000
-"""How many triangles these may have together."""
+"""Largest number of triangles of all surfaces."""
 MOST_NAMES = 500
-"""How many names are shown at once."""
+"""Largest number of names that are shown at once."""
 
 GROUPS = ('visuals', 'collisions', 'all names', 'all lines to parents', 'grid')
-"""What can be hidden, besides the kinds of frames by their labels."""
+"""Groups that can be hidden, besides the kinds of frames by their labels."""
 HIDDEN_AT_FIRST = frozenset(('collisions', 'all names', 'all lines to parents'))
-"""Those that a page does not show until they are switched on."""
+"""The groups that a page hides at first."""
 
 _REASON_WIDTH = 60
 _WXYZ = [6, 3, 4, 5]
 _GRAY = (0.52, 0.54, 0.57, 1.0)
-"""The color of what has none, which shows on a light and on a dark ground."""
+"""The default color, which is visible on a light and on a dark background."""
 _LINE_COLOR = (255, 146, 43)
 _MEASURED_COLOR = (230, 73, 128)
 _GRID_COLOR, _GRID_SECTION_COLOR = (173, 178, 184), (134, 141, 149)
@@ -76,22 +76,22 @@ class Surface(NamedTuple):
     rgba: NDArray[np.float64]
     """Shape (n, 4): the color of each copy, components from 0 to 1."""
     reason: str
-    """Why this stands for a mesh; empty if it is what the file means."""
+    """The reason why this replaces a mesh; empty for the surface in the file."""
 
 
 class Drawing:
     """
     The nodes that show a scene, until they are removed.
 
-    :param nodes: where they are added.
-    :param name: the name of the node above them; not that of the drawing before, as a browser
-        mixes up nodes that are removed and added again at once.
+    :param nodes: the nodes of the page. :param name: the name of their parent node; it must differ
+        from that of the previous drawing, as a browser mixes up nodes that are removed and added
+        again at once.
     :param meshes: reads the meshes.
     :param shown: the scene.
     :param posed: the same at the positions of its joints.
     :param hidden: the groups, kinds of frames and models that are not drawn.
-    :param opacity: that of surfaces, from 0 to 1, where 1 is opaque.
-    :param select: is called with the frame that is clicked, an index into the TF tree.
+    :param opacity: opacity of surfaces, from 0 to 1.
+    :param select: called with the clicked frame, an index into the TF tree.
     """
 
     def __init__(
@@ -114,7 +114,7 @@ class Drawing:
         origins = tree.poses[:, :3]
         extent_m = float(np.ptp(origins, axis=0).max()) if len(origins) else 0.0
         self.frame_names = [printable(tree.frame_ids[frame]) for frame in self.frames]
-        """The names of these."""
+        """The names of these frames."""
         self._surfaces, reasons = surfaces_from_scene(
             scene, [element for element in scene.shapes if is_shown[element]
                     and f'{Kind(scene.kinds[element]).label}s' not in hidden],
@@ -135,7 +135,7 @@ class Drawing:
         """The extent of everything."""
         self.bounds = bounds_of_interest(
             origins[self.frames], shown.is_in_robot[elements[self.frames]], boxes)
-        """The lowest and the highest corner of what the first view shows, shape (2, 3)."""
+        """The lowest and the highest corner of the first view, shape (2, 3)."""
         view_m = float(np.linalg.norm(self.bounds[1] - self.bounds[0])) or self.size_m
         self.home = home_view(self.bounds, origins[self.frames], boxes)
         """The first view."""
@@ -163,7 +163,7 @@ class Drawing:
         self._node.remove()
 
     def place(self, posed: PosedScene) -> None:
-        """Move what is drawn to other positions of joints."""
+        """Move the drawing to other positions of joints."""
         scene, tree = posed
         self._axes.batched_wxyzs, self._axes.batched_positions = _places(tree.poses[self.frames])
         for copies, elements in self._copies:
@@ -174,7 +174,7 @@ class Drawing:
         Show larger axes for a frame, and lines to its ancestors, or all lines if they are on.
 
         :param frame: its index, or -1 for none.
-        :param pose: where the axes are, in the root frame.
+        :param pose: the pose of the axes in the root frame.
         :param reference: the pose of a frame to which there is a line.
         """
         ends = [end[:3] for end in (reference, pose) if end is not None]
@@ -189,11 +189,11 @@ class Drawing:
         self, posed: PosedScene, frame: int, eye: Floats, look_at: Floats,
     ) -> list[tuple[str, Floats]]:
         """
-        Return the names that are shown, the reasons why meshes are not, and where these stand.
+        Return names of frames and reasons for missing meshes, with their points.
 
-        :param frame: index of a frame whose name is shown at any rate, or -1.
-        :param eye: where the camera is.
-        :param look_at: what is in the middle of the picture.
+        :param frame: index of a frame whose name is always shown, or -1.
+        :param eye: the position of the camera.
+        :param look_at: the point in the middle of the picture.
         """
         scene, tree = posed
         frames = self.frames[:MOST_NAMES].tolist() if self._has_all_names else []
@@ -217,7 +217,7 @@ class Drawing:
         return boxes
 
     def set_opacity(self, opacity: float) -> None:
-        """Let surfaces be seen through, from 0 to 1, where 1 is opaque."""
+        """Set the opacity of surfaces, from 0 to 1."""
         for copies, _ in self._copies:
             copies.opacity = None if opacity >= 1.0 else opacity
 
@@ -235,7 +235,7 @@ class Drawing:
         spacing_m = grid_spacing_m(view_m)
         middle = np.round(self.bounds.mean(axis=0)[:2] / spacing_m) * spacing_m
         width_m = 2.0 * spacing_m * np.ceil(view_m / spacing_m)
-        # A little above the floors that many files have there.
+        # A little above the floors of many files.
         height_m = 0.001 * view_m
         nodes.add_grid(
             f'{name}/grid', width_m, width_m, cell_size=spacing_m, section_size=5.0 * spacing_m,
@@ -272,7 +272,7 @@ class Labels:
     """
     Texts in the scene.
 
-    :param nodes: where they are added.
+    :param nodes: the nodes of the page.
     """
 
     def __init__(self, nodes: viser.SceneApi) -> None:
@@ -281,7 +281,7 @@ class Labels:
 
     def show(self, texts: Sequence[tuple[str, Floats]]) -> None:
         """Show texts at points instead of those before."""
-        # A browser leaves a label that is removed and added again at once where it was.
+        # A browser does not move a label that is removed and added again at once.
         while len(self._labels) < len(texts):
             self._labels.append(self._nodes.add_label(f'/names/{len(self._labels)}', ''))
         for number, label in enumerate(self._labels):
@@ -291,21 +291,21 @@ class Labels:
 
 
 def _places(poses: PoseArray) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Return quaternions w x y z and positions, as viser takes them."""
+    """Return quaternions w x y z and positions for viser."""
     return poses[:, _WXYZ].astype(np.float32), poses[:, :3].astype(np.float32)
 
 
 def _lines(tree: TfTree, shown: NDArray[np.intp]) -> Floats:
     """Return lines from the parents of frames to the frames, shape (n, 2, 3)."""
     frames = shown[tree.parents[shown] != NO_PARENT]
-    # The last entry is the root frame, which the index of the root as a parent means.
+    # The last entry is the root frame, at the index of the root as a parent.
     origins = np.concatenate([tree.poses[:, :3], np.zeros((1, 3))])
     assert ROOT_IS_PARENT == -1
     return np.stack([origins[tree.parents[frames]], origins[frames]], axis=1)
 
 
 def _ancestry(tree: TfTree, frame: int) -> NDArray[np.intp]:
-    """Return a frame and its ancestors in TF; nothing for -1."""
+    """Return a frame and its ancestors in TF; empty for -1."""
     frames = []
     while frame >= 0:
         frames.append(frame)
@@ -329,10 +329,10 @@ def surfaces_from_scene(
 
     :param scene: the scene, loaded with its shapes.
     :param elements: the visuals and collisions to draw.
-    :param size_m: extent of the frames; no side of a plane is much longer, and a mesh of which
-        nothing is known is a box of a small part of it.
+    :param size_m: extent of the frames; it limits the sides of planes, and the box for an unknown
+        mesh is a small part of it.
     :param meshes: reads meshes.
-    :return: the surfaces, and for each element that is not drawn as the file means it, why.
+    :return: the surfaces, and the reason for each element that is not drawn as in the file.
     """
     copies: dict[tuple[Kind, Shape, str], list[int]] = {}
     for element in elements:

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Write what the page says about frames, as HTML; what comes from a file is escaped."""
+"""Describe frames in HTML; texts from a file are escaped."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def escaped(text: str) -> str:
     """
     Return a text for HTML.
 
-    :return: the same, without characters that a page or a terminal would act upon.
+    :return: the same text without control characters, and without markup.
     """
     return html.escape(printable(text))
 
@@ -48,9 +48,9 @@ def html_of_frame(scene: Scene, tree: TfTree, frame: int, reference: int, units:
 
     :param frame: index of the frame.
     :param reference: index of another one, or ``ROOT_IS_PARENT`` for the root frame.
-    :param units: units of poses that are for reading; those for copying are in metres and radians.
+    :param units: units of poses to read; poses to copy are in metres and radians.
     :return: names, place in the file, poses in the root, the parent and the other frame, and the
-        last in forms to copy.
+        last pose in formats to copy.
     """
     element, parent = int(tree.elements[frame]), int(tree.parents[frame])
     kind = kind_labels_of(scene, tree)[frame]
@@ -59,7 +59,7 @@ def html_of_frame(scene: Scene, tree: TfTree, frame: int, reference: int, units:
         rows += [(text, escaped(text)) for text in (
             scene.names[element], str(scene.place(element)))]
     lines = [html_of_copy_button(printable(text)) + row for text, row in rows]
-    # The last entries are the root frame, which the index of the root as a parent means.
+    # The last entries are the root frame, at the index of the root as a parent.
     assert ROOT_IS_PARENT == -1
     ids = (*tree.frame_ids, tree.root_frame)
     poses = [*(Pose(*pose) for pose in tree.poses.tolist()), Pose()]
@@ -74,7 +74,7 @@ def html_of_frame(scene: Scene, tree: TfTree, frame: int, reference: int, units:
                 lines.append(
                     f'distance {distance:.{units.length.digits}f} {units.length.name}')
     pose = relative_pose(poses[reference], poses[frame])
-    # What differs less than this comes from the computation. To add zero leaves no negative zeros.
+    # Smaller differences are rounding errors. Adding zero removes negative zeros.
     rpy, quat, franka = (
         (converted_poses([pose], 'sdf_quat_xyzw', name)[0].round(12) + 0.0).tolist()
         for name in ('sdf_rpy', 'sdf_quat_xyzw', 'franka_matrix'))
@@ -101,7 +101,7 @@ def _text(values: Sequence[float]) -> str:
 
 
 def _relative_to(scene: Scene, tree: TfTree, frame: int, reference: int) -> str:
-    """Return the attribute of a pose; nothing for the root and for what SDFormat has no name."""
+    """Return the attribute of a pose; empty if SDFormat has no name for the frame."""
     element = int(tree.elements[reference]) if reference != ROOT_IS_PARENT else -1
     if element < 0:
         return ''
@@ -113,7 +113,7 @@ def _relative_to(scene: Scene, tree: TfTree, frame: int, reference: int) -> str:
 
 def html_of_difference(old: Pose, new: Pose, reference: Pose, units: Units) -> str:
     """
-    Write two poses of a frame, as it is and as it would be, and the difference, side by side.
+    Write the current and the new pose of a frame and their difference side by side.
 
     :param reference: the pose of the frame that they are shown relative to; all three are in the
         root frame.
@@ -131,11 +131,11 @@ def html_of_difference(old: Pose, new: Pose, reference: Pose, units: Units) -> s
 
 def html_of_edit(names: Sequence[str], change: PoseChange | list[str]) -> str:
     """
-    Tell what is edited, and in which file.
+    Describe the edited frame, and the file.
 
     :param names: the names of the frame and of the frame that its pose is relative to; empty if no
         frame that can be edited is selected.
-    :param change: what the file would say, or why it cannot.
+    :param change: the change of the file, or the reason why it is impossible.
     """
     if not names:
         return f'<div style="{_FILE_STYLE}">Select a frame, then drag it or type numbers.</div>'
@@ -148,7 +148,7 @@ def html_of_edit(names: Sequence[str], change: PoseChange | list[str]) -> str:
 
 
 def html_of_lines(name: str, lines: Iterable[str]) -> str:
-    """Return lines as they are, in an element of this class; nothing if there are none."""
+    """Return lines in an element of this class; empty if there are none."""
     text = '\n'.join(map(escaped, lines))
     return text and f'<pre class="{name}" style="{_ERROR_STYLE}">{text}</pre>'
 

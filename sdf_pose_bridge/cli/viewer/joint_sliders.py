@@ -24,7 +24,7 @@ half a metre to either side."""
 
 
 class JointRange(NamedTuple):
-    """Where a joint can be, in radians or metres."""
+    """The range of a joint, in radians or metres."""
 
     is_angle: bool
     lower: float
@@ -41,7 +41,7 @@ class JointRange(NamedTuple):
 
 
 def range_of_dof(dof: DegreeOfFreedom) -> JointRange:
-    """Return where a degree of freedom can be."""
+    """Return the range of a degree of freedom."""
     is_angle, axis = bool(dof.rad_per_unit), dof.axis
     if axis.upper - axis.lower >= _LARGEST_RANGE:
         most = math.pi if is_angle else 0.5
@@ -53,9 +53,9 @@ class JointSliders:
     """
     A folder with a slider for each joint, and buttons that move all of them.
 
-    :param ranges: where each joint can be.
-    :param positions: where joints are, in radians or metres; those of others do not count, and
-        joints without one start at zero, or at the nearest limit.
+    :param ranges: the range of each joint.
+    :param positions: the positions of joints, in radians or metres; other names are ignored, and
+        joints without a position start at zero, or at the nearest limit.
     :param units: the units of the sliders.
     :param events: those of the page.
     """

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Choose where names of frames stand in the picture."""
+"""Place the names of frames in the picture."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class _Label(NamedTuple):
         return math.hypot(self.top - other.top, self.left - other.left) < _LINE_HEIGHT
 
     def is_on(self, other: _Label) -> bool:
-        """Return whether a part of one would lie on the other."""
+        """Return whether both would overlap."""
         higher, lower = sorted((self, other), key=lambda each: each.top)
         first, second = sorted((self, other), key=lambda each: each.left)
         return (lower.top < higher.top + _LINE_HEIGHT * len(higher.lines)
@@ -49,15 +49,15 @@ def labels_from_names(
     names: Sequence[str], points: Floats, eye: Floats, look_at: Floats,
 ) -> list[tuple[str, Floats]]:
     """
-    Choose where the names of frames stand, so that none lies on another.
+    Place the names of frames without overlaps.
 
-    Names of frames that are at one place are lines of one text. Of other names that would lie on
-    one another, the one that is nearest to the camera stands, and the others are left out.
+    Names of frames at one place are lines of one text. Of other names that would overlap, only the
+    one nearest to the camera is shown.
 
     :param names: the names of frames, or other texts, which may have several lines.
     :param points: shape (n, 3), their origins.
-    :param eye: shape (3,), where the camera is.
-    :param look_at: shape (3,), what is in the middle of the picture, not above or below the eye.
+    :param eye: shape (3,), the position of the camera.
+    :param look_at: shape (3,), the point in the middle of the picture, not above or below the eye.
     :return: the texts, and their points: each text is right of its point and below it.
     """
     forward = np.asarray(look_at) - eye

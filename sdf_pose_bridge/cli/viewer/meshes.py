@@ -35,14 +35,14 @@ from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 MOST_BYTES = 100_000_000
 """Size of a mesh with the files that it names."""
 MOST_TRIANGLES = 500_000
-"""How many triangles a mesh may have."""
+"""Largest number of triangles of a mesh."""
 ALLOWANCE = Allowance(
     memory_bytes=2_000_000_000, processor_s=20.0, wall_s=20.0, address_space_bytes=2_000_000_000)
-"""What to read a mesh may take."""
+"""Limits for reading a mesh."""
 MOST_BYTES_KEPT = 300_000_000
-"""How much of memory the meshes take together that are kept."""
+"""Largest size of all meshes that are kept."""
 FORMATS = ('.dae', '.glb', '.gltf', '.obj', '.stl')
-"""What is read. Archives are not, as they can unpack to any size."""
+"""The formats. Archives are not read, as they can unpack to any size."""
 
 _LARGEST_M = 1e9
 _MISSING = (0.88, 0.19, 0.19, 0.5)
@@ -57,15 +57,15 @@ class MeshPart(NamedTuple):
     faces: Any
     """Shape (m, 3): the points of each triangle."""
     rgba: tuple[float, ...] = ()
-    """Each component from 0 to 1; empty where the file of the mesh has none."""
+    """Each component from 0 to 1; empty if the file of the mesh has none."""
 
 
 class Mesh(NamedTuple):
-    """What is known of a mesh."""
+    """The surfaces of a mesh."""
 
     parts: tuple[MeshPart, ...] = ()
     reason: str = ''
-    """Why these are not its surfaces; empty if they are."""
+    """The reason why the surfaces are replaced; empty if they are those of the file."""
 
 
 class _KeptMesh(NamedTuple):
@@ -73,17 +73,17 @@ class _KeptMesh(NamedTuple):
 
     mesh: Mesh
     version: tuple[int, int]
-    """Of its file: when it was changed, and its size."""
+    """Time of change and size of its file."""
 
     @property
     def size(self) -> int:
-        """Its bytes, with some for what else is kept of it."""
+        """Its size in bytes, with some for the rest of the record."""
         return 1000 + sum(int(part.points.nbytes + part.faces.nbytes) for part in self.mesh.parts)
 
 
 class MeshReader:
     """
-    Reads meshes, and remembers those used last until their files change.
+    Reads meshes, and keeps the last used ones until their files change.
 
     :param finder: finds their files.
     """
@@ -91,17 +91,17 @@ class MeshReader:
     def __init__(self, finder: ResourceFinder) -> None:
         self._finder = finder
         self._process = LimitedProcess(ALLOWANCE)
-        # The one that was used last is the last.
+        # The last used one comes last.
         self._kept: dict[tuple[str, str], _KeptMesh] = {}
         self._kept_bytes = 0
 
     def mesh(self, shape: Shape, file: str, size_m: float) -> Mesh:
         """
-        Return what is drawn of a shape.
+        Return the surfaces to draw for a shape.
 
         :param file: path of the file that names it.
-        :param size_m: extent of the scene; no side of a plane is much longer.
-        :return: its surfaces, or a small box where these are not known.
+        :param size_m: extent of the scene; it limits the sides of planes.
+        :return: its surfaces, or a small box if they are unknown.
         """
         if shape.type != 'mesh':
             return _mesh_of_shape(shape, 2.0 * size_m)
@@ -148,7 +148,7 @@ def _mesh_of_shape(shape: Shape, largest_m: float) -> Mesh:
     if shape.reason_without_surface:
         return Mesh(reason=shape.reason_without_surface)
     if shape.type == 'plane':
-        # Planes are often much larger than what stands on them.
+        # Planes are often much larger than the bodies on them.
         shape = shape._replace(sizes_m=tuple(min(size_m, largest_m) for size_m in shape.sizes_m))
     return Mesh((MeshPart(*shape.surface),))
 
@@ -160,8 +160,8 @@ def mesh_from_file(path: str, submesh: str) -> Mesh:
     As in Gazebo the unit of a DAE file counts, and the up axes of DAE and glTF files do not.
 
     :param path: path of its file.
-    :param submesh: the name of the part that is meant; empty for all of it.
-    :return: its surfaces, or why there are none.
+    :param submesh: the name of a part; empty for all of it.
+    :return: its surfaces, or the reason why there are none.
     """
     try:
         return Mesh(_parts(_scene_from_file(path, submesh), submesh))
@@ -221,7 +221,7 @@ def _parts(scene: trimesh.Scene, submesh: str) -> tuple[MeshPart, ...]:
         names_of_parts = ', '.join(map(printable, sorted(scene.geometry))) or 'no surface'
         msg = (f'it has no part "{submesh}", but {names_of_parts}' if submesh
                else 'it has no surface')
-    # A coordinate that is not a number is too large, too.
+    # NaN is too large too.
     elif not all(np.abs(part.points).max() <= _LARGEST_M for part in parts):
         msg = f'a coordinate is larger than {_LARGEST_M:g} m'
     elif triangle_count > MOST_TRIANGLES:

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The page: its server, its controls, and what they change in it."""
+"""The page: its server, its controls and their actions."""
 
 from __future__ import annotations
 
@@ -46,14 +46,14 @@ _ANGLES = {unit.name: unit for unit in (RADIANS, DEGREES)}
 
 class Page:
     """
-    The page of a file; one thread does what browsers ask for.
+    The page of a file; one thread processes the requests of browsers.
 
     :param shown: the scene that it shows at first.
     :param port: its port, or the next one that is free; 0 for any.
     :param units: the units of poses and sliders at first.
     :param finder: finds the meshes.
-    :param set_pose: puts a pose into the file; None if frames cannot be moved.
-    :param hidden: what is not shown until it is switched on.
+    :param set_pose: writes a pose into the file; None if frames cannot be moved.
+    :param hidden: groups, kinds of frames and models that are hidden at first.
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class Page:
 
     @property
     def reasons(self) -> list[str]:
-        """Lines that say which shapes are not drawn as the file means them."""
+        """Lines about shapes that are not drawn as in the file."""
         return self._drawing.reasons
 
     def html(self, title: str) -> str:
@@ -106,7 +106,7 @@ class Page:
         """
         Show a scene instead of the one before.
 
-        What is hidden, the frame that is selected and the positions of joints stay.
+        Hidden groups, the selected frame and the positions of joints stay.
         """
         with self._server.atomic():
             before, self._shown = self._shown, shown
@@ -123,7 +123,7 @@ class Page:
         self._errors.content = html_of_lines('errors', lines)
 
     def act(self, seconds: float) -> None:
-        """Do what browsers ask for; wait for it, but no longer than this."""
+        """Process the requests of browsers; wait no longer than this for them."""
         actions = self._events.asked(seconds)
         with self._server.atomic():
             for action in actions:
@@ -135,7 +135,7 @@ class Page:
             if actions:
                 self._show_names()
 
-    # What is drawn
+    # Drawing
 
     def _move(self) -> None:
         self._positions = dict(self._joints.positions)
@@ -156,7 +156,7 @@ class Page:
         self._show_frame()
 
     def _show_frame(self) -> None:
-        """Show the selected frame where it is now."""
+        """Show the selected frame at its current pose."""
         if self._edit is not None:
             self._edit.begin(self._edited_frame(), self._units)
         self._describe()
@@ -174,7 +174,7 @@ class Page:
             lambda scene, element: scene_at_positions(scene, positions).pose_of(element))
 
     def _describe(self) -> None:
-        """Describe the selected frame, and mark it in the scene, where it is or would be."""
+        """Describe the selected frame, and mark it in the scene at its current or new pose."""
         frame, pose = self._selected.frame, None if self._edit is None else self._edit.pose
         if frame >= 0 and pose is None:
             pose = self._posed.pose_of(frame)

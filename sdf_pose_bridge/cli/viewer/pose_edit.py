@@ -27,15 +27,15 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_change import FileChange
 
 SetPose = Callable[..., PoseChange]
-"""Puts a pose into a file, as ``sdf_pose_bridge.cli.set.set_pose`` does, of which it has the
-arguments but for the options."""
+"""Writes a pose into a file, as ``sdf_pose_bridge.cli.set.set_pose`` does, with the same arguments
+except the options."""
 
 _STEPS = (1.0, 10.0, 100.0, 1000.0)
-"""How far the arrows beside a number go, in units of its last digit."""
+"""Step of the arrows beside a number, in units of its last digit."""
 
 
 class EditedFrame(NamedTuple):
-    """A frame that is to be edited."""
+    """The edited frame."""
 
     scene: Scene
     """The scene as it was loaded."""
@@ -54,10 +54,10 @@ class EditedFrame(NamedTuple):
 
 class PoseEdit:
     """
-    The folder in which the pose of the selected frame is changed, and the gizmo at the frame.
+    The folder that changes the pose of the selected frame, and the gizmo at the frame.
 
-    :param set_pose: puts a pose into the file.
-    :param changed: is called when the new pose has changed.
+    :param set_pose: writes a pose into the file.
+    :param changed: called when the new pose has changed.
     """
 
     def __init__(
@@ -96,8 +96,8 @@ class PoseEdit:
         """
         Edit a frame, or none.
 
-        The new pose stays while the frame is the same and has not moved, also where the file has
-        changed elsewhere.
+        The new pose stays if the frame is the same and has not moved, even if the file has changed
+        elsewhere.
         """
         before, self._frame = self._frame, frame
         if units != self._units:
@@ -134,7 +134,7 @@ class PoseEdit:
             self._set(Pose(*(*self._gizmo.position.tolist(), x, y, z, w)))
 
     def _take_numbers(self) -> None:
-        """Take the numbers that were typed; the others stay as exact as they are."""
+        """Read the typed numbers; the others keep all their digits."""
         typed = [number.value for number in self._numbers]
         if self._frame is not None and typed != self._shown:
             at = relative_pose(self._frame.reference, self.pose or self._frame.pose)
@@ -160,7 +160,7 @@ class PoseEdit:
     def _show_numbers(self) -> None:
         if self._frame is not None:
             pose = relative_pose(self._frame.reference, self.pose or self._frame.pose)
-            # The numbers tell of this change too, and are not taken then.
+            # The numbers report this change too; it is ignored then.
             self._shown = [float(text) for text in self._units.texts(pose)]
             for number, value in zip(self._numbers, self._shown, strict=True):
                 number.value = value
@@ -203,7 +203,7 @@ class PoseEdit:
             self._show()
 
     def _change(self, pose: Pose, *, dry_run: bool) -> PoseChange | list[str]:
-        """Put the frame there, in the file; return why if this is not possible."""
+        """Write the pose into the file; return the reason if this is not possible."""
         assert self._frame is not None
         try:
             return self._set_pose(

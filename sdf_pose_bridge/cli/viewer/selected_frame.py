@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The tree of frames in the page, and what it says about the one that is selected."""
+"""The tree of frames in the page, and the description of the selected frame."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
 MOST_ROWS = 300
-"""How many rows of the tree of frames are in the page at once; a search finds the others."""
+"""Largest number of rows of the tree of frames in the page; a search finds the others."""
 
 _MOST_CHOICES = 1000
 _ROWS_STYLE = ('<style>.rows{max-height:40vh;overflow:auto;margin:0 1em;font-size:0.8em}'
@@ -36,9 +36,8 @@ class SelectedFrame:
     """
     The folders with the tree of frames and with the selected frame.
 
-    :param place: where the selected frame is shown.
-    :param changed: is called when another frame is selected, or its pose is asked for relative to
-        another one.
+    :param place: the folder of the selected frame.
+    :param changed: called when another frame, or another reference of its pose, is selected.
     """
 
     def __init__(
@@ -80,7 +79,7 @@ class SelectedFrame:
         return ids.index(other) if other in ids else ROOT_IS_PARENT
 
     def list_frames(self, tree: TfTree) -> None:
-        """List the frames of another tree; the one that is selected stays."""
+        """List the frames of another tree; the selected frame stays."""
         self._tree = tree
         self._choice.options = (tree.root_frame, *tree.frame_ids[:_MOST_CHOICES])
         with self._folder:
@@ -120,7 +119,7 @@ class SelectedFrame:
         self._rows.content = f'{_ROWS_STYLE}<div class="rows">{content}</div>'
 
     def _select_row(self, number: int) -> None:
-        # What was clicked may be gone by now.
+        # The clicked frame may be gone by now.
         if number < len(self._row_frames):
             self.select(self._row_frames[number])
 

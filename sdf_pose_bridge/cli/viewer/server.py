@@ -1,9 +1,9 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-The server of the page, which only who knows the address of the page can use, and its events.
+The server of the page, which only users with the address of the page can use, and its events.
 
-Everything that has no public name in viser is used here alone.
+Private names of viser are used only here.
 """
 
 from __future__ import annotations
@@ -47,11 +47,11 @@ class PageServer(NamedTuple):
 
     viser: viser.ViserServer
     address: str
-    """It has a secret in its path, without which nothing is answered."""
+    """The address with a secret in its path; requests without the secret are rejected."""
 
 
 class Events:
-    """What browsers ask for: viser hears it in its own threads, and one thread does it."""
+    """The requests of browsers, which viser receives in its threads, for one thread."""
 
     def __init__(self) -> None:
         self._actions: SimpleQueue[Callable[[], object]] = SimpleQueue()
@@ -67,7 +67,7 @@ class Events:
         happens(put)
 
     def asked(self, seconds: float) -> list[Callable[[], object]]:
-        """Return what is to be done; wait for it, but no longer than this."""
+        """Return the functions to call; wait no longer than this for them."""
         actions = []
         with contextlib.suppress(Empty):
             actions.append(self._actions.get(timeout=seconds))
@@ -78,7 +78,7 @@ class Events:
 
 def server_for_its_owner(port: int) -> PageServer:
     """
-    Start a server that other machines, other users and the pages of other servers cannot use.
+    Start a server for this user only, not for other machines, users or pages of other servers.
 
     :param port: its port, or the next one that is free; 0 for any.
     :raises CommandError: if this cannot be done with the installed viser.
@@ -90,13 +90,13 @@ def server_for_its_owner(port: int) -> PageServer:
     with _requests_need(secret):
         server = viser.ViserServer(_ADDRESS, port, verbose=False)
     server.gui.configure_theme(show_logo=False, show_share_button=False)
-    # Beside the scene, not on it; where there is little room, it is folded.
+    # Beside the scene, not on it; in a small window, it is folded.
     server.gui.main_panel.dock_right()
     server.gui.main_panel.set_width(_PANEL_WIDTH)
     server.on_client_connect(
         lambda client: client.gui.main_panel.minimize()
         if client.camera.image_width < _LEAST_WIDTH else None)
-    # The picture of surroundings that viser lights a scene with makes every color pale.
+    # The environment map of viser makes every color pale.
     server.scene.configure_environment_map(None)
     server.scene.configure_default_lights(enabled=False)
     return PageServer(server, f'http://{_ADDRESS}:{server.get_port()}/{secret}/')
@@ -118,8 +118,8 @@ def reason_to_refuse(request: Request, secret: str) -> str:
     """
     Judge a request for a file, or for a connection.
 
-    :param secret: what its path begins with.
-    :return: why it is refused; empty if it is not.
+    :param secret: the beginning of its path.
+    :return: the reason why it is rejected; empty if it is not.
     """
     given = urlsplit(request.path).path.split('/')[1:2]
     if not given or not secrets.compare_digest(given[0].encode(), secret.encode()):
@@ -138,7 +138,7 @@ def _requests_need(secret: str) -> Iterator[None]:
     :raises CommandError: if no server was started in the way that is known.
     """
     # viser has no place for this, so it is put where viser starts its server. To judge connections
-    # when viser has accepted them would be too late for what is asked for before.
+    # when viser has accepted them would be too late for earlier requests.
     serve = websockets_server.serve
     guarded = []
 

@@ -45,7 +45,7 @@ class ShownScene:
     A scene as the page shows it.
 
     :param loaded: the scene, loaded with its shapes.
-    :param options: which elements are frames, and how they are named.
+    :param options: the elements that are frames, and the rules for their names.
     :raises SdfError: if the scene has no TF tree, or a model to show does not exist.
     """
 
@@ -68,7 +68,7 @@ class ShownScene:
             name: range_of_dof(dof)
             for name, dof in zip(JointPositions(loaded, dofs).names, dofs, strict=True)
             if self._is_in_model[dof.joint.element] and dof.axis.mimic is None}
-        """Where each degree of freedom can be that does not follow another."""
+        """The range of each degree of freedom that does not follow another one."""
         self.is_in_robot: NDArray[np.bool_] = np.isin(
             self._tops, self._tops[[dof.joint.element for dof in dofs]])
         """Shape (n,): whether each element is in a model that moves."""

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Choose where a camera stands, so that it shows robots and frames."""
+"""Place a camera so that it shows robots and frames."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ DIRECTIONS: Mapping[str, tuple[float, float, float]] = MappingProxyType({
     'front': (1.0, 0.0, 0.0),
     'side': (0.0, -1.0, 0.0),
 })
-"""Where the camera stands for each view, seen from what it shows; +x is the front."""
+"""Direction from the middle of the picture to the camera for each view; +x is the front."""
 
 _HOME_DIRECTIONS = ((0.75, -0.5, 0.45), (0.75, 0.5, 0.45), (-0.75, -0.5, 0.45), (-0.75, 0.5, 0.45))
 _MARGIN = 1.1
@@ -34,7 +34,7 @@ _OUTLIERS = 0.1
 
 
 class View(NamedTuple):
-    """Where a camera stands, and what is in the middle of its picture."""
+    """The position of a camera, and the point in the middle of its picture."""
 
     position: Floats
     look_at: Floats
@@ -49,10 +49,10 @@ def bounds_of_interest(
     origins: Floats, is_in_robot: NDArray[np.bool_], boxes: Floats,
 ) -> Floats:
     """
-    Find what the first view shows: robots, most other frames, and the bodies at them.
+    Find the bounds of the first view: robots, most other frames, and the bodies at them.
 
-    A floor or a fence, which is larger than the frames are apart or is far from them, does not
-    count.
+    Bodies that are larger than the distances of the frames, or far from them, such as a floor or a
+    fence, do not count.
 
     :param origins: shape (n, 3), the origins of frames.
     :param is_in_robot: shape (n,), whether each is a frame of a model that moves.
@@ -96,7 +96,7 @@ def home_view(bounds: Floats, origins: Floats, boxes: Floats) -> View:
     """
     Choose the first view: the side from which bodies hide the fewest frames.
 
-    :param bounds: what it shows, shape (2, 3).
+    :param bounds: the bounds of the view, shape (2, 3).
     :param origins: shape (n, 3), the origins of frames.
     :param boxes: shape (m, 2, 3), the lowest and the highest corners of bodies.
     """
@@ -117,7 +117,7 @@ def grid_spacing_m(size_m: float) -> float:
 def _are_hidden(eye: Floats, points: Floats, boxes: Floats) -> NDArray[np.bool_]:
     """Return for each point (n, 3) whether a box (m, 2, 3) is between the eye and it."""
     ways = points - eye
-    # A way along an axis never leaves the slab of a box, or never enters it.
+    # A line along an axis never leaves the slab of a box, or never enters it.
     ways = np.where(np.abs(ways) < 1e-9, 1e-9, ways)[:, np.newaxis]
     ends = np.sort(np.stack([(boxes[:, 0] - eye) / ways, (boxes[:, 1] - eye) / ways]), axis=0)
     enters, leaves = ends[0].max(axis=2), ends[1].min(axis=2)
