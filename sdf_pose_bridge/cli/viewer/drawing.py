@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from collections.abc import Sequence
-from itertools import islice
 import textwrap
 from typing import Any
 from typing import NamedTuple
@@ -52,7 +51,7 @@ GROUPS = ('visuals', 'collisions', 'all names', 'all lines to parents', 'grid')
 HIDDEN_AT_FIRST = frozenset(('collisions', 'all names', 'all lines to parents'))
 """The groups that a page hides at first."""
 
-_REASON_WIDTH = 60
+_REASON_WIDTH, _MOST_REASONS = 60, 3
 _WXYZ = [6, 3, 4, 5]
 _GRAY = (0.52, 0.54, 0.57, 1.0)
 """The default color, which is visible on a light and on a dark background."""
@@ -123,11 +122,7 @@ class Drawing:
             f'{"1 shape is" if number == 1 else f"{number} shapes are"} not drawn as the file '
             f'means it: {printable(reason)}' for reason, number in Counter(reasons).items()]
         """Lines that say which visuals and collisions are not drawn as the file means them."""
-        self._reasons = dict(islice((
-            (element, '\n'.join(textwrap.wrap(
-                printable(surface.reason), _REASON_WIDTH, max_lines=4, placeholder=' ...')))
-            for surface in self._surfaces if surface.reason for element in surface.elements),
-            MOST_NAMES))
+        self._reasons = _texts_of_reasons(scene, self._surfaces)
         boxes = boxes_of_surfaces(scene, self._surfaces)
         self.size_m = float(np.ptp(bounds_of_points(
             np.concatenate([origins, np.zeros((1, 3)), boxes.reshape(-1, 3)])), axis=0).max()
@@ -302,6 +297,20 @@ def _lines(tree: TfTree, shown: NDArray[np.intp]) -> Floats:
     origins = np.concatenate([tree.poses[:, :3], np.zeros((1, 3))])
     assert ROOT_IS_PARENT == -1
     return np.stack([origins[tree.parents[frames]], origins[frames]], axis=1)
+
+
+def _texts_of_reasons(scene: Scene, surfaces: Sequence[Surface]) -> dict[int, str]:
+    """Return texts for elements whose mesh is not drawn: a few reasons, and names of files."""
+    texts: dict[int, str] = {}
+    for surface in surfaces:
+        if surface.reason and len(texts) < MOST_NAMES:
+            first = surface.elements[0]
+            name = printable(shortened(scene.shapes[first].mesh_uri.rpartition('/')[2]))
+            texts.update(dict.fromkeys(surface.elements, name))
+            if len(texts) <= _MOST_REASONS:
+                texts[first] = '\n'.join(textwrap.wrap(
+                    printable(surface.reason), _REASON_WIDTH, max_lines=4, placeholder=' ...'))
+    return texts
 
 
 def _ancestry(tree: TfTree, frame: int) -> NDArray[np.intp]:

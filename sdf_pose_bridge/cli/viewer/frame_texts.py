@@ -29,7 +29,8 @@ from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
 _FILE_STYLE = 'margin:0 1em;font-size:0.8em;overflow-wrap:anywhere'
-_ERROR_STYLE = 'color:#c92a2a;white-space:pre-wrap;overflow-wrap:anywhere;margin:0 1em;'
+_ERROR_STYLE = ('color:#e03131;white-space:pre-wrap;overflow-wrap:anywhere;margin:0 1em;'
+                'font-size:0.85em;max-height:30vh;overflow-y:auto')
 _COPIED = 'display:block;user-select:all;white-space:pre-wrap;overflow-wrap:anywhere;'
 
 

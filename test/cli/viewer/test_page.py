@@ -61,6 +61,15 @@ def test_reason_stands_beside_the_box_that_is_drawn_for_a_mesh(page_of):
     assert len(label.text.split('\n')) <= 4
 
 
+def test_few_reasons_stand_in_full(page_of):
+    page = page_of(''.join(
+        f'<visual name="{name}">{MESH.replace("&lt;b&gt;", f"a/{name}.stl")}</visual>'
+        for name in 'pqrst'))
+    texts = list(page._drawing._reasons.values())
+    assert ['it is not in' in text for text in texts] == [True] * 3 + [False] * 2
+    assert texts[3:] == ['s.stl', 't.stl']
+
+
 def test_what_is_switched_off_is_not_drawn(page_of):
     page = page_of('<visual name="v"><geometry><box/></geometry></visual>')
     assert all(nodes(page, 'grid', 'visuals/0'))
