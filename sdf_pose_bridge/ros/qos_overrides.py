@@ -45,9 +45,8 @@ def overriding_options(
     """
     begin = f'{QOS_OVERRIDES}{node.resolve_topic_name(topic)}.{entity}.'
     # rclpy has no public interface to the given parameters.
-    given = [
-        policy for policy in policies
-        if begin + policy.name.lower() in node._parameter_overrides]  # noqa: SLF001
+    names = getattr(node, '_parameter_overrides', {})
+    given = [policy for policy in policies if begin + policy.name.lower() in names]
     return QoSOverridingOptions(given) if given else None
 
 
