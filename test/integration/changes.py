@@ -20,6 +20,7 @@ from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
+from sdf_pose_bridge_interfaces.srv import LookupPose
 
 BRIDGE = '/sdf_pose_bridge'
 
@@ -143,3 +144,10 @@ class Waiting:
     def check(self):
         """Ask once."""
         assert self._call() < LONGEST_WAIT_S
+
+
+def pose_of(tf, frame):
+    """Return the position of a frame in the root, as the bridge looks it up."""
+    answer = tf.listener.call(LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(frame=frame))
+    assert answer.success, answer.message
+    return answer.pose.pose.position

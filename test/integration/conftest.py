@@ -82,3 +82,19 @@ def start_shared_listener(shared_ros_domain):
     """Starts a listener that all tests of a module use; ``start_shared_listener()``."""
     with ended_later(lambda: listener_in(shared_ros_domain)) as start:
         yield start
+
+
+@pytest.fixture
+def joints(ros_domain):
+    """Publishes joint states from another process; ``joints.send(positions)``."""
+    from joint_publisher import JointPublisher
+    publisher = JointPublisher()
+    yield publisher
+    publisher.end()
+
+
+@pytest.fixture
+def tf(start_listener):
+    """Listens to ``/tf``; ``tf.last`` has the last transform of each frame."""
+    from listener import TfListener
+    return TfListener(start_listener())

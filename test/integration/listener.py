@@ -99,3 +99,24 @@ class Listener:
         self.node.destroy_node()
         self._context.shutdown()
         self._context.destroy()
+
+
+class TfListener:
+    """Keeps the last message about each frame on /tf."""
+
+    def __init__(self, listener):
+        self.listener = listener
+        self.last = {}
+        self.count = 0
+        listener.node.create_subscription(TFMessage, '/tf', self._take, 100)
+
+    def _take(self, message):
+        self.count += 1
+        self.last.update({each.child_frame_id: each for each in message.transforms})
+
+    def wait_for(self, frame, sec):
+        """Wait for a transform with a stamp; return its translation and rotation."""
+        self.listener.wait(
+            lambda: frame in self.last and self.last[frame].header.stamp.sec == sec,
+            lambda: f'{frame} at {sec}, last were {self.last}')
+        return self.last[frame].transform

@@ -11,11 +11,9 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from changes import BRIDGE
+from changes import pose_of
 from changes import replace
 from changes import set_parameters
-from joint_publisher import JointPublisher
-from test_joint_states import pose_of
-from test_joint_states import TfListener
 
 ROBOT = """<sdf version="1.11"><model name="robot">
 <link name="base"/><link name="arm"><pose>1 0 0 0 0 0</pose></link>
@@ -42,18 +40,6 @@ def write_file(tmp_path):
     path = tmp_path / 'shop.sdf'
     path.write_text(fleet(r1=10, r2=20, r3=30), encoding='utf-8')
     return path
-
-
-@pytest.fixture(name='joints')
-def joint_publisher(ros_domain):
-    publisher = JointPublisher()
-    yield publisher
-    publisher.end()
-
-
-@pytest.fixture(name='tf')
-def listen_to_moving_frames(start_listener):
-    return TfListener(start_listener())
 
 
 @pytest.fixture(name='start')

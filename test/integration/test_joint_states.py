@@ -15,6 +15,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from bridge_process import LoggedProcess
 from changes import BRIDGE
 from changes import listen_to_tf
+from changes import pose_of
 from changes import reload
 from changes import replace
 from changes import set_parameters
@@ -25,7 +26,6 @@ from joint_publisher import JointPublisher
 from listener import latched
 from slow_file import SlowFile
 from std_srvs.srv import Trigger
-from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge_interfaces.srv import LookupPose
 
@@ -71,39 +71,6 @@ def write_file(tmp_path):
     return path
 
 
-@pytest.fixture(name='joints')
-def joint_publisher(ros_domain):
-    publisher = JointPublisher()
-    yield publisher
-    publisher.end()
-
-
-class TfListener:
-    """Keeps the last message about each frame on /tf."""
-
-    def __init__(self, listener):
-        self.listener = listener
-        self.last = {}
-        self.count = 0
-        listener.node.create_subscription(TFMessage, '/tf', self._take, 100)
-
-    def _take(self, message):
-        self.count += 1
-        self.last.update({each.child_frame_id: each for each in message.transforms})
-
-    def wait_for(self, frame, sec):
-        """Wait for a transform with a stamp; return its translation and rotation."""
-        self.listener.wait(
-            lambda: frame in self.last and self.last[frame].header.stamp.sec == sec,
-            lambda: f'{frame} at {sec}, last were {self.last}')
-        return self.last[frame].transform
-
-
-@pytest.fixture(name='tf')
-def listen_to_moving_frames(start_listener):
-    return TfListener(start_listener())
-
-
 @pytest.fixture(name='start')
 def make_start(start_bridge, joints, tf):
     """Starts a bridge, and returns when the publisher of joints and the listener are connected."""
@@ -121,12 +88,6 @@ def make_start(start_bridge, joints, tf):
         tf.listener.wait(is_connected, lambda: 'the first message')
         return bridge
     return start
-
-
-def pose_of(tf, frame):
-    answer = tf.listener.call(LookupPose, f'{BRIDGE}/lookup_pose', LookupPose.Request(frame=frame))
-    assert answer.success, answer.message
-    return answer.pose.pose.position
 
 
 def test_before_the_first_message_all_joints_can_be_at_zero(start_bridge, file, tf):

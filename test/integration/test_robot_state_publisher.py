@@ -7,7 +7,6 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from changes import set_parameters
-from joint_publisher import JointPublisher
 from listener import latched
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
@@ -49,13 +48,6 @@ def start_program(start_robot_state_publisher):
 @pytest.fixture
 def listener(start_listener):
     return start_listener()
-
-
-@pytest.fixture(name='joints')
-def joint_publisher(ros_domain):
-    publisher = JointPublisher()
-    yield publisher
-    publisher.end()
 
 
 @pytest.fixture(name='tf')

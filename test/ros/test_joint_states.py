@@ -444,6 +444,17 @@ def test_messages_of_one_robot_do_not_delay_those_of_another(two_arms, wait_unti
         wait_until(lambda robot=robot: found[-1:] == [[(NOW - 1, {f'{robot}/upper'})]], found)
 
 
+def test_messages_that_are_published_at_once_do_not_put_off_the_end_of_the_period(
+        two_arms, wait_until):
+    both, publishers, found = two_arms(0.01)
+    ends_in = []
+    for robot in 'ab':
+        publishers[robot].publish(joint_state(NOW - 1, {'turn': 0.5}))
+        wait_until(lambda robot=robot: found[-1:] == [[(NOW - 1, {f'{robot}/upper'})]], found)
+        ends_in.append(both._period_timer.time_until_next_call())
+    assert ends_in[1] < ends_in[0]
+
+
 def test_too_many_messages_of_one_robot_leave_time_for_another(two_arms, wait_until):
     both, publishers, _ = two_arms(0.001)
 

@@ -87,9 +87,9 @@ def test_another_tree_gets_another_stamp(node):
     assert first.stamp == same.stamp < other.stamp
 
 
-def frames_of_arm(publishers, before=None, unreported=UnreportedJoints.ZERO):
+def frames_of_arm(publishers, before=None, unreported=UnreportedJoints.ZERO, pose_frame=''):
     scene = load_text(ARM)
-    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
+    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True, pose_frame=pose_frame))
     return PublishedFrames(
         publishers, tree,
         JointPositions(scene, tree.moving.dofs, unreported=unreported),
@@ -139,6 +139,15 @@ def test_after_a_reload_poses_have_the_stamps_of_the_tree_and_of_the_joints(node
     wait_until(node, lambda: {'upper', 'base'} <= dict(poses).keys(), poses)
     stamps = {name: (stamp.sec, stamp.nanosec) for name, stamp in poses}
     assert stamps == {'base': frames.stamp, 'upper': (5, 6)}
+
+
+def test_poses_in_a_frame_that_moves_have_the_stamp_of_its_joints(node, poses):
+    frames = frames_of_arm(Publishers(node), pose_frame='upper')
+    frames.moving.positions.stamps_ns[:] = 5_000_000_006
+    node.executor.create_task(frames.publish_topics)
+    wait_until(node, lambda: 'base' in dict(poses), poses)
+    stamp = dict(poses)['base']
+    assert (stamp.sec, stamp.nanosec) == (5, 6)
 
 
 def test_joints_that_go_on_moving_before_a_reload_is_published_are_where_they_were_last(node):
