@@ -115,9 +115,7 @@ def _choice(default: Choice, description: str) -> Declaration[Choice]:
     return Declaration(default.value, description, rule, setting)
 
 
-def _rate(
-    description: str, zero: str, highest: float, *, default: float = 0.0,
-) -> Declaration[float]:
+def _rate(description: str, zero: str, highest: float) -> Declaration[float]:
     """
     Declare a parameter whose values are rates in Hz.
 
@@ -131,8 +129,7 @@ def _rate(
             raise refusal(value, rule)
         return value
 
-    return Declaration(
-        default, description, rule, setting, needs_load=False, maximum=highest)
+    return Declaration(0.0, description, rule, setting, needs_load=False, maximum=highest)
 
 
 class Settings:
