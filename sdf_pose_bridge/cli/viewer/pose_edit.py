@@ -88,7 +88,7 @@ class PoseEdit:
             events.when(number.on_update, self._take_numbers)
         events.when(self._steps.on_update, self._set_steps)
         events.when(write.on_click, self._write_pose)
-        events.when(cancel.on_click, lambda: self._set(None))
+        events.when(cancel.on_click, self._cancel_edit)
         events.when(undo.on_click, self._undo_write)
         self._set_units(self._units)
 
@@ -111,6 +111,7 @@ class PoseEdit:
         elif before is None or frame.scene is not before.scene or frame.element != before.element:
             self._file = self._change(frame.pose, dry_run=True)
         self._show()
+        self._place_gizmo()
         self._show_numbers()
 
     def _set_units(self, units: Units) -> None:
@@ -131,7 +132,9 @@ class PoseEdit:
     def _take_gizmo(self) -> None:
         if self._gizmo.visible:
             w, x, y, z = self._gizmo.wxyz.tolist()
-            self._set(Pose(*(*self._gizmo.position.tolist(), x, y, z, w)))
+            # The gizmo is not placed again: under the pointer it may be elsewhere by now.
+            self._take(Pose(*(*self._gizmo.position.tolist(), x, y, z, w)))
+            self._show_numbers()
 
     def _take_numbers(self) -> None:
         """Read the typed numbers; the others keep all their digits."""
@@ -146,16 +149,23 @@ class PoseEdit:
             self._shown = typed
             self._take(pose_product(self._frame.reference, Pose(
                 *(*values[:3], *quaternion_from_rpy(tuple(values[3:]))))))
+            self._place_gizmo()
 
-    def _set(self, pose: Pose | None) -> None:
-        """Set the new pose, and show it in the numbers."""
-        self._take(pose)
+    def _cancel_edit(self) -> None:
+        self._take(None)
+        self._place_gizmo()
         self._show_numbers()
 
     def _take(self, pose: Pose | None) -> None:
         self.pose, self._errors = pose, ()
         self._show()
         self._changed()
+
+    def _place_gizmo(self) -> None:
+        if self._frame is not None:
+            pose = self.pose or self._frame.pose
+            self._gizmo.scale = self._frame.gizmo_m
+            self._gizmo.position, self._gizmo.wxyz = pose[:3], (pose.qw, *pose[3:6])
 
     def _show_numbers(self) -> None:
         if self._frame is not None:
@@ -171,12 +181,8 @@ class PoseEdit:
         for number in self._numbers:
             number.disabled = not is_possible
         self._gizmo.visible = is_possible
-        if frame is not None:
-            pose = self.pose or frame.pose
-            self._gizmo.scale = frame.gizmo_m
-            self._gizmo.position, self._gizmo.wxyz = pose[:3], (pose.qw, *pose[3:6])
-            if self.pose is not None:
-                text = html_of_difference(frame.pose, pose, frame.reference, self._units)
+        if frame is not None and self.pose is not None:
+            text = html_of_difference(frame.pose, self.pose, frame.reference, self._units)
         self._title.content = html_of_edit(
             () if frame is None else frame.names, self._file)
         self._text.content = text + html_of_lines('errors', self._errors)

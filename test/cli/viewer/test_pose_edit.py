@@ -52,6 +52,23 @@ def edited(name, x=0.0):
         SCENE, element, POSE, Pose(x=x), (name, 'x'), 1.0, lambda scene, element: POSE)
 
 
+def drag(edit, z):
+    """Move the gizmo to (0, 0, z), as a browser does."""
+    edit._gizmo.position, edit._gizmo.wxyz = (0.0, 0.0, z), (1.0, 0.0, 0.0, 0.0)
+    edit._take_gizmo()
+
+
+def test_cancelled_edit_moves_the_gizmo_back(written):
+    _, edit = written
+    edit.begin(edited('free'), Units())
+    drag(edit, 1.0)
+    assert [number.value for number in edit._numbers[:3]] == [0.0, 0.0, 1.0]
+    edit._cancel_edit()
+    assert edit.pose is None
+    assert edit._gizmo.position.tolist() == list(POSE[:3])
+    assert edit._numbers[0].value == 0.1235
+
+
 def test_only_frames_that_can_be_placed_are_edited(written):
     _, edit = written
     for name, is_possible in (('free', True), ('fixed', False), ('free', True)):
@@ -87,7 +104,7 @@ def test_numbers_are_relative_to_the_reference(written):
 def test_new_pose_stays_while_the_frame_does_not_move(written):
     _, edit = written
     edit.begin(edited('free'), Units())
-    edit._set(Pose(z=1.0))
+    drag(edit, 1.0)
     edit.begin(edited('free')._replace(scene=load_text(TEXT, 'm.sdf')), Units())
     assert edit.pose == Pose(z=1.0)
     edit.begin(edited('free')._replace(pose=Pose()), Units())
@@ -97,7 +114,7 @@ def test_new_pose_stays_while_the_frame_does_not_move(written):
 def test_what_is_written_is_the_old_pose_then(written):
     poses, edit = written
     edit.begin(edited('free'), Units())
-    edit._set(Pose(z=1.0))
+    drag(edit, 1.0)
     edit._write_pose()
     assert (poses, edit.pose) == ([Pose(z=1.0)], None)
     assert edit._gizmo.position.tolist() == [0.0, 0.0, 1.0]
@@ -106,7 +123,7 @@ def test_what_is_written_is_the_old_pose_then(written):
 def test_new_pose_stays_for_the_same_frame_only(written):
     _, edit = written
     edit.begin(edited('free'), Units())
-    edit._set(Pose(z=1.0))
+    drag(edit, 1.0)
     edit.begin(edited('free', 1.0), Units(angle=DEGREES))
     assert edit.pose == Pose(z=1.0)
     assert 'class="difference"' in edit._text.content
