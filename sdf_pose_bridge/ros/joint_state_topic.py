@@ -100,6 +100,8 @@ class JointStateTopic:
     ) -> None:
         self.has_news = False
         """Whether a message has come since this was last set to False."""
+        self.has_new_joints = False
+        """Whether joints have been reported since the message before with the same names."""
         self._node = node
         self._logger = node.get_logger()
         self._model = model
@@ -171,7 +173,7 @@ class JointStateTopic:
         :param sent_ns: the time of sending.
         :return: the changes to publish; None if there are none.
         """
-        self.has_news = True
+        self.has_news, self.has_new_joints = True, False
         message = self._valid_message(data)
         if message is None:
             return None
@@ -179,8 +181,7 @@ class JointStateTopic:
         names, values = message.names, message.positions
         plan = self._plans.get(names) or self._new_plan(names, positions)
         is_newer = positions.take_newer(plan.selection, self._number, sent_ns)
-        if not is_newer.all():
-            # Another topic has given some positions that are newer.
+        if is_newer is not None:
             rows = plan.selection.rows[is_newer]
             names, values = tuple(names[row] for row in rows.tolist()), values[rows]
             plan = self._plans.get(names) or self._new_plan(names, positions)
@@ -191,14 +192,16 @@ class JointStateTopic:
                 f'are not finite or beyond {LARGEST_POSITION:g}; the last ones are kept',
                 throttle_duration_sec=_WARNING_PERIOD_S)
         reported_count = int(np.count_nonzero(positions.is_reported))
-        if plan.reported_count != reported_count:
+        self.has_new_joints = plan.reported_count != reported_count
+        if self.has_new_joints:
             plan.reported_count = reported_count
             plan.rows = _rows_of_plan(plan, frames)
         if not len(plan.rows):
             return None
         sec, nanosec = message.stamp
         stamp_ns: int = sec * NANOSECONDS + nanosec or self._node.get_clock().now().nanoseconds
-        if (positions.stamps_ns == NEVER).all():
+        if positions.stamps_ns[plan.dofs_beside[0]] == NEVER and (
+                positions.stamps_ns == NEVER).all():
             self._logger.info(f'following {self.name}')
         positions.stamps_ns[plan.dofs_beside] = stamp_ns
         return Change(plan.rows, stamp_ns)

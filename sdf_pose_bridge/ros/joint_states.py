@@ -179,38 +179,37 @@ class JointStates:
 
         :param info: metadata of the message from rclpy.
         """
-        positions = self._frames.positions
-        reported_count = np.count_nonzero(positions.is_reported)
         change = topic.update(self._frames, data, info['source_timestamp'])
-        if self._has_reported_missing and (
-                reported_count != np.count_nonzero(positions.is_reported)) and (
-                not positions.missing):
+        if self._has_reported_missing and topic.has_new_joints and (
+                not self._frames.positions.missing):
             self._has_reported_missing = False
             self._logger.info('all joints have been reported now')
         if change is None:
             return
-        rows = change.rows
+        rows, stamp_ns = change
         # TF accepts one transform for each stamp, and warns of a second one.
-        self._is_waiting[rows] |= self._ignores_stamps or (
-            self._stamps_ns[rows] != change.stamp_ns)
-        self._stamps_ns[rows] = change.stamp_ns
-        if topic.is_open:
-            self._publish(rows[self._is_waiting[rows]])
-            # Simulated time that has not begun would never end a period.
-            if self._period_timer is not None and self._node.get_clock().now().nanoseconds:
-                topic.is_open = topic.has_news = False
-                if self._period_timer.is_canceled():
-                    self._period_timer.reset()
+        is_waiting = self._is_waiting[rows] | (self._stamps_ns[rows] != stamp_ns)
+        self._stamps_ns[rows] = stamp_ns
+        if not topic.is_open:
+            self._is_waiting[rows] = is_waiting
+            return
+        self._publish(rows if self._ignores_stamps else rows[is_waiting], stamp_ns)
+        # Simulated time that has not begun would never end a period.
+        if self._period_timer is not None and self._node.get_clock().now().nanoseconds:
+            topic.is_open = topic.has_news = False
+            if self._period_timer.is_canceled():
+                self._period_timer.reset()
 
-    def _publish(self, rows: NDArray[np.intp]) -> None:
+    def _publish(self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64] | int) -> None:
         """
         Publish changed transforms.
 
         :param rows: the moving transforms to publish.
+        :param stamps_ns: their stamps in nanoseconds, or one for all.
         """
         if len(rows):
             self._is_waiting[rows] = False
-            self._frames.publish_tf(rows, self._stamps_ns[rows])
+            self._frames.publish_tf(rows, stamps_ns)
         self._publish_topics_if_due()
 
     def _end_period(self) -> None:
@@ -218,7 +217,7 @@ class JointStates:
         self.take_waiting()
         rows = np.flatnonzero(self._is_waiting)
         if len(rows):
-            self._publish(rows)
+            self._publish(rows, self._stamps_ns[rows])
         for topic in self._topics.values():
             topic.is_open |= not topic.has_news
             topic.has_news = False

@@ -200,7 +200,7 @@ class PublishedMovingFrames:
         """Which of the moving transforms follow from known positions."""
         return self.frames.has_transform(self.positions.is_known)
 
-    def publish_tf(self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64]) -> None:
+    def publish_tf(self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64] | int) -> None:
         """
         Publish one message on ``/tf``.
 
@@ -209,7 +209,9 @@ class PublishedMovingFrames:
         """
         message = self._tf_message(rows.tobytes())
         message.set_poses(self.frames.transforms(self.positions.values)[rows])
-        (data,) = message.with_stamps(_stamps_from_ns(stamps_ns))
+        (data,) = (
+            message.with_stamp(*divmod(stamps_ns, NANOSECONDS)) if isinstance(stamps_ns, int)
+            else message.with_stamps(_stamps_from_ns(stamps_ns)))
         self._tf.publish(data)
 
     def _new_tf_message(self, rows: bytes) -> StampedMessages:
@@ -220,7 +222,7 @@ class PublishedMovingFrames:
         """Publish all moving frames with known positions on ``/tf``, with the time of the node."""
         rows = np.flatnonzero(self.has_transform)
         if len(rows):
-            self.publish_tf(rows, np.array(self._publishers.now_ns()))
+            self.publish_tf(rows, self._publishers.now_ns())
 
     def _stamps(self, dofs: Indices, dof_of_reference: int = NO_DOF) -> NDArray[np.int64]:
         """

@@ -184,7 +184,7 @@ class JointPositions:
 
     def take_newer(
         self, selection: Selection, topic: int, sent_ns: int,
-    ) -> NDArray[np.bool_]:
+    ) -> NDArray[np.bool_] | None:
         """
         Decide which positions of a message count, and take note of their sender.
 
@@ -192,13 +192,17 @@ class JointPositions:
         :param topic: a number that distinguishes topics.
         :param sent_ns: the time of sending.
         :return: for each of :attr:`Selection.rows` whether no other topic has given a position
-            that was sent later. Messages on one topic count in the order in which they come.
+            that was sent later; None if all count. Messages on one topic count in the order in
+            which they come.
         """
         dofs = selection.dofs
-        is_newer: NDArray[np.bool_] = (
-            (self._topics[dofs] == topic) | (self._sent_ns[dofs] <= sent_ns))
-        self._topics[dofs[is_newer]] = topic
-        self._sent_ns[dofs[is_newer]] = sent_ns
+        is_older = self._sent_ns[dofs] > sent_ns
+        is_newer = None
+        if is_older.any():
+            is_newer = ~is_older | (self._topics[dofs] == topic)
+            dofs = dofs[is_newer]
+        self._topics[dofs] = topic
+        self._sent_ns[dofs] = sent_ns
         return is_newer
 
     def update(self, selection: Selection, values: NDArray[np.float64]) -> list[str]:
