@@ -30,7 +30,7 @@ in_shell := . underlay/setup.bash && exec
 help:
 	@echo 'make demo           the node on an example, and what a listener receives from it'
 	@echo 'make test           all tests; ARGS="-k name" hands arguments to pytest'
-	@echo 'make test_core      the tests of reading and geometry alone, in half a minute'
+	@echo 'make test_core      the tests that need no ROS, with fewer random examples, in half a minute'
 	@echo 'make test_long      all tests, some with many more calls, frames or rotations'
 	@echo 'make run FILE=...   the node on an SDFormat file; ARGS="-p name:=value" sets parameters'
 	@echo 'make coverage       lines and branches that all tests run, with those of processes'
@@ -68,7 +68,8 @@ test: setup
 
 # Tests that need no ROS and wait for no other process, so more processes than cores would not help.
 test_core: setup
-	@$(in_shell) python -m pytest --numprocesses $$(nproc) --dist worksteal test/geometry test/sdformat test/scene test/tf $(ARGS)
+	@$(in_shell) python -m pytest --numprocesses $$(nproc) --dist worksteal --hypothesis-profile few_examples \
+	  test/geometry test/sdformat test/scene test/tf $(ARGS)
 
 # One after the other, as each of them loads the machine.
 test_long: setup

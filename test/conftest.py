@@ -22,6 +22,8 @@ else:
     settings.register_profile(
         'untimed', settings(), deadline=None, suppress_health_check=[HealthCheck.too_slow])
     settings.load_profile('untimed')
+    # For make test_core.
+    settings.register_profile('few_examples', max_examples=25)
 
 
 @pytest.hookimpl(optionalhook=True)
