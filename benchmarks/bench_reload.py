@@ -121,8 +121,9 @@ class RunningBridge:
         for children in Path(f'/proc/{self.process.pid}/task').glob('*/children'):
             for child in children.read_text(encoding='ascii').split():
                 os.kill(int(child), signal.SIGKILL)
-                # One that has ended has no command line until its parent notices.
-                while Path(f'/proc/{child}/cmdline').read_bytes():
+                # It is a zombie until the node asks for it.
+                stat = Path(f'/proc/{child}/stat')
+                while stat.read_text(encoding='utf-8').rpartition(')')[2].split()[0] != 'Z':
                     time.sleep(0.001)
 
 
@@ -178,7 +179,7 @@ def reload_that_starts_a_process() -> Iterator[tuple[Function, Function | None]]
 
         def counterpart() -> Took:
             begin = time.perf_counter()
-            reload()
+            assert reload().success
             next_message()
             return Took(time.perf_counter() - begin)
 
