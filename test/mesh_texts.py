@@ -20,6 +20,16 @@ v 0 2 5
 usemtl blue
 f 4 5 6
 """
+TEXTURED_OBJ = """mtllib colors.mtl
+v 0 0 0
+v 1 0 0
+v 0 2 0
+vt 0 0
+vt 1 0
+vt 0 1
+usemtl red
+f 1/1 2/2 3/3
+"""
 MTL = 'newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n'
 STL = """solid s
 facet normal 0 0 1

@@ -212,9 +212,10 @@ class Drawing:
         return boxes
 
     def set_opacity(self, opacity: float) -> None:
-        """Set the opacity of surfaces, from 0 to 1."""
+        """Set the opacity of surfaces without textures, from 0 to 1."""
         for copies, _ in self._copies:
-            copies.opacity = None if opacity >= 1.0 else opacity
+            if isinstance(copies, viser.BatchedMeshHandle):
+                copies.opacity = None if opacity >= 1.0 else opacity
 
     def _add_surroundings(self, view_m: float, *, has_grid: bool) -> None:
         """Add light from above and from one side, and a grid on the ground."""
@@ -245,12 +246,17 @@ class Drawing:
         self, number: int, surface: Surface, posed: PosedScene, opacity: float,
     ) -> Any:
         is_collision = surface.kind == Kind.COLLISION
+        name = f'{self._name}/{surface.kind.label}s/{number}'
+        places = _places(posed.scene.poses[surface.elements])
+        if surface.part.glb:
+            return self._nodes.add_batched_glb(
+                name, surface.part.glb, *places, batched_scales=surface.scales, lod='off',
+                cast_shadow=False, receive_shadow=False)
         rgba = np.clip(surface.rgba, 0.0, 1.0)
         if is_collision:
             rgba[:] = _COLLISION_RGBA
         copies = self._nodes.add_batched_meshes_simple(
-            f'{self._name}/{surface.kind.label}s/{number}', surface.part.points,
-            surface.part.faces, *_places(posed.scene.poses[surface.elements]),
+            name, surface.part.points, surface.part.faces, *places,
             batched_scales=surface.scales,
             batched_colors=np.round(255.0 * rgba[:, :3]).astype(np.uint8),
             batched_opacities=rgba[:, 3] if (rgba[:, 3] < 1.0).any() else None,
@@ -261,28 +267,6 @@ class Drawing:
 
     def _select_by_click(self, copies: Any, frames: NDArray[Any]) -> None:
         copies.on_click(lambda event: self._select(int(frames[event.instance_index or 0])))
-
-
-class Labels:
-    """
-    Texts in the scene.
-
-    :param nodes: the nodes of the page.
-    """
-
-    def __init__(self, nodes: viser.SceneApi) -> None:
-        self._nodes = nodes
-        self._labels: list[viser.LabelHandle] = []
-
-    def show(self, texts: Sequence[tuple[str, Floats]]) -> None:
-        """Show texts at points instead of those before."""
-        # A browser does not move a label that is removed and added again at once.
-        while len(self._labels) < len(texts):
-            self._labels.append(self._nodes.add_label(f'/names/{len(self._labels)}', ''))
-        for number, label in enumerate(self._labels):
-            label.visible = number < len(texts)
-            if label.visible:
-                label.text, label.position = texts[number]
 
 
 def _places(poses: PoseArray) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
@@ -343,7 +327,7 @@ def surfaces_from_scene(
     :param meshes: reads meshes.
     :return: the surfaces, and the reason for each element that is not drawn as in the file.
     """
-    copies: dict[tuple[Kind, Shape, str], list[int]] = {}
+    copies: dict[tuple[Kind, Shape, str, bool], list[int]] = {}
     for element in elements:
         shape = scene.shapes[element]
         if shape.is_visible:
@@ -351,11 +335,14 @@ def surfaces_from_scene(
                 rgba=None, opacity=1.0, mesh_scale=(1.0,) * 3,
                 sizes_m=(1.0,) * 3 if shape.type == 'box' and shape.has_extent else shape.sizes_m)
             file = scene.place(element).file if shape.type == 'mesh' else ''
-            copies.setdefault((Kind(scene.kinds[element]), form, file), []).append(element)
+            kind = Kind(scene.kinds[element])
+            # As in Gazebo, a material in the file replaces those of the mesh.
+            has_texture = kind == Kind.VISUAL and shape.rgba is None and shape.opacity == 1.0
+            copies.setdefault((kind, form, file, has_texture), []).append(element)
     surfaces: list[Surface] = []
     reasons: list[str] = []
     triangle_count = 0
-    for (kind, form, file), same in copies.items():
+    for (kind, form, file, has_texture), same in copies.items():
         mesh = meshes.mesh(form, file, size_m)
         reasons += [mesh.reason] * len(same) * bool(mesh.reason)
         triangle_count += sum(len(part.faces) for part in mesh.parts)
@@ -368,7 +355,7 @@ def surfaces_from_scene(
         if mesh.reason:
             scales[:] = 1.0
         surfaces += [
-            Surface(kind, part, same, scales, np.array([
+            Surface(kind, part if has_texture else part._replace(glb=b''), same, scales, np.array([
                 part.rgba if mesh.reason else shape.rgba_or(part.rgba or _GRAY)
                 for shape in shapes]), mesh.reason)
             for part in mesh.parts]

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Place the names of frames in the picture."""
+"""Texts in the scene: the names of frames, placed without overlaps in the picture."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+import viser
 
 from sdf_pose_bridge.cli.viewer.view_point import FIELD_OF_VIEW_RAD
 from sdf_pose_bridge.geometry.rotations import Floats
@@ -80,3 +81,25 @@ def labels_from_names(
             if not any(map(grown.is_on, others)):
                 labels = [*others, grown]
     return [('\n'.join(label.lines), label.point) for label in labels]
+
+
+class Labels:
+    """
+    Texts in the scene.
+
+    :param nodes: the nodes of the page.
+    """
+
+    def __init__(self, nodes: viser.SceneApi) -> None:
+        self._nodes = nodes
+        self._labels: list[viser.LabelHandle] = []
+
+    def show(self, texts: Sequence[tuple[str, Floats]]) -> None:
+        """Show texts at points instead of those before."""
+        # A browser does not move a label that is removed and added again at once.
+        while len(self._labels) < len(texts):
+            self._labels.append(self._nodes.add_label(f'/names/{len(self._labels)}', ''))
+        for number, label in enumerate(self._labels):
+            label.visible = number < len(texts)
+            if label.visible:
+                label.text, label.position = texts[number]

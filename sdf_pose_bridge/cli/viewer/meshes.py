@@ -44,9 +44,12 @@ MOST_BYTES_KEPT = 300_000_000
 FORMATS = ('.dae', '.glb', '.gltf', '.obj', '.stl')
 """The formats. Archives are not read, as they can unpack to any size."""
 
+MOST_PIXELS = 1024
+"""Largest width and height of a texture; a larger one is made smaller."""
+
 _LARGEST_M = 1e9
 _MISSING = (0.88, 0.19, 0.19, 0.5)
-_NAMED_FORMATS = ('.bin', '.mtl')
+_NAMED_FORMATS = ('.bin', '.mtl', '.jpeg', '.jpg', '.png')
 
 
 class MeshPart(NamedTuple):
@@ -58,6 +61,8 @@ class MeshPart(NamedTuple):
     """Shape (m, 3): the points of each triangle."""
     rgba: tuple[float, ...] = ()
     """Each component from 0 to 1; empty if the file of the mesh has none."""
+    glb: bytes = b''
+    """The same surface with its texture, as binary glTF; empty if it has none."""
 
 
 class Mesh(NamedTuple):
@@ -78,7 +83,9 @@ class _KeptMesh(NamedTuple):
     @property
     def size(self) -> int:
         """Its size in bytes, with some for the rest of the record."""
-        return 1000 + sum(int(part.points.nbytes + part.faces.nbytes) for part in self.mesh.parts)
+        return 1000 + sum(
+            int(part.points.nbytes + part.faces.nbytes) + len(part.glb)
+            for part in self.mesh.parts)
 
 
 class MeshReader:
@@ -174,14 +181,14 @@ def mesh_from_file(path: str, submesh: str) -> Mesh:
 
 
 class _NamedFiles(FilePathResolver):
-    """Reads the buffers and materials that a mesh names, with the checks of other files."""
+    """Reads the files that a mesh names, with the checks of other files."""
 
     def __init__(self, path: str, usage: Usage) -> None:
         super().__init__(path, allow_anywhere=True)
         self._usage = usage
 
     def get(self, name: str) -> bytes:
-        """Return the content of a file; textures are not read."""
+        """Return the content of a buffer, material or texture."""
         if not name.lower().endswith(_NAMED_FORMATS):
             raise FileNotFoundError(name)
         return bytes_from_file(str(self.absolute(name)), self._usage)
@@ -214,7 +221,8 @@ def _parts(scene: trimesh.Scene, submesh: str) -> tuple[MeshPart, ...]:
             unit_m = trimesh.units.unit_conversion(mesh.units or 'meters', 'meters')
             points = unit_m * trimesh.transform_points(mesh.vertices, matrix)
             parts.append(MeshPart(
-                np.asarray(points, np.float32), np.asarray(mesh.faces, np.uint32), _rgba(mesh)))
+                np.asarray(points, np.float32), np.asarray(mesh.faces, np.uint32), _rgba(mesh),
+                _glb(mesh, points)))
     triangle_count = sum(len(part.faces) for part in parts)
     msg = ''
     if not parts:
@@ -238,3 +246,24 @@ def _rgba(mesh: trimesh.Trimesh) -> tuple[float, ...]:
     material = getattr(visual, 'material', None)
     rgba = visual.main_color if material is None else material.main_color
     return tuple((np.asarray(rgba, float)[:4] / 255.0).tolist())
+
+
+def _glb(mesh: trimesh.Trimesh, points: Any) -> bytes:
+    """Return a surface with its texture as binary glTF; empty if there is none."""
+    visual: Any = mesh.visual
+    material = getattr(visual, 'material', None)
+    image = getattr(material, 'baseColorTexture', None) or getattr(material, 'image', None)
+    if image is None or getattr(visual, 'uv', None) is None:
+        return b''
+    has_alpha = 'A' in image.getbands()
+    try:
+        image = image.convert('RGBA' if has_alpha else 'RGB')
+    except (OSError, SyntaxError, ValueError):  # raised by Pillow for a broken image
+        return b''
+    image.thumbnail((MOST_PIXELS, MOST_PIXELS))
+    textured = trimesh.visual.TextureVisuals(visual.uv, trimesh.visual.material.PBRMaterial(
+        baseColorTexture=image, metallicFactor=0.0, roughnessFactor=1.0, doubleSided=True,
+        alphaMode='MASK' if has_alpha else None))
+    glb: bytes = trimesh.Trimesh(
+        points, mesh.faces, visual=textured, process=False).export(file_type='glb')
+    return glb

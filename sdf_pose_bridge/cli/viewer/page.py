@@ -20,9 +20,9 @@ from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
 from sdf_pose_bridge.cli.viewer.drawing import Drawing
 from sdf_pose_bridge.cli.viewer.drawing import GROUPS
 from sdf_pose_bridge.cli.viewer.drawing import HIDDEN_AT_FIRST
-from sdf_pose_bridge.cli.viewer.drawing import Labels
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_lines
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
+from sdf_pose_bridge.cli.viewer.labels import Labels
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.cli.viewer.pose_edit import EditedFrame
 from sdf_pose_bridge.cli.viewer.pose_edit import PoseEdit

@@ -112,6 +112,18 @@ def test_mesh_with_its_scale(drawn, tmp_path):
     assert not not_drawn
 
 
+@pytest.mark.parametrize('other', [
+    '<material><diffuse>0 1 0</diffuse></material>', '<transparency>0.5</transparency>'])
+def test_material_or_transparency_in_the_file_replaces_a_texture(drawn, tmp_path, other):
+    image = pytest.importorskip('PIL.Image', reason='needs Pillow')
+    (tmp_path / 'a.obj').write_text(mesh_texts.TEXTURED_OBJ)
+    (tmp_path / 'colors.mtl').write_text('newmtl red\nmap_Kd texture.png\n')
+    image.new('RGB', (4, 4)).save(tmp_path / 'texture.png')
+    mesh = geometry('<mesh><uri>a.obj</uri></mesh>')
+    _, surfaces, _ = drawn(mesh, mesh + other)
+    assert [bool(surface.part.glb) for surface in surfaces] == [True, False]
+
+
 def test_box_contains_what_is_turned(drawn):
     scene, surfaces, _ = drawn(
         '<pose degrees="true">0 0 5 0 90 0</pose>' + geometry('<box><size>1 2 6</size></box>'))

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Meshes of all formats, broken and hostile ones, and the process that reads them."""
 
+import io
 import os
 import re
 import signal
@@ -121,10 +122,60 @@ def test_colors_of_materials(mesh, tmp_path):
     assert sorted(part.rgba for part in found.parts) == [(0, 0, 1, 1), (1, 0, 0, 1)]
 
 
-def test_texture_is_not_read(mesh, tmp_path):
+@pytest.fixture
+def textured(mesh, tmp_path):
+    """Returns the mesh whose material names a texture with this content."""
+    def read(texture):
+        (tmp_path / 'colors.mtl').write_text('newmtl red\nmap_Kd texture.png\n')
+        (tmp_path / 'texture.png').write_bytes(texture)
+        return mesh('mesh.obj', mesh_texts.TEXTURED_OBJ)
+    return read
+
+
+def png(size, color=(200, 10, 10)):
+    image = pytest.importorskip('PIL.Image', reason='needs Pillow')
+    written = io.BytesIO()
+    image.new('RGB', size, color).save(written, 'PNG')
+    return written.getvalue()
+
+
+def mesh_from_glb(glb):
+    import trimesh
+    return trimesh.load_mesh(io.BytesIO(glb), file_type='glb')
+
+
+def texture_in(glb):
+    return mesh_from_glb(glb).visual.material.baseColorTexture
+
+
+def test_texture_that_is_a_named_pipe_is_not_drawn(mesh, tmp_path):
     (tmp_path / 'colors.mtl').write_text('newmtl red\nmap_Kd texture.png\n')
     os.mkfifo(tmp_path / 'texture.png')
-    assert extent(mesh('mesh.obj', mesh_texts.OBJ)) == pytest.approx((1, 2, 5))
+    found = mesh('mesh.obj', mesh_texts.TEXTURED_OBJ)
+    assert extent(found) == pytest.approx((1, 2, 0))
+    assert found.parts[0].glb == b''
+
+
+@pytest.mark.parametrize('size', [0, 20, 60])
+def test_texture_that_is_cut_off_is_not_drawn(textured, size):
+    found = textured(png((40, 40))[:size])
+    assert extent(found) == pytest.approx((1, 2, 0))
+    assert found.parts[0].glb == b''
+
+
+def test_texture(textured):
+    (part,) = textured(png((4, 4))).parts
+    assert texture_in(part.glb).getpixel((0, 0)) == (200, 10, 10)
+    assert mesh_from_glb(part.glb).extents == pytest.approx((1, 2, 0))
+
+
+def test_large_texture_is_made_smaller(textured):
+    (part,) = textured(png((2 * meshes.MOST_PIXELS, 8))).parts
+    assert texture_in(part.glb).size == (meshes.MOST_PIXELS, 4)
+
+
+def test_mesh_without_a_texture(mesh):
+    assert not any(part.glb for part in mesh('mesh.obj', mesh_texts.OBJ).parts)
 
 
 def test_unit_of_a_dae_file_counts_and_its_up_axis_does_not(mesh):
@@ -221,12 +272,12 @@ def test_shape_is_drawn_if_its_type_has_a_surface(name, reader):
     if shape_type.surface is None:
         assert f'a {name} is not supported' in mesh.reason
     else:
-        ((points, faces, _),) = mesh.parts
+        ((points, faces, *_),) = mesh.parts
         np.testing.assert_array_equal(points, shape_type.surface(*sizes_m).points_m)
         np.testing.assert_array_equal(faces, shape_type.surface(*sizes_m).faces)
 
 
 def test_large_plane_is_drawn_in_part(reader):
     shape = Shape('plane', (900.0, 2.0), (0.0, 0.0, 1.0), '', '', (1.0, 1.0, 1.0), None)
-    (points, _, _), = reader.mesh(shape, 'model.sdf', 5.0).parts
+    (points, *_), = reader.mesh(shape, 'model.sdf', 5.0).parts
     np.testing.assert_allclose(points.max(axis=0), (5.0, 1.0, 0.0))
