@@ -39,9 +39,8 @@ MOMENTS = ('ixx', 'iyy', 'izz', 'ixy', 'ixz', 'iyz')
 
 _MOMENTS_OF_NONE = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
 """The default moments of libsdformat."""
-_DEFAULT_TEXTS = {'mass': '1'} | dict(
-    zip(MOMENTS, map(str, _MOMENTS_OF_NONE), strict=True))
-_texts_of_numbers = itemgetter(*_DEFAULT_TEXTS)
+_DEFAULT_TEXTS = dict(zip(MOMENTS, map(str, _MOMENTS_OF_NONE), strict=True))
+_texts_of_moments = itemgetter(*MOMENTS)
 _TOLERANCE = 10.0 * sys.float_info.epsilon
 """Tolerance of gz-math for rules of moments, relative to half their sum."""
 
@@ -149,19 +148,9 @@ def inertial_from_element(
     auto = xml.get('auto')
     if auto and boolean_from_text(auto):
         return _automatic_inertial(xml, sources)
-    # Values are checked with all others. They are read here with little effort, since every load
-    # does it.
-    texts = _DEFAULT_TEXTS | {child.tag: child.text for child in xml.iterdescendants()}
-    try:
-        mass_kg, *moments = map(float, _texts_of_numbers(texts))
-    except (TypeError, ValueError):
-        (mass_kg,) = numbers_of_child(xml, 'mass', (1.0,))
-        inertia = first_child(xml, 'inertia')
-        moments = [
-            number for tag, default in zip(MOMENTS, _MOMENTS_OF_NONE, strict=True)
-            for number in (
-                (default,) if inertia is None else numbers_of_child(inertia, tag, (default,)))]
-    inertial = Inertial(mass_kg, tuple(moments))
+    inertial = _inertial_from_plain_numbers(xml)
+    if inertial is None or not inertial.is_valid:
+        inertial = _inertial_from_values(xml)
     if not inertial.is_valid:
         link = xml.getparent()
         name = '' if link is None else attribute_of(link, 'name')
@@ -169,6 +158,33 @@ def inertial_from_element(
             xml, f'no body can have the mass and the moments of inertia of link "{name}"; '
             'libsdformat refuses them, but no pose depends on them', LinkInertiaError.code)
     return inertial
+
+
+def _inertial_from_values(xml: XmlElement) -> Inertial:
+    """Read an inertial; values that libsdformat cannot read are those of an empty one."""
+    inertia = first_child(xml, 'inertia')
+    (mass_kg,) = numbers_of_child(xml, 'mass', (1.0,))
+    return Inertial(mass_kg, tuple(
+        number for tag, default in zip(MOMENTS, _MOMENTS_OF_NONE, strict=True)
+        for number in (
+            (default,) if inertia is None else numbers_of_child(inertia, tag, (default,)))))
+
+
+def _inertial_from_plain_numbers(xml: XmlElement) -> Inertial | None:
+    """Read an inertial in little time, as every load does; return None for unusual texts."""
+    # Of several elements with one name, the first counts.
+    children = {child.tag: child for child in xml.iterchildren(reversed=True)}
+    inertia = children.get('inertia', ())
+    texts = _DEFAULT_TEXTS | {child.tag: child.text for child in reversed(inertia)}
+    mass = children.get('mass')
+    try:
+        words = '1' if mass is None else mass.text, *_texts_of_moments(texts)
+        if '_' in ''.join(words):  # which Python reads
+            return None
+        mass_kg, *moments = map(float, words)
+    except (TypeError, ValueError):
+        return None
+    return Inertial(mass_kg, tuple(moments))
 
 
 def _automatic_inertial(inertial: XmlElement, sources: Sources) -> AutomaticInertial | None:

@@ -105,6 +105,20 @@ def test_inertial_has_mass_and_moments(content, mass_kg, moments):
     assert inertial_of(content) == (mass_kg, moments)
 
 
+@pytest.mark.parametrize('mass', [
+    '2</mass><mass>3', '2<!-- a comment -->', '2 kg', '2_0'])
+def test_first_number_of_the_first_element_counts(mass):
+    scene = load_text(link_with(inertia(1, 1, 1, 0, 0, 0, mass=mass)))
+    assert scene.inertials[scene.index('m::l::inertial')].mass_kg == 2.0
+
+
+def test_elements_of_other_places_are_not_read():
+    other = '<inertia><mass>7</mass></inertia><user:mass>8</user:mass><ixx>9</ixx>'
+    scene = load_text(link_with(f'<inertial>{other}</inertial>'))
+    inertial = scene.inertials[scene.index('m::l::inertial')]
+    assert inertial == Inertial(1.0, (1.0, 1.0, 1.0, 0.0, 0.0, 0.0))
+
+
 def test_added_mass_is_no_mass():
     content = '<inertial><mass>2</mass><fluid_added_mass><xx>5</xx></fluid_added_mass></inertial>'
     assert inertial_of(content).mass_kg == 2.0
