@@ -106,7 +106,7 @@ def line_about_gazebo(count: int) -> str:
     if not count:
         return ''
     return (
-        f'{count_in_words(count, "warning")} for use with Gazebo only '
+        f'{count_in_words(count, "warning")} about Gazebo '
         f'{"is" if count == 1 else "are"} not shown; "sdf_pose check" shows '
         f'{"it" if count == 1 else "them"}')
 
