@@ -108,9 +108,9 @@ class Kind(enum.IntEnum):
         'geometry! surface')
     SENSOR = 'link joint', (
         '@name! @type!:sensor_type pose always_on:bool update_rate:double visualize:bool topic '
-        'enable_metrics:bool frame_id plugin air_pressure air_speed altimeter camera contact '
-        'force_torque gps imu lidar logical_camera magnetometer navsat ray rfid rfidtag sonar '
-        'transceiver')
+        'enable_metrics:bool frame_id gz_frame_id plugin air_pressure air_speed altimeter camera '
+        'contact force_torque gps imu lidar logical_camera magnetometer navsat ray rfid rfidtag '
+        'sonar transceiver')
     LIGHT = 'sdf world link', (
         '@name! @type!:light_type pose cast_shadows:bool light_on:bool visualize:bool '
         'intensity:double diffuse:color specular:color attenuation direction!:vector3 spot')

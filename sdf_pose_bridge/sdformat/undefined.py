@@ -20,7 +20,6 @@ from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _ELEMENT_HINTS = {
     'origin': 'it is from URDF; SDFormat has <pose>x y z roll pitch yaw</pose>',
-    'sensor/gz_frame_id': 'it is used all the same; version 1.12 has <frame_id> instead',
     'sensor/ignition_frame_id': 'it is used all the same; version 1.12 has <frame_id> instead',
     'gz_frame_id': 'Gazebo looks for it in <sensor>',
     'ignition_frame_id': 'Gazebo looks for it in <sensor>',

@@ -58,6 +58,7 @@ tag in the parent, and their new tag."""
 
 _DEPRECATED = (
     (Version(1, 10), 'joint', 'thread_pitch', '<screw_thread_pitch>, in metres per turn'),
+    (Version(1, 12), 'sensor', 'gz_frame_id', '<frame_id>'),
     (Version(1, 12), 'camera', 'optical_frame_id', '<frame_id> of the sensor'),
     (Version(1, 12), 'link_state', 'velocity', '<linear_velocity> and <angular_velocity>'),
     (Version(1, 12), 'link_state', 'acceleration',

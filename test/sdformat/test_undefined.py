@@ -27,9 +27,9 @@ def messages_of(text):
     (link_with('<pose>1 2 3 0 0 0<relative_to>world</relative_to></pose>'),
      ('<relative_to> in <pose> is not defined in SDFormat; it is an attribute: '
      'relative_to="..."')),
-    (link_with('<sensor name="s" type="imu"><gz_frame_id>f</gz_frame_id></sensor>'),
-     ('<gz_frame_id> in <sensor> is not defined in SDFormat; it is used all the same; version '
-      '1.12 has <frame_id> instead')),
+    (link_with('<sensor name="s" type="imu"><ignition_frame_id>f</ignition_frame_id></sensor>'),
+     ('<ignition_frame_id> in <sensor> is not defined in SDFormat; it is used all the same; '
+      'version 1.12 has <frame_id> instead')),
     (link_with('<gz_frame_id>f</gz_frame_id>'),
      '<gz_frame_id> in <link> is not defined in SDFormat; Gazebo looks for it in <sensor>'),
     (model_file(LINK + '<sensor name="s" type="imu"/>'),

@@ -46,6 +46,7 @@ def converted(text):
 # Deprecated elements
 
 CAMERA = '<link name="l"><sensor name="s" type="camera"><camera>{}</camera></sensor></link>'
+SENSOR = '<link name="l"><sensor name="s" type="imu">{}</sensor></link>'
 SCREW = ('<link name="l"/><joint name="j" type="screw"><parent>world</parent><child>l</child>{}'
          '</joint>')
 
@@ -53,6 +54,8 @@ SCREW = ('<link name="l"/><joint name="j" type="screw"><parent>world</parent><ch
 @pytest.mark.parametrize(('content', 'version', 'new'), [
     (CAMERA.format('<optical_frame_id>o</optical_frame_id>'), '1.12', '<frame_id>'),
     (CAMERA.format('<optical_frame_id>o</optical_frame_id>'), '1.11', ''),
+    (SENSOR.format('<gz_frame_id>f</gz_frame_id>'), '1.12', '<frame_id>'),
+    (SENSOR.format('<gz_frame_id>f</gz_frame_id>'), '1.11', ''),
     (SCREW.format('<thread_pitch>1</thread_pitch>'), '1.10', '<screw_thread_pitch>'),
     (SCREW.format('<thread_pitch>1</thread_pitch>'), '1.9', ''),
     (LINK + '<plugin filename="p"><joint><thread_pitch/></joint></plugin>', '1.12', ''),
