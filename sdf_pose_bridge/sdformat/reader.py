@@ -25,6 +25,7 @@ from sdf_pose_bridge.errors import ElementInvalidError
 from sdf_pose_bridge.errors import ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.sdformat.elements import Elements
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.elements import FrameDetails
@@ -191,9 +192,9 @@ class _Reader:
         elif definition.value_type is not None:
             fault, doubt = judged_value(text_of(xml), definition)
             if fault:
-                self._sources.error(ElementInvalidError, xml, fault)
+                self._sources.error(ElementInvalidError, xml, f'{_described_value(xml)} {fault}')
             elif doubt:
-                self._sources.warning(xml, doubt)
+                self._sources.warning(xml, f'{_described_value(xml)} {doubt}')
         elif definition.identifier == 'include':
             missing = self._sources.origin(xml).missing
             if parent != NO_ELEMENT and missing is not None:
@@ -327,6 +328,11 @@ def _model_details(xml: XmlElement) -> ModelDetails:
         tuple(
             etree.tostring(child, encoding='unicode', pretty_print=True, with_tail=False).rstrip()
             for child in child_elements(xml, *URDF_TAGS)))
+
+
+def _described_value(xml: XmlElement) -> str:
+    value = shortened(text_of(xml).strip(WHITE_SPACE))
+    return f'"{value}" of <{written_tag(xml)}>' if value else f'<{written_tag(xml)}>'
 
 
 def _frame_details(xml: XmlElement, sources: Sources) -> FrameDetails:

@@ -86,12 +86,12 @@ def choice_fault(text: str, choice: Choice) -> str:
 
 def judged_value(text: str, definition: Definition) -> tuple[str, str]:
     """
-    Return the value of an element as libsdformat reads it.
+    Judge the value of an element as libsdformat does.
 
     :param text: the value. If the element is not required, the default replaces a blank one.
     :param definition: the definition of the element; not that of a pose.
-    :return: the value; the rule that it breaks, empty if it is valid; and the numbers that were
-        read, empty if they are those of the text.
+    :return: the rule that it breaks, empty if it is valid; and the numbers that were read, empty
+        if they are those of the text. Each is a part of a sentence behind the value.
     """
     value_type = definition.value_type
     if value_type is None or (
@@ -100,24 +100,23 @@ def judged_value(text: str, definition: Definition) -> tuple[str, str]:
         return '', ''
     stripped = text.strip(WHITE_SPACE)
     if not stripped and definition.is_required:
-        return f'<{definition.identifier}> is empty; it must have a value', ''
+        return 'is empty; it must have a value', ''
     if not stripped or value_type is ValueType.STRING:
         return '', ''
     if definition.choice is not None:
-        fault = choice_fault(stripped, definition.choice)
-        return f'"{stripped}" of <{definition.identifier}> {fault}' if fault else '', ''
+        return choice_fault(stripped, definition.choice), ''
     plain_numbers = _plain_numbers(stripped, value_type)
     numbers = plain_numbers or numbers_from_text(stripped, value_type)
     if not plain_numbers and not _is_of_type(stripped, numbers, value_type):
-        return f'"{stripped[:80]}" is not {value_type.description}', ''
+        return f'is not {value_type.description}', ''
     if value_type is ValueType.AXIS and math.hypot(*numbers) <= _SHORTEST_AXIS:
-        return f'"{stripped}" is not a valid axis: its length is zero', ''
+        return 'is not a valid axis: its length is zero', ''
     minimum, maximum = definition.minimum, definition.maximum
     # Like libsdformat, this accepts NaN.
     if numbers and (numbers[0] < minimum or numbers[0] > maximum):
         rule = (f'at least {minimum:g}' if maximum == math.inf
                 else f'from {minimum:g} to {maximum:g}')
-        return f'"{stripped}" must be {rule}', ''
+        return f'must be {rule}', ''
     return '', '' if plain_numbers else _doubt(stripped, numbers)
 
 
@@ -133,7 +132,7 @@ def _doubt(text: str, numbers: Sequence[float]) -> str:
             word == number or math.isnan(word)
             for word, number in zip(words, numbers, strict=True)):
         return ''
-    return f'"{text[:80]}" is read as {" ".join(map(repr, numbers))}'
+    return f'is read as {" ".join(map(repr, numbers))}'
 
 
 def is_representable(text: str, number: float) -> bool:

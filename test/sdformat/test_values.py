@@ -153,13 +153,13 @@ def test_long_runs_of_white_space_are_read_fast(text):
     assert load_text(text).names
 
 
-def test_message_has_the_value_and_the_rule():
+def test_message_has_the_value_the_element_and_the_rule():
     error = only_error(model_file('<link name="l"/><static>maybe</static>'))
-    assert error.message == '"maybe" is not a boolean (true, false, 1 or 0)'
+    assert error.message == '"maybe" of <static> is not a boolean (true, false, 1 or 0)'
 
 
 def test_message_has_the_range():
-    assert only_error(ode('<mu>-1</mu>')).message == '"-1" must be at least 0'
+    assert only_error(ode('<mu>-1</mu>')).message == '"-1" of <mu> must be at least 0'
 
 
 def test_long_value_is_cut_in_the_message():
@@ -206,7 +206,7 @@ def test_numbers_as_libsdformat_reads_them(text, value_type, numbers):
 def test_numbers_that_are_read_otherwise_have_a_warning():
     scene = load_text(box('1.22.28 0.26'))
     assert [warning.message for warning in scene.warnings] == [
-        '"1.22.28 0.26" is read as 1.22 0.28 0.26']
+        '"1.22.28 0.26" of <size> is read as 1.22 0.28 0.26']
 
 
 @pytest.mark.parametrize('text', ['1 2 3', ' 1\t2\n3 ', '+1 .5 1e-3', '1. 2. 3.'])
