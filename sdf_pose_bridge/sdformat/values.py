@@ -117,7 +117,8 @@ def judged_value(text: str, definition: Definition) -> tuple[str, str]:
         rule = (f'at least {minimum:g}' if maximum == math.inf
                 else f'from {minimum:g} to {maximum:g}')
         return f'must be {rule}', ''
-    return '', '' if plain_numbers else _doubt(stripped, numbers)
+    is_integer = value_type in _INTEGER_RANGES and _C_INTEGER.fullmatch(stripped)
+    return '', '' if plain_numbers or is_integer else _doubt(stripped, numbers)
 
 
 def _doubt(text: str, numbers: Sequence[float]) -> str:

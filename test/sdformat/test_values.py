@@ -209,6 +209,11 @@ def test_numbers_that_are_read_otherwise_have_a_warning():
         '"1.22.28 0.26" of <size> is read as 1.22 0.28 0.26']
 
 
+def test_mask_in_hexadecimal_has_no_warning():
+    mask = '<contact><collide_bitmask>0x0F</collide_bitmask></contact>'
+    assert not load_text(surface(mask)).warnings
+
+
 @pytest.mark.parametrize('text', ['1 2 3', ' 1\t2\n3 ', '+1 .5 1e-3', '1. 2. 3.'])
 def test_plain_numbers_have_no_warning(text):
     assert not load_text(box(text)).warnings
