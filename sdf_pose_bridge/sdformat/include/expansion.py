@@ -92,7 +92,7 @@ class IncludeExpansion:
         self._files: dict[str, Document | None] = {}
         self._model_files: dict[str, ModelFile | str] = {}
         self._steps_of_copy = cache(steps_of_copy)
-        self._missing_uris: set[str] = set()
+        self._missing: set[str] = set()
         self._merged_models: dict[tuple[XmlElement, str, bytes], ModelByItself | None] = {}
         self._undefined = UndefinedReporter(sources)
         self._definitions: dict[XmlElement, Definition | None] = {}
@@ -249,11 +249,14 @@ class IncludeExpansion:
 
     def _report_missing(self, place: Place, uri: str, reason: str) -> None:
         msg = f'"{shortened(uri)}" cannot be included: {reason}'
-        if not self._skips_missing:
-            self._sources.problems.error(UriLookupError(msg, place))
-        elif uri not in self._missing_uris:
+        # A world may include the same model a hundred times.
+        if msg in self._missing:
+            return
+        self._missing.add(msg)
+        if self._skips_missing:
             self._sources.problems.warning(f'{msg}; it is left out', place)
-        self._missing_uris.add(uri)
+        else:
+            self._sources.problems.error(UriLookupError(msg, place))
 
     def _top(self, include: XmlElement, document: Document) -> XmlElement | None:
         """Return the model, actor or light at the top of an included file."""

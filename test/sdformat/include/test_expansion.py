@@ -155,6 +155,14 @@ def test_missing_file_is_named_in_the_message(errors_in):
     assert '"model://nothing" cannot be included' in error.message
 
 
+def test_missing_file_that_is_included_twice_is_reported_once(errors_in):
+    errors = errors_in(''.join(
+        include(uri, f'<name>{name}</name>') for uri in ('none.sdf', 'model://b')
+        for name in 'ab'))
+    assert [error.message.split(' cannot be')[0] for error in errors] == [
+        '"none.sdf"', '"model://b"']
+
+
 @pytest.mark.parametrize('content', [
     include('none.sdf', '<name>n</name>') + '<frame name="f" attached_to="n::l"/>',
     include('model://none') + '<frame name="f"><pose relative_to="none"/></frame>',
