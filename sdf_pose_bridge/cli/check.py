@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 import os
+import re
 import sys
 
 from sdf_pose_bridge.cli.loading import add_file_arguments
@@ -18,10 +19,15 @@ from sdf_pose_bridge.cli.records import GITHUB
 from sdf_pose_bridge.cli.records import JSON
 from sdf_pose_bridge.cli.records import print_annotations
 from sdf_pose_bridge.cli.records import print_json
+from sdf_pose_bridge.errors import Place
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
+from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
+
+_FOLDER = re.compile('(?:model|package)://+[^/]+', re.IGNORECASE)
+"""The package or model at the beginning of a URI."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -61,25 +67,40 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[SdfWarning, ...]:
-    """Return a warning for each shape without extent, and for each mesh that is not found."""
+    """
+    Return a warning for each shape without extent, and for each mesh that is not found.
+
+    A shape of a file that is included often has one, and so have all meshes of a missing package.
+    """
     finder = resource_finder(resource_paths, os.environ)
-    reasons: dict[tuple[str, str], str] = {}
-    doubts = []
+    doubts: dict[tuple[str, int, str], SdfWarning] = {}
+    places: dict[tuple[str, str], Place] = {}
     for element, shape in scene.shapes.items():
         place = scene.place(element)
         if not shape.has_extent:
             sizes = ' '.join(f'{size:g}' for size in shape.sizes_m or shape.mesh_scale)
             reason = f'a size or the scale of the {shape.type} is not a positive number ({sizes})'
+            doubts.setdefault(
+                (place.file, place.line, reason), SdfWarning('WARNING', reason, place))
         elif shape.mesh_uri:
             key = shape.mesh_uri, place.file
-            if key not in reasons:
-                is_found = finder.file_from_uri(*key) is not None
-                reasons[key] = '' if is_found else (
-                    f'the mesh "{shortened(shape.mesh_uri)}" is not found: '
-                    f'{finder.reason_not_found(*key)}')
-            reason = reasons[key]
-        else:
-            reason = ''
-        if reason:
-            doubts.append(SdfWarning('WARNING', reason, place))
-    return tuple(doubts)
+            places[key] = min(place, places.get(key, place), key=lambda each: each.line)
+    missing: dict[tuple[str, str], list[str]] = {}
+    for uri, file in sorted(places, key=lambda key: places[key].line):
+        if finder.file_from_uri(uri, file) is None:
+            folder = _FOLDER.match(uri)
+            is_folder_missing = folder and finder.path_from_uri(folder[0], file) is None
+            key = (folder[0] if folder and is_folder_missing else uri), file
+            missing.setdefault(key, []).append(uri)
+    return (*doubts.values(), *(
+        SdfWarning(
+            'WARNING', _reason_without_meshes(folder, uris, file, finder), places[uris[0], file])
+        for (folder, file), uris in missing.items()))
+
+
+def _reason_without_meshes(
+    folder: str, uris: Sequence[str], file: str, finder: ResourceFinder,
+) -> str:
+    others = f', like {len(uris) - 1} more of "{shortened(folder)}"' if len(uris) > 1 else ''
+    return (f'the mesh "{shortened(uris[0])}" is not found{others}: '
+            f'{finder.reason_not_found(uris[0], file)}')

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from heapq import merge
+from itertools import chain
 import math
 import os
 from pathlib import Path
@@ -57,14 +57,15 @@ def print_problems(
 
 def in_order(*problems: tuple[_Problem, ...]) -> tuple[_Problem, ...]:
     """
-    Merge errors and warnings.
+    Sort errors and warnings.
 
-    :param problems: some of them, each in the order of files and lines.
-    :return: all of them in this order; of one line the first argument comes first.
+    :param problems: some of them.
+    :return: all of them, by file as the first ones, and by line; of one line the first argument
+        comes first.
     """
     files = [problem.place.file for some in problems for problem in some]
     ranks = {file: rank for rank, file in reversed([*enumerate(files)])}
-    return (*merge(*problems, key=lambda problem: (
+    return (*sorted(chain(*problems), key=lambda problem: (
         ranks[problem.place.file], problem.place.line)),)
 
 

@@ -97,6 +97,43 @@ def test_errors_and_warnings_are_in_the_order_of_lines(run_main, files):
     assert [line.split(':')[1] for line in lines] == ['2', '3', '4']
 
 
+def test_meshes_of_a_missing_package_are_one_warning(run_main, files):
+    (files / 'arm.sdf').write_text("""<sdf version="1.9"><model name="m"><link name="l">
+      <visual name="a"><geometry><mesh><uri>package://p/1.stl</uri></mesh></geometry></visual>
+      <visual name="b"><geometry><mesh><uri>package://p/2.stl</uri></mesh></geometry></visual>
+      </link></model></sdf>""")
+    (line,) = run_main('check', 'arm.sdf').stdout.splitlines()
+    assert line.startswith(
+        'arm.sdf:2: WARNING: the mesh "package://p/1.stl" is not found, like 1 more of '
+        '"package://p": no package "p" is installed')
+
+
+def test_meshes_that_a_package_does_not_have_are_sorted_by_line(run_main, files):
+    (files / 'p').mkdir()
+    (files / 'arm.urdf').write_text("""<robot name="r"><link name="a">
+      <inertial><mass value="1"/>
+      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+      <visual><geometry><mesh filename="package://p/1.stl"/></geometry></visual>
+      <collision><geometry><mesh filename="package://p/2.stl"/></geometry></collision>
+      <visual><geometry><mesh filename="package://p/3.stl"/></geometry></visual>
+      </link></robot>""")
+    lines = run_main('check', '-I', '.', 'arm.urdf').stdout.splitlines()
+    assert [line.split(':')[1] for line in lines] == ['4', '5', '6']
+
+
+def test_shapes_of_a_file_that_is_included_twice_have_one_warning(run_main, files):
+    (files / 'part.sdf').write_text("""<sdf version="1.9"><model name="m"><link name="l">
+      <visual name="a"><geometry><mesh><uri>none.stl</uri></mesh></geometry></visual>
+      <visual name="b"><geometry><sphere><radius>0</radius></sphere></geometry></visual>
+      </link></model></sdf>""")
+    include = '<include><uri>part.sdf</uri><name>{}</name></include>'
+    (files / 'two.sdf').write_text(
+        f'<sdf version="1.9"><world name="w">{include.format("a")}{include.format("b")}'
+        '</world></sdf>')
+    lines = run_main('check', 'two.sdf').stdout.splitlines()
+    assert [line.split(':')[1] for line in lines] == ['2', '3']
+
+
 def test_missing_mesh_and_impossible_sizes_are_warnings(run_main, files):
     (files / 'shapes.sdf').write_text("""<sdf version="1.9"><model name="m"><link name="l">
       <visual name="a"><geometry><mesh><uri>none.stl</uri></mesh></geometry></visual>
