@@ -87,7 +87,18 @@ class FileChange(NamedTuple):
                 end = '\\ No newline at end of file\n'
         old_lines, new_lines = (
             f'{_end(head)}{text}{_beginning(tail)}'.split('\n') for text in (old, new))
-        line = before.count('\n') + 1 - len(above)
+        # The range may begin or end with text that stays, such as the tag before a new pose.
+        first = _equal_lines(old_lines, new_lines)
+        if end and not below:
+            first = min(first, len(old_lines) - 1, len(new_lines) - 1)
+        last = _equal_lines(old_lines[first:][::-1], new_lines[first:][::-1])
+        above = [*above, *old_lines[:first]][-_LINES_AROUND:]
+        below = [*old_lines[len(old_lines) - last:], *below]
+        if len(below) > _LINES_AROUND:
+            below, end = below[:_LINES_AROUND], ''
+        old_lines, new_lines = (
+            lines[first:len(lines) - last] for lines in (old_lines, new_lines))
+        line = before.count('\n') + 1 + first - len(above)
         around = len(above) + len(below)
         return ''.join([
             f'--- {printable(self.path)}\n+++ {printable(self.path)}\n',
@@ -96,6 +107,13 @@ class FileChange(NamedTuple):
             _marked('-', old_lines), '' if below else end,
             _marked('+', new_lines), '' if below else end,
             _marked(' ', below), end if below else ''])
+
+
+def _equal_lines(old: Sequence[str], new: Sequence[str]) -> int:
+    """Return the number of equal lines at the beginning of both."""
+    pairs = zip(old, new, strict=False)
+    return next(
+        (row for row, (a, b) in enumerate(pairs) if a != b), min(len(old), len(new)))
 
 
 def _end(line: str) -> str:

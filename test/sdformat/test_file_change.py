@@ -26,7 +26,8 @@ LINES = ''.join(f'line {number}\n' for number in range(1, 10))
 @pytest.mark.parametrize('text', [LINES, LINES[:-1]])
 @pytest.mark.parametrize(('old', 'new'), [
     ('5', 'x'), ('1', 'x'), ('9', 'x'), ('5\nline 6', 'x'), ('2', 'x\ny'), ('7', ''), ('8', 'x'),
-    ('line 6\nline 7', 'a\nb')])
+    ('line 6\nline 7', 'a\nb'),
+    ('5', '5\nx'), ('5', 'x\nline 5'), ('1', '1\nx'), ('9', '9\nx'), ('9', 'x\nline 9')])
 def test_the_change_is_shown_as_difflib_would(text, old, new):
     texts = (text, text.replace(old, new))
     expected = difflib.unified_diff(
