@@ -262,10 +262,8 @@ class _Conversion:
         shape = self._write.add(
             self._write.add(xml, 'geometry', geometry), str(geometry.tag), geometry)
         if shape.tag == 'mesh':
-            uri = geometry.get('filename', '')
-            if not self._for_ros:
-                uri = uri.replace('package://', 'model://', 1)
-            self._write.add(shape, 'uri', geometry, text=uri)
+            # Gazebo reads package:// as model://. Here meshes of packages are found in both ways.
+            self._write.add(shape, 'uri', geometry, text=geometry.get('filename', ''))
         self._write.add_numbers(shape, geometry, numbers_of(geometry, SHAPES[str(shape.tag)]))
 
     def _add_joint(self, joint: Joint) -> bool:
