@@ -225,7 +225,8 @@ def hint_about_command_line(given: Parameter, wanted: Parameter.Type) -> str:
     if wanted is Parameter.Type.STRING:
         return f', so quote it twice: -p "{given.name}:=\'{_shown_value(given)}\'"'
     if given.type_ is Parameter.Type.STRING and wanted is Parameter.Type.STRING_ARRAY:
-        return f': -p "{given.name}:=[\'{given.value}\']"'
+        items = ', '.join(f"'{item.strip()}'" for item in given.value.split(','))
+        return f': -p "{given.name}:=[{items}]"'
     return ''
 
 

@@ -40,7 +40,9 @@ def default_settings(make_node):
     ('sdf_file', '5', 'is 5, which is an integer; it must be a string, so quote it twice: '),
     ('model', 'true', 'is True, which is true or false; it must be a string, so quote it twice'),
     ('optical_frames', 'maybe', 'is maybe, which is a string; it must be true or false'),
-    ('kinds', 'link', 'is link, which is a string; it must be a list of strings: -p "kinds:=['),
+    ('kinds', 'link,frame',
+     ('is link,frame, which is a string; it must be a list of strings: -p "kinds:=[\'link\', '
+      '\'frame\']"')),
     ('pose_topics', '[1, 2]', 'is [1, 2], which is a list of integers; it must be a list of '),
     ('resource_paths', '[0.5]', 'is [0.5], which is a list of numbers; it must be a list of '),
     ('publish_rate', 'fast', 'is fast, which is a string; it must be a number'),
