@@ -191,7 +191,11 @@ class _NamedFiles(FilePathResolver):
         """Return the content of a buffer, material or texture."""
         if not name.lower().endswith(_NAMED_FORMATS):
             raise FileNotFoundError(name)
-        return bytes_from_file(str(self.absolute(name)), self._usage)
+        path = self.absolute(name)
+        if not path.exists():
+            # The folder of textures in a model of Gazebo.
+            path = Path(self.parent, '..', 'materials', 'textures', Path(name.strip()).name)
+        return bytes_from_file(str(path), self._usage)
 
 
 def _scene_from_file(path: str, submesh: str) -> trimesh.Scene:
@@ -255,7 +259,10 @@ def _glb(mesh: trimesh.Trimesh, points: Any) -> bytes:
     image = getattr(material, 'baseColorTexture', None) or getattr(material, 'image', None)
     if image is None or getattr(visual, 'uv', None) is None:
         return b''
-    has_alpha = 'A' in image.getbands()
+    # As in Gazebo, a texture of OBJ is opaque unless the material has one for opacity, too.
+    has_alpha = 'A' in image.getbands() and not (
+        isinstance(material, trimesh.visual.material.SimpleMaterial)
+        and 'map_d' not in material.kwargs)
     try:
         image = image.convert('RGBA' if has_alpha else 'RGB')
     except (OSError, SyntaxError, ValueError):  # raised by Pillow for a broken image

@@ -135,7 +135,7 @@ def textured(mesh, tmp_path):
 def png(size, color=(200, 10, 10)):
     image = pytest.importorskip('PIL.Image', reason='needs Pillow')
     written = io.BytesIO()
-    image.new('RGB', size, color).save(written, 'PNG')
+    image.new('RGBA' if len(color) == 4 else 'RGB', size, color).save(written, 'PNG')
     return written.getvalue()
 
 
@@ -167,6 +167,24 @@ def test_texture(textured):
     (part,) = textured(png((4, 4))).parts
     assert texture_in(part.glb).getpixel((0, 0)) == (200, 10, 10)
     assert mesh_from_glb(part.glb).extents == pytest.approx((1, 2, 0))
+
+
+@pytest.mark.parametrize('name', ['texture.png', 'model://m/materials/textures/texture.png'])
+def test_texture_in_the_folder_that_models_of_gazebo_have(mesh, tmp_path, name):
+    folder = tmp_path.parent / 'materials' / 'textures'
+    folder.mkdir(parents=True, exist_ok=True)
+    (tmp_path / 'colors.mtl').write_text(f'newmtl red\nmap_Kd {name}\n')
+    (folder / 'texture.png').write_bytes(png((4, 4)))
+    (part,) = mesh('mesh.obj', mesh_texts.TEXTURED_OBJ).parts
+    assert texture_in(part.glb).getpixel((0, 0)) == (200, 10, 10)
+
+
+@pytest.mark.parametrize(('line', 'mode'), [('', None), ('map_d texture.png\n', 'MASK')])
+def test_alpha_of_a_texture_of_obj_counts_if_the_material_says_so(mesh, tmp_path, line, mode):
+    (tmp_path / 'colors.mtl').write_text(f'newmtl red\nmap_Kd texture.png\n{line}')
+    (tmp_path / 'texture.png').write_bytes(png((4, 4), (200, 10, 10, 0)))
+    (part,) = mesh('mesh.obj', mesh_texts.TEXTURED_OBJ).parts
+    assert mesh_from_glb(part.glb).visual.material.alphaMode == mode
 
 
 def test_large_texture_is_made_smaller(textured):
