@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page in a real browser: joints, frames, edited files, errors, and hostile names."""
 
+import contextlib
 import html
 import os
 import re
@@ -16,6 +17,7 @@ from browser import browser
 from browser import DEADLINE_S
 from command_line import COMMAND
 from command_line import ENVIRONMENT
+import mesh_texts
 import numpy as np
 import pytest
 
@@ -40,6 +42,7 @@ TEXT = f"""<sdf version="1.11"><world name="w">
   </model>
   <frame name="{html.escape(HOSTILE)}"><pose>1 0 0 0 0 0</pose></frame>
 </world></sdf>"""
+AXES_M = 0.05 * np.linalg.norm((1.1, 0.2, 0.2))
 ROWS = "[...document.querySelectorAll('.rows label')]"
 
 
@@ -50,23 +53,34 @@ def run_view(folder, *arguments, **options):
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
 
 
+@contextlib.contextmanager
+def view_of(folder, *arguments):
+    """Show the file cell.sdf in a folder; the address of its page."""
+    process = run_view(folder, 'cell.sdf', '--port', '0', *arguments)
+    try:
+        yield process.stdout.readline().strip()
+    finally:
+        process.terminate()
+        process.communicate()
+
+
 @pytest.fixture(scope='module')
 def shown(tmp_path_factory):
     """A file that ``view`` shows, and a browser that shows its page."""
     folder = tmp_path_factory.mktemp('page')
     file = folder / 'cell.sdf'
     file.write_text(TEXT)
-    with browser(folder / 'browser') as page:
-        process = run_view(folder, 'cell.sdf', '--port', '0', '--edit')
-        try:
-            address = process.stdout.readline().strip()
-            page.size(1366, 768)
-            page.open(address)
-            page.wait_for(f'{ROWS}.length > 0')
-            yield SimpleNamespace(file=file, page=page, address=address)
-        finally:
-            process.terminate()
-            process.communicate()
+    with browser(folder / 'browser') as page, view_of(folder, '--edit') as address:
+        page.size(1366, 768)
+        page.open(address)
+        page.wait_for(f'{ROWS}.length > 0')
+        yield SimpleNamespace(file=file, page=page, address=address)
+
+
+def select(page, name):
+    page.wait_for(f"{ROWS}.find(row => row.textContent === '{name}')")
+    page.run(f"{ROWS}.find(row => row.textContent === '{name}').click()")
+    page.wait_for(f"document.querySelector('.rows .selected')?.textContent === '{name}'")
 
 
 @pytest.fixture
@@ -75,13 +89,10 @@ def page(shown):
     if shown.file.read_text() != TEXT:
         shown.file.write_text(TEXT)
     shown.page.wait_for(f"{ROWS}.length === 5 && !document.querySelector('.errors')")
+    # A frame that the last test has moved is back only when the file has been read again.
+    select(shown.page, HOSTILE)
+    shown.page.wait_for("document.body.innerText.includes('xyz 1.0000 0.0000 0.0000 m')")
     return shown.page
-
-
-def select(page, name):
-    page.wait_for(f"{ROWS}.find(row => row.textContent === '{name}')")
-    page.run(f"{ROWS}.find(row => row.textContent === '{name}').click()")
-    page.wait_for(f"document.querySelector('.rows .selected')?.textContent === '{name}'")
 
 
 def enter(page, element, text):
@@ -146,7 +157,8 @@ def point_on_screen(page, point):
     """Return where a point of the scene is in the picture, as the camera stands at first."""
     width, height = page.run(
         "(canvas => [canvas.clientWidth, canvas.clientHeight])(document.querySelector('canvas'))")
-    view = view_of_bounds(np.array([(-0.1, -0.1, -0.1), (1.0, 0.1, 0.1)]), (0.75, -0.5, 0.45))
+    view = view_of_bounds(
+        np.array([(-0.1, -0.1, -0.1), (1.0 + AXES_M, 0.1, 0.1)]), (0.75, -0.5, 0.45))
     to_scene = view.look_at - view.position
     forward = to_scene / np.linalg.norm(to_scene)
     right = np.cross(forward, (0, 0, 1))
@@ -165,7 +177,7 @@ def drag(page):
     select(page, HOSTILE)
     # Nothing says when the gizmo is drawn; until then there is nothing to drag.
     page.run('new Promise(drawn => requestAnimationFrame(() => requestIdleCallback(drawn)))')
-    page.mouse(*(point_on_screen(page, (1.0, 0.0, 0.27 + height)) for height in (
+    page.mouse(*(point_on_screen(page, (1.0, 0.0, 3.8 * AXES_M + height)) for height in (
         0.0, 0.02, 0.05, 0.08, 0.1)))
     z = "document.querySelector('.difference')?.rows[3].cells[2].innerText"
     page.wait_for(f'Math.abs({z} - 0.1) < 0.02')
@@ -209,18 +221,63 @@ def test_numbers_are_typed_and_written(page, shown):
     assert '<pose>1 0.5 0.25 0 0 1.5</pose>' in shown.file.read_text()
 
 
-def test_name_is_shown_at_the_pointer(page):
-    x, y = point_on_screen(page, (1.0, 0.0, 0.0))
+def name_at(page, x, y):
+    """Move the pointer to a point and rest there; return the name that is shown then."""
+    for dx in (1, 0):
+        page.call('Input.dispatchMouseEvent', type='mouseMoved', x=x + dx, y=y)
+    return page.run("""new Promise(rested => setTimeout(rested, 200)).then(
+      () => document.querySelector('.name-at-pointer')?.textContent)""")
 
-    def move():
-        page.call('Input.dispatchMouseEvent', type='mouseMoved', x=x + 3, y=y - 3)
-        return page.run("document.querySelector('.name-at-pointer')?.textContent")
-    # Nothing says when the axes are drawn; until then there is no name.
+
+def wait_for_name_at(page, x, y, name):
+    # Nothing says when the axes and bodies are drawn; until then there is no name.
     end = time.monotonic() + DEADLINE_S
-    while move() is None and time.monotonic() < end:
-        time.sleep(0.1)
-    assert move() == HOSTILE
+    while name_at(page, x, y) != name:
+        assert time.monotonic() < end, f'this name was never shown: {name}'
+
+
+def test_name_of_a_frame_is_shown_at_the_pointer(page):
+    x, y = point_on_screen(page, (1.0, 0.0, 0.0))
+    wait_for_name_at(page, x + 3, y - 3, HOSTILE)
     assert page.run('window.wasRun') is None
+
+
+def test_name_of_a_body_is_shown_where_the_pointer_rests(page):
+    wait_for_name_at(page, *point_on_screen(page, (0.1, -0.1, 0.09)), 'arm/base, visual v')
+    assert name_at(page, 5, 5) == ''
+
+
+def test_name_of_a_body_is_that_of_the_last_drawing(page, shown):
+    shown.file.write_text(TEXT.replace('<visual name="v">', '<visual name="other">'))
+    wait_for_name_at(page, *point_on_screen(page, (0.1, -0.1, 0.09)), 'arm/base, visual other')
+
+
+def test_opacity_of_a_texture(tmp_path):
+    image = pytest.importorskip('PIL.Image', reason='needs Pillow')
+    image.new('RGB', (4, 4)).save(tmp_path / 'texture.png')
+    (tmp_path / 'colors.mtl').write_text('newmtl red\nmap_Kd texture.png\n')
+    (tmp_path / 'mesh.obj').write_text(mesh_texts.TEXTURED_OBJ)
+    (tmp_path / 'cell.sdf').write_text(TEXT.replace(
+        '<box><size>0.2 0.2 0.2</size></box>', '<mesh><uri>mesh.obj</uri></mesh>').replace(
+        '<material><diffuse>1 0 0 1</diffuse></material>', ''))
+    with browser(tmp_path / 'browser') as page, view_of(tmp_path) as address:
+        page.call('Page.addScriptToEvaluateOnNewDocument', source="""
+          window.__THREE_DEVTOOLS__ = new EventTarget();
+          __THREE_DEVTOOLS__.addEventListener('observe', ({detail}) => {
+            if (detail.isScene) (window.scenes ??= []).push(detail);
+          });
+          window.opacities = () => {
+            const found = [];
+            scenes.forEach(scene => scene.traverse(node => {
+              if (node.material?.map && node.isInstancedMesh2) found.push(node.material.opacity);
+            }));
+            return found.join(' ');
+          };""")
+        page.open(address)
+        page.wait_for("window.scenes && opacities() === '1'")
+        page.wait_for(control('opacity'))
+        enter(page, control('opacity'), '0.5')
+        page.wait_for("opacities() === '0.5'")
 
 
 def test_long_name_of_a_joint_has_one_line(page, shown):

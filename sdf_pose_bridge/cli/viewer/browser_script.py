@@ -3,8 +3,8 @@
 """
 Features of the page that viser does not have.
 
-These are frames on top of bodies, names at the pointer, copying, and changes of several controls
-at once. The scene is found as the developer tools of three.js find it.
+These are frames on top of bodies, names at the pointer, the opacity of textures, copying, and
+changes of several controls at once. The scene is found as the developer tools of three.js find it.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 import html
 import json
+from typing import NamedTuple
 
 _TITLE = '<title>Viser</title>'
 _STYLE = """<style>
@@ -27,15 +28,20 @@ _SCRIPT = """<script>(() => {
   // two controls change, one is lost.
   const wait = window.setTimeout;
   window.setTimeout = (action, ms, ...rest) => wait(action, ms === 50 ? 0 : ms, ...rest);
-  let frames, camera;
+  let scene, frames, camera;
   window.__THREE_DEVTOOLS__ ??= new EventTarget();
-  __THREE_DEVTOOLS__.addEventListener('observe', ({detail: scene}) => {
-    if (scene.isScene) scene.onBeforeRender = (renderer, _, used) => {
-      const names = frameNames();
-      scene.traverse(node => {
+  __THREE_DEVTOOLS__.addEventListener('observe', ({detail: observed}) => {
+    if (observed.isScene) observed.onBeforeRender = (renderer, _, used) => {
+      const {frames: names} = namesInScene();
+      const opacity = Number(document.querySelector('[data-opacity]')?.dataset.opacity ?? 1);
+      observed.traverse(node => {
+        // viser has no opacity for bodies with a texture.
+        if (node.isInstancedMesh2 && node.material.map) {
+          Object.assign(node.material, {opacity, transparent: opacity < 1});
+        }
         // These are axes, and nothing else is.
         if (!node.isInstancedMesh || !node.material.isMeshBasicMaterial) return;
-        if (node.count === 3 * names.length) [frames, camera] = [node, used];
+        if (node.count === 3 * names.length) [scene, frames, camera] = [observed, node, used];
         if (node.renderOrder) return;
         // Late, and with no depth of what was drawn before, they are on top of all bodies.
         node.renderOrder = 9000;
@@ -44,21 +50,15 @@ _SCRIPT = """<script>(() => {
       });
     };
   });
-  let listed, names = [];
-  const frameNames = () => {
-    const given = document.querySelector('[data-frame-names]')?.dataset.frameNames ?? '[]';
-    if (given !== listed) [listed, names] = [given, JSON.parse(given)];
+  let listed, names = {frames: [], bodies: []};
+  const namesInScene = () => {
+    const given = document.querySelector('[data-names]')?.dataset.names;
+    if (given && given !== listed) [listed, names] = [given, JSON.parse(given)];
     return names;
   };
-  const shown = document.createElement('div');
-  shown.className = 'name-at-pointer';
-  shown.style = 'position:fixed;z-index:9;pointer-events:none;padding:1px 5px;'
-    + 'font:13px sans-serif;background:#212529;color:#fff;white-space:pre;display:none';
-  addEventListener('pointermove', event => {
-    shown.style.display = 'none';
-    if (event.buttons || event.target.tagName !== 'CANVAS' || !frames?.parent) return;
-    const box = event.target.getBoundingClientRect(), found = [];
+  const namesOfFramesAt = (event, box) => {
     const half = 0.5 * frames.geometry.parameters.height, m = frames.instanceMatrix.array;
+    const found = [];
     for (let k = 0; k < Math.min(frames.count / 3, 20000); k++) {
       // The origin is where the cylinder of the first axis begins.
       const [x, y, z] = [0, 1, 2].map(i => m[48 * k + 12 + i] - half * m[48 * k + 4 + i]);
@@ -66,15 +66,48 @@ _SCRIPT = """<script>(() => {
       at.project(camera);
       const distance = Math.hypot((0.5 + 0.5 * at.x) * box.width + box.left - event.clientX,
                                   (0.5 - 0.5 * at.y) * box.height + box.top - event.clientY);
-      if (at.z < 1 && distance < 12) found.push([distance, frameNames()[k]]);
+      if (at.z < 1 && distance < 12) found.push([distance, namesInScene().frames[k]]);
     }
-    if (!found.length) return;
     found.sort(([a], [b]) => a - b);
-    shown.textContent = found.slice(0, 8).map(([, name]) => name).join('\\n')
+    return found.slice(0, 8).map(([, name]) => name).join('\\n')
       + (found.length > 8 ? `\\nand ${found.length - 8} more` : '');
+  };
+  const nameOfBodyAt = (event, box) => {
+    const meshes = [], {bodies} = namesInScene(), {raycaster} = scene.__r3f.root.getState();
+    scene.traverse(node => node.isInstancedMesh2 && meshes.push(node));
+    raycaster.setFromCamera({
+      x: 2 * (event.clientX - box.left) / box.width - 1,
+      y: 1 - 2 * (event.clientY - box.top) / box.height}, camera);
+    const [hit] = raycaster.intersectObjects(meshes, false);
+    if (!hit) return '';
+    // Surfaces are the last nodes of the drawing, which has the axes in it too.
+    const above = new Set();
+    for (let node = frames; node; node = node.parent) above.add(node);
+    let node = hit.object;
+    while (!above.has(node.parent)) node = node.parent;
+    const nodes = node.parent.children;
+    return bodies[nodes.indexOf(node) - nodes.length + bodies.length]?.[hit.instanceId] ?? '';
+  };
+  const shown = document.createElement('div');
+  shown.className = 'name-at-pointer';
+  shown.style = 'position:fixed;z-index:9;pointer-events:none;padding:1px 5px;'
+    + 'font:13px sans-serif;background:#212529;color:#fff;white-space:pre;display:none';
+  const show = (event, text) => {
+    shown.textContent = text;
     Object.assign(shown.style, {
-      display: 'block', left: `${event.clientX + 14}px`, top: `${event.clientY + 8}px`});
+      display: text ? 'block' : 'none', left: `${event.clientX + 14}px`,
+      top: `${event.clientY + 8}px`});
     document.body.append(shown);
+  };
+  let resting;
+  addEventListener('pointermove', event => {
+    clearTimeout(resting);
+    const canvas = event.target;
+    if (event.buttons || canvas.tagName !== 'CANVAS' || !frames?.parent) return show(event, '');
+    const box = canvas.getBoundingClientRect(), text = namesOfFramesAt(event, box);
+    show(event, text);
+    // A body is looked for when the pointer rests, as that takes long in a large scene.
+    if (!text) resting = setTimeout(() => show(event, nameOfBodyAt(event, box)), 100);
   });
   addEventListener('click', event => {
     const text = event.target.closest?.('[data-copy]')?.dataset.copy;
@@ -86,19 +119,33 @@ _SCRIPT = """<script>(() => {
 })();</script>"""
 
 
-def page_with_script(page: str, title: str = 'sdf_pose view', frame_names: str = '') -> str:
+class NamesInScene(NamedTuple):
+    """The names that are shown at the pointer."""
+
+    frames: Sequence[str]
+    """Those of all axes, in their order."""
+    bodies: Sequence[Sequence[str]]
+    """Those of the copies of each surface, in the order of the nodes."""
+
+
+def page_with_script(page: str, title: str = 'sdf_pose view', names: str = '') -> str:
     """
     Add the style and the script to a page of viser.
 
-    :param frame_names: an element with the names of frames; see :func:`html_of_frame_names`.
+    :param names: an element with the names in the scene; see :func:`html_of_names`.
     """
-    added = f'<title>{html.escape(title)}</title>{frame_names}{_STYLE}{_SCRIPT}'
+    added = f'<title>{html.escape(title)}</title>{names}{_STYLE}{_SCRIPT}'
     return page.replace(_TITLE, added, 1)
 
 
-def html_of_frame_names(names: Sequence[str]) -> str:
-    """Return an element that is not seen, from which the script has the names of all axes."""
-    return f'<meta data-frame-names="{html.escape(json.dumps(list(names)))}">'
+def html_of_names(names: NamesInScene) -> str:
+    """Return an element that is not seen, from which the script has the names in the scene."""
+    return f'<meta data-names="{html.escape(json.dumps(names._asdict()))}">'
+
+
+def html_of_opacity(opacity: float) -> str:
+    """Return an element that is not seen, from which the script has the opacity of textures."""
+    return f'<meta data-opacity="{opacity}">'
 
 
 def html_of_copy_button(text: str) -> str:

@@ -9,40 +9,36 @@ from collections.abc import Callable
 from collections.abc import Sequence
 import textwrap
 from typing import Any
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-import trimesh
 import viser
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
+from sdf_pose_bridge.cli.viewer.browser_script import NamesInScene
 from sdf_pose_bridge.cli.viewer.labels import labels_from_names
-from sdf_pose_bridge.cli.viewer.meshes import MeshPart
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
+from sdf_pose_bridge.cli.viewer.surfaces import boxes_of_surfaces
+from sdf_pose_bridge.cli.viewer.surfaces import Surface
+from sdf_pose_bridge.cli.viewer.surfaces import surfaces_from_scene
 from sdf_pose_bridge.cli.viewer.view_point import bounds_of_interest
-from sdf_pose_bridge.cli.viewer.view_point import bounds_of_points
+from sdf_pose_bridge.cli.viewer.view_point import bounds_with_axes
 from sdf_pose_bridge.cli.viewer.view_point import grid_spacing_m
 from sdf_pose_bridge.cli.viewer.view_point import home_view
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.rotations import Floats
-from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
 from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
-MOST_SURFACES = 5_000
-"""Largest number of different surfaces."""
-MOST_TRIANGLES = 3_000_000
-"""Largest number of triangles of all surfaces."""
 MOST_NAMES = 500
 """Largest number of names that are shown at once."""
 
@@ -53,29 +49,12 @@ HIDDEN_AT_FIRST = frozenset(('collisions', 'all names', 'all lines to parents'))
 
 _REASON_WIDTH, _MOST_REASONS = 60, 3
 _WXYZ = [6, 3, 4, 5]
-_GRAY = (0.52, 0.54, 0.57, 1.0)
-"""The default color, which is visible on a light and on a dark background."""
 _LINE_COLOR = (255, 146, 43)
 _MEASURED_COLOR = (230, 73, 128)
 _GRID_COLOR, _GRID_SECTION_COLOR = (173, 178, 184), (134, 141, 149)
 _COLLISION_RGBA = (0.05, 0.62, 0.55, 1.0)
 _LIGHT_FROM_BELOW = (120, 124, 130)
 _DIRECTION_TO_LIGHT = (0.35, -0.6, 1.0)
-
-
-class Surface(NamedTuple):
-    """The surface of visuals or collisions that differ only in place, size and color."""
-
-    kind: Kind
-    part: MeshPart
-    elements: list[int]
-    """The visual or collision of each copy."""
-    scales: Floats
-    """Shape (n, 3): the factors of each copy along x, y and z."""
-    rgba: NDArray[np.float64]
-    """Shape (n, 4): the color of each copy, components from 0 to 1."""
-    reason: str
-    """The reason why this replaces a mesh; empty for the surface in the file."""
 
 
 class Drawing:
@@ -111,31 +90,36 @@ class Drawing:
             if label not in hidden and is_shown[elements[frame]]], int)
         """The frames that are drawn, indices into the TF tree."""
         origins = tree.poses[:, :3]
-        extent_m = float(np.ptp(origins, axis=0).max()) if len(origins) else 0.0
-        self.frame_names = [printable(tree.frame_ids[frame]) for frame in self.frames]
-        """The names of these frames."""
-        self._surfaces, reasons = surfaces_from_scene(
-            scene, [element for element in scene.shapes if is_shown[element]
-                    and f'{Kind(scene.kinds[element]).label}s' not in hidden],
-            extent_m or 1.0, meshes)
+        bodies = [element for element in scene.shapes if is_shown[element]
+                  and f'{Kind(scene.kinds[element]).label}s' not in hidden]
+        extent_m = float(np.ptp(np.concatenate(
+            [origins, scene.poses[bodies, :3], np.zeros((1, 3))]), axis=0).max()) or 1.0
+        self._surfaces, reasons = surfaces_from_scene(scene, bodies, extent_m, meshes)
         self.reasons = [
             f'{"1 shape is" if number == 1 else f"{number} shapes are"} not drawn as the file '
             f'means it: {printable(reason)}' for reason, number in Counter(reasons).items()]
         """Lines that say which visuals and collisions are not drawn as the file means them."""
+        self.names = NamesInScene(
+            [printable(tree.frame_ids[frame]) for frame in self.frames],
+            [_names_of_bodies(posed, surface) for surface in self._surfaces])
+        """The names that the page shows at the pointer."""
         self._reasons = _texts_of_reasons(scene, self._surfaces)
+        self._bodies = np.array(
+            [element for surface in self._surfaces for element in surface.elements], int)
         boxes = boxes_of_surfaces(scene, self._surfaces)
-        self.size_m = float(np.ptp(bounds_of_points(
-            np.concatenate([origins, np.zeros((1, 3)), boxes.reshape(-1, 3)])), axis=0).max()
-            ) or 1.0
+        self.size_m = float(np.ptp(np.concatenate(
+            [origins, boxes.reshape(-1, 3), np.zeros((1, 3))]), axis=0).max()) or 1.0
         """The extent of everything."""
-        self.bounds = bounds_of_interest(
-            origins[self.frames], shown.is_in_robot[elements[self.frames]], boxes)
+        bounds = bounds_of_interest(origins[self.frames], boxes, np.concatenate([
+            origins[self.frames][shown.is_in_robot[elements[self.frames]]],
+            boxes[shown.is_in_robot[self._bodies]].mean(axis=1)]))
+        view_m = float(np.linalg.norm(bounds[1] - bounds[0])) or self.size_m
+        self.axes_length_m = length_m = _length_of_axes(tree, view_m)
+        self.bounds = bounds_with_axes(bounds, tree.poses[self.frames], length_m)
         """The lowest and the highest corner of the first view, shape (2, 3)."""
-        view_m = float(np.linalg.norm(self.bounds[1] - self.bounds[0])) or self.size_m
         self.home = home_view(self.bounds, origins[self.frames], boxes)
         """The first view."""
         self._add_surroundings(view_m, has_grid='grid' not in hidden)
-        self.axes_length_m = length_m = _length_of_axes(tree, view_m)
         self._marker = nodes.add_frame(
             f'{name}/selected', axes_length=2.0 * length_m, axes_radius=0.06 * length_m,
             visible=False)
@@ -181,12 +165,13 @@ class Drawing:
             tree, self.frames if self._has_all_lines else _ancestry(tree, frame))
 
     def texts(
-        self, posed: PosedScene, frame: int, eye: Floats, look_at: Floats,
+        self, posed: PosedScene, frame: int, pose: Pose | None, eye: Floats, look_at: Floats,
     ) -> list[tuple[str, Floats]]:
         """
         Return names of frames and reasons for missing meshes, with their points.
 
         :param frame: index of a frame whose name is always shown, or -1.
+        :param pose: the pose of this frame in the root frame, if it is not the one in the scene.
         :param eye: the position of the camera.
         :param look_at: the point in the middle of the picture.
         """
@@ -196,9 +181,12 @@ class Drawing:
             frames.append(frame)
         names = [
             printable(shortened(tree.frame_ids[frame].rpartition('/')[2])) for frame in frames]
-        points = [tree.poses[frames, :3], scene.poses[list(self._reasons), :3]]
+        origins = tree.poses[frames, :3]
+        if pose is not None:
+            origins[frames.index(frame)] = pose[:3]
+        points = np.concatenate([scene.poses[list(self._reasons), :3], origins])
         return labels_from_names(
-            [*self._reasons.values(), *names], np.concatenate(points[::-1]), eye, look_at)
+            [*self._reasons.values(), *names], points, eye, look_at, len(self._reasons))
 
     def boxes(self, posed: PosedScene, is_in: NDArray[np.bool_]) -> Floats:
         """
@@ -206,9 +194,7 @@ class Drawing:
 
         :param is_in: whether each element of the scene counts.
         """
-        elements = [element for surface in self._surfaces for element in surface.elements]
-        boxes: Floats = boxes_of_surfaces(
-            posed.scene, self._surfaces)[is_in[np.array(elements, int)]]
+        boxes: Floats = boxes_of_surfaces(posed.scene, self._surfaces)[is_in[self._bodies]]
         return boxes
 
     def set_opacity(self, opacity: float) -> None:
@@ -283,6 +269,16 @@ def _lines(tree: TfTree, shown: NDArray[np.intp]) -> Floats:
     return np.stack([origins[tree.parents[frames]], origins[frames]], axis=1)
 
 
+def _names_of_bodies(posed: PosedScene, surface: Surface) -> list[str]:
+    """Return the names of the copies of a surface: the frame of each, then the body in it."""
+    scene, tree = posed
+    ids = (*tree.frame_ids, tree.root_frame)
+    return [printable(
+        f'{ids[frame]}, {surface.kind.label} {scene.names[element].rpartition(SEPARATOR)[2]}')
+        for element, frame in zip(
+            surface.elements, tree.nearest_frames[surface.elements].tolist(), strict=True)]
+
+
 def _texts_of_reasons(scene: Scene, surfaces: Sequence[Surface]) -> dict[int, str]:
     """Return texts for elements whose mesh is not drawn: a few reasons, and names of files."""
     texts: dict[int, str] = {}
@@ -311,65 +307,4 @@ def _length_of_axes(tree: TfTree, size_m: float) -> float:
     distances_m = np.linalg.norm(tree.transforms[:, :3], axis=1)
     distances_m = distances_m[distances_m > 1e-6 * size_m]
     typical_m = np.median(distances_m) if len(distances_m) else size_m
-    return float(np.clip(0.4 * typical_m, 0.01 * size_m, 0.1 * size_m))
-
-
-def surfaces_from_scene(
-    scene: Scene, elements: Sequence[int], size_m: float, meshes: MeshReader,
-) -> tuple[list[Surface], list[str]]:
-    """
-    Choose the surfaces of visuals and collisions.
-
-    :param scene: the scene, loaded with its shapes.
-    :param elements: the visuals and collisions to draw.
-    :param size_m: extent of the frames; it limits the sides of planes, and the box for an unknown
-        mesh is a small part of it.
-    :param meshes: reads meshes.
-    :return: the surfaces, and the reason for each element that is not drawn as in the file.
-    """
-    copies: dict[tuple[Kind, Shape, str, bool], list[int]] = {}
-    for element in elements:
-        shape = scene.shapes[element]
-        if shape.is_visible:
-            form = shape._replace(
-                rgba=None, opacity=1.0, mesh_scale=(1.0,) * 3,
-                sizes_m=(1.0,) * 3 if shape.type == 'box' and shape.has_extent else shape.sizes_m)
-            file = scene.place(element).file if shape.type == 'mesh' else ''
-            kind = Kind(scene.kinds[element])
-            # As in Gazebo, a material in the file replaces those of the mesh.
-            has_texture = kind == Kind.VISUAL and shape.rgba is None and shape.opacity == 1.0
-            copies.setdefault((kind, form, file, has_texture), []).append(element)
-    surfaces: list[Surface] = []
-    reasons: list[str] = []
-    triangle_count = 0
-    for (kind, form, file, has_texture), same in copies.items():
-        mesh = meshes.mesh(form, file, size_m)
-        reasons += [mesh.reason] * len(same) * bool(mesh.reason)
-        triangle_count += sum(len(part.faces) for part in mesh.parts)
-        if len(surfaces) + len(mesh.parts) > MOST_SURFACES or triangle_count > MOST_TRIANGLES:
-            reasons += ['there are too many surfaces'] * len(same)
-            continue
-        shapes = [scene.shapes[element] for element in same]
-        scales = np.array([
-            shape.sizes_m if shape.type == 'box' else shape.mesh_scale for shape in shapes])
-        if mesh.reason:
-            scales[:] = 1.0
-        surfaces += [
-            Surface(kind, part if has_texture else part._replace(glb=b''), same, scales, np.array([
-                part.rgba if mesh.reason else shape.rgba_or(part.rgba or _GRAY)
-                for shape in shapes]), mesh.reason)
-            for part in mesh.parts]
-    return surfaces, reasons
-
-
-def boxes_of_surfaces(scene: Scene, surfaces: Sequence[Surface]) -> Floats:
-    """Return the lowest and the highest corner of each copy of surfaces, shape (n, 2, 3)."""
-    boxes = [np.zeros((0, 2, 3))]
-    for surface in surfaces:
-        part, poses = surface.part.points, scene.poses[surface.elements]
-        corners = trimesh.bounds.corners([part.min(axis=0), part.max(axis=0)])
-        matrices = matrix_from_quaternion(poses[:, 3:])
-        turned = (surface.scales[:, np.newaxis] * corners) @ matrices.transpose(0, 2, 1)
-        turned += poses[:, np.newaxis, :3]
-        boxes.append(np.stack([turned.min(axis=1), turned.max(axis=1)], axis=1))
-    return np.concatenate(boxes)
+    return float(np.clip(0.4 * typical_m, 0.01 * size_m, 0.05 * size_m))

@@ -47,7 +47,7 @@ class _Label(NamedTuple):
 
 
 def labels_from_names(
-    names: Sequence[str], points: Floats, eye: Floats, look_at: Floats,
+    names: Sequence[str], points: Floats, eye: Floats, look_at: Floats, first: int = 0,
 ) -> list[tuple[str, Floats]]:
     """
     Place the names of frames without overlaps.
@@ -56,6 +56,7 @@ def labels_from_names(
     one nearest to the camera is shown.
 
     :param names: the names of frames, or other texts, which may have several lines.
+    :param first: the number of texts at the beginning that names nearer to the camera do not hide.
     :param points: shape (n, 3), their origins.
     :param eye: shape (3,), the position of the camera.
     :param look_at: shape (3,), the point in the middle of the picture, not above or below the eye.
@@ -69,7 +70,8 @@ def labels_from_names(
     seen = np.flatnonzero(depth > 0.0)
     scale = 0.5 / (math.tan(0.5 * FIELD_OF_VIEW_RAD) * depth[seen])
     labels: list[_Label] = []
-    for index, place in sorted(enumerate(seen.tolist()), key=lambda each: depth[each[1]]):
+    for index, place in sorted(
+            enumerate(seen.tolist()), key=lambda each: (each[1] >= first, depth[each[1]])):
         top, left = (scale[index] * np.array([y[place], x[place]])).tolist()
         label = _Label(top, left, points[place], [names[place]])
         covered = [other for other in labels if label.is_on(other)]

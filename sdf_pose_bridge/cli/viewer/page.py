@@ -15,7 +15,8 @@ import viser
 from sdf_pose_bridge.cli.printing import DEGREES
 from sdf_pose_bridge.cli.printing import RADIANS
 from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.viewer.browser_script import html_of_frame_names
+from sdf_pose_bridge.cli.viewer.browser_script import html_of_names
+from sdf_pose_bridge.cli.viewer.browser_script import html_of_opacity
 from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
 from sdf_pose_bridge.cli.viewer.drawing import Drawing
 from sdf_pose_bridge.cli.viewer.drawing import GROUPS
@@ -65,7 +66,8 @@ class Page:
         self._shown, self._units, self._hidden = shown, units, set(hidden)
         self._events, self._meshes = Events(), MeshReader(finder)
         gui.set_panel_label(printable(shown.loaded.path))
-        self._errors, self._reasons, self._names = (gui.add_html('') for _ in range(3))
+        self._errors, self._reasons, self._names, self._textures = (
+            gui.add_html('') for _ in range(4))
         self._edit = None if set_pose is None else PoseEdit(
             self._server, set_pose, self._events, self._describe)
         place_of_selected = gui.add_folder(None)
@@ -95,7 +97,7 @@ class Page:
         """Return the scene, without controls, as a page that needs no network."""
         page: str = self._server.get_scene_serializer().as_html()
         return page_with_script(
-            page, printable(title), html_of_frame_names(self._drawing.frame_names))
+            page, printable(title), html_of_names(self._drawing.names))
 
     def close(self) -> None:
         """End the server, and the process that reads meshes."""
@@ -147,7 +149,7 @@ class Page:
             self._hidden, self._opacity.value,
             lambda frame: self._events.put(partial(self._selected.select, frame)))
         self._reasons.content = html_of_lines('reasons', drawing.reasons)
-        self._names.content = html_of_frame_names(drawing.frame_names)
+        self._names.content = html_of_names(drawing.names)
         return drawing
 
     def _redraw(self) -> None:
@@ -170,7 +172,7 @@ class Page:
             self._shown.loaded, int(tree.elements[frame]), self._posed.pose_of(frame),
             self._posed.pose_of(reference),
             (tree.frame_ids[frame], (*tree.frame_ids, tree.root_frame)[reference]),
-            2.5 * self._drawing.axes_length_m,
+            4.0 * self._drawing.axes_length_m,
             lambda scene, element: scene_at_positions(scene, positions).pose_of(element))
 
     def _describe(self) -> None:
@@ -186,7 +188,8 @@ class Page:
 
     def _show_names(self) -> None:
         self._labels.show(self._drawing.texts(
-            self._posed, self._selected.frame, self._camera.position, self._camera.look_at))
+            self._posed, self._selected.frame, None if self._edit is None else self._edit.pose,
+            self._camera.position, self._camera.look_at))
 
     def _look_from(self, camera: viser.CameraHandle) -> None:
         self._camera = camera
@@ -238,11 +241,15 @@ class Page:
             self._replace_controls()
             self._show_frame()
         self._events.when(views.on_click, lambda: self._look(views.value))
-        self._events.when(opacity.on_update, lambda: self._drawing.set_opacity(opacity.value))
+        self._events.when(opacity.on_update, self._change_opacity)
         self._events.when(angles.on_update, change_angles)
         self._events.when(dark.on_update, lambda: gui.configure_theme(
             show_logo=False, show_share_button=False, dark_mode=dark.value))
         return opacity
+
+    def _change_opacity(self) -> None:
+        self._drawing.set_opacity(self._opacity.value)
+        self._textures.content = html_of_opacity(self._opacity.value)
 
     def _look(self, name: str) -> None:
         """Turn the cameras to a view; "zoom to" shows the selected frame, link or model."""

@@ -13,7 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from numpy.typing import NDArray
 
+from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.geometry.rotations import Floats
+from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
 
 FIELD_OF_VIEW_RAD = 0.8
 """The vertical field of view of the camera."""
@@ -45,25 +47,23 @@ def bounds_of_points(points: Floats) -> Floats:
     return np.array([points.min(axis=0), points.max(axis=0)])
 
 
-def bounds_of_interest(
-    origins: Floats, is_in_robot: NDArray[np.bool_], boxes: Floats,
-) -> Floats:
+def bounds_of_interest(origins: Floats, boxes: Floats, robot: Floats) -> Floats:
     """
     Find the bounds of the first view: robots, most other frames, and the bodies at them.
 
-    Bodies that are larger than the distances of the frames, or far from them, such as a floor or a
-    fence, do not count.
+    Bodies that are larger than all these together, or far from them, such as a floor or a fence,
+    do not count.
 
     :param origins: shape (n, 3), the origins of frames.
-    :param is_in_robot: shape (n,), whether each is a frame of a model that moves.
     :param boxes: shape (m, 2, 3), the lowest and the highest corners of bodies.
+    :param robot: shape (k, 3), the origins and the middles of bodies of models that move.
     :return: shape (2, 3): the lowest and the highest corner.
     """
     if not len(origins):
-        origins, is_in_robot = np.zeros((1, 3)), np.zeros(1, bool)
+        origins = np.zeros((1, 3))
     bounds = bounds_of_points(np.concatenate([
         np.quantile(origins, [_OUTLIERS], axis=0, method='lower'),
-        np.quantile(origins, [1.0 - _OUTLIERS], axis=0, method='higher'), origins[is_in_robot]]))
+        np.quantile(origins, [1.0 - _OUTLIERS], axis=0, method='higher'), robot]))
     extent_m = np.linalg.norm(bounds[1] - bounds[0])
     sizes_m, middles = np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1), boxes.mean(axis=1)
     is_near = (np.abs(middles - bounds.mean(axis=0)) <= 0.6 * np.ptp(bounds, axis=0) + 1e-6
@@ -72,6 +72,21 @@ def bounds_of_interest(
     if not len(chosen) and extent_m < 0.3 * sizes_m.max(initial=0.0):
         chosen = boxes
     return bounds_of_points(np.concatenate([bounds, chosen.reshape(-1, 3)]))
+
+
+def bounds_with_axes(bounds: Floats, poses: PoseArray, length_m: float) -> Floats:
+    """
+    Return bounds that contain the axes of the frames in given bounds.
+
+    :param bounds: shape (2, 3): the lowest and the highest corner.
+    :param poses: shape (n, 7), the poses of frames.
+    :param length_m: the length of their axes.
+    """
+    origins = poses[:, :3]
+    is_inside = ((bounds[0] <= origins) & (origins <= bounds[1])).all(axis=1)
+    axes = length_m * matrix_from_quaternion(poses[is_inside, 3:])
+    ends = origins[is_inside, :, np.newaxis] + axes
+    return bounds_of_points(np.concatenate([bounds, ends.transpose(0, 2, 1).reshape(-1, 3)]))
 
 
 def view_of_bounds(bounds: Floats, direction: ArrayLike) -> View:

@@ -6,16 +6,18 @@ import html
 import json
 import re
 
-from sdf_pose_bridge.cli.viewer.browser_script import html_of_frame_names
+from sdf_pose_bridge.cli.viewer.browser_script import html_of_names
+from sdf_pose_bridge.cli.viewer.browser_script import NamesInScene
 from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
 
 HOSTILE = '"><script>'
 
 
 def test_names_are_escaped():
-    text = html_of_frame_names([HOSTILE, 'b'])
-    (names,) = re.fullmatch('<meta data-frame-names="([^"<>]*)">', text).groups()
-    assert json.loads(html.unescape(names)) == [HOSTILE, 'b']
+    text = html_of_names(NamesInScene([HOSTILE, 'b'], [[HOSTILE], []]))
+    (names,) = re.fullmatch('<meta data-names="([^"<>]*)">', text).groups()
+    assert json.loads(html.unescape(names)) == {
+        'frames': [HOSTILE, 'b'], 'bodies': [[HOSTILE], []]}
 
 
 def test_title_is_escaped_and_the_rest_stays():

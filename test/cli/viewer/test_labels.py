@@ -12,9 +12,9 @@ from sdf_pose_bridge.cli.viewer.labels import labels_from_names
 EYE, MIDDLE = np.array((0.0, -10.0, 0.0)), np.zeros(3)
 
 
-def labels(*names_and_points):
+def labels(*names_and_points, first=0):
     names, points = zip(*names_and_points, strict=True)
-    return list(labels_from_names(names, np.array(points, float), EYE, MIDDLE))
+    return list(labels_from_names(names, np.array(points, float), EYE, MIDDLE, first))
 
 
 def test_names_of_one_place_are_joined():
@@ -26,6 +26,11 @@ def test_names_of_one_place_are_joined():
 def test_name_that_a_nearer_one_covers_is_left_out():
     found = labels(('far', (0.6, 1, -0.1)), ('a' * 40, (0, 0, 0)))
     assert [text for text, _ in found] == ['a' * 40]
+
+
+def test_first_text_is_not_covered():
+    found = labels(('far', (0.6, 1, -0.1)), ('a' * 40, (0, 0, 0)), first=1)
+    assert [text for text, _ in found] == ['far']
 
 
 def test_label_does_not_grow_over_another():

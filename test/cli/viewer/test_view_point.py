@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from sdf_pose_bridge.cli.viewer.view_point import bounds_of_interest
+from sdf_pose_bridge.cli.viewer.view_point import bounds_with_axes
 from sdf_pose_bridge.cli.viewer.view_point import DIRECTIONS
 from sdf_pose_bridge.cli.viewer.view_point import FIELD_OF_VIEW_RAD
 from sdf_pose_bridge.cli.viewer.view_point import grid_spacing_m
@@ -19,8 +20,9 @@ CUBE = np.array([(-1.0, -1.0, -1.0), (1.0, 1.0, 1.0)])
 
 
 def interest(origins, boxes=NO_BOXES, robot=()):
-    is_in_robot = np.isin(np.arange(len(origins)), robot)
-    return bounds_of_interest(np.array(origins, float).reshape(-1, 3), is_in_robot, boxes)
+    return bounds_of_interest(*(
+        np.array(each, float).reshape(-1, *shape)
+        for each, shape in ((origins, [3]), (boxes, [2, 3]), (robot, [3]))))
 
 
 def test_no_frames_and_no_bodies():
@@ -31,7 +33,7 @@ def test_few_frames_are_all_shown():
     assert interest([(0, 0, 0), (1, 2, 3)]).tolist() == [[0, 0, 0], [1, 2, 3]]
 
 
-@pytest.mark.parametrize(('robot', 'highest'), [((), 18), ((20,), 100)])
+@pytest.mark.parametrize(('robot', 'highest'), [((), 18), ([(100, 0, 0)], 100)])
 def test_a_frame_far_from_many_counts_in_a_robot_only(robot, highest):
     origins = [(x, 0, 0) for x in (*range(20), 100)]
     assert interest(origins, robot=robot)[1, 0] == highest
@@ -43,6 +45,19 @@ def test_large_and_distant_bodies_do_not_count(floor):
     body = [(-0.5, -0.5, 0), (0.5, 0.5, 1)]
     boxes = np.array([floor, body], float)
     assert interest([(0, 0, 0), (0.5, 0.5, 2)], boxes).tolist() == [[-0.5, -0.5, 0], [0.5, 0.5, 2]]
+
+
+def test_bodies_of_a_robot_count_where_its_frames_are_at_one_place():
+    wheels = [[(-0.1, y - 0.5, 0), (0.1, y + 0.5, 1)] for y in (-3, 3)]
+    robot = [(0, 0, 0), (0, -3, 0.5), (0, 3, 0.5)]
+    assert interest([(0, 0, 0)], wheels, robot).tolist() == [[-0.1, -3.5, 0], [0.1, 3.5, 1]]
+
+
+def test_axes_of_frames_that_are_seen_are_in_the_view():
+    turned_about_z = (0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5))
+    poses = np.array([(1, 1, 1, 0, 0, 0, 1), (-1, 0, 0, *turned_about_z), (5, 0, 0, 0, 0, 0, 1)])
+    assert bounds_with_axes(CUBE, poses, 0.5) == pytest.approx(
+        np.array([(-1.5, -1, -1), (1.5, 1.5, 1.5)]))
 
 
 def test_body_of_a_single_frame_counts():

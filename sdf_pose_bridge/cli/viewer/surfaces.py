@@ -1,0 +1,104 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Choose the surfaces of visuals and collisions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+import trimesh
+
+from sdf_pose_bridge.cli.viewer.meshes import MeshPart
+from sdf_pose_bridge.cli.viewer.meshes import MeshReader
+from sdf_pose_bridge.geometry.rotations import Floats
+from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.shapes import Shape
+
+MOST_SURFACES = 5_000
+"""Largest number of different surfaces."""
+MOST_TRIANGLES = 3_000_000
+"""Largest number of triangles of all surfaces."""
+
+_GRAY = (0.52, 0.54, 0.57, 1.0)
+"""The default color, which is visible on a light and on a dark background."""
+
+
+class Surface(NamedTuple):
+    """The surface of visuals or collisions that differ only in place, size and color."""
+
+    kind: Kind
+    part: MeshPart
+    elements: list[int]
+    """The visual or collision of each copy."""
+    scales: Floats
+    """Shape (n, 3): the factors of each copy along x, y and z."""
+    rgba: NDArray[np.float64]
+    """Shape (n, 4): the color of each copy, components from 0 to 1."""
+    reason: str
+    """The reason why this replaces a mesh; empty for the surface in the file."""
+
+
+def surfaces_from_scene(
+    scene: Scene, elements: Sequence[int], size_m: float, meshes: MeshReader,
+) -> tuple[list[Surface], list[str]]:
+    """
+    Choose the surfaces of visuals and collisions.
+
+    :param scene: the scene, loaded with its shapes.
+    :param elements: the visuals and collisions to draw.
+    :param size_m: extent of the frames; it limits the sides of planes, and the box for an unknown
+        mesh is a small part of it.
+    :param meshes: reads meshes.
+    :return: the surfaces, and the reason for each element that is not drawn as in the file.
+    """
+    copies: dict[tuple[Kind, Shape, str, bool], list[int]] = {}
+    for element in elements:
+        shape = scene.shapes[element]
+        if shape.is_visible:
+            form = shape._replace(
+                rgba=None, opacity=1.0, mesh_scale=(1.0,) * 3,
+                sizes_m=(1.0,) * 3 if shape.type == 'box' and shape.has_extent else shape.sizes_m)
+            file = scene.place(element).file if shape.type == 'mesh' else ''
+            kind = Kind(scene.kinds[element])
+            # As in Gazebo, a material in the file replaces those of the mesh.
+            has_texture = kind == Kind.VISUAL and shape.rgba is None and shape.opacity == 1.0
+            copies.setdefault((kind, form, file, has_texture), []).append(element)
+    surfaces: list[Surface] = []
+    reasons: list[str] = []
+    triangle_count = 0
+    for (kind, form, file, has_texture), same in copies.items():
+        mesh = meshes.mesh(form, file, size_m)
+        reasons += [mesh.reason] * len(same) * bool(mesh.reason)
+        triangle_count += sum(len(part.faces) for part in mesh.parts)
+        if len(surfaces) + len(mesh.parts) > MOST_SURFACES or triangle_count > MOST_TRIANGLES:
+            reasons += ['there are too many surfaces'] * len(same)
+            continue
+        shapes = [scene.shapes[element] for element in same]
+        scales = np.array([
+            shape.sizes_m if shape.type == 'box' else shape.mesh_scale for shape in shapes])
+        if mesh.reason:
+            scales[:] = 1.0
+        surfaces += [
+            Surface(kind, part if has_texture else part._replace(glb=b''), same, scales, np.array([
+                part.rgba if mesh.reason else shape.rgba_or(part.rgba or _GRAY)
+                for shape in shapes]), mesh.reason)
+            for part in mesh.parts]
+    return surfaces, reasons
+
+
+def boxes_of_surfaces(scene: Scene, surfaces: Sequence[Surface]) -> Floats:
+    """Return the lowest and the highest corner of each copy of surfaces, shape (n, 2, 3)."""
+    boxes = [np.zeros((0, 2, 3))]
+    for surface in surfaces:
+        part, poses = surface.part.points, scene.poses[surface.elements]
+        corners = trimesh.bounds.corners([part.min(axis=0), part.max(axis=0)])
+        matrices = matrix_from_quaternion(poses[:, 3:])
+        turned = (surface.scales[:, np.newaxis] * corners) @ matrices.transpose(0, 2, 1)
+        turned += poses[:, np.newaxis, :3]
+        boxes.append(np.stack([turned.min(axis=1), turned.max(axis=1)], axis=1))
+    return np.concatenate(boxes)

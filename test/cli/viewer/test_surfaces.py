@@ -1,0 +1,131 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Which surfaces are drawn, their sizes and their colors."""
+
+import mesh_texts
+import numpy as np
+import pytest
+
+pytest.importorskip('trimesh', reason='needs trimesh')
+pytest.importorskip('viser', reason='needs viser')
+from sdf_pose_bridge import load
+from sdf_pose_bridge.cli.viewer import surfaces as surfaces_module
+from sdf_pose_bridge.cli.viewer.meshes import MeshReader
+from sdf_pose_bridge.cli.viewer.surfaces import boxes_of_surfaces
+from sdf_pose_bridge.cli.viewer.surfaces import surfaces_from_scene
+from sdf_pose_bridge.sdformat.include.uris import resource_finder
+
+
+@pytest.fixture
+def drawn(tmp_path):
+    """Returns the scene, its surfaces and what is not drawn, of visuals with these contents."""
+    reader = MeshReader(resource_finder([], {}))
+
+    def draw(*visuals):
+        text = ''.join(
+            f'<visual name="v{number}">{visual}</visual>' for number, visual in enumerate(visuals))
+        path = tmp_path / 'model.sdf'
+        path.write_text(f'<sdf version="1.11"><model name="m"><link name="l">{text}</link></model>'
+                        '</sdf>')
+        scene = load(path, shapes=True)
+        return scene, *surfaces_from_scene(scene, list(scene.shapes), 2.0, reader)
+    yield draw
+    reader.close()
+
+
+def geometry(text):
+    return f'<geometry>{text}</geometry>'
+
+
+MESH = geometry('<mesh><uri>a.stl</uri><scale>1 1 -2</scale></mesh>')
+
+
+def test_shape_that_is_not_supported(drawn):
+    _, surfaces, (reason,) = drawn(geometry('<heightmap/>'))
+    assert (surfaces, reason) == ([], 'a heightmap is not supported')
+
+
+def test_missing_mesh_is_a_small_box(drawn):
+    _, (surface,), (reason,) = drawn(MESH)
+    assert np.ptp(surface.part.points, axis=0) * surface.scales[0] == pytest.approx(0.06)
+    assert reason.startswith('the mesh "a.stl": it is not in "')
+    assert surface.reason == reason
+
+
+def test_more_surfaces_than_are_drawn(drawn, monkeypatch):
+    monkeypatch.setattr(surfaces_module, 'MOST_SURFACES', 1)
+    _, (surface,), reasons = drawn(*[geometry('<sphere/>')] * 2, *[geometry('<cone/>')] * 3)
+    assert len(surface.elements) == 2
+    assert reasons == ['there are too many surfaces'] * 3
+
+
+def test_more_triangles_than_are_drawn(drawn, monkeypatch):
+    monkeypatch.setattr(surfaces_module, 'MOST_TRIANGLES', 12)
+    _, (surface,), reasons = drawn(geometry('<box/>'), geometry('<sphere/>'))
+    assert len(surface.part.faces) == 12
+    assert len(reasons) == 1
+
+
+def test_boxes_of_any_size_share_a_surface(drawn):
+    _, (surface,), _ = drawn(*(
+        geometry(f'<box><size>{size} 1 1</size></box>') for size in (1, 2)))
+    assert surface.scales.tolist() == [[1, 1, 1], [2, 1, 1]]
+
+
+@pytest.mark.parametrize(('shape', 'half'), [
+    ('<box><size>1 2 3</size></box>', (0.5, 1, 1.5)),
+    ('<sphere><radius>2</radius></sphere>', (2, 2, 2)),
+    ('<cylinder><radius>1</radius><length>4</length></cylinder>', (1, 1, 2)),
+    ('<cone><radius>1</radius><length>4</length></cone>', (1, 1, 2)),
+    ('<capsule><radius>2</radius><length>4</length></capsule>', (2, 2, 4)),
+    ('<capsule><radius>2</radius><length>0</length></capsule>', (2, 2, 2)),
+    ('<ellipsoid><radii>1 2 3</radii></ellipsoid>', (1, 2, 3)),
+    ('<plane><size>2 1000</size></plane>', (1, 2, 0)),
+])
+def test_size_of_a_shape(drawn, shape, half):
+    scene, surfaces, _ = drawn(geometry(shape))
+    (box,) = boxes_of_surfaces(scene, surfaces)
+    assert box == pytest.approx(np.array([-np.array(half), half]), rel=0.01)
+
+
+def test_color_of_the_material(drawn):
+    material = ('<material><diffuse>1 0 0 0.5</diffuse></material><transparency>0.5</transparency>'
+                + geometry('<box/>'))
+    _, (surface,), _ = drawn(material)
+    assert surface.rgba.tolist() == [[1, 0, 0, 0.25]]
+
+
+def test_transparency_without_a_material(drawn):
+    _, (surface,), _ = drawn('<transparency>0.5</transparency>' + geometry('<box/>'))
+    assert surface.rgba[0, 3] == 0.5
+
+
+def test_what_is_transparent_is_not_drawn(drawn):
+    material = '<material><diffuse>1 0 0 0</diffuse></material>' + geometry('<box/>')
+    assert drawn(material)[1:] == ([], [])
+
+
+def test_mesh_with_its_scale(drawn, tmp_path):
+    (tmp_path / 'a.stl').write_text(mesh_texts.STL.format(y=2))
+    _, (surface,), not_drawn = drawn(MESH, MESH)
+    assert (len(surface.elements), surface.scales[0].tolist()) == (2, [1, 1, -2])
+    assert not not_drawn
+
+
+@pytest.mark.parametrize('other', [
+    '<material><diffuse>0 1 0</diffuse></material>', '<transparency>0.5</transparency>'])
+def test_material_or_transparency_in_the_file_replaces_a_texture(drawn, tmp_path, other):
+    image = pytest.importorskip('PIL.Image', reason='needs Pillow')
+    (tmp_path / 'a.obj').write_text(mesh_texts.TEXTURED_OBJ)
+    (tmp_path / 'colors.mtl').write_text('newmtl red\nmap_Kd texture.png\n')
+    image.new('RGB', (4, 4)).save(tmp_path / 'texture.png')
+    mesh = geometry('<mesh><uri>a.obj</uri></mesh>')
+    _, surfaces, _ = drawn(mesh, mesh + other)
+    assert [bool(surface.part.glb) for surface in surfaces] == [True, False]
+
+
+def test_box_contains_what_is_turned(drawn):
+    scene, surfaces, _ = drawn(
+        '<pose degrees="true">0 0 5 0 90 0</pose>' + geometry('<box><size>1 2 6</size></box>'))
+    (box,) = boxes_of_surfaces(scene, surfaces)
+    assert box == pytest.approx(np.array([(-3, -1, 4.5), (3, 1, 5.5)]))
