@@ -303,6 +303,7 @@ def _check_frame_ids(
     :param owners: the element of each frame; the camera of an optical frame.
     """
     first = {root_frame: ROOT_IS_PARENT}
+    clashes: dict[int, list[int]] = {}
     for index, frame_id in enumerate(frame_ids):
         other = first.setdefault(frame_id, index)
         if other == index and frame_id.split() == [frame_id]:
@@ -317,13 +318,24 @@ def _check_frame_ids(
                    'of the root frame')
             problems.error(DuplicateNameError(msg, scene.place(owner)))
         elif other != index:
-            msg = (f'{_description(scene, owner)} and {_description(scene, owners[other])} (line '
-                   f'{scene.lines[owners[other]]}) would share the frame id "{frame_id}"; '
-                   'frame_names "scoped", or another frame_separator, can tell them apart')
-            problems.error(DuplicateNameError(msg, scene.place(owner)))
+            clashes.setdefault(other, []).append(owner)
         else:
             msg = f'the frame id "{frame_id}" contains white space, which some tools reject'
             problems.warning(msg, scene.place(owner))
+    for index, others in clashes.items():
+        owner, count = owners[index], len(others) - 1
+        msg = (f'{_description(scene, others[0])} and {_description(scene, owner)} (line '
+               f'{scene.lines[owner]}) would share the frame id "{frame_ids[index]}"'
+               f'{f", like {count} more" if count else ""}; {_cure_of_clash(scene, owner)}')
+        problems.error(DuplicateNameError(msg, scene.place(others[0])))
+
+
+def _cure_of_clash(scene: Scene, element: int) -> str:
+    sensor = scene.sensors.get(element)
+    if sensor is None or not (sensor.frame_id or sensor.optical_frame_id):
+        return 'frame_names "scoped", or another frame_separator, can tell them apart'
+    return ('the file sets it, for example by <gz_frame_id>; sensors without one have the names '
+            'of their models in their ids, and "kinds" can leave sensors out')
 
 
 def _index_of_pose_frame(

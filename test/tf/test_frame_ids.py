@@ -180,6 +180,16 @@ def test_two_sensors_elsewhere_share_a_frame_id():
     assert '"m::l::t"' in error.message
 
 
+def test_sensors_of_many_robots_share_a_frame_id():
+    text = world_file(''.join(
+        model(name, f'<link name="l">{lidar("s", "laser")}</link>') for name in 'abc'))
+    error = only_tree_error(text)
+    assert error.message == (
+        'sensor "b::l::s" and sensor "a::l::s" (line 1) would share the frame id "laser", like 1 '
+        'more; the file sets it, for example by <gz_frame_id>; sensors without one have the names '
+        'of their models in their ids, and "kinds" can leave sensors out')
+
+
 def test_two_sensors_in_one_place_share_a_frame_id():
     text = model_file(f'<link name="l">{lidar("s", "laser")}{lidar("t", "laser")}</link>')
     assert tree_of(text).frame_ids == ('m', 'l', 'laser')
