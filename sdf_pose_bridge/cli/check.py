@@ -20,11 +20,13 @@ from sdf_pose_bridge.cli.records import JSON
 from sdf_pose_bridge.cli.records import print_annotations
 from sdf_pose_bridge.cli.records import print_json
 from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 _FOLDER = re.compile('(?:model|package)://+[^/]+', re.IGNORECASE)
 """The package or model at the beginning of a URI."""
@@ -54,7 +56,8 @@ def run(options: argparse.Namespace) -> int:
         loaded = load_file(path, options, shapes=True)
         if loaded.scene is not None:
             loaded = loaded._replace(warnings=in_order(
-                loaded.warnings, _doubts_about_shapes(loaded.scene, options.resource_paths)))
+                loaded.warnings, _doubts_about_frames(loaded.scene),
+                _doubts_about_shapes(loaded.scene, options.resource_paths)))
         if options.format == JSON:
             print_json(path, loaded.errors, loaded.warnings)
         elif options.format == GITHUB:
@@ -64,6 +67,17 @@ def run(options: argparse.Namespace) -> int:
         if loaded.errors or (options.strict and loaded.warnings):
             exit_code = 1
     return exit_code
+
+
+def _doubts_about_frames(scene: Scene) -> tuple[SdfWarning, ...]:
+    """Return a warning for each error of the TF tree; with other parameters it may be valid."""
+    try:
+        tf_tree_from_scene(scene)
+    except SdfError as error:
+        return tuple(
+            SdfWarning(each.code, f'{each.message}; by default, the node rejects this', each.place)
+            for each in error.errors)
+    return ()
 
 
 def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[SdfWarning, ...]:

@@ -97,6 +97,17 @@ def test_errors_and_warnings_are_in_the_order_of_lines(run_main, files):
     assert [line.split(':')[1] for line in lines] == ['2', '3', '4']
 
 
+def test_frame_ids_that_the_node_rejects_are_warnings(run_main, files):
+    (files / 'pipe.sdf').write_text(
+        '<sdf version="1.9"><model name="pipe">\n<link name="pipe"/></model></sdf>')
+    done = run_main('check', 'pipe.sdf')
+    assert done.stdout.startswith(
+        'pipe.sdf:2: WARNING: DUPLICATE_NAME: link "pipe::pipe" and model "pipe" (line 1) would '
+        'share the frame id "pipe"')
+    assert done.stdout.endswith('; by default, the node rejects this\n')
+    assert done.returncode == 0
+
+
 def test_meshes_of_a_missing_package_are_one_warning(run_main, files):
     (files / 'arm.sdf').write_text("""<sdf version="1.9"><model name="m"><link name="l">
       <visual name="a"><geometry><mesh><uri>package://p/1.stl</uri></mesh></geometry></visual>
