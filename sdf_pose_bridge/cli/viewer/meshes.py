@@ -8,9 +8,14 @@ Readers of mesh formats trust their files.
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterator
+from collections.abc import Mapping
+from collections.abc import Sequence
 import io
 import os
 from pathlib import Path
+import re
 from typing import Any
 from typing import NamedTuple
 
@@ -24,6 +29,7 @@ from sdf_pose_bridge.limited_process import LimitedProcess
 from sdf_pose_bridge.limited_process import LimitExceededError
 from sdf_pose_bridge.limited_process import ProcessEndedError
 from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.sdformat.limits import Limits
@@ -31,6 +37,7 @@ from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
+from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 MOST_BYTES = 100_000_000
 """Size of a mesh with the files that it names."""
@@ -48,6 +55,7 @@ MOST_PIXELS = 1024
 """Largest width and height of a texture; a larger one is made smaller."""
 
 _LARGEST_M = 1e9
+_MOST_LISTED = 5
 _MISSING = (0.88, 0.19, 0.19, 0.5)
 _NAMED_FORMATS = ('.bin', '.mtl', '.jpeg', '.jpg', '.png')
 
@@ -171,7 +179,7 @@ def mesh_from_file(path: str, submesh: str) -> Mesh:
     :return: its surfaces, or the reason why there are none.
     """
     try:
-        return Mesh(_parts(_scene_from_file(path, submesh), submesh))
+        return Mesh(_parts(*_scene_from_file(path, submesh), submesh))
     except SdfError as error:
         return Mesh(reason=error.message)
     except MemoryError:
@@ -198,30 +206,58 @@ class _NamedFiles(FilePathResolver):
         return bytes_from_file(str(path), self._usage)
 
 
-def _scene_from_file(path: str, submesh: str) -> trimesh.Scene:
+def _scene_from_file(path: str, submesh: str) -> tuple[trimesh.Scene, list[str]]:
+    """Read a mesh; also return the name of each of its parts, in the order of the graph."""
     suffix = Path(path).suffix.lower()
     if suffix not in FORMATS:
         msg = f'its name must end with one of {", ".join(FORMATS)}'
         raise ValueError(msg)
     usage = Usage(Limits(bytes_read=MOST_BYTES))
     text = bytes_from_file(path, usage)
-    if suffix == '.dae':
-        xml_from_bytes(text, path)
-    options = {'split_objects': True} if suffix == '.obj' and submesh else {}
-    return trimesh.load_scene(
+    node_names = _node_names(xml_from_bytes(text, path).root) if suffix == '.dae' else {}
+    options = {}
+    if suffix == '.obj' and submesh:
+        # As in Gazebo, a group is a part like an object.
+        text, options = re.sub(rb'(?m)^g(?=[ \t])', b'o', text), {'split_objects': True}
+    scene = trimesh.load_scene(
         io.BytesIO(text), file_type=suffix[1:], resolver=_NamedFiles(path, usage), **options)
+    return scene, list(_names_of_parts(scene, node_names))
 
 
-def _parts(scene: trimesh.Scene, submesh: str) -> tuple[MeshPart, ...]:
-    """Find the surfaces of a mesh."""
+def _node_names(root: XmlElement) -> dict[str, list[str]]:
+    """Return the names of the nodes of a DAE file that show each geometry, by its id."""
+    names: dict[str, list[str]] = {}
+    for instance in root.iter('instance_geometry'):
+        above = (node.get('name') for node in instance.iterancestors('node'))
+        names.setdefault(instance.get('url', '')[1:], []).append(next(filter(None, above), ''))
+    return names
+
+
+def _names_of_parts(
+    scene: trimesh.Scene, node_names: Mapping[str, Sequence[str]],
+) -> Iterator[str]:
+    """Find the names that Gazebo knows parts by."""
+    nodes = scene.graph.nodes_geometry
+    # trimesh calls the surfaces of the geometry "a" "a", "a_1", "a_2", node by node.
+    ids = [node if node in node_names else node.rpartition('_')[0] for node in nodes]
+    counts, before = Counter(ids), Counter[str]()
+    for node, geometry_id in zip(nodes, ids, strict=True):
+        names = node_names.get(geometry_id, ())
+        name = names[len(names) * before[geometry_id] // counts[geometry_id]] if names else ''
+        before[geometry_id] += 1
+        # It puts the name of the material behind that of an object.
+        material = getattr(scene.geometry[scene.graph[node][1]].visual, 'material', None)
+        yield name or node.removesuffix(f'_{getattr(material, "name", None)}')
+
+
+def _parts(scene: trimesh.Scene, names: Sequence[str], submesh: str) -> tuple[MeshPart, ...]:
+    """Find the surfaces of a mesh, or those of its parts that have this name."""
     parts = []
-    for node in scene.graph.nodes_geometry:
+    for node, part_name in zip(scene.graph.nodes_geometry, names, strict=True):
         matrix, name = scene.graph[node]
         mesh = scene.geometry[name]
-        # Exporters of DAE call the geometry of the part "box" "box-mesh".
-        names = (node, name, node.partition('-mesh')[0], name.partition('-mesh')[0])
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces) and (
-                not submesh or submesh in names):
+                not submesh or submesh in (part_name, name)):
             unit_m = trimesh.units.unit_conversion(mesh.units or 'meters', 'meters')
             points = unit_m * trimesh.transform_points(mesh.vertices, matrix)
             parts.append(MeshPart(
@@ -230,8 +266,8 @@ def _parts(scene: trimesh.Scene, submesh: str) -> tuple[MeshPart, ...]:
     triangle_count = sum(len(part.faces) for part in parts)
     msg = ''
     if not parts:
-        names_of_parts = ', '.join(map(printable, sorted(scene.geometry))) or 'no surface'
-        msg = (f'it has no part "{submesh}", but {names_of_parts}' if submesh
+        listed = quoted_names(sorted(set(names)), _MOST_LISTED)
+        msg = (f'it has no part "{submesh}", but {listed}' if names and submesh
                else 'it has no surface')
     # NaN is too large too.
     elif not all(np.abs(part.points).max() <= _LARGEST_M for part in parts):

@@ -99,15 +99,35 @@ def test_too_many_triangles(mesh, monkeypatch):
 
 def test_unknown_part(mesh):
     reason = mesh('mesh.obj', mesh_texts.OBJ, 'middle').reason
-    assert 'it has no part "middle", but left, right' in reason
+    assert 'it has no part "middle", but "left", "right"' in reason
 
 
 def test_part(mesh):
     assert mesh('mesh.obj', mesh_texts.OBJ, 'right').parts[0].points[:, 2] == pytest.approx(5.0)
 
 
-def test_part_by_the_name_that_exporters_change(mesh):
-    assert extent(mesh('mesh.dae', mesh_texts.DAE, 'part')) == pytest.approx((1, 2, 0))
+def test_group_of_an_obj_file_is_a_part(mesh, tmp_path):
+    (tmp_path / 'colors.mtl').write_text(mesh_texts.MTL)
+    (part,) = mesh('mesh.obj', mesh_texts.OBJ.replace('o right', 'g right'), 'right').parts
+    assert part.points[:, 2] == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize(('node', 'name'), [
+    ('<node id="n" name="{}">{}</node>', 'left'),
+    ('<node name="{}"><node>{}</node></node>', 'right')])
+def test_part_of_a_dae_file_has_the_name_of_its_node(mesh, node, name):
+    instance = '<instance_geometry url="#part-mesh"/>'
+    nodes = ''.join(
+        node.format(each, f'<translate>0 0 {z}</translate>{instance}')
+        for each, z in (('left', 1000), ('right', 2000)))
+    (part,) = mesh('mesh.dae', mesh_texts.DAE.replace(
+        f'<node id="n">\n    {instance}</node>', nodes), name).parts
+    assert part.points[:, 2] == pytest.approx({'left': 1.0, 'right': 2.0}[name])
+
+
+def test_part_of_a_dae_file_without_names_of_nodes(mesh):
+    found = mesh('mesh.dae', mesh_texts.DAE, 'part-mesh')
+    assert extent(found) == pytest.approx((1, 2, 0))
 
 
 def test_stl(mesh):
