@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import contextlib
 import copy
 from dataclasses import dataclass
+import math
 import threading
 import time
 from typing import Any
@@ -98,8 +99,8 @@ class JointStateTopic:
         self, node: Node, name: str, model: str, number: int, *, waits: bool,
         receive: Callable[[JointStateTopic, bytes, Any], None],
     ) -> None:
-        self.has_news = False
-        """Whether a message has come since this was last set to False."""
+        self.silent_periods = math.inf
+        """Number of periods that have ended since the last message, if any; the caller counts."""
         self.has_new_joints = False
         """Whether joints have been reported since the message before with the same names."""
         self._node = node
@@ -173,7 +174,7 @@ class JointStateTopic:
         :param sent_ns: the time of sending.
         :return: the changes to publish; None if there are none.
         """
-        self.has_news, self.has_new_joints = True, False
+        self.has_new_joints = False
         message = self._valid_message(data)
         if message is None:
             return None

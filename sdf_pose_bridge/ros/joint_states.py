@@ -8,10 +8,11 @@ Frames of joints that no message has named are not published. If such joints are
 frames are published before the first message, and then these frames with each message, so that TF
 is complete.
 
-With a highest rate, the first message of a topic is published at once. Later ones wait in the
-subscription for the end of a period, which is the same for all topics, without waking the
-executor: waking it takes ten times as long as processing a message. At the end of a period, all
-changes are published in one message.
+With a highest rate, a message is published at once and begins a period, which is the same for all
+topics. Later ones wait in the subscriptions for its end, without waking the executor: waking it
+takes ten times as long as processing a message. There, all changes are published in one message,
+and another period begins if there are any. Only the first message of a topic that was silent for
+some periods does not wait.
 """
 
 from __future__ import annotations
@@ -43,6 +44,9 @@ TOPICS_PERIOD_S = 1.0 / 30.0
 
 SUBSCRIPTIONS_AT_ONCE = 40
 """Number of subscriptions, made in some 20 milliseconds, before other callbacks run."""
+
+SILENT_PERIODS = 2
+"""After so many periods without a message, a topic is silent; after one, it may be late."""
 
 _REST_S = 0.5
 
@@ -190,15 +194,30 @@ class JointStates:
         # TF accepts one transform for each stamp, and warns of a second one.
         is_waiting = self._is_waiting[rows] | (self._stamps_ns[rows] != stamp_ns)
         self._stamps_ns[rows] = stamp_ns
-        if not topic.is_open:
+        if topic.is_open:
+            self._publish(rows if self._ignores_stamps else rows[is_waiting], stamp_ns)
+            self._close(topic)
+        else:
             self._is_waiting[rows] = is_waiting
-            return
-        self._publish(rows if self._ignores_stamps else rows[is_waiting], stamp_ns)
+        topic.silent_periods = 0
+
+    def _close(self, topic: JointStateTopic) -> None:
+        """Have messages wait for the end of a period, which begins now if there is none."""
+        timer = self._period_timer
         # Simulated time that has not begun would never end a period.
-        if self._period_timer is not None and self._node.get_clock().now().nanoseconds:
-            topic.is_open = topic.has_news = False
-            if self._period_timer.is_canceled():
-                self._period_timer.reset()
+        if timer is None or not self._node.get_clock().now().nanoseconds:
+            return
+        if timer.is_canceled():
+            # Periods that it has not ended count too.
+            self._count_periods(timer.time_since_last_call() // timer.timer_period_ns)
+            timer.reset()
+        topic.is_open = False
+
+    def _count_periods(self, number: int) -> None:
+        """Have only silent topics open after so many more periods."""
+        for topic in self._topics.values():
+            topic.silent_periods += number
+            topic.is_open = topic.silent_periods > SILENT_PERIODS
 
     def _publish(self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64] | int) -> None:
         """
@@ -213,17 +232,16 @@ class JointStates:
         self._publish_topics_if_due()
 
     def _end_period(self) -> None:
-        """Publish waiting changes; without any on a topic, publish its next message at once."""
+        """Publish waiting changes; without any, publish the next message at once."""
         self.take_waiting()
+        self._count_periods(1)
         rows = np.flatnonzero(self._is_waiting)
         if len(rows):
             self._publish(rows, self._stamps_ns[rows])
-        for topic in self._topics.values():
-            topic.is_open |= not topic.has_news
-            topic.has_news = False
-        if self._period_timer is not None and all(
-                topic.is_open for topic in self._topics.values()):
+        elif self._period_timer is not None:
             self._period_timer.cancel()
+            for topic in self._topics.values():
+                topic.is_open = True
 
     def _end_grace(self) -> None:
         """Report the joints that no message has named, once."""

@@ -6,6 +6,7 @@ from itertools import count
 import math
 import time
 
+import numpy as np
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -24,6 +25,7 @@ from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.joint_states import JointStates
+from sdf_pose_bridge.ros.joint_states import SILENT_PERIODS
 from sdf_pose_bridge.ros.joint_states import SUBSCRIPTIONS_AT_ONCE
 from sdf_pose_bridge.ros.joint_states import TOPICS_PERIOD_S
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
@@ -416,11 +418,12 @@ def make_two_arms(states, moving_frames, listener, wait_until):
 
         wait_until(are_connected, found)
 
-        def are_open():
+        def are_silent():
             both._end_period()
-            return all(each.is_open for each in both._topics.values())
+            return all(
+                each.silent_periods > SILENT_PERIODS for each in both._topics.values())
 
-        wait_until(are_open, 'the end of a period without messages')
+        wait_until(are_silent, 'periods without messages')
         found.clear()
         return both, publishers, found
     return start
@@ -442,6 +445,66 @@ def test_messages_of_one_robot_do_not_delay_those_of_another(two_arms, wait_unti
     for robot in 'ab':
         publishers[robot].publish(joint_state(NOW - 1, {'turn': 0.5}))
         wait_until(lambda robot=robot: found[-1:] == [[(NOW - 1, {f'{robot}/upper'})]], found)
+
+
+@pytest.fixture(name='send')
+def make_send(two_arms, wait_until):
+    """
+    Sends messages of robots, and waits until they are processed; ``send(sec, robots)``.
+
+    Returns it with what ``two_arms`` returns but publishers. Periods do not end by themselves.
+    """
+    both, publishers, found = two_arms(0.01)
+
+    def send(sec, robots):
+        for robot in robots:
+            publishers[robot].publish(joint_state(sec, {'turn': 1.0 / sec}))
+
+        def are_processed():
+            both.take_waiting()
+            return np.count_nonzero(both._frames.positions.values == 1.0 / sec) == len(robots)
+
+        wait_until(are_processed, both._frames.positions.values)
+    return both, send, found
+
+
+def test_robots_with_a_message_in_each_period_share_one_for_each(send, wait_until):
+    both, send, found = send
+    for sec in range(10, 20):
+        send(sec, 'ab')
+        both._end_period()
+    wait_until(lambda: found[-1:] == [[(19, {'a/upper', 'b/upper'})]], found)
+    # A message at once begins a period, for each robot after the silence.
+    assert len(found) <= 10 + 2
+
+
+@pytest.mark.parametrize(('periods', 'waits'), [(1, True), (SILENT_PERIODS, False)])
+def test_a_message_waits_if_it_is_late_but_not_after_a_silence(send, periods, waits):
+    both, send, _ = send
+    for sec in (10, 11):
+        send(sec, 'ab')
+        both._end_period()
+    for sec in range(12, 12 + periods):
+        send(sec, 'a')
+        both._end_period()
+    send(20, 'b')
+    assert both._is_waiting.any() == waits
+
+
+def test_a_silence_of_all_robots_is_one_of_each(two_arms, wait_until):
+    both, publishers, found = two_arms(5.0)
+
+    def publish(sec, robot):
+        publishers[robot].publish(joint_state(sec, {'turn': 0.5}))
+        wait_until(lambda: found[-1:] == [[(sec, {f'{robot}/upper'})]], found)
+
+    for robot in 'ab':
+        publish(NOW - 2, robot)
+    timer = both._period_timer
+    wait_until(
+        lambda: timer.time_since_last_call() > 4 * timer.timer_period_ns, 'four periods')
+    publish(NOW - 1, 'a')
+    assert topic_of(both, 'b/joint_states').is_open
 
 
 def test_messages_that_are_published_at_once_do_not_put_off_the_end_of_the_period(
