@@ -43,6 +43,9 @@ _TICK_S = 1.0 / os.sysconf('SC_CLK_TCK')
 _PAGE_BYTES = os.sysconf('SC_PAGE_SIZE')
 _MEGABYTE = 1_000_000
 
+_IS_READ = b'.'
+"""Written before the answer when a call is read."""
+
 _NO_MEMORY = pickle.dumps((None, MemoryError(), ''), 5)
 
 _Result = TypeVar('_Result')
@@ -59,6 +62,10 @@ class ProcessEndedError(Exception):
         super().__init__(message)
         self.may_pass = may_pass
         """Whether the same call may succeed later, because it did not end the process itself."""
+
+
+class _CallNotReadError(ProcessEndedError):
+    """The process ended before it had read the call."""
 
 
 class Allowance(NamedTuple):
@@ -115,10 +122,15 @@ class LimitedProcess:
             if self._timer is not None:
                 self._timer.cancel()
             try:
-                if self._child is None or not self._child.is_alive():
+                if self._child is None:
+                    self._child = _Child()
+                call = self._allowance, function, arguments
+                try:
+                    result, error = self._child.result_and_error(*call)
+                except _CallNotReadError:  # it was killed before
                     self._end()
                     self._child = _Child()
-                result, error = self._child.result_and_error(self._allowance, function, arguments)
+                    result, error = self._child.result_and_error(*call)
             except BaseException:
                 self._end()
                 raise
@@ -187,9 +199,6 @@ class _Child:
         assert self._process.stdout is not None
         self._calls, self._answers = self._process.stdin, self._process.stdout
 
-    def is_alive(self) -> bool:
-        return self._process.poll() is None
-
     def result_and_error(
         self, allowance: Allowance, function: Callable[..., Any], arguments: tuple[object, ...],
     ) -> tuple[Any, Exception | None]:
@@ -197,15 +206,23 @@ class _Child:
         before, begin = self.use(), time.monotonic()
         answers = select.poll()
         answers.register(self._answers, select.POLLIN)
+
+        def wait() -> None:
+            while not answers.poll(1e3 * _PERIOD_S):
+                _check(self.use(), before, time.monotonic() - begin, allowance)
+
+        is_read = False
         try:
             pickle.dump((allowance.address_space_bytes, function, arguments), self._calls, 5)
             self._calls.flush()
-            while not answers.poll(1e3 * _PERIOD_S):
-                _check(self.use(), before, time.monotonic() - begin, allowance)
+            wait()
+            is_read = os.read(self._answers.fileno(), len(_IS_READ)) == _IS_READ
+            wait()
             # Other threads can run after each piece.
             result, error, text = pickle.load(self._answers)
         except (EOFError, OSError, pickle.UnpicklingError) as ended:
-            raise self._reason_of_end() from ended
+            raise self._reason_of_end(
+                ProcessEndedError if is_read else _CallNotReadError) from ended
         if isinstance(error, MemoryError):
             if allowance.address_space_bytes:
                 raise LimitExceededError(
@@ -245,12 +262,12 @@ class _Child:
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(1.0)
 
-    def _reason_of_end(self) -> ProcessEndedError:
+    def _reason_of_end(self, kind: type[ProcessEndedError]) -> ProcessEndedError:
         self._wait_for_end()
         code = self._process.returncode
         how = f'by signal {-code}' if code is not None and code < 0 else f'with exit code {code}'
         # The kernel uses this signal when memory runs out.
-        return ProcessEndedError(
+        return kind(
             f'the process that reads files has ended {how}', may_pass=code == -signal.SIGKILL)
 
 
@@ -294,6 +311,8 @@ def serve(life: int) -> None:
             address_space_bytes, function, arguments = pickle.load(calls)
         except EOFError:
             return
+        answers.write(_IS_READ)
+        answers.flush()
         if address_space_bytes:
             _, highest = resource.getrlimit(resource.RLIMIT_AS)
             with contextlib.suppress(ValueError):  # the user's own limit is lower

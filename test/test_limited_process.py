@@ -183,6 +183,14 @@ def test_a_process_that_has_ended_between_two_calls_is_replaced(limited):
     assert process.call(pow, 2, 2) == 4
 
 
+def test_a_process_that_is_killed_before_it_reads_a_call_is_replaced(limited):
+    process = limited()
+    pid = process.call(os.getpid)
+    os.kill(pid, signal.SIGSTOP)
+    threading.Timer(0.2, os.kill, (pid, signal.SIGKILL)).start()
+    assert process.call(pow, 2, 2) == 4
+
+
 def test_a_process_that_cannot_be_started_is_an_error_that_passes(limited, monkeypatch):
     process = limited()
     monkeypatch.setattr(sys, 'executable', '/none/python')

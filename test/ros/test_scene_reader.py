@@ -5,7 +5,6 @@
 import os
 import signal
 import sys
-import threading
 
 import pytest
 from sdf_texts import model_file
@@ -92,23 +91,15 @@ def test_a_file_that_needs_too_much_is_an_error(
 
 
 def test_a_process_that_is_killed_is_an_error_that_passes(reader, request_of_file):
-    pid = reader._process.call(os.getpid)
-    # It has no time to answer.
-    os.kill(pid, signal.SIGSTOP)
-    threading.Timer(0.2, os.kill, (pid, signal.SIGKILL)).start()
     with pytest.raises(PassingReadError, match='has ended by signal 9') as caught:
-        reader.loaded_scene(request_of_file)
+        reader._result(request_of_file, signal.raise_signal, signal.SIGKILL)
     assert may_pass(caught.value)
     assert reader.loaded_scene(request_of_file)
 
 
 def test_a_process_that_crashes_is_an_error_that_stays(reader, request_of_file):
-    pid = reader._process.call(os.getpid)
-    os.kill(pid, signal.SIGSTOP)
-    threading.Timer(0.2, os.kill, (pid, signal.SIGSEGV)).start()
-    threading.Timer(0.3, os.kill, (pid, signal.SIGCONT)).start()
     with pytest.raises(FileReadError, match='has ended by signal 11') as caught:
-        reader.loaded_scene(request_of_file)
+        reader._result(request_of_file, signal.raise_signal, signal.SIGSEGV)
     assert not may_pass(caught.value)
 
 

@@ -11,6 +11,7 @@ import threading
 import mesh_texts
 import numpy as np
 import pytest
+from slow_file import SlowFile
 
 pytest.importorskip('trimesh', reason='needs trimesh')
 pytest.importorskip('collada', reason='needs pycollada')
@@ -265,13 +266,19 @@ def test_mesh_that_takes_too_long(named, reader, monkeypatch):
         'the mesh "a.stl": it needs more than 0 s to be read')
 
 
-def test_process_that_ends_while_it_reads(named, reader):
+def test_process_that_ends_while_it_reads(named, reader, tmp_path):
     pid = reader._process.call(os.getpid)
-    # It has no time to answer.
-    os.kill(pid, signal.SIGSTOP)
-    threading.Timer(0.2, os.kill, (pid, signal.SIGKILL)).start()
-    assert named('a.stl', mesh_texts.STL.format(y=1)).reason == (
+    file = SlowFile(tmp_path / 'a.stl')
+
+    def kill():
+        with file.opened():
+            os.kill(pid, signal.SIGKILL)
+
+    thread = threading.Thread(target=kill)
+    thread.start()
+    assert named('a.stl').reason == (
         'the mesh "a.stl": the process that reads files has ended by signal 9')
+    thread.join()
     assert not named('b.stl', mesh_texts.STL.format(y=1)).reason
 
 
