@@ -25,6 +25,7 @@ from benchmarks.harness import Function
 from benchmarks.harness import Held
 from benchmarks.harness import Took
 from benchmarks.harness import Unavailable
+from benchmarks.harness import wait_until
 import sdf_pose_bridge
 
 ROBOTS = 30
@@ -71,8 +72,9 @@ def running_fleet() -> Iterator[tuple[subprocess.Popen[str], list[subprocess.Pop
         node = rclpy.create_node('joints', context=context)
         publishers = [
             node.create_publisher(JointState, f'{name}/joint_states', 10) for name in names]
-        while any(each.get_subscription_count() < 2 for each in publishers):
-            time.sleep(0.1)
+        wait_until(
+            lambda: all(each.get_subscription_count() >= 2 for each in publishers),
+            'the nodes did not subscribe to all joint states')
         has_ended = threading.Event()
         stack.callback(has_ended.set)
 

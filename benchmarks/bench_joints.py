@@ -25,6 +25,7 @@ from benchmarks.harness import benchmark
 from benchmarks.harness import Function
 from benchmarks.harness import TimesAsFast
 from benchmarks.harness import Took
+from benchmarks.harness import wait_until
 import sdf_pose_bridge
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
@@ -176,8 +177,9 @@ def shares_of_processors(
         stack.callback(context.shutdown)
         publisher = rclpy.create_node('joints', context=context).create_publisher(
             JointState, 'joint_states', 10)
-        while publisher.get_subscription_count() < len(processes):
-            time.sleep(0.1)
+        wait_until(
+            lambda: publisher.get_subscription_count() >= len(processes),
+            'the nodes did not subscribe to joint_states')
         has_ended = threading.Event()
         stack.callback(has_ended.set)
 

@@ -34,6 +34,9 @@ RUNS = 9
 SHORTEST_RUN_S = 0.02
 """Short functions are called in a loop until a run takes this long, so that the clock is exact."""
 
+DEADLINE_S = 60.0
+"""Longest time for which a benchmark waits for something that has to happen."""
+
 DOMAINS = range(215, 233)
 """ROS domains of benchmarks; tests, which may run meanwhile, have others."""
 
@@ -43,6 +46,20 @@ Preparation: TypeAlias = Callable[[], Iterator[tuple[Function, Function | None]]
 
 class Unavailable(Exception):  # noqa: N818 - nothing went wrong
     """Something that a benchmark needs is not on this machine."""
+
+
+def wait_until(has_happened: Callable[[], bool], what: str) -> None:
+    """
+    Wait for something that has to happen.
+
+    :param what: what did not happen if it takes too long.
+    """
+    deadline = time.monotonic() + DEADLINE_S
+    while not has_happened():
+        if time.monotonic() > deadline:
+            msg = f'{what} within {DEADLINE_S:g} s'
+            raise Unavailable(msg)
+        time.sleep(0.1)
 
 
 class Took(NamedTuple):

@@ -14,6 +14,7 @@ from benchmarks.harness import table
 from benchmarks.harness import TimesAsFast
 from benchmarks.harness import Took
 from benchmarks.harness import Unavailable
+from benchmarks.harness import wait_until
 
 
 @pytest.fixture(autouse=True)
@@ -40,6 +41,17 @@ def test_a_benchmark_may_say_why_it_cannot_run():
         yield
 
     assert result_of(without_server).ratio == 'skipped: there is no server'
+
+
+def test_a_benchmark_does_not_wait_forever(monkeypatch):
+    monkeypatch.setattr(harness, 'DEADLINE_S', 0.05)
+
+    @benchmark('ours', counterpart='theirs', goal=AtMostTimes(2.0))
+    def alone():
+        wait_until(lambda: False, 'nobody subscribed')
+        yield
+
+    assert result_of(alone).ratio == 'skipped: nobody subscribed within 0.05 s'
 
 
 def test_other_errors_are_not_hidden():
