@@ -20,6 +20,7 @@ from rclpy.publisher import Publisher
 
 from sdf_pose_bridge.ros.log_lines import count_in_words
 from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints
+from sdf_pose_bridge.ros.log_lines import MissingJoints
 from sdf_pose_bridge.ros.publishers import new_publisher
 from sdf_pose_bridge.ros.publishers import Topic
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene
@@ -39,10 +40,10 @@ class Diagnostics:
 
     The topic exists once it is switched on.
 
-    :param unreported_joints: returns the names of the joints whose positions are missing.
+    :param unreported_joints: returns the joints whose positions are missing.
     """
 
-    def __init__(self, node: Node, unreported_joints: Callable[[], Sequence[str]]) -> None:
+    def __init__(self, node: Node, unreported_joints: Callable[[], MissingJoints]) -> None:
         self._node = node
         self._publisher: Publisher | None = None
         self._unreported_joints = unreported_joints
@@ -81,13 +82,13 @@ class Diagnostics:
 
 
 def status_from_scene(
-    loaded: LoadedScene, failure: Sequence[str], unreported_joints: Sequence[str], name: str,
+    loaded: LoadedScene, failure: Sequence[str], unreported: MissingJoints, name: str,
 ) -> DiagnosticStatus:
     """
     Return the status of the node.
 
     :param failure: the errors of the last load; empty if it succeeded.
-    :param unreported_joints: the names of joints whose positions are missing.
+    :param unreported: the joints whose positions are missing.
     :return: ERROR if the last load failed, so that the scene before it is still published; WARN if
         the scene has warnings or joints without positions; otherwise OK.
     """
@@ -105,15 +106,15 @@ def status_from_scene(
         'warnings': str(len(warnings)),
         'first warning': str(warnings[0]) if warnings else '',
         'last error': '\n'.join(failure),
-        'joints not reported': str(len(unreported_joints)),
-        'first joint not reported': unreported_joints[0] if unreported_joints else '',
+        'joints not reported': str(len(unreported.names)),
+        'first joint not reported': unreported.names[0] if unreported.names else '',
     }
     if failure:
         level = DiagnosticStatus.ERROR
         text = f'the last load failed, the scene before it is published: {failure[0]}'
-    elif unreported_joints:
+    elif unreported.names:
         level = DiagnosticStatus.WARN
-        text = line_about_unreported_joints(unreported_joints)
+        text = line_about_unreported_joints(unreported)
     elif warnings:
         level = DiagnosticStatus.WARN
         text = f'serving {loaded.path.name} with {count_in_words(len(warnings), "warning")}'

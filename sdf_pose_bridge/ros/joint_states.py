@@ -29,6 +29,7 @@ from rclpy.timer import Timer
 
 from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic
 from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints
+from sdf_pose_bridge.ros.log_lines import MissingJoints
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.topic_names import JointStateTopics
 from sdf_pose_bridge.tf.joint_positions import NEVER
@@ -131,9 +132,14 @@ class JointStates:
         self._initial_timer.reset()
 
     @property
-    def unreported(self) -> tuple[str, ...]:
+    def unreported(self) -> MissingJoints:
         """The joints that no message has named in time."""
-        return self._frames.positions.missing if self._is_grace_over else ()
+        positions = self._frames.positions
+        if not self._is_grace_over or not positions.missing:
+            return MissingJoints()
+        return MissingJoints(positions.missing, tuple(
+            topic.name for (_, model), topic in self._topics.items()
+            if not positions.selection(positions.missing[:1], model).unknown))
 
     def take_waiting(self) -> None:
         """Take the messages that wait in subscriptions, for a 30th of a second at most."""
@@ -247,7 +253,7 @@ class JointStates:
         """Report the joints that no message has named, once."""
         self._grace_timer.cancel()
         self._is_grace_over = True
-        if self.unreported:
+        if self.unreported.names:
             self._has_reported_missing = True
             self._logger.info(line_about_unreported_joints(self.unreported))
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import compress
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,14 @@ from sdf_pose_bridge.tf.tree import TfTree
 
 MOST_LINES = 20
 """Largest number of errors, warnings or names in the log; a generated file may have thousands."""
+
+
+class MissingJoints(NamedTuple):
+    """Joints that no message has named."""
+
+    names: tuple[str, ...] = ()
+    topics: tuple[str, ...] = ()
+    """The full names of the topics on which messages can name the first one."""
 
 
 def lines_from_error(error: Exception) -> list[str]:
@@ -111,13 +120,14 @@ def line_about_gazebo(count: int) -> str:
         f'{"it" if count == 1 else "them"}')
 
 
-def line_about_unreported_joints(names: Sequence[str]) -> str:
+def line_about_unreported_joints(joints: MissingJoints) -> str:
     """Return a line with the number of joints without reported positions, at least one."""
+    names = joints.names
     have = 'has' if len(names) == 1 else 'have'
     return (
         f'{count_in_words(len(names), "joint")} {have} not been reported yet, for example '
         f'{names_in_line(names[:1])}; frames that a joint moves have no transforms until a '
-        'message on joint_states names the joint')
+        f'message on {" or ".join(joints.topics) or "a topic"} names the joint')
 
 
 def line_about_joints_at_rest(scene: Scene, model: str) -> str:
@@ -137,7 +147,7 @@ def line_about_joints_at_rest(scene: Scene, model: str) -> str:
         f'{count_in_words(len(names), "joint")} that can move, for example '
         f'{names_in_line(names[:1])}, {"stays" if len(names) == 1 else "stay"} where the file '
         f'puts {"it" if len(names) == 1 else "them"}; with the parameter use_joint_states, joints '
-        'follow the topic joint_states')
+        'follow the topics in joint_states_topics')
 
 
 def count_in_words(number: int, what: str) -> str:

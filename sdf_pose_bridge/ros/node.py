@@ -37,6 +37,7 @@ from sdf_pose_bridge.ros.log_lines import line_about_joints_at_rest
 from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
+from sdf_pose_bridge.ros.log_lines import MissingJoints
 from sdf_pose_bridge.ros.parameter_services import add_parameter_services
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.parameters import SettingsError
@@ -184,8 +185,8 @@ class SdfPoseBridge:
             self._joint_states.take_waiting()
         return self._loaded.lookup
 
-    def _unreported_joints(self) -> Sequence[str]:
-        return () if self._joint_states is None else self._joint_states.unreported
+    def _unreported_joints(self) -> MissingJoints:
+        return MissingJoints() if self._joint_states is None else self._joint_states.unreported
 
     def _follow_switches(self) -> None:
         self._diagnostics.switch(on=self._settings.publish_diagnostics)

@@ -11,6 +11,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from sdf_pose_bridge.ros.diagnostics import Diagnostics
 from sdf_pose_bridge.ros.diagnostics import status_from_scene
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
+from sdf_pose_bridge.ros.log_lines import MissingJoints
 from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
 
 LOADED_AT_NS = 1767323045_678900000
@@ -26,7 +27,8 @@ def status_of(make_node, tmp_path):
         node = make_node('bridge', '-p', f'sdf_file:={path}', '-p', 'root_frame:=map')
         loaded = loaded_scene_from_request(settings_from_node(node).load_request)
         return status_from_scene(
-            loaded._replace(read_since_ns=LOADED_AT_NS), failure, unreported, 'left/bridge')
+            loaded._replace(read_since_ns=LOADED_AT_NS), failure,
+            MissingJoints(tuple(unreported)), 'left/bridge')
     return status
 
 

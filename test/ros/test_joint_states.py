@@ -197,9 +197,9 @@ def test_joints_that_stay_unreported_are_named_once_and_then_that_none_is(
         states, moving_frames, wait_until, capfd):
     states.replace(moving_frames(ARM, UnreportedJoints.NONE)[1], TOPICS)
     update(states, serialize_message(joint_state(5, {'lift': 0.5})))
-    assert states.unreported == ()
-    wait_until(lambda: states.unreported, 'two seconds')
-    assert states.unreported == ('turn', 'grip')
+    assert states.unreported.names == ()
+    wait_until(lambda: states.unreported.names, 'two seconds')
+    assert states.unreported == (('turn', 'grip'), ('/joint_states',))
     for sec in (6, 7):
         update(states, serialize_message(joint_state(sec, dict.fromkeys(JOINTS, 0.0))))
     log = capfd.readouterr().err
@@ -538,6 +538,12 @@ def test_too_many_messages_of_one_robot_leave_time_for_another(two_arms, wait_un
 
     wait_until(is_taken, both._frames.positions.values)
     del both._topics['flooded']
+
+
+def test_an_unreported_joint_is_named_with_the_topics_that_can_name_it(two_arms, wait_until):
+    both, _, _ = two_arms(2.0)
+    wait_until(lambda: both.unreported.names, 'two seconds')
+    assert both.unreported == (('a/grip', 'a/lift', 'b/grip', 'b/lift'), ('/a/joint_states',))
 
 
 def test_topics_come_and_go_with_the_frames(states, moving_frames):

@@ -23,6 +23,7 @@ from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints
 from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
 from sdf_pose_bridge.ros.log_lines import lines_from_error
 from sdf_pose_bridge.ros.log_lines import lines_from_warnings
+from sdf_pose_bridge.ros.log_lines import MissingJoints
 from sdf_pose_bridge.ros.log_lines import MOST_LINES
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.loading import load_text
@@ -102,7 +103,10 @@ def test_frames_that_tf_cannot_forget_are_named():
     (1, '1 joint has not been reported yet, for example "j0";'),
     (3, '3 joints have not been reported yet, for example "j0";')])
 def test_joints_that_nobody_reports_are_counted(count, words):
-    assert line_about_unreported_joints([f'j{row}' for row in range(count)]).startswith(words)
+    joints = MissingJoints(tuple(f'j{row}' for row in range(count)), ('/a', '/b'))
+    line = line_about_unreported_joints(joints)
+    assert line.startswith(words)
+    assert line.endswith(' until a message on /a or /b names the joint')
 
 
 def test_joints_that_stand_still_are_counted_where_they_are_published():
