@@ -11,6 +11,7 @@ import sys
 from sdf_pose_bridge.cli.loading import add_kinds_argument
 from sdf_pose_bridge.cli.loading import add_loading_arguments
 from sdf_pose_bridge.cli.loading import load_file
+from sdf_pose_bridge.cli.loading import sdf_name
 from sdf_pose_bridge.cli.printing import print_problems
 from sdf_pose_bridge.cli.records import add_format_argument
 from sdf_pose_bridge.cli.records import CSV
@@ -40,7 +41,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_format_argument(parser, CSV, JSON)
     parser.add_argument(
         '--relative-to', metavar='FRAME', default='',
-        help='compare poses relative to this frame, such as robot::arm::hand')
+        help='compare poses relative to this frame, by its name in SDF (robot::hand) or TF '
+             '(robot/hand)')
     parser.add_argument(
         '--tolerance', metavar='T', type=_tolerance_from_text, default=TOLERANCE,
         help='the largest distance in metres, and angle in radians, of a frame that has not '
@@ -62,7 +64,7 @@ def run(options: argparse.Namespace) -> int:
         try:
             differences = [
                 difference for difference in differences_of_scenes(
-                    old.scene, new.scene, relative_to=options.relative_to,
+                    old.scene, new.scene, relative_to=sdf_name(old.scene, options.relative_to),
                     tolerance=options.tolerance)
                 if difference.kind in options.kinds]
         except SdfError as error:

@@ -17,13 +17,16 @@ from sdf_pose_bridge.cli.printing import print_problems
 from sdf_pose_bridge.cli.printing import RADIANS
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.tf.frame_ids import FrameNames
+from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
 
 SHOWN_KINDS = tuple(kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD))
@@ -110,6 +113,28 @@ def scene_of(path: str, options: argparse.Namespace, *, shapes: bool = False) ->
     scene = scene_from_file(path, options, shapes=shapes)
     print_problems((), scene.warnings, sys.stderr)
     return scene
+
+
+def pose_lookup(scene: Scene) -> PoseLookup:
+    """Return a lookup by the names of SDF and of TF, as far as the names of TF are unique."""
+    try:
+        tree = tf_tree_from_scene(scene)
+    except SdfError:
+        # Frames that would share an id keep their names in SDF.
+        tree = tf_tree_from_scene(scene, TfOptions(kinds=frozenset()))
+    return PoseLookup(scene, tree)
+
+
+def sdf_name(scene: Scene, name: str) -> str:
+    """Return the name in SDF of a frame; the name as it is given if no frame of TF has it."""
+    if not name or scene.has(name):
+        return name
+    lookup = pose_lookup(scene)
+    if not lookup.is_frame_id(name):
+        return name
+    element, in_element = lookup.element(name)
+    # The optical frame of a camera is not in SDF.
+    return scene.names[element] if in_element == Pose() else name
 
 
 def add_kinds_argument(

@@ -16,6 +16,7 @@ from sdf_pose_bridge.cli.loading import add_file_arguments
 from sdf_pose_bridge.cli.loading import add_kinds_argument
 from sdf_pose_bridge.cli.loading import load_file
 from sdf_pose_bridge.cli.loading import LoadedFile
+from sdf_pose_bridge.cli.loading import sdf_name
 from sdf_pose_bridge.cli.printing import print_problems
 from sdf_pose_bridge.cli.records import add_format_argument
 from sdf_pose_bridge.cli.records import CSV
@@ -46,7 +47,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='the same as --format json')
     parser.add_argument(
         '--relative-to', metavar='FRAME', default='',
-        help='print poses relative to this frame, such as robot::arm::hand')
+        help='print poses relative to this frame, by its name in SDF (robot::hand) or TF '
+             '(robot/hand)')
     parser.add_argument(
         '--joint', metavar='NAME=VALUE', type=_position_from_text, action='append', default=[],
         dest='positions',
@@ -103,10 +105,11 @@ def _position_from_text(text: str) -> tuple[str, float]:
 
 def _elements(scene: Scene, options: argparse.Namespace) -> list[dict[str, Any]]:
     elements = []
+    reference = sdf_name(scene, options.relative_to)
     for index in np.flatnonzero(np.isin(scene.kinds, options.kinds)).tolist():
         world = scene.world_of(index)
-        pose = scene.pose_of(index) if not options.relative_to else scene.relative_pose_of(
-            index, scene.index(options.relative_to, world=world))
+        pose = scene.pose_of(index) if not reference else scene.relative_pose_of(
+            index, scene.index(reference, world=world))
         elements.append({
             'kind': Kind(scene.kinds[index]).label, 'name': scene.names[index], 'world': world,
             'pose': list(pose)})

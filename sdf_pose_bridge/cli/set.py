@@ -11,12 +11,12 @@ import sys
 from sdf_pose_bridge.cli.convert import NEGATIVE_NUMBER
 from sdf_pose_bridge.cli.convert import numbers_from_text
 from sdf_pose_bridge.cli.loading import add_file_arguments
+from sdf_pose_bridge.cli.loading import pose_lookup
 from sdf_pose_bridge.cli.loading import scene_from_file
 from sdf_pose_bridge.cli.loading import scene_of
 from sdf_pose_bridge.cli.loading import STANDARD_INPUT
 from sdf_pose_bridge.cli.printing import CommandError
 from sdf_pose_bridge.cli.printing import discard_output
-from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.formats import converted_rotations
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS
@@ -30,9 +30,6 @@ from sdf_pose_bridge.scene.pose_setting import Measure
 from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.tf.lookup import PoseLookup
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -81,9 +78,9 @@ def run(options: argparse.Namespace) -> int:
     scene = scene_of(options.files[0], options)
 
     def measured(scene: Scene, element: int) -> Pose:
-        return _lookup(scene).pose_of_element(element, options.relative_to)
+        return pose_lookup(scene).pose_of_element(element, options.relative_to)
 
-    lookup = _lookup(scene)
+    lookup = pose_lookup(scene)
     element, in_element = lookup.element(options.frame)
     if options.format in POSE_FORMATS:
         asked = Pose(*converted_poses(numbers, options.format, 'sdf_quat_xyzw').tolist())
@@ -134,12 +131,3 @@ def set_pose(
     if not dry_run:
         change.file.write()
     return change
-
-
-def _lookup(scene: Scene) -> PoseLookup:
-    try:
-        tree = tf_tree_from_scene(scene)
-    except SdfError:
-        # Frames that would share an id keep their names in SDF.
-        tree = tf_tree_from_scene(scene, TfOptions(kinds=frozenset()))
-    return PoseLookup(scene, tree)

@@ -66,6 +66,10 @@ class PoseLookup:
         self._check_positions(last, last_of_reference)
         return FoundPose(canonical_relative_pose(reference, pose), frame_id)
 
+    def is_frame_id(self, name: str) -> bool:
+        """Return whether a frame of TF other than the root frame has a name."""
+        return name in self._indices
+
     def knows(self, name: str) -> bool:
         """Return whether a frame, an element or the root frame has a name."""
         return name == self._tree.root_frame or name in self._indices or self._scene.has(name)

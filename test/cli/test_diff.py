@@ -42,6 +42,11 @@ def test_relative_to_a_frame_and_with_a_tolerance(diff):
     assert diff('1 2 3', '1 2 4', '--kinds', 'light').returncode == 0
 
 
+def test_relative_to_a_frame_by_its_name_in_tf(diff):
+    assert diff('1 2 3', '1 2 4', '--relative-to', 'm/l').returncode == 0
+    assert diff('1 2 3', '1 2 4', '--relative-to', 'm/k').returncode == 2
+
+
 def test_added_removed_and_renamed(diff):
     done = diff('<link name="l"/>', '<link name="k"/><frame name="g"/>')
     assert done.stdout.splitlines() == [

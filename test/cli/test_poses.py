@@ -60,6 +60,16 @@ def test_poses_are_printed_relative_to_a_frame(sdf_pose):
     assert elements[1]['pose'] == [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
 
 
+@pytest.mark.parametrize('name', ['arm::hand', 'hand'])
+def test_the_reference_frame_has_its_name_in_sdf_or_tf(run_main, files, name):
+    (files / 'arm.sdf').write_text(
+        '<sdf version="1.9"><model name="arm"><link name="l"/><frame name="hand"><pose>1 0 0 0 0 0'
+        '</pose></frame></model></sdf>')
+    done = run_main('poses', '--json', '--relative-to', name, '--kinds', 'link', 'arm.sdf')
+    (link,) = json.loads(done.stdout)['elements']
+    assert link['pose'][:3] == [-1.0, 0.0, 0.0]
+
+
 def test_an_unknown_frame_is_an_error_of_the_file(sdf_pose):
     done = sdf_pose('poses', '--relative-to', 'ff', 'good.sdf')
     assert done.returncode == 1
