@@ -23,6 +23,7 @@ from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 from sdf_pose_bridge.sdformat.shape_types import Solid
 from sdf_pose_bridge.sdformat.shape_types import Surface
 from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.values import numbers_from_text
 from sdf_pose_bridge.sdformat.values import numbers_of_child
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of
@@ -57,6 +58,8 @@ class Shape(NamedTuple):
     if the file has none."""
     opacity: float = 1.0
     """The opposite of ``<transparency>``, from 0 to 1."""
+    is_centered: bool = False
+    """Whether the middle of the part of the mesh is put at the origin."""
 
     @property
     def is_visible(self) -> bool:
@@ -140,7 +143,9 @@ def shape_of(xml: XmlElement) -> Shape | None:
         submesh='' if submesh is None else child_value(submesh, 'name'),
         mesh_scale=numbers_of_child(shape, 'scale', (1.0, 1.0, 1.0)),
         rgba=_color(xml),
-        opacity=1.0 - transparency if 0.0 < transparency <= 1.0 else 1.0)
+        opacity=1.0 - transparency if 0.0 < transparency <= 1.0 else 1.0,
+        is_centered=submesh is not None and bool(
+            boolean_from_text(child_value(submesh, 'center'))))
 
 
 def _color(xml: XmlElement) -> tuple[float, float, float, float] | None:

@@ -42,7 +42,7 @@ TEXT = f"""<sdf version="1.11"><world name="w">
   </model>
   <frame name="{html.escape(HOSTILE)}"><pose>1 0 0 0 0 0</pose></frame>
 </world></sdf>"""
-AXES_M = 0.05 * np.linalg.norm((1.1, 0.2, 0.2))
+AXES_M = 0.1 * np.linalg.norm((1.1, 0.2, 0.2))
 ROWS = "[...document.querySelectorAll('.rows label')]"
 
 
@@ -158,7 +158,7 @@ def point_on_screen(page, point):
     width, height = page.run(
         "(canvas => [canvas.clientWidth, canvas.clientHeight])(document.querySelector('canvas'))")
     view = view_of_bounds(
-        np.array([(-0.1, -0.1, -0.1), (1.0 + AXES_M, 0.1, 0.1)]), (0.75, -0.5, 0.45))
+        np.array([(-0.1, -0.1, -0.1), (1.0 + AXES_M, AXES_M, AXES_M)]), (0.75, -0.5, 0.45))
     to_scene = view.look_at - view.position
     forward = to_scene / np.linalg.norm(to_scene)
     right = np.cross(forward, (0, 0, 1))
@@ -177,7 +177,7 @@ def drag(page):
     select(page, HOSTILE)
     # Nothing says when the gizmo is drawn; until then there is nothing to drag.
     page.run('new Promise(drawn => requestAnimationFrame(() => requestIdleCallback(drawn)))')
-    page.mouse(*(point_on_screen(page, (1.0, 0.0, 3.8 * AXES_M + height)) for height in (
+    page.mouse(*(point_on_screen(page, (1.0, 0.0, 2.4 * AXES_M + height)) for height in (
         0.0, 0.02, 0.05, 0.08, 0.1)))
     z = "document.querySelector('.difference')?.rows[3].cells[2].innerText"
     page.wait_for(f'Math.abs({z} - 0.1) < 0.02')

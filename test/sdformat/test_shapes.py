@@ -72,6 +72,14 @@ def test_mesh_has_a_uri_a_part_and_a_scale():
     assert shape[3:6] == ('model://arm/a b.dae', 'hand', (1, 2, -3))
 
 
+@pytest.mark.parametrize(('center', 'is_centered'), [
+    ('', False), ('<center>true</center>', True), ('<center>0</center>', False)])
+def test_part_of_a_mesh_may_be_centered(center, is_centered):
+    shape = shape_in(
+        f'<mesh><uri>a.dae</uri><submesh><name>hand</name>{center}</submesh></mesh>')
+    assert shape.is_centered is is_centered
+
+
 @pytest.mark.parametrize(('material', 'rgba'), [
     ('', None),
     ('<material/>', None),

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from collections.abc import Sequence
+import math
 import textwrap
 from typing import Any
 
@@ -303,8 +304,9 @@ def _ancestry(tree: TfTree, frame: int) -> NDArray[np.intp]:
 
 
 def _length_of_axes(tree: TfTree, size_m: float) -> float:
-    """Return the length of axes, in metres: short where frames are near to one another."""
+    """Return the length of axes, in metres: short where frames are many, or near to others."""
     distances_m = np.linalg.norm(tree.transforms[:, :3], axis=1)
     distances_m = distances_m[distances_m > 1e-6 * size_m]
     typical_m = np.median(distances_m) if len(distances_m) else size_m
-    return float(np.clip(0.4 * typical_m, 0.01 * size_m, 0.05 * size_m))
+    largest = np.clip(0.25 / math.sqrt(max(len(tree.poses), 1)), 0.01, 0.1)
+    return float(np.clip(0.4 * typical_m, 0.01 * size_m, largest * size_m))

@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Iterator
 from collections.abc import Mapping
 from collections.abc import Sequence
+from functools import partial
 import io
 import os
 from pathlib import Path
@@ -107,7 +108,7 @@ class MeshReader:
         self._finder = finder
         self._process = LimitedProcess(ALLOWANCE)
         # The last used one comes last.
-        self._kept: dict[tuple[str, str], _KeptMesh] = {}
+        self._kept: dict[tuple[str, str, bool], _KeptMesh] = {}
         self._kept_bytes = 0
 
     def mesh(self, shape: Shape, file: str, size_m: float) -> Mesh:
@@ -137,20 +138,23 @@ class MeshReader:
             return Mesh(reason=self._finder.reason_not_found(shape.mesh_uri, file))
         status = os.stat(path)  # noqa: PTH116
         version = status.st_mtime_ns, status.st_size
-        kept = self._kept.pop((path, shape.submesh), None)
+        key = path, shape.submesh, shape.is_centered
+        kept = self._kept.pop(key, None)
         if kept is not None:
             self._kept_bytes -= kept.size
         if kept is None or kept.version != version:
-            kept = _KeptMesh(self._read(path, shape.submesh), version)
+            mesh = self._read(path, shape.submesh, is_centered=shape.is_centered)
+            kept = _KeptMesh(mesh, version)
         while self._kept and self._kept_bytes + kept.size > MOST_BYTES_KEPT:
             self._kept_bytes -= self._kept.pop(next(iter(self._kept))).size
-        self._kept[path, shape.submesh] = kept
+        self._kept[key] = kept
         self._kept_bytes += kept.size
         return kept.mesh
 
-    def _read(self, path: str, submesh: str) -> Mesh:
+    def _read(self, path: str, submesh: str, *, is_centered: bool) -> Mesh:
         try:
-            return self._process.call(mesh_from_file, path, submesh)
+            return self._process.call(
+                partial(mesh_from_file, is_centered=is_centered), path, submesh)
         except LimitExceededError as error:
             return Mesh(reason=f'it needs {error} to be read')
         except ProcessEndedError as error:
@@ -168,7 +172,7 @@ def _mesh_of_shape(shape: Shape, largest_m: float) -> Mesh:
     return Mesh((MeshPart(*shape.surface),))
 
 
-def mesh_from_file(path: str, submesh: str) -> Mesh:
+def mesh_from_file(path: str, submesh: str, *, is_centered: bool = False) -> Mesh:
     """
     Read a mesh.
 
@@ -176,10 +180,11 @@ def mesh_from_file(path: str, submesh: str) -> Mesh:
 
     :param path: path of its file.
     :param submesh: the name of a part; empty for all of it.
+    :param is_centered: whether the middle of its box is put at the origin.
     :return: its surfaces, or the reason why there are none.
     """
     try:
-        return Mesh(_parts(*_scene_from_file(path, submesh), submesh))
+        return Mesh(_parts(*_scene_from_file(path, submesh), submesh, is_centered=is_centered))
     except SdfError as error:
         return Mesh(reason=error.message)
     except MemoryError:
@@ -250,19 +255,26 @@ def _names_of_parts(
         yield name or node.removesuffix(f'_{getattr(material, "name", None)}')
 
 
-def _parts(scene: trimesh.Scene, names: Sequence[str], submesh: str) -> tuple[MeshPart, ...]:
+def _parts(
+    scene: trimesh.Scene, names: Sequence[str], submesh: str, *, is_centered: bool,
+) -> tuple[MeshPart, ...]:
     """Find the surfaces of a mesh, or those of its parts that have this name."""
-    parts = []
+    surfaces = []
     for node, part_name in zip(scene.graph.nodes_geometry, names, strict=True):
         matrix, name = scene.graph[node]
         mesh = scene.geometry[name]
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces) and (
                 not submesh or submesh in (part_name, name)):
             unit_m = trimesh.units.unit_conversion(mesh.units or 'meters', 'meters')
-            points = unit_m * trimesh.transform_points(mesh.vertices, matrix)
-            parts.append(MeshPart(
-                np.asarray(points, np.float32), np.asarray(mesh.faces, np.uint32), _rgba(mesh),
-                _glb(mesh, points)))
+            surfaces.append((mesh, unit_m * trimesh.transform_points(mesh.vertices, matrix)))
+    middle = np.zeros(3)
+    if is_centered and surfaces:
+        points = np.concatenate([points for _, points in surfaces])
+        middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    parts = [
+        MeshPart(np.asarray(points - middle, np.float32), np.asarray(mesh.faces, np.uint32),
+                 _rgba(mesh), _glb(mesh, points - middle))
+        for mesh, points in surfaces]
     triangle_count = sum(len(part.faces) for part in parts)
     msg = ''
     if not parts:

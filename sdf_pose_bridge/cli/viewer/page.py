@@ -172,7 +172,7 @@ class Page:
             self._shown.loaded, int(tree.elements[frame]), self._posed.pose_of(frame),
             self._posed.pose_of(reference),
             (tree.frame_ids[frame], (*tree.frame_ids, tree.root_frame)[reference]),
-            4.0 * self._drawing.axes_length_m,
+            2.5 * self._drawing.axes_length_m,
             lambda scene, element: scene_at_positions(scene, positions).pose_of(element))
 
     def _describe(self) -> None:

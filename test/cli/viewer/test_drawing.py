@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The names in a drawing, and the size of its axes."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -73,8 +75,8 @@ def test_reason_is_not_hidden_by_a_nearer_name(drawing_of):
 
 
 @pytest.mark.parametrize(('places_m', 'part'), [
-    ((0.0, 10.0), 0.05), ((0.0, 0.1, 0.2, 0.3, 10.0), 0.01)])
-def test_axes_are_short_where_frames_are_near(drawing_of, places_m, part):
+    ((0.0, 10.0), 0.1), (range(2, 11), 0.25 / math.sqrt(10)), ((0.0, 0.1, 0.2, 0.3, 10.0), 0.01)])
+def test_axes_are_short_where_frames_are_many_or_near(drawing_of, places_m, part):
     drawing, _ = drawing_of(''.join(
         f'<link name="a{number}"><pose>{x_m} 0 0 0 0 0</pose></link>'
         for number, x_m in enumerate(places_m)))

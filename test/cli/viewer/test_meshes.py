@@ -113,6 +113,12 @@ def test_group_of_an_obj_file_is_a_part(mesh, tmp_path):
     assert part.points[:, 2] == pytest.approx(5.0)
 
 
+def test_part_with_its_middle_at_the_origin(tmp_path):
+    (tmp_path / 'mesh.obj').write_text(mesh_texts.OBJ)
+    (part,) = mesh_from_file(str(tmp_path / 'mesh.obj'), 'right', is_centered=True).parts
+    assert part.points == pytest.approx(np.array([(-0.5, -1, 0), (0.5, -1, 0), (-0.5, 1, 0)]))
+
+
 @pytest.mark.parametrize(('node', 'name'), [
     ('<node id="n" name="{}">{}</node>', 'left'),
     ('<node name="{}"><node>{}</node></node>', 'right')])
