@@ -3,8 +3,9 @@
 """
 Features of the page that viser does not have.
 
-These are frames on top of bodies, names at the pointer, the opacity of textures, copying, and
-changes of several controls at once. The scene is found as the developer tools of three.js find it.
+These are frames and lines on top of bodies, names at the pointer, the opacity of textures,
+copying, and changes of several controls at once. The scene is found as the developer tools of
+three.js find it.
 """
 
 from __future__ import annotations
@@ -38,6 +39,11 @@ _SCRIPT = """<script>(() => {
         // viser has no opacity for bodies with a texture.
         if (node.isInstancedMesh2 && node.material.map) {
           Object.assign(node.material, {opacity, transparent: opacity < 1});
+        }
+        // Lines to parents, and the measured one.
+        if (node.isLineSegments2 && node.material.depthTest) {
+          Object.assign(node.material, {depthTest: false, transparent: true});
+          node.renderOrder = 8999;
         }
         // These are axes, and nothing else is.
         if (!node.isInstancedMesh || !node.material.isMeshBasicMaterial) return;

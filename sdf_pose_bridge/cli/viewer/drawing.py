@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable
 from collections.abc import Sequence
 import math
@@ -22,6 +21,8 @@ from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.cli.viewer.surfaces import boxes_of_surfaces
+from sdf_pose_bridge.cli.viewer.surfaces import lines_from_not_drawn
+from sdf_pose_bridge.cli.viewer.surfaces import NotDrawn
 from sdf_pose_bridge.cli.viewer.surfaces import Surface
 from sdf_pose_bridge.cli.viewer.surfaces import surfaces_from_scene
 from sdf_pose_bridge.cli.viewer.view_point import bounds_of_interest
@@ -95,10 +96,8 @@ class Drawing:
                   and f'{Kind(scene.kinds[element]).label}s' not in hidden]
         extent_m = float(np.ptp(np.concatenate(
             [origins, scene.poses[bodies, :3], np.zeros((1, 3))]), axis=0).max()) or 1.0
-        self._surfaces, reasons = surfaces_from_scene(scene, bodies, extent_m, meshes)
-        self.reasons = [
-            f'{"1 shape is" if number == 1 else f"{number} shapes are"} not drawn as the file '
-            f'means it: {printable(reason)}' for reason, number in Counter(reasons).items()]
+        self._surfaces, not_drawn = surfaces_from_scene(scene, bodies, extent_m, meshes)
+        self.reasons = lines_from_not_drawn(not_drawn)
         """Lines that say which visuals and collisions are not drawn as the file means them."""
         self.names = NamesInScene(
             [printable(tree.frame_ids[frame]) for frame in self.frames],
@@ -289,8 +288,9 @@ def _texts_of_reasons(scene: Scene, surfaces: Sequence[Surface]) -> dict[int, st
             name = printable(shortened(scene.shapes[first].mesh_uri.rpartition('/')[2]))
             texts.update(dict.fromkeys(surface.elements, name))
             if len(texts) <= _MOST_REASONS:
+                reason = NotDrawn(scene.shapes[first].mesh_uri, surface.reason)
                 texts[first] = '\n'.join(textwrap.wrap(
-                    printable(surface.reason), _REASON_WIDTH, max_lines=4, placeholder=' ...'))
+                    printable(str(reason)), _REASON_WIDTH, max_lines=4, placeholder=' ...'))
     return texts
 
 

@@ -125,8 +125,7 @@ class MeshReader:
         if not mesh.reason:
             return mesh
         box = trimesh.creation.box(np.full(3, 0.03 * size_m))
-        return Mesh((MeshPart(box.vertices, box.faces, _MISSING),),
-                    f'the mesh "{shape.mesh_uri}": {mesh.reason}')
+        return Mesh((MeshPart(box.vertices, box.faces, _MISSING),), mesh.reason)
 
     def close(self) -> None:
         """End the process."""

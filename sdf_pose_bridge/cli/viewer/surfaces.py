@@ -15,6 +15,8 @@ from sdf_pose_bridge.cli.viewer.meshes import MeshPart
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
+from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.shapes import Shape
@@ -26,6 +28,7 @@ MOST_TRIANGLES = 3_000_000
 
 _GRAY = (0.52, 0.54, 0.57, 1.0)
 """The default color, which is visible on a light and on a dark background."""
+_MOST_LISTED = 3
 
 
 class Surface(NamedTuple):
@@ -43,9 +46,20 @@ class Surface(NamedTuple):
     """The reason why this replaces a mesh; empty for the surface in the file."""
 
 
+class NotDrawn(NamedTuple):
+    """A visual or collision that is not drawn as in the file."""
+
+    mesh_uri: str
+    """URI of its mesh; empty for another shape."""
+    reason: str
+
+    def __str__(self) -> str:
+        return f'the mesh "{self.mesh_uri}": {self.reason}' if self.mesh_uri else self.reason
+
+
 def surfaces_from_scene(
     scene: Scene, elements: Sequence[int], size_m: float, meshes: MeshReader,
-) -> tuple[list[Surface], list[str]]:
+) -> tuple[list[Surface], list[NotDrawn]]:
     """
     Choose the surfaces of visuals and collisions.
 
@@ -54,7 +68,7 @@ def surfaces_from_scene(
     :param size_m: extent of the frames; it limits the sides of planes, and the box for an unknown
         mesh is a small part of it.
     :param meshes: reads meshes.
-    :return: the surfaces, and the reason for each element that is not drawn as in the file.
+    :return: the surfaces, and each element that is not drawn as in the file.
     """
     copies: dict[tuple[Kind, Shape, str, bool], list[int]] = {}
     for element in elements:
@@ -69,14 +83,15 @@ def surfaces_from_scene(
             has_texture = kind == Kind.VISUAL and shape.rgba is None and shape.opacity == 1.0
             copies.setdefault((kind, form, file, has_texture), []).append(element)
     surfaces: list[Surface] = []
-    reasons: list[str] = []
+    not_drawn: list[NotDrawn] = []
     triangle_count = 0
     for (kind, form, file, has_texture), same in copies.items():
         mesh = meshes.mesh(form, file, size_m)
-        reasons += [mesh.reason] * len(same) * bool(mesh.reason)
+        if mesh.reason:
+            not_drawn += [NotDrawn(form.mesh_uri, mesh.reason)] * len(same)
         triangle_count += sum(len(part.faces) for part in mesh.parts)
         if len(surfaces) + len(mesh.parts) > MOST_SURFACES or triangle_count > MOST_TRIANGLES:
-            reasons += ['there are too many surfaces'] * len(same)
+            not_drawn += [NotDrawn('', 'there are too many surfaces')] * len(same)
             continue
         shapes = [scene.shapes[element] for element in same]
         scales = np.array([
@@ -88,7 +103,23 @@ def surfaces_from_scene(
                 part.rgba if mesh.reason else shape.rgba_or(part.rgba or _GRAY)
                 for shape in shapes]), mesh.reason)
             for part in mesh.parts]
-    return surfaces, reasons
+    return surfaces, not_drawn
+
+
+def lines_from_not_drawn(not_drawn: Sequence[NotDrawn]) -> list[str]:
+    """Say which shapes are not drawn as in the file, one line for each reason."""
+    meshes_of_reasons: dict[str, list[str]] = {}
+    for mesh_uri, reason in not_drawn:
+        meshes_of_reasons.setdefault(reason, []).append(mesh_uri)
+    lines = []
+    for reason, uris in meshes_of_reasons.items():
+        names = list(dict.fromkeys(filter(None, uris)))
+        meshes = f'the mesh{"es" * (len(names) > 1)} {quoted_names(names, _MOST_LISTED)}: '
+        noun, verb = ('shape', 'is') if len(uris) == 1 else ('shapes', 'are')
+        lines.append(printable(
+            f'{len(uris)} {noun} {verb} not drawn as the file means it: '
+            f'{meshes if names else ""}{reason}'))
+    return lines
 
 
 def boxes_of_surfaces(scene: Scene, surfaces: Sequence[Surface]) -> Floats:

@@ -252,7 +252,7 @@ def named(reader, tmp_path):
 
 
 def test_missing_mesh(named):
-    assert re.match('the mesh "none.stl": it is not in ".+"', named('none.stl').reason)
+    assert re.match('it is not in ".+"', named('none.stl').reason)
 
 
 def test_mesh_that_cannot_be_read(named):
@@ -269,7 +269,7 @@ def test_mesh_that_takes_too_long(named, reader, monkeypatch):
     # To start the process takes longer than to look how long it takes.
     monkeypatch.setattr(reader, '_process', LimitedProcess(meshes.ALLOWANCE._replace(wall_s=0.0)))
     assert named('a.stl', mesh_texts.STL.format(y=1)).reason == (
-        'the mesh "a.stl": it needs more than 0 s to be read')
+        'it needs more than 0 s to be read')
 
 
 def test_process_that_ends_while_it_reads(named, reader, tmp_path):
@@ -282,8 +282,7 @@ def test_process_that_ends_while_it_reads(named, reader, tmp_path):
 
     thread = threading.Thread(target=kill)
     thread.start()
-    assert named('a.stl').reason == (
-        'the mesh "a.stl": the process that reads files has ended by signal 9')
+    assert named('a.stl').reason == 'the process that reads files has ended by signal 9'
     thread.join()
     assert not named('b.stl', mesh_texts.STL.format(y=1)).reason
 

@@ -12,6 +12,8 @@ from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.viewer import surfaces as surfaces_module
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.cli.viewer.surfaces import boxes_of_surfaces
+from sdf_pose_bridge.cli.viewer.surfaces import lines_from_not_drawn
+from sdf_pose_bridge.cli.viewer.surfaces import NotDrawn
 from sdf_pose_bridge.cli.viewer.surfaces import surfaces_from_scene
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 
@@ -41,29 +43,37 @@ MESH = geometry('<mesh><uri>a.stl</uri><scale>1 1 -2</scale></mesh>')
 
 
 def test_shape_that_is_not_supported(drawn):
-    _, surfaces, (reason,) = drawn(geometry('<heightmap/>'))
-    assert (surfaces, reason) == ([], 'a heightmap is not supported')
+    _, surfaces, not_drawn = drawn(geometry('<heightmap/>'))
+    assert (surfaces, not_drawn) == ([], [('', 'a heightmap is not supported')])
 
 
 def test_missing_mesh_is_a_small_box(drawn):
-    _, (surface,), (reason,) = drawn(MESH)
+    _, (surface,), (not_drawn,) = drawn(MESH)
     assert np.ptp(surface.part.points, axis=0) * surface.scales[0] == pytest.approx(0.06)
-    assert reason.startswith('the mesh "a.stl": it is not in "')
-    assert surface.reason == reason
+    assert str(not_drawn).startswith('the mesh "a.stl": it is not in "')
+    assert surface.reason == not_drawn.reason
+
+
+def test_meshes_that_are_missing_for_one_reason_have_one_line():
+    meshes, other = lines_from_not_drawn([
+        *(NotDrawn(f'{name}.dae', 'no') for name in 'abbcde'), NotDrawn('', 'too many')])
+    assert meshes == ('6 shapes are not drawn as the file means it: '
+                      'the meshes "a.dae", "b.dae", "c.dae" and 2 more: no')
+    assert other == '1 shape is not drawn as the file means it: too many'
 
 
 def test_more_surfaces_than_are_drawn(drawn, monkeypatch):
     monkeypatch.setattr(surfaces_module, 'MOST_SURFACES', 1)
-    _, (surface,), reasons = drawn(*[geometry('<sphere/>')] * 2, *[geometry('<cone/>')] * 3)
+    _, (surface,), not_drawn = drawn(*[geometry('<sphere/>')] * 2, *[geometry('<cone/>')] * 3)
     assert len(surface.elements) == 2
-    assert reasons == ['there are too many surfaces'] * 3
+    assert not_drawn == [('', 'there are too many surfaces')] * 3
 
 
 def test_more_triangles_than_are_drawn(drawn, monkeypatch):
     monkeypatch.setattr(surfaces_module, 'MOST_TRIANGLES', 12)
-    _, (surface,), reasons = drawn(geometry('<box/>'), geometry('<sphere/>'))
+    _, (surface,), not_drawn = drawn(geometry('<box/>'), geometry('<sphere/>'))
     assert len(surface.part.faces) == 12
-    assert len(reasons) == 1
+    assert len(not_drawn) == 1
 
 
 def test_boxes_of_any_size_share_a_surface(drawn):
