@@ -79,10 +79,10 @@ class PoseEdit:
             self._title = gui.add_html(html_of_edit((), []))
             self._numbers = [gui.add_number(label, 0.0, disabled=True) for label in POSE_LABELS]
             self._steps = gui.add_dropdown('steps', ('',))
-            self._text = gui.add_html('')
             write, cancel, undo = self._write, self._cancel, self._undo = [
                 gui.add_button(label, visible=False)
                 for label in ('write to file', 'cancel', 'undo the last write')]
+            self._text = gui.add_html('')
         events.when(self._gizmo.on_update, self._take_gizmo)
         for number in self._numbers:
             events.when(number.on_update, self._take_numbers)
