@@ -134,7 +134,11 @@ def run(options: argparse.Namespace) -> int:
         elif not loaded.errors:
             if len(options.files) > 1:
                 print(printable(path))
-            _print_lines(lines, Units(options.length_unit, options.angle_unit))
+            if lines:
+                _print_lines(lines, Units(options.length_unit, options.angle_unit))
+            else:
+                print(f'sdf_pose tree: no whole name in {printable(path)} matches '
+                      f'"{printable(options.match)}"', file=sys.stderr)
     return exit_code
 
 

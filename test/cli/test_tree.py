@@ -114,8 +114,10 @@ def test_match_leaves_frames_with_those_above_them(tree):
     assert names_in(tree('--match', 'arm')) == ['base', 'arm']
 
 
-def test_match_of_nothing_prints_no_frame(tree):
-    assert tree('--match', 'nothing') == []
+def test_match_of_nothing_is_reported(run_main):
+    done = run_main('tree', 'good.sdf', '--match', 'nothing')
+    assert (done.stdout, done.stderr) == (
+        '', 'sdf_pose tree: no whole name in good.sdf matches "nothing"\n')
 
 
 def test_terminal_without_the_characters_has_others(files):
