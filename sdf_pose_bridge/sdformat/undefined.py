@@ -79,7 +79,11 @@ class UndefinedReporter:
             hint = f'it can stand in {_PLACES[tag]}'
         elif not hint:
             hint = self._did_you_mean(tag, parent.identifier, map(str, parent.children), '<{}>')
-        self._warn(xml, f'<{tag}> in <{written_tag(parent_xml)}>', hint)
+        parent_tag, outer = written_tag(parent_xml), parent_xml.getparent()
+        # <ode> and some others have several definitions, each in another element.
+        place = f'<{parent_tag}>' if parent.identifier == parent_tag or outer is None else (
+            f'<{parent_tag}> of <{written_tag(outer)}>')
+        self._warn(xml, f'<{tag}> in {place}', hint)
 
     def report_attributes(self, xml: XmlElement, definition: Definition) -> None:
         """Warn of the undefined attributes of an element."""

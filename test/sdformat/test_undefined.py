@@ -36,6 +36,11 @@ def messages_of(text):
      '<sensor> in <model> is not defined in SDFormat; it can stand in <link> or <joint>'),
     (link_with('<inertial><mas>1</mas></inertial>'),
      '<mas> in <inertial> is not defined in SDFormat; did you mean <mass>?'),
+    (link_with('<collision name="c"><surface><friction><ode><kp>1</kp></ode></friction></surface>'
+               '<geometry/></collision>'),
+     '<kp> in <ode> of <friction> is not defined in SDFormat'),
+    (world_file('<state world_name="w"><model name="m"><static>1</static></model></state>'),
+     '<static> in <model> of <state> is not defined in SDFormat'),
     (world_file('<modle name="m"/>'),
      '<modle> in <world> is not defined in SDFormat; did you mean <model>?'),
     (f'<sdf version="1.9"><modell/><model name="m">{LINK}</model></sdf>',
