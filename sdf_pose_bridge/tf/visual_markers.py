@@ -89,6 +89,7 @@ def visual_markers_from_scene(
     is_shown = (
         elements_in_model(scene, model) & (scene.roots == 0) & (scene.kinds == Kind.VISUAL))
     problems = Problems(scene.files)
+    hidden: dict[tuple[str, int, str], list[int]] = {}
     markers: list[VisualMarker] = []
     point_count = 0
     for element, shape in scene.shapes.items():
@@ -101,8 +102,7 @@ def visual_markers_from_scene(
         if isinstance(forms, str) or frame == NO_PARENT:
             reason = forms if isinstance(forms, str) else (
                 'neither its link nor a frame above that in TF is published')
-            msg = f'the visual "{scene.names[element]}" is not shown: {reason}'
-            problems.warning(msg, place)
+            hidden.setdefault((place.file, place.line, reason), []).append(element)
             continue
         point_count += sum(len(form.points) for form in forms)
         if len(markers) + len(forms) > MOST_MARKERS or point_count > MOST_POINTS:
@@ -122,6 +122,10 @@ def visual_markers_from_scene(
             VisualMarker(
                 namespace, frame_id, pose_product(pose, Pose(z=form.z_m)), form, shape.drawn_rgba)
             for form in forms]
+    for (*_, reason), (element, *others) in hidden.items():
+        like = f', like {len(others)} more' if others else ''
+        msg = f'the visual "{scene.names[element]}" is not shown{like}: {reason}'
+        problems.warning(msg, scene.place(element))
     return markers, problems.warnings
 
 
@@ -171,5 +175,6 @@ def _forms_from_shape(
 def _form_of_mesh(shape: Shape, file: str, finder: ResourceFinder) -> tuple[Form] | str:
     uri = finder.uri_for_others(shape.mesh_uri, file)
     if uri is None:
-        return f'the mesh "{shortened(shape.mesh_uri)}" is not found'
+        return (f'the mesh "{shortened(shape.mesh_uri)}" is not found: '
+                f'{finder.reason_not_found(shape.mesh_uri, file)}')
     return (Form('MESH_RESOURCE', shape.mesh_scale, mesh_resource=uri),)

@@ -9,6 +9,7 @@ import pytest
 from sdf_texts import link_with
 from sdf_texts import model_file
 from sdf_texts import world_file
+from tf_checks import model
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.errors import UnknownFrameError
@@ -59,8 +60,8 @@ def extent_of(points):
 
 
 @pytest.mark.parametrize(('geometry', 'reason'), [
-    (MESH.format('none.stl', ''), 'the mesh "none.stl" is not found'),
-    (MESH.format('model://none/a.stl', ''), 'the mesh "model://none/a.stl" is not found'),
+    (MESH.format('none.stl', ''), 'the mesh "none.stl" is not found: it is not in "."; '),
+    (MESH.format('model://none/a.stl', ''), 'the mesh "model://none/a.stl" is not found: '),
     (MESH.format('https://none.org/a.stl', ''), 'the mesh "https://none.org/a.stl" is not found'),
     (MESH.format('/dev', ''), 'the mesh "/dev" is not found'),
     ('<sphere><radius>0</radius></sphere>', 'its sizes are not positive'),
@@ -70,7 +71,17 @@ def extent_of(points):
 def test_visual_that_cannot_be_shown_has_a_warning(geometry, reason):
     markers, (warning,) = markers_and_warnings(link_with(visual(geometry)))
     assert markers == []
-    assert str(warning) == f'm.sdf:1: WARNING: the visual "m::l::v" is not shown: {reason}'
+    assert str(warning).startswith(
+        f'm.sdf:1: WARNING: the visual "m::l::v" is not shown: {reason}')
+
+
+def test_visual_of_many_instances_has_one_warning():
+    models = ''.join(
+        model(name, f'<link name="l">{visual(MESH.format("none.stl", ""))}</link>')
+        for name in 'abc')
+    _, (warning,) = markers_and_warnings(world_file(models))
+    assert warning.message.startswith(
+        'the visual "a::l::v" is not shown, like 2 more: the mesh "none.stl" is not found: ')
 
 
 def test_visual_without_a_geometry_has_no_marker():
