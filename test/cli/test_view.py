@@ -107,7 +107,7 @@ def test_what_is_not_drawn_is_said(run_main, files):
     assert done.returncode == 0
     reason = '"none.stl": it is not in ".";'
     assert done.stderr.startswith(
-        f'sdf_pose view: 1 shape is not drawn as the file means it: the mesh {reason} ')
+        f'sdf_pose view: 1 shape cannot be drawn: the mesh {reason} ')
 
 
 @pytest.mark.parametrize('has_browser', [True, False])

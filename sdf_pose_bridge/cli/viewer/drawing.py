@@ -98,7 +98,7 @@ class Drawing:
             [origins, scene.poses[bodies, :3], np.zeros((1, 3))]), axis=0).max()) or 1.0
         self._surfaces, not_drawn = surfaces_from_scene(scene, bodies, extent_m, meshes)
         self.reasons = lines_from_not_drawn(not_drawn)
-        """Lines that say which visuals and collisions are not drawn as the file means them."""
+        """Lines that say which visuals and collisions cannot be drawn."""
         self.names = NamesInScene(
             [printable(tree.frame_ids[frame]) for frame in self.frames],
             [_names_of_bodies(posed, surface) for surface in self._surfaces])

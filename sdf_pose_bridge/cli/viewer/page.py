@@ -90,7 +90,7 @@ class Page:
 
     @property
     def reasons(self) -> list[str]:
-        """Lines about shapes that are not drawn as in the file."""
+        """Lines about shapes that cannot be drawn."""
         return self._drawing.reasons
 
     def html(self, title: str) -> str:
@@ -110,6 +110,8 @@ class Page:
 
         Hidden groups, the selected frame and the positions of joints stay.
         """
+        # Numbers that were typed while the file was read would be replaced below.
+        self.act(0.0)
         with self._server.atomic():
             before, self._shown = self._shown, shown
             if (shown.kinds, [*shown.models], shown.joints) != (

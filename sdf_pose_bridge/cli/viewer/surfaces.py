@@ -47,7 +47,7 @@ class Surface(NamedTuple):
 
 
 class NotDrawn(NamedTuple):
-    """A visual or collision that is not drawn as in the file."""
+    """A visual or collision that cannot be drawn."""
 
     mesh_uri: str
     """URI of its mesh; empty for another shape."""
@@ -68,7 +68,7 @@ def surfaces_from_scene(
     :param size_m: extent of the frames; it limits the sides of planes, and the box for an unknown
         mesh is a small part of it.
     :param meshes: reads meshes.
-    :return: the surfaces, and each element that is not drawn as in the file.
+    :return: the surfaces, and each element that cannot be drawn.
     """
     copies: dict[tuple[Kind, Shape, str, bool], list[int]] = {}
     for element in elements:
@@ -107,7 +107,7 @@ def surfaces_from_scene(
 
 
 def lines_from_not_drawn(not_drawn: Sequence[NotDrawn]) -> list[str]:
-    """Say which shapes are not drawn as in the file, one line for each reason."""
+    """Say which shapes cannot be drawn, one line for each reason."""
     meshes_of_reasons: dict[str, list[str]] = {}
     for mesh_uri, reason in not_drawn:
         meshes_of_reasons.setdefault(reason, []).append(mesh_uri)
@@ -115,9 +115,8 @@ def lines_from_not_drawn(not_drawn: Sequence[NotDrawn]) -> list[str]:
     for reason, uris in meshes_of_reasons.items():
         names = list(dict.fromkeys(filter(None, uris)))
         meshes = f'the mesh{"es" * (len(names) > 1)} {quoted_names(names, _MOST_LISTED)}: '
-        noun, verb = ('shape', 'is') if len(uris) == 1 else ('shapes', 'are')
         lines.append(printable(
-            f'{len(uris)} {noun} {verb} not drawn as the file means it: '
+            f'{len(uris)} shape{"s" * (len(uris) > 1)} cannot be drawn: '
             f'{meshes if names else ""}{reason}'))
     return lines
 

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the page shows, without a browser; integration/test_view_page.py uses it in one."""
 
+import time
+
 import pytest
 
 pytest.importorskip('viser', reason='needs viser')
@@ -9,6 +11,8 @@ from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.viewer.page import Page
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
+from sdf_pose_bridge.scene.pose_setting import PoseChange
+from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf.tree import TfOptions
 
@@ -21,11 +25,11 @@ def page_of(tmp_path):
     """Returns the page of a file whose link has this content."""
     pages = []
 
-    def make(content):
+    def make(content, **options):
         (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{content}</link>'))
         scene = load(tmp_path / 'm.sdf', shapes=True)
         pages.append(Page(
-            ShownScene(scene, TfOptions()), 0, Units(), resource_finder([], {})))
+            ShownScene(scene, TfOptions()), 0, Units(), resource_finder([], {}), **options))
         return pages[-1]
     yield make
     for page in pages:
@@ -49,7 +53,7 @@ def nodes(page, *names):
 def test_page_says_what_it_does_not_draw(page_of):
     page = page_of(f'<visual name="v">{MESH}</visual>')
     (reason,) = page.reasons
-    assert reason.startswith('1 shape is not drawn as the file means it: the mesh "<b>": ')
+    assert reason.startswith('1 shape cannot be drawn: the mesh "<b>": ')
     assert '&lt;b&gt;&quot;: ' in page._reasons.content
 
 
@@ -86,6 +90,18 @@ def test_drawing_shares_no_name_with_the_one_before(page_of):
     assert page._server.scene.get_handle_by_name(before.name) is None
 
 
+def test_number_that_is_typed_while_a_file_is_read_stays(page_of):
+    page = page_of('', set_pose=lambda scene, *_, **__: PoseChange(
+        FileChange(scene.path, b'', 'utf-8', 0, 0, b''), 1, scene))
+    page._selected.select(page._posed.tree.frame_ids.index('l'))
+    page._edit._numbers[0].value = 0.5
+    end = time.monotonic() + 10.0
+    while page._events._actions.empty() and time.monotonic() < end:
+        time.sleep(0.01)
+    page.show(page._shown)
+    assert page._edit.pose.x == pytest.approx(0.5)
+
+
 def test_line_joins_the_frames_that_are_measured(page_of):
     page = page_of('<sensor name="s" type="imu"><pose>1 2 3 0 0 0</pose></sensor>')
     frames = page._posed.tree.frame_ids
@@ -108,4 +124,4 @@ def test_page_says_so_when_collisions_are_switched_on(page_of):
     page = page_of(f'<collision name="c">{MESH}</collision>')
     assert page.reasons == []
     set_switches(page, True, 'collisions')
-    assert '1 shape is not drawn as the file means it' in page._reasons.content
+    assert '1 shape cannot be drawn' in page._reasons.content

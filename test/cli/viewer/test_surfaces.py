@@ -57,9 +57,9 @@ def test_missing_mesh_is_a_small_box(drawn):
 def test_meshes_that_are_missing_for_one_reason_have_one_line():
     meshes, other = lines_from_not_drawn([
         *(NotDrawn(f'{name}.dae', 'no') for name in 'abbcde'), NotDrawn('', 'too many')])
-    assert meshes == ('6 shapes are not drawn as the file means it: '
+    assert meshes == ('6 shapes cannot be drawn: '
                       'the meshes "a.dae", "b.dae", "c.dae" and 2 more: no')
-    assert other == '1 shape is not drawn as the file means it: too many'
+    assert other == '1 shape cannot be drawn: too many'
 
 
 def test_more_surfaces_than_are_drawn(drawn, monkeypatch):
