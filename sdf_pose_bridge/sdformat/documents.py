@@ -144,6 +144,8 @@ def _check_is_expanded(root: XmlElement, path: str, sources: Sources) -> None:
             locations.append((xml, found))
             continue
         target = name.removesuffix('.xacro') if name.endswith('.xacro') else f'expanded_{name}'
+        if not Path(target).suffix:
+            target += '.sdf' if root.tag == 'sdf' else '.urdf'
         command = f': xacro {shlex.quote(name)} -o {shlex.quote(target)}' if '.' in name else ''
         msg = f'{found} is for xacro; run xacro first, and read the file that it writes{command}'
         raise ParsingError(msg, Place(path, sources.line(xml)))

@@ -147,10 +147,13 @@ def test_unexpanded_file_is_refused(text, found):
 @pytest.mark.parametrize(('name', 'command'), [
     ('my arm.sdf.xacro', "xacro 'my arm.sdf.xacro' -o 'my arm.sdf'"),
     ('arm.urdf', 'xacro arm.urdf -o expanded_arm.urdf'),
+    ('arm.urdf.xacro', 'xacro arm.urdf.xacro -o arm.urdf'),
+    ('arm.xacro', 'xacro arm.xacro -o arm.urdf'),
 ])
 def test_the_error_tells_the_command(tmp_path, name, command):
     path = tmp_path / name
-    path.write_text(sdf('<link name="${a}"/>'), encoding='utf-8')
+    write = sdf if '.sdf' in name else urdf
+    path.write_text(write('<link name="${a}"/>'), encoding='utf-8')
     (error,) = errors_of_file(path)
     assert error.message.endswith(f': {command}')
 
