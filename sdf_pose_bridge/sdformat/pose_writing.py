@@ -152,7 +152,7 @@ class PoseText:
 
     def with_new_pose(self, element: int, pose: Pose, tolerance: float) -> FileChange:
         """
-        Insert a pose, indented like the next line.
+        Insert a pose, indented like the next line, or one step deeper than the end tag.
 
         :param element: the number of the element that it places.
         :param pose: as for :meth:`with_pose`.
@@ -163,9 +163,20 @@ class PoseText:
         new = b'<pose>%s</pose>' % ' '.join(words).encode()
         end = self._tags[element][1]
         indentation = _INDENTATION.match(self._text, end + 1)
-        if not self._is_closed(end) and indentation is not None:
-            new = (indentation[1] or b'') + new
+        if not self._is_closed(end) and indentation is not None and indentation[1]:
+            is_empty = self._text.startswith(b'</', indentation.end())
+            new = indentation[1] + (self._step(element) if is_empty else b'') + new
         return self._with_content(element, new)
+
+    def _step(self, element: int) -> bytes:
+        """Return the indentation of an element beyond that of its parent; if none, two spaces."""
+        parent = self._elements[element].getparent()
+        assert parent is not None
+        own, outer = (
+            line[:len(line) - len(line.lstrip())]
+            for each in (element, self._elements.index(parent))
+            for line in [self._text[:self._tags[each][0]].rpartition(b'\n')[2]])
+        return own.removeprefix(outer) or b'  '
 
     def _with_content(self, element: int, content: bytes) -> FileChange:
         """Return a change that puts content behind the start tag of an element."""

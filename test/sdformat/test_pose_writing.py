@@ -69,8 +69,11 @@ def test_encoding_stays(encoding):
      '<link name="l">\n    {}\n    <visual name="v"/>\n  </link>'),
     ('<link name="l">\r\n\r\n\t<!-- c -->\r\n</link>',
      '<link name="l">\r\n\t{}\r\n\r\n\t<!-- c -->\r\n</link>'),
+    ('<link name="l">\n</link>', '<link name="l">\n  {}\n</link>'),
+    ('\n  <link name="l">\n  </link>', '\n  <link name="l">\n    {}\n  </link>'),
+    ('\r\n\t<link name="l">\r\n\t</link>', '\r\n\t<link name="l">\r\n\t\t{}\r\n\t</link>'),
 ])
-def test_a_new_pose_is_indented_like_what_follows(old, new):
+def test_a_new_pose_is_indented_like_a_child(old, new):
     change = PoseText(model_file(old).encode(), 'file.sdf').with_new_pose(2, NEW, 1e-9)
     assert change.new_text.decode() == model_file(
         new.format('<pose>1.5 -2 0.25 0 0 1.570796327</pose>'))
