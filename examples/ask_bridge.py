@@ -54,12 +54,23 @@ class Client(Node):
         self.timeout = timeout
         self._deadline = time.monotonic() + timeout
 
-    def wait(self, arrived: Callable[[], bool], what: str) -> None:
-        """Handle messages until something has arrived."""
+    def is_bridge_there(self) -> bool:
+        """Return whether the node of the bridge is running."""
+        namespace, _, name = self.bridge.rpartition('/')
+        return (name, namespace or '/') in self.get_node_names_and_namespaces()
+
+    def wait(self, arrived: Callable[[], bool], what: str, otherwise: str = '') -> None:
+        """
+        Handle messages until something has arrived.
+
+        :param otherwise: why it may not arrive although the node is running.
+        """
         while not arrived():
             left = self._deadline - time.monotonic()
             if left <= 0.0:
-                msg = f'no {what} within {self.timeout:g} s; is the node running?'
+                if not otherwise or not self.is_bridge_there():
+                    otherwise = 'is the node running?'
+                msg = f'no {what} within {self.timeout:g} s; {otherwise}'
                 raise NoAnswerError(msg)
             rclpy.spin_once(self, timeout_sec=min(left, 0.1))
 
@@ -82,7 +93,9 @@ class Client(Node):
         self.create_subscription(
             PoseStamped, topic, poses.append,
             QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
-        self.wait(lambda: bool(poses), f'message on {topic}')
+        self.wait(
+            lambda: bool(poses), f'message on {topic}',
+            f'the node {self.bridge} does not publish a pose of "{frame}"')
         return poses[0]
 
 
@@ -103,9 +116,7 @@ def print_pose(frame: str, stamped: PoseStamped) -> None:
 def print_topics(client: Client, _: argparse.Namespace) -> None:
     namespace, _, name = client.bridge.rpartition('/')
     namespace = namespace or '/'
-    client.wait(
-        lambda: (name, namespace) in client.get_node_names_and_namespaces(),
-        f'node {client.bridge}')
+    client.wait(client.is_bridge_there, f'node {client.bridge}')
     service = f'{client.bridge}/reload'
     client.wait(
         lambda: service in dict(client.get_service_names_and_types_by_node(name, namespace)),

@@ -47,7 +47,9 @@ def test_it_prints_what_the_bridge_answers(ask, arguments, line):
 @pytest.mark.parametrize(('arguments', 'reason'), [
     (['lookup', 'robot/tol0'], '"robot/tol0"'),
     (['rotation', '0', '0', '0', '0'], 'which is not a rotation'),
-    (['--timeout', '1', 'pose', 'nowhere'], 'no message on /sdf_pose_bridge/poses/nowhere'),
+    (['--timeout', '1', 'pose', 'nowhere'],
+     'the node /sdf_pose_bridge does not publish a pose of "nowhere"'),
+    (['--timeout', '1', '--bridge', '/other', 'pose', 'table'], 'is the node running?'),
     (['--timeout', '1', '--bridge', '/other', 'topics'], 'no node /other within 1 s'),
 ])
 def test_it_says_why_there_is_no_answer(ask, arguments, reason):
