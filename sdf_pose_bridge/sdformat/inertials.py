@@ -153,11 +153,24 @@ def inertial_from_element(
         inertial = _inertial_from_values(xml)
     if not inertial.is_valid:
         link = xml.getparent()
-        name = '' if link is None else attribute_of(link, 'name')
-        sources.warning(
-            xml, f'no body can have the mass and the moments of inertia of link "{name}"; '
-            'libsdformat refuses them, but no pose depends on them', LinkInertiaError.code)
+        warn_of_inertial(xml, '' if link is None else attribute_of(link, 'name'), sources)
     return inertial
+
+
+def warn_of_inertial(
+    xml: XmlElement, link: str, sources: Sources, *, is_for_gazebo: bool = False,
+) -> None:
+    """
+    Add the warning about an inertial that is not valid.
+
+    :param xml: its element.
+    :param link: the name of its link.
+    :param is_for_gazebo: as for :meth:`Sources.warning`.
+    """
+    sources.warning(
+        xml, f'no body can have the mass and the moments of inertia of link "{link}"; '
+        'libsdformat refuses them, but no pose depends on them', LinkInertiaError.code,
+        is_for_gazebo=is_for_gazebo)
 
 
 def _inertial_from_values(xml: XmlElement) -> Inertial:

@@ -28,7 +28,9 @@ from sdf_pose_bridge.errors import RelativeToError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.poses import pose_product
 from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.sdformat.inertials import Inertial as SdfInertial
 from sdf_pose_bridge.sdformat.inertials import MOMENTS
+from sdf_pose_bridge.sdformat.inertials import warn_of_inertial
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
 from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
@@ -127,6 +129,7 @@ class _Conversion:
             self._lump_inertial(link)
         self._left_out = self._links_left_out()
         if for_ros:
+            self._warn_of_inertials()
             self._keep_tree()
 
     def result(self) -> XmlElement:
@@ -193,6 +196,15 @@ class _Conversion:
                     f'links and joints below it{"" if self._for_ros else "; here, too"}',
                     'LINK_INERTIA_INVALID', is_for_gazebo=self._for_ros)
         return left_out
+
+    def _warn_of_inertials(self) -> None:
+        """Warn of the inertials that Gazebo refuses; those of included robots are read later."""
+        for link in self._links:
+            inertial = self._inertials[link.name]
+            if inertial is not None and inertial.mass > 0.0 and not (
+                    self._is_lumped(link) or link.name in self._left_out
+                    or SdfInertial(inertial.mass, inertial.moments).is_valid):
+                warn_of_inertial(link.xml, link.name, self._sources, is_for_gazebo=True)
 
     def _keep_tree(self) -> None:
         """Lump no links, and leave out elements that would change the tree of the robot."""

@@ -486,6 +486,22 @@ def test_moments_of_links():
     assert moments_in(model_from(robot(link('a')), is_included=False)) == []
 
 
+IMPOSSIBLE = link('a') + link('b').replace('izz="1"', 'izz="3"') + joint('j', 'a', 'b', '{}')
+
+
+def test_impossible_moments_cause_the_same_warning_with_and_without_an_include(tmp_path):
+    text = IMPOSSIBLE.format('continuous')
+    (included,) = load(write(tmp_path, text)).warnings
+    (warning,) = load_text(robot(text)).warnings
+    assert (warning.code, warning.message) == (included.code, included.message)
+    assert (warning.is_for_gazebo, included.is_for_gazebo) == (True, False)
+
+
+def test_impossible_moments_that_possible_ones_are_added_to_cause_no_warning(tmp_path):
+    text = IMPOSSIBLE.format('fixed')
+    assert load(write(tmp_path, text)).warnings == load_text(robot(text)).warnings == ()
+
+
 def test_moments_of_links_that_are_lumped():
     assert moments_in(model_from(robot(TWO + FIXED))) == pytest.approx(
         [2, 2.5, 2.5, 0, 0, 0], abs=1e-12)
