@@ -17,6 +17,7 @@ from typing import TypeVar
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.errors import UriLookupError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.names import printable
@@ -52,7 +53,9 @@ def print_problems(
         color = '' if not has_colors else _RED if is_error else _YELLOW
         kind = '' if is_error or problem.code == 'WARNING' else 'WARNING: '
         place, message = printable(str(problem.place)), printable(problem.message)
-        print(f'{bold}{place}:{plain} {color}{kind}{problem.code}:{plain} {message}', file=stream)
+        hint = '; --skip-missing leaves it out' if isinstance(problem, UriLookupError) else ''
+        print(f'{bold}{place}:{plain} {color}{kind}{problem.code}:{plain} {message}{hint}',
+              file=stream)
 
 
 def in_order(*problems: tuple[_Problem, ...]) -> tuple[_Problem, ...]:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import UriLookupError
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.problems import MOST_PROBLEMS
@@ -41,7 +42,10 @@ def lines_from_error(error: Exception) -> list[str]:
     :return: at least one line and at most ``MOST_LINES``, and one more if there are more errors.
     """
     if isinstance(error, SdfError):
-        return _first_lines(error.errors, 'error', '; "sdf_pose check" shows all of them')
+        hint = '; on_missing_include "skip" leaves it out'
+        lines = [
+            f'{each}{hint if isinstance(each, UriLookupError) else ""}' for each in error.errors]
+        return _first_lines(lines, 'error', '; "sdf_pose check" shows all of them')
     if isinstance(error, SettingsError):
         return _first_lines(error.sentences, 'error')
     return [printable(str(error))]

@@ -73,7 +73,9 @@ def test_includes_are_searched_in_given_directories(sdf_pose, files):
                                             '</model></sdf>')
     (files / 'world.sdf').write_text('<sdf version="1.9"><world name="w"><include><uri>model://m.sdf'
                                      '</uri></include></world></sdf>')
-    assert sdf_pose('check', 'world.sdf').returncode == 1
+    missing = sdf_pose('check', 'world.sdf')
+    assert missing.returncode == 1
+    assert missing.stdout.endswith('; --skip-missing leaves it out\n')
     assert sdf_pose('check', '-I', 'models', 'world.sdf').returncode == 0
     skipped = sdf_pose('check', '--skip-missing', 'world.sdf')
     assert skipped.returncode == 0

@@ -15,6 +15,7 @@ import urdf_texts as urdf
 from sdf_pose_bridge.errors import LoadError
 from sdf_pose_bridge.errors import ParsingError
 from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros.log_lines import line_about_detached_models
 from sdf_pose_bridge.ros.log_lines import line_about_gazebo
@@ -37,6 +38,13 @@ def test_each_error_of_a_file_has_its_line_with_its_place():
     errors = [ParsingError(f'fact {line}', Place('a.sdf', line)) for line in (3, 7)]
     assert lines_from_error(LoadError(errors)) == [
         'a.sdf:3: PARSING_ERROR: fact 3', 'a.sdf:7: PARSING_ERROR: fact 7']
+
+
+def test_the_error_of_a_missing_include_names_the_parameter_that_leaves_it_out():
+    with pytest.raises(SdfError) as caught:
+        load_text(world_file('<include><uri>https://a.org/1.0/b/models/c</uri></include>'))
+    (line,) = lines_from_error(caught.value)
+    assert line.endswith('; on_missing_include "skip" leaves it out')
 
 
 def test_a_flood_of_errors_ends_with_its_size():
