@@ -42,9 +42,9 @@ def replace(path, text):
     new.replace(path)
 
 
-def listen_to_tf(listener):
+def listen_to_tf(listener, depth=100):
     listener.node.create_subscription(
-        TFMessage, '/tf_static', listener.tf_messages.append, latched(100))
+        TFMessage, '/tf_static', listener.tf_messages.append, latched(depth))
 
 
 def last_x(listener, frame='crate/body'):
