@@ -11,8 +11,8 @@ is complete.
 With a highest rate, a message is published at once and begins a period, which is the same for all
 topics. Later ones wait in the subscriptions for its end, without waking the executor: waking it
 takes ten times as long as processing a message. There, all changes are published in one message,
-and another period begins if there are any. Only the first message of a topic that was silent for
-some periods does not wait.
+and another period begins if there are any. Only the first message of a topic after a silence does
+not wait.
 """
 
 from __future__ import annotations
@@ -46,8 +46,9 @@ TOPICS_PERIOD_S = 1.0 / 30.0
 SUBSCRIPTIONS_AT_ONCE = 40
 """Number of subscriptions, made in some 20 milliseconds, before other callbacks run."""
 
-SILENT_PERIODS = 2
-"""After so many periods without a message, a topic is silent; after one, it may be late."""
+SILENCE_S = 1.0
+"""Seconds without a message, and two periods at least, after which a topic is silent. With fewer,
+each message of many slow robots would be published by itself."""
 
 _REST_S = 0.5
 
@@ -92,6 +93,7 @@ class JointStates:
         self._timers = [self._initial_timer, self._grace_timer]
         rest_period = TOPICS_PERIOD_S
         self._period_timer: Timer | None = None
+        self._silent_periods = max(2.0, SILENCE_S * frequency)
         if frequency and not self._ignores_stamps:
             period = 1.0 / frequency
             # While messages follow one another, the other timer does not wake the executor.
@@ -223,7 +225,7 @@ class JointStates:
         """Have only silent topics open after so many more periods."""
         for topic in self._topics.values():
             topic.silent_periods += number
-            topic.is_open = topic.silent_periods > SILENT_PERIODS
+            topic.is_open = topic.silent_periods > self._silent_periods
 
     def _publish(self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64] | int) -> None:
         """

@@ -25,7 +25,6 @@ from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.joint_states import JointStates
-from sdf_pose_bridge.ros.joint_states import SILENT_PERIODS
 from sdf_pose_bridge.ros.joint_states import SUBSCRIPTIONS_AT_ONCE
 from sdf_pose_bridge.ros.joint_states import TOPICS_PERIOD_S
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
@@ -421,7 +420,7 @@ def make_two_arms(states, moving_frames, listener, wait_until):
         def are_silent():
             both._end_period()
             return all(
-                each.silent_periods > SILENT_PERIODS for each in both._topics.values())
+                each.silent_periods > both._silent_periods for each in both._topics.values())
 
         wait_until(are_silent, 'periods without messages')
         found.clear()
@@ -447,29 +446,34 @@ def test_messages_of_one_robot_do_not_delay_those_of_another(two_arms, wait_unti
         wait_until(lambda robot=robot: found[-1:] == [[(NOW - 1, {f'{robot}/upper'})]], found)
 
 
-@pytest.fixture(name='send')
-def make_send(two_arms, wait_until):
+@pytest.fixture(name='sender')
+def make_sender(two_arms, wait_until):
     """
-    Sends messages of robots, and waits until they are processed; ``send(sec, robots)``.
+    Follows two arms, in periods that do not end by themselves; ``sender(frequency)``.
 
-    Returns it with what ``two_arms`` returns but publishers. Periods do not end by themselves.
+    Returns what ``two_arms`` does, but for the publishers a function that sends a message of some
+    robots and waits until they are processed; ``send(sec, robots)``.
     """
-    both, publishers, found = two_arms(0.01)
+    def start(frequency):
+        both, publishers, found = two_arms(frequency)
+        both._period_timer.timer_period_ns = 1000 * NOW
 
-    def send(sec, robots):
-        for robot in robots:
-            publishers[robot].publish(joint_state(sec, {'turn': 1.0 / sec}))
+        def send(sec, robots):
+            for robot in robots:
+                publishers[robot].publish(joint_state(sec, {'turn': 1.0 / sec}))
+            values = both._frames.positions.values
 
-        def are_processed():
-            both.take_waiting()
-            return np.count_nonzero(both._frames.positions.values == 1.0 / sec) == len(robots)
+            def are_processed():
+                both.take_waiting()
+                return np.count_nonzero(values == 1.0 / sec) == len(robots)
 
-        wait_until(are_processed, both._frames.positions.values)
-    return both, send, found
+            wait_until(are_processed, values)
+        return both, send, found
+    return start
 
 
-def test_robots_with_a_message_in_each_period_share_one_for_each(send, wait_until):
-    both, send, found = send
+def test_robots_with_a_message_in_each_period_share_one_for_each(sender, wait_until):
+    both, send, found = sender(20.0)
     for sec in range(10, 20):
         send(sec, 'ab')
         both._end_period()
@@ -478,16 +482,17 @@ def test_robots_with_a_message_in_each_period_share_one_for_each(send, wait_unti
     assert len(found) <= 10 + 2
 
 
-@pytest.mark.parametrize(('periods', 'waits'), [(1, True), (SILENT_PERIODS, False)])
-def test_a_message_waits_if_it_is_late_but_not_after_a_silence(send, periods, waits):
-    both, send, _ = send
+@pytest.mark.parametrize(('frequency', 'periods', 'waits'), [
+    (20.0, 19, True), (20.0, 20, False), (0.1, 1, True), (0.1, 2, False)])
+def test_a_message_waits_if_it_is_late_but_not_after_a_silence(sender, frequency, periods, waits):
+    both, send, _ = sender(frequency)
     for sec in (10, 11):
         send(sec, 'ab')
         both._end_period()
     for sec in range(12, 12 + periods):
         send(sec, 'a')
         both._end_period()
-    send(20, 'b')
+    send(100, 'b')
     assert both._is_waiting.any() == waits
 
 
@@ -502,7 +507,7 @@ def test_a_silence_of_all_robots_is_one_of_each(two_arms, wait_until):
         publish(NOW - 2, robot)
     timer = both._period_timer
     wait_until(
-        lambda: timer.time_since_last_call() > 4 * timer.timer_period_ns, 'four periods')
+        lambda: timer.time_since_last_call() > 1.5 * NOW, 'a second and a period')
     publish(NOW - 1, 'a')
     assert topic_of(both, 'b/joint_states').is_open
 
