@@ -26,9 +26,10 @@ _STYLE = """<style>
 </style>"""
 _SCRIPT = """<script>(() => {
   // viser sends a change at most every 50 ms, and of several in between only the last one: when
-  // two controls change, one is lost.
+  // two controls change, one is lost. A microtask runs before the next event.
   const wait = window.setTimeout;
-  window.setTimeout = (action, ms, ...rest) => wait(action, ms === 50 ? 0 : ms, ...rest);
+  window.setTimeout = (action, ms, ...rest) => ms === 50
+    ? queueMicrotask(() => action(...rest)) : wait(action, ms, ...rest);
   let scene, frames, camera;
   window.__THREE_DEVTOOLS__ ??= new EventTarget();
   __THREE_DEVTOOLS__.addEventListener('observe', ({detail: observed}) => {
@@ -85,12 +86,12 @@ _SCRIPT = """<script>(() => {
       x: 2 * (event.clientX - box.left) / box.width - 1,
       y: 1 - 2 * (event.clientY - box.top) / box.height}, camera);
     const [hit] = raycaster.intersectObjects(meshes, false);
-    if (!hit) return '';
     // Surfaces are the last nodes of the drawing, which has the axes in it too.
     const above = new Set();
     for (let node = frames; node; node = node.parent) above.add(node);
-    let node = hit.object;
-    while (!above.has(node.parent)) node = node.parent;
+    let node = hit?.object;
+    while (node && !above.has(node.parent)) node = node.parent;
+    if (!node) return '';
     const nodes = node.parent.children;
     return bodies[nodes.indexOf(node) - nodes.length + bodies.length]?.[hit.instanceId] ?? '';
   };

@@ -35,6 +35,8 @@ from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.cli.viewer.view_point import bounds_of_points
 from sdf_pose_bridge.cli.viewer.view_point import DIRECTIONS
 from sdf_pose_bridge.cli.viewer.view_point import FIELD_OF_VIEW_RAD
+from sdf_pose_bridge.cli.viewer.view_point import View
+from sdf_pose_bridge.cli.viewer.view_point import view_in_window
 from sdf_pose_bridge.cli.viewer.view_point import view_of_bounds
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
@@ -84,8 +86,8 @@ class Page:
         camera.position, camera.look_at = self._drawing.home
         camera.fov = FIELD_OF_VIEW_RAD
         camera.near, camera.far = 0.001 * self._drawing.size_m, 100.0 * self._drawing.size_m
-        self._server.on_client_connect(lambda client: self._events.when(
-            client.camera.on_update, partial(self._look_from, client.camera)))
+        self._server.on_client_connect(
+            lambda client: self._events.put(partial(self._add_client, client)))
         self._show_names()
 
     @property
@@ -193,6 +195,11 @@ class Page:
             self._posed, self._selected.frame, None if self._edit is None else self._edit.pose,
             self._camera.position, self._camera.look_at))
 
+    def _add_client(self, client: viser.ClientHandle) -> None:
+        self._events.when(client.camera.on_update, partial(self._look_from, client.camera))
+        if client.camera.aspect < 1.0:
+            self._turn(client, self._drawing.home)
+
     def _look_from(self, camera: viser.CameraHandle) -> None:
         self._camera = camera
 
@@ -267,6 +274,10 @@ class Page:
                 [origin - half_m, origin + half_m], boxes.reshape(-1, 3)])),
                 view.position - view.look_at)
         for client in self._server.get_clients().values():
-            with client.atomic():
-                client.camera.position, client.camera.look_at = view
-                client.camera.up_direction = 0.0, 0.0, 1.0
+            self._turn(client, view)
+
+    def _turn(self, client: viser.ClientHandle, view: View) -> None:
+        with client.atomic():
+            client.camera.position, client.camera.look_at = view_in_window(
+                view, client.camera.aspect)
+            client.camera.up_direction = 0.0, 0.0, 1.0

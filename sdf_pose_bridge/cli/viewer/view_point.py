@@ -107,6 +107,15 @@ def view_of_bounds(bounds: Floats, direction: ArrayLike) -> View:
     return View(middle + (distance_m or 1.0) * backward, middle)
 
 
+def view_in_window(view: View, aspect: float) -> View:
+    """
+    Move a camera back if a window is narrow, so that it shows as much from left to right.
+
+    :param aspect: the width of the window divided by its height.
+    """
+    return View(view.look_at + (view.position - view.look_at) / min(aspect, 1.0), view.look_at)
+
+
 def home_view(bounds: Floats, origins: Floats, boxes: Floats) -> View:
     """
     Choose the first view: the side from which bodies hide the fewest frames.

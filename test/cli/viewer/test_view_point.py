@@ -13,6 +13,8 @@ from sdf_pose_bridge.cli.viewer.view_point import DIRECTIONS
 from sdf_pose_bridge.cli.viewer.view_point import FIELD_OF_VIEW_RAD
 from sdf_pose_bridge.cli.viewer.view_point import grid_spacing_m
 from sdf_pose_bridge.cli.viewer.view_point import home_view
+from sdf_pose_bridge.cli.viewer.view_point import View
+from sdf_pose_bridge.cli.viewer.view_point import view_in_window
 from sdf_pose_bridge.cli.viewer.view_point import view_of_bounds
 
 NO_BOXES = np.zeros((0, 2, 3))
@@ -76,6 +78,13 @@ def test_view_contains_a_box_and_no_more(direction):
     ratios = np.abs(corners @ np.array([right, np.cross(right, forward)]).T) / (
         corners @ forward)[:, np.newaxis]
     assert 0.8 < ratios.max() / math.tan(0.5 * FIELD_OF_VIEW_RAD) < 1.0
+
+
+@pytest.mark.parametrize(('aspect', 'distance'), [(0.5, 8.0), (1.0, 4.0), (1.8, 4.0)])
+def test_camera_is_further_away_from_a_narrow_window_only(aspect, distance):
+    view = view_in_window(View(np.array((1.0, 6.0, 3.0)), np.array((1.0, 2.0, 3.0))), aspect)
+    assert view.position.tolist() == [1.0, 2.0 + distance, 3.0]
+    assert view.look_at.tolist() == [1.0, 2.0, 3.0]
 
 
 def test_camera_does_not_stand_behind_a_wall():
