@@ -140,11 +140,13 @@ class JointPositions:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """The names of those without known positions that follow from no others."""
+        """A name for each joint without a known position that follows from no other one."""
         followers = {each.dof for found in self._followers.values() for each in found}
-        return tuple(
-            self.names[dof] for dof in np.flatnonzero(~self.is_known).tolist()
-            if dof not in followers)
+        names: dict[int, str] = {}
+        for dof in np.flatnonzero(~self.is_known).tolist():
+            if dof not in followers:
+                names.setdefault(self.dofs[dof].joint.element, self.names[dof])
+        return tuple(names.values())
 
     def selection(self, names: Sequence[str], model: str = '') -> Selection:
         """

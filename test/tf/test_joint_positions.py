@@ -84,6 +84,15 @@ def test_names_inside_one_model_are_not_those_of_others():
     assert positions.hint('jj', 'y') == '; did you mean "j"?'
 
 
+def test_a_joint_with_several_degrees_of_freedom_is_missing_once():
+    positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'ball')))
+    assert len(positions.missing) == 1
+    positions.update(positions.selection(positions.missing), np.zeros(1))
+    assert len(positions.missing) == 1
+    positions.update(positions.selection(positions.names), np.zeros(3))
+    assert positions.missing == ()
+
+
 @pytest.mark.parametrize('text', [
     model_file(LINKS + joint(ENDS, 'j', 'revolute')),
     world_file(f'<model name="m"><static>true</static>{LINKS}</model>'),
