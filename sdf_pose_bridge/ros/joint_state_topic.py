@@ -35,7 +35,6 @@ from sdf_pose_bridge.ros.qos_overrides import overriding_options
 from sdf_pose_bridge.ros.qos_overrides import POLICIES_OF_SUBSCRIPTION
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION
-from sdf_pose_bridge.tf.joint_positions import NEVER
 from sdf_pose_bridge.tf.joint_positions import Selection
 
 _WARNING_PERIOD_S = 10.0
@@ -201,9 +200,6 @@ class JointStateTopic:
             return None
         sec, nanosec = message.stamp
         stamp_ns: int = sec * NANOSECONDS + nanosec or self._node.get_clock().now().nanoseconds
-        if positions.stamps_ns[plan.dofs_beside[0]] == NEVER and (
-                positions.stamps_ns == NEVER).all():
-            self._logger.info(f'following {self.name}')
         positions.stamps_ns[plan.dofs_beside] = stamp_ns
         return Change(plan.rows, stamp_ns)
 

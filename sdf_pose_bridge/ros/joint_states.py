@@ -83,6 +83,7 @@ class JointStates:
         self._topics_due = 0.0
         self._are_topics_behind = False
         self._published_at = 0.0
+        self._has_moved = False
         self._is_grace_over = False
         self._has_reported_missing = False
         # Simulated time may stand still.
@@ -198,6 +199,11 @@ class JointStates:
             self._logger.info('all joints have been reported now')
         if change is None:
             return
+        if not self._has_moved:
+            self._has_moved = True
+            count = len(self._topics) + len(self._missing_topics)
+            self._logger.info(f'following {topic.name}' if count == 1 else (
+                f'following {count} topics of joint states; the first message is on {topic.name}'))
         rows, stamp_ns = change
         # TF accepts one transform for each stamp, and warns of a second one.
         is_waiting = self._is_waiting[rows] | (self._stamps_ns[rows] != stamp_ns)

@@ -566,6 +566,21 @@ def test_topics_come_and_go_with_the_frames(states, moving_frames):
     assert subscribed({'b/j': 'b'}) == ['/b/j']
 
 
+@pytest.mark.parametrize(('topics', 'line'), [
+    ({'joint_states': ''}, 'following /joint_states\n'),
+    ({'joint_states': '', 'a/j': 'a', 'b/j': 'b'},
+     'following 3 topics of joint states; the first message is on /joint_states\n'),
+])
+def test_topics_that_are_followed_have_one_line(states, moving_frames, capfd, topics, line):
+    _, frames = moving_frames(TWO_ARMS)
+    states.replace(frames, JointStateTopics(topics))
+    for name in topics:
+        update(states, serialize_message(joint_state(5, {'a/turn': 0.5})), name)
+    log = capfd.readouterr().err
+    assert line in log
+    assert log.count('following') == 1
+
+
 def test_many_topics_are_made_between_other_callbacks(states, moving_frames, wait_until):
     _, frames = moving_frames(TWO_ARMS)
     states.replace(frames, JointStateTopics({f'a_{number}': 'a' for number in range(100)}))
