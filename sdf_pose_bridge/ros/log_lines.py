@@ -17,7 +17,9 @@ from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
+from sdf_pose_bridge.tf.frame_ids import FrameNames
+from sdf_pose_bridge.tf.frame_ids import FrameNaming
+from sdf_pose_bridge.tf.joint_motion import dofs_from_joint
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import elements_in_model
 from sdf_pose_bridge.tf.tree import TfTree
@@ -134,23 +136,29 @@ def line_about_unreported_joints(joints: MissingJoints) -> str:
         f'message on {" or ".join(joints.topics) or "a topic"} names the joint')
 
 
-def line_about_joints_at_rest(scene: Scene, model: str) -> str:
+def line_about_joints_at_rest(scene: Scene, model: str, frame_names: FrameNames) -> str:
     """
     Return a line that joints do not move; '' if no joint can move.
 
+    Joints that follow others are not counted, as in :func:`line_about_unreported_joints`.
+
     :param model: the scoped name of the only model that is published; empty for everything.
+    :param frame_names: the part of a scoped name that the name of a joint contains.
     """
     is_inside = elements_in_model(scene, model)
-    names = [
-        scene.names[joint.element] for joint in scene.joints
-        if JOINT_TYPES[joint.type].dofs and is_inside[joint.element]
+    free = [
+        dofs[0] for joint in scene.joints
+        if is_inside[joint.element]
+        and (dofs := [dof for dof in dofs_from_joint(joint) if dof.axis.mimic is None])
         and scene.static_models.isdisjoint(scene.with_ancestors(joint.element))]
-    if not names:
+    if not free:
         return ''
+    first = np.array([free[0].joint.element], np.int32)
+    name = FrameNaming(frame_names).frame_ids_from_scene(scene, first)[0] + free[0].suffix
     return (
-        f'{count_in_words(len(names), "joint")} that can move, for example '
-        f'{names_in_line(names[:1])}, {"stays" if len(names) == 1 else "stay"} where the file '
-        f'puts {"it" if len(names) == 1 else "them"}; with the parameter use_joint_states, joints '
+        f'{count_in_words(len(free), "joint")} that can move, for example '
+        f'{names_in_line([name])}, {"stays" if len(free) == 1 else "stay"} where the file '
+        f'puts {"it" if len(free) == 1 else "them"}; with the parameter use_joint_states, joints '
         'follow the topics in joint_states_topics')
 
 

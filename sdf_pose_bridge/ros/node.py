@@ -210,7 +210,9 @@ class SdfPoseBridge:
             line_about_gazebo(loaded.gazebo_warning_count),
             line_about_detached_models(loaded.tree, loaded.scene)]
         if not loaded.tree.moving and not self._has_told_of_joints:
-            lines.append(line_about_joints_at_rest(loaded.scene, loaded.request.tf_options.model))
+            options = loaded.request.tf_options
+            lines.append(line_about_joints_at_rest(
+                loaded.scene, options.model, options.frame_names))
             self._has_told_of_joints = bool(lines[-1])
         for line in filter(None, lines):
             self._logger.info(line)

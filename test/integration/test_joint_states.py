@@ -146,7 +146,7 @@ def test_joints_that_do_not_follow_say_once_which_parameter_moves_them(start_bri
     lines = [line for line in bridge.lines if 'use_joint_states' in line]
     assert len(lines) == 1
     assert 'stay where the file puts them' in lines[0]
-    assert '3 joints that can move, for example "arm::turn"' in lines[0]
+    assert '2 joints that can move, for example "turn"' in lines[0]
 
 
 def test_frames_follow_a_message(start, file, joints, tf):

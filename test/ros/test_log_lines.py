@@ -8,6 +8,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from sdf_texts import fixed_joint
 from sdf_texts import joint
+from sdf_texts import model_file
 from sdf_texts import world_file
 from tf_checks import tree_of
 import urdf_texts as urdf
@@ -30,6 +31,8 @@ from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels
+from sdf_pose_bridge.tf.frame_ids import FrameNames
+from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.tree import TfOptions
 
@@ -123,11 +126,31 @@ def test_joints_that_stand_still_are_counted_where_they_are_published():
            + joint(ends, 'j', 'revolute') + fixed_joint('f', 'a', 'b') + '</model>')
     still = arm.format('still', '<static>true</static>')
     scene = load_text(world_file(arm.format('left', '') + arm.format('right', '') + still))
-    assert '2 joints that can move, for example "left::j", stay' in line_about_joints_at_rest(
-        scene, '')
-    assert '1 joint that can move, for example "right::j", stays' in line_about_joints_at_rest(
-        scene, 'right')
-    assert line_about_joints_at_rest(load_text(world_file(still)), '') == ''
+    assert '2 joints that can move, for example "left/j", stay' in line_about_joints_at_rest(
+        scene, '', FrameNames.AUTO)
+    assert '1 joint that can move, for example "right/j", stays' in line_about_joints_at_rest(
+        scene, 'right', FrameNames.AUTO)
+    assert line_about_joints_at_rest(load_text(world_file(still)), '', FrameNames.AUTO) == ''
+
+
+AXIS = '<axis><xyz>0 0 1</xyz>{}</axis>'
+MIMIC = ('<mimic joint="j"><multiplier>2</multiplier><offset>0</offset><reference>0</reference>'
+         '</mimic>')
+ENDS = '<parent>{}</parent><child>{}</child>'
+
+
+@pytest.mark.parametrize('content', [
+    joint(ENDS.format('a', 'b'), 'j', 'ball'),
+    joint(ENDS.format('a', 'b') + AXIS.format(''), 'j', 'revolute')
+    + joint(ENDS.format('b', 'c') + AXIS.format(MIMIC), 'k', 'revolute'),
+])
+def test_joints_that_stand_still_are_those_that_messages_have_to_name(content):
+    scene = load_text(model_file(
+        '<link name="a"/><link name="b"/><link name="c"/>' + content, version='1.11'))
+    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
+    (name,) = JointPositions(scene, tree.moving.dofs).missing
+    line = line_about_joints_at_rest(scene, '', FrameNames.AUTO)
+    assert line.startswith(f'1 joint that can move, for example "{name}", stays')
 
 
 def test_models_without_a_transform_from_the_root_are_named():
