@@ -9,7 +9,6 @@ from collections.abc import Sequence
 import contextlib
 import copy
 from dataclasses import dataclass
-import math
 import threading
 import time
 from typing import Any
@@ -98,8 +97,8 @@ class JointStateTopic:
         self, node: Node, name: str, model: str, number: int, *, waits: bool,
         receive: Callable[[JointStateTopic, bytes, Any], None],
     ) -> None:
-        self.silent_periods = math.inf
-        """Number of periods that have ended since the last message, if any; the caller counts."""
+        self.silent_periods = 0
+        """Number of periods that have ended since the last message; the caller counts them."""
         self.has_new_joints = False
         """Whether joints have been reported since the message before with the same names."""
         self._node = node

@@ -12,7 +12,7 @@ With a highest rate, a message is published at once and begins a period, which i
 topics. Later ones wait in the subscriptions for its end, without waking the executor: waking it
 takes ten times as long as processing a message. There, all changes are published in one message,
 and another period begins if there are any. Only the first message of a topic after a silence does
-not wait.
+not wait, unless all topics were silent: then many robots may start together.
 """
 
 from __future__ import annotations
@@ -222,15 +222,13 @@ class JointStates:
         if timer is None or not self._node.get_clock().now().nanoseconds:
             return
         if timer.is_canceled():
-            # Periods that it has not ended count too.
-            self._count_periods(timer.time_since_last_call() // timer.timer_period_ns)
             timer.reset()
+            self._open_silent_topics()
         topic.is_open = False
 
-    def _count_periods(self, number: int) -> None:
-        """Have only silent topics open after so many more periods."""
+    def _open_silent_topics(self) -> None:
+        """Have messages wait for the end of a period but for those of silent topics."""
         for topic in self._topics.values():
-            topic.silent_periods += number
             topic.is_open = topic.silent_periods > self._silent_periods
 
     def _publish(self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64] | int) -> None:
@@ -248,10 +246,12 @@ class JointStates:
     def _end_period(self) -> None:
         """Publish waiting changes; without any, publish the next message at once."""
         self.take_waiting()
-        self._count_periods(1)
+        for topic in self._topics.values():
+            topic.silent_periods += 1
         rows = np.flatnonzero(self._is_waiting)
         if len(rows):
             self._publish(rows, self._stamps_ns[rows])
+            self._open_silent_topics()
         elif self._period_timer is not None:
             self._period_timer.cancel()
             for topic in self._topics.values():

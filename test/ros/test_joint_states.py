@@ -407,15 +407,23 @@ def make_two_arms(states, moving_frames, listener, wait_until):
         listener.create_subscription(
             TFMessage, '/tf', lambda message: found.append(frames_by_stamp(message)), 100)
 
+        sent = []
+
+        def have_arrived(secs):
+            both._end_period()
+            return {frame for each in found for sec, frames in each if sec in secs
+                    for frame in frames} >= {'a/upper', 'b/upper'}
+
         def are_connected():
-            if {frame for each in found for _, frames in each for frame in frames} >= {
-                    'a/upper', 'b/upper'}:
+            if have_arrived(range(NOW)):
                 return True
+            sent.append(1)
             for publisher in publishers.values():
-                publisher.publish(joint_state(1 + len(found), {'turn': 0.0}))
+                publisher.publish(joint_state(len(sent), {'turn': 0.0}))
             return False
 
         wait_until(are_connected, found)
+        wait_until(lambda: have_arrived([len(sent)]), found)
 
         def are_silent():
             both._end_period()
@@ -496,20 +504,13 @@ def test_a_message_waits_if_it_is_late_but_not_after_a_silence(sender, frequency
     assert both._is_waiting.any() == waits
 
 
-def test_a_silence_of_all_robots_is_one_of_each(two_arms, wait_until):
-    both, publishers, found = two_arms(5.0)
-
-    def publish(sec, robot):
-        publishers[robot].publish(joint_state(sec, {'turn': 0.5}))
-        wait_until(lambda: found[-1:] == [[(sec, {f'{robot}/upper'})]], found)
-
+def test_robots_that_start_together_share_a_message(states, moving_frames):
+    states.destroy()
+    _, frames = moving_frames(TWO_ARMS, UnreportedJoints.NONE)
+    both = JointStates(states._node, frames, TWO_TOPICS, (0.01, False))
     for robot in 'ab':
-        publish(NOW - 2, robot)
-    timer = both._period_timer
-    wait_until(
-        lambda: timer.time_since_last_call() > 1.5 * NOW, 'a second and a period')
-    publish(NOW - 1, 'a')
-    assert topic_of(both, 'b/joint_states').is_open
+        update(both, serialize_message(joint_state(5, {'turn': 0.5})), f'{robot}/joint_states')
+    assert both._is_waiting.sum() == 1
 
 
 def test_messages_that_are_published_at_once_do_not_put_off_the_end_of_the_period(
