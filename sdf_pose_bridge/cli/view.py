@@ -37,7 +37,7 @@ from sdf_pose_bridge.sdformat.include.uris import resource_finder
 
 _FORMATS = ('.html', '.png')
 _PORT = 8080
-_PERIOD_S = 0.05
+_PERIOD_S, _SETTLING_S = 0.05, 0.03
 
 _BROWSERS = ('chromium', 'chromium-browser', 'google-chrome', 'chrome')
 # WebGL in software if there is no graphics card; no requests except those of the page.
@@ -171,6 +171,8 @@ def _follow(
     while True:
         page.act(_PERIOD_S)
         if watcher.has_changed():
+            # Some editors write in steps, and a file that has just changed would be read twice.
+            page.act(_SETTLING_S)
             read_since_ns = time.time_ns()
             try:
                 scene = scene_from_file(options.files[0], options, shapes=True)

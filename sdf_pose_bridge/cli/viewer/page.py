@@ -74,8 +74,9 @@ class Page:
             self._server, set_pose, self._events, self._describe)
         place_of_selected = gui.add_folder(None)
         self._opacity = self._add_view_controls()
-        self._folder = gui.add_folder(None)
-        self._controls, self._joints = self._add_controls_of_scene({})
+        self._place_of_switches, self._place_of_joints = (gui.add_folder(None) for _ in range(2))
+        self._switches = self._add_switches()
+        self._sliders, self._joints = self._add_joints({})
         self._posed = shown.at(self._joints.positions)
         self._positions = dict(self._joints.positions)
         self._selected = SelectedFrame(
@@ -116,9 +117,12 @@ class Page:
         self.act(0.0)
         with self._server.atomic():
             before, self._shown = self._shown, shown
-            if (shown.kinds, [*shown.models], shown.joints) != (
-                    before.kinds, [*before.models], before.joints):
-                self._replace_controls()
+            if (shown.kinds, [*shown.models]) != (before.kinds, [*before.models]):
+                self._switches.remove()
+                self._switches = self._add_switches()
+            # Many sliders take a browser long.
+            if shown.joints != before.joints:
+                self._replace_joints()
             self._move()
             self._selected.list_frames(self._posed.tree)
             self._redraw()
@@ -205,14 +209,12 @@ class Page:
 
     # Controls
 
-    def _add_controls_of_scene(
-        self, positions: Mapping[str, float],
-    ) -> tuple[viser.GuiFolderHandle, JointSliders]:
-        """Add the controls that depend on the file."""
+    def _add_switches(self) -> viser.GuiFolderHandle:
+        """Add the folders "Show" and "Models"."""
         gui, shown = self._server.gui, self._shown
-        with self._folder:
-            controls = gui.add_folder(None)
-        with controls:
+        with self._place_of_switches:
+            switches = gui.add_folder(None)
+        with switches:
             with gui.add_folder('Show', expand_by_default=False):
                 for name in (*shown.kinds, *GROUPS):
                     self._add_switch(name)
@@ -220,12 +222,22 @@ class Page:
                 with gui.add_folder('Models', expand_by_default=False):
                     for name in shown.models:
                         self._add_switch(name)
-            return controls, JointSliders(
-                gui, shown.joints, positions, self._units, self._events)
+        return switches
 
-    def _replace_controls(self) -> None:
-        self._controls.remove()
-        self._controls, self._joints = self._add_controls_of_scene(self._joints.positions)
+    def _add_joints(
+        self, positions: Mapping[str, float],
+    ) -> tuple[viser.GuiFolderHandle, JointSliders]:
+        """Add the folder "Joints"."""
+        gui = self._server.gui
+        with self._place_of_joints:
+            folder = gui.add_folder(None)
+        with folder:
+            return folder, JointSliders(
+                gui, self._shown.joints, positions, self._units, self._events)
+
+    def _replace_joints(self) -> None:
+        self._sliders.remove()
+        self._sliders, self._joints = self._add_joints(self._joints.positions)
 
     def _add_switch(self, name: str) -> None:
         switch = self._server.gui.add_checkbox(printable(name), name not in self._hidden)
@@ -247,7 +259,7 @@ class Page:
 
         def change_angles() -> None:
             self._units = self._units._replace(angle=_ANGLES[angles.value])
-            self._replace_controls()
+            self._replace_joints()
             self._show_frame()
         self._events.when(views.on_click, lambda: self._look(views.value))
         self._events.when(opacity.on_update, self._change_opacity)
