@@ -57,6 +57,8 @@ def sdf_pose_in_shell(files):
 def run_main(files, monkeypatch, capsys):
     """Runs the command line in that folder, but in this process."""
     monkeypatch.chdir(files)
+    for name in ('GZ_SIM_RESOURCE_PATH', 'SDF_PATH'):
+        monkeypatch.delenv(name, raising=False)
 
     def run(*arguments):
         try:
