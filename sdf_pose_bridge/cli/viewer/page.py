@@ -113,8 +113,6 @@ class Page:
 
         Hidden groups, the selected frame and the positions of joints stay.
         """
-        # Numbers that were typed while the file was read would be replaced below.
-        self.act(0.0)
         with self._server.atomic():
             before, self._shown = self._shown, shown
             if (shown.kinds, [*shown.models]) != (before.kinds, [*before.models]):

@@ -170,10 +170,11 @@ class PoseEdit:
     def _show_numbers(self) -> None:
         if self._frame is not None:
             pose = relative_pose(self._frame.reference, self.pose or self._frame.pose)
-            # The numbers report this change too; it is ignored then.
-            self._shown = [float(text) for text in self._units.texts(pose)]
-            for number, value in zip(self._numbers, self._shown, strict=True):
-                number.value = value
+            before, self._shown = self._shown, [float(text) for text in self._units.texts(pose)]
+            for number, value, old in zip(self._numbers, self._shown, before, strict=True):
+                # Others may have been typed just now. This change is reported, too, and ignored.
+                if value != old:
+                    number.value = value
 
     def _show(self) -> None:
         frame, text = self._frame, ''

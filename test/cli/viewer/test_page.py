@@ -93,8 +93,9 @@ def test_number_that_is_typed_while_a_file_is_read_stays(page_of):
         FileChange(scene.path, b'', 'utf-8', 0, 0, b''), 1, scene))
     page._selected.select(page._posed.tree.frame_ids.index('l'))
     page._edit._numbers[0].value = 0.5
-    page._events.put(page._edit._take_numbers)
     page.show(page._shown)
+    page._events.put(page._edit._take_numbers)
+    page.act(0.0)
     assert page._edit.pose.x == pytest.approx(0.5)
 
 
