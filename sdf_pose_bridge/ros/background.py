@@ -11,6 +11,7 @@ import threading
 import time
 
 from rclpy.exceptions import InvalidHandle
+from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.task import Future
 
@@ -46,9 +47,8 @@ def run_in_thread(node: Node, function: Callable[[], object]) -> Future:
         except MemoryError:
             # Without a result, callbacks that wait for it would be blocked forever.
             os._exit(1)
-        # The executor resumes coroutines only when it wakes up. It may have been shut down.
-        with contextlib.suppress(InvalidHandle):
-            executor.wake()
+        # The executor resumes coroutines only when it wakes up.
+        _wake(executor)
 
     try:
         threading.Thread(target=run, name='background', daemon=True).start()
@@ -56,6 +56,13 @@ def run_in_thread(node: Node, function: Callable[[], object]) -> Future:
         msg = 'there is no room for another thread'
         raise MemoryError(msg) from error
     return future
+
+
+def _wake(executor: Executor | None) -> None:
+    """Wake up the executor of a node, unless it has been shut down."""
+    if executor is not None:
+        with contextlib.suppress(InvalidHandle):
+            executor.wake()
 
 
 async def run_other_callbacks(node: Node) -> None:
@@ -95,7 +102,7 @@ class CoroutineLock:
         released, self._released = self._released, None
         released.set_result(None)
         # Some releases of rclpy do not wake up by themselves to resume waiting coroutines.
-        self._node.executor.wake()
+        _wake(self._node.executor)
 
 
 class PollingThread:

@@ -8,6 +8,7 @@ import weakref
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
+from rclpy.task import Future
 
 from sdf_pose_bridge.ros import background
 from sdf_pose_bridge.ros.background import CoroutineLock
@@ -115,6 +116,22 @@ def test_a_lock_is_released_by_an_exception(node):
                 raise ZeroDivisionError
 
     finished(node, fail)
+    assert not lock.is_held
+
+
+def test_a_lock_is_released_when_python_ends_after_the_executor(node):
+    lock = CoroutineLock(node)
+
+    async def hold():
+        async with lock:
+            await Future()
+
+    coroutine = hold()
+    coroutine.send(None)
+    node.executor.shutdown()
+    node.executor = None
+    # As Python does when it ends. Another exception would be taken for that of a load.
+    coroutine.close()
     assert not lock.is_held
 
 
