@@ -11,8 +11,7 @@ from typing import Any
 import xml.etree.ElementTree as ET
 
 import setuptools
-from setuptools import find_packages
-from setuptools import setup
+from setuptools import find_packages, setup
 from setuptools.command.install_scripts import install_scripts
 
 # Links of files need not lead here, as where colcon builds with links.

@@ -13,10 +13,8 @@ import sys
 
 import numpy as np
 
-from benchmarks.catalogue import all_benchmarks
-from benchmarks.catalogue import result_of_number
-from benchmarks.harness import RUNS
-from benchmarks.harness import table
+from benchmarks.catalogue import all_benchmarks, result_of_number
+from benchmarks.harness import RUNS, table
 
 
 def main() -> int:

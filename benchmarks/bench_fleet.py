@@ -15,17 +15,18 @@ import threading
 import time
 
 from benchmarks.bench_idle import processor_time_ns
-from benchmarks.bench_joints import chain_text
-from benchmarks.bench_joints import joint_states
+from benchmarks.bench_joints import chain_text, joint_states
 from benchmarks.bench_reload import RunningBridge
-from benchmarks.harness import AtMostAsMuch
-from benchmarks.harness import AtMostTimes
-from benchmarks.harness import benchmark
-from benchmarks.harness import Function
-from benchmarks.harness import Held
-from benchmarks.harness import Took
-from benchmarks.harness import Unavailable
-from benchmarks.harness import wait_until
+from benchmarks.harness import (
+    AtMostAsMuch,
+    AtMostTimes,
+    benchmark,
+    Function,
+    Held,
+    Took,
+    Unavailable,
+    wait_until,
+)
 import sdf_pose_bridge
 
 ROBOTS = 30

@@ -13,11 +13,7 @@ import time
 
 from benchmarks.bench_reload import work_cell
 from benchmarks.bench_services import MINIMAL_NODE
-from benchmarks.harness import benchmark
-from benchmarks.harness import Function
-from benchmarks.harness import TimesAsFast
-from benchmarks.harness import Took
-from benchmarks.harness import Unavailable
+from benchmarks.harness import benchmark, Function, TimesAsFast, Took, Unavailable
 
 WINDOW_S = 5.0
 LARGEST_SHARE = 0.002

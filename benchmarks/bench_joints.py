@@ -20,16 +20,10 @@ import numpy as np
 from benchmarks.bench_idle import processor_time_ns
 from benchmarks.bench_publication import node
 from benchmarks.bench_reload import RunningBridge
-from benchmarks.harness import AtMostTimes
-from benchmarks.harness import benchmark
-from benchmarks.harness import Function
-from benchmarks.harness import TimesAsFast
-from benchmarks.harness import Took
-from benchmarks.harness import wait_until
+from benchmarks.harness import AtMostTimes, benchmark, Function, TimesAsFast, Took, wait_until
 import sdf_pose_bridge
 from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 if TYPE_CHECKING:
     from rclpy.node import Node

@@ -15,14 +15,16 @@ import tempfile
 from lxml import etree
 
 from benchmarks import worlds
-from benchmarks.harness import AtMostAsMuch
-from benchmarks.harness import AtMostTimes
-from benchmarks.harness import benchmark
-from benchmarks.harness import Function
-from benchmarks.harness import Held
-from benchmarks.harness import TimesAsFast
-from benchmarks.harness import Took
-from benchmarks.harness import Unavailable
+from benchmarks.harness import (
+    AtMostAsMuch,
+    AtMostTimes,
+    benchmark,
+    Function,
+    Held,
+    TimesAsFast,
+    Took,
+    Unavailable,
+)
 from sdf_pose_bridge.scene.loading import load
 
 UNITS = 10_000

@@ -16,13 +16,15 @@ import time
 from typing import NamedTuple
 
 from benchmarks.bench_reload import RunningBridge
-from benchmarks.harness import AtMostTimes
-from benchmarks.harness import benchmark
-from benchmarks.harness import DOMAINS
-from benchmarks.harness import Function
-from benchmarks.harness import TimesAsFast
-from benchmarks.harness import Took
-from benchmarks.harness import Unavailable
+from benchmarks.harness import (
+    AtMostTimes,
+    benchmark,
+    DOMAINS,
+    Function,
+    TimesAsFast,
+    Took,
+    Unavailable,
+)
 
 FRAMES = 10_000
 TOPICS = 1_000
@@ -106,8 +108,7 @@ def late_listener(domain: int, wanted: dict[str, tuple[type, int]]) -> Arrival:
     """
     import rclpy
     from rclpy.context import Context
-    from rclpy.qos import DurabilityPolicy
-    from rclpy.qos import QoSProfile
+    from rclpy.qos import DurabilityPolicy, QoSProfile
     begin = time.perf_counter()
     first = None
     context = Context()

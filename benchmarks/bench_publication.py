@@ -4,29 +4,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Coroutine
-from collections.abc import Iterable
-from collections.abc import Iterator
+from collections.abc import Coroutine, Iterable, Iterator
 import contextlib
 import os
 from pathlib import Path
 import random
 import tempfile
-from typing import Any
-from typing import TYPE_CHECKING
+from typing import Any, TYPE_CHECKING
 
-from benchmarks.harness import AtMostTimes
-from benchmarks.harness import benchmark
-from benchmarks.harness import DOMAINS
-from benchmarks.harness import Function
-from benchmarks.harness import TimesAsFast
+from benchmarks.harness import AtMostTimes, benchmark, DOMAINS, Function, TimesAsFast
 import sdf_pose_bridge
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfTree
+from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, tf_tree_from_scene, TfTree
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -89,8 +80,7 @@ def node() -> Iterator[Node]:
 
 
 def latched_publisher(node: Node, message_type: type, name: str, depth: int) -> Publisher:
-    from rclpy.qos import DurabilityPolicy
-    from rclpy.qos import QoSProfile
+    from rclpy.qos import DurabilityPolicy, QoSProfile
     return node.create_publisher(
         message_type, name, QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL))
 

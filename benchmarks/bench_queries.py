@@ -9,10 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from benchmarks.bench_services import bridge_and_minimal_node
-from benchmarks.harness import AtMostTimes
-from benchmarks.harness import benchmark
-from benchmarks.harness import Function
-from benchmarks.harness import TimesAsFast
+from benchmarks.harness import AtMostTimes, benchmark, Function, TimesAsFast
 
 LINKS = ''.join(
     f'<link name="l{number}"><pose degrees="true">{number} 1 2 10 20 {number}</pose></link>'

@@ -4,8 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 import contextlib
 import itertools
 import os
@@ -19,15 +18,16 @@ import sys
 import tempfile
 import time
 
-from benchmarks.bench_services import Client
-from benchmarks.bench_services import MINIMAL_NODE
-from benchmarks.harness import AtMostTimes
-from benchmarks.harness import benchmark
-from benchmarks.harness import DOMAINS
-from benchmarks.harness import Function
-from benchmarks.harness import TimesAsFast
-from benchmarks.harness import Took
-from benchmarks.harness import Unavailable
+from benchmarks.bench_services import Client, MINIMAL_NODE
+from benchmarks.harness import (
+    AtMostTimes,
+    benchmark,
+    DOMAINS,
+    Function,
+    TimesAsFast,
+    Took,
+    Unavailable,
+)
 
 EXAMPLES = Path(__file__).resolve().parents[1] / 'examples'
 WORK_CELL = 'work_cell.sdf'
@@ -130,8 +130,7 @@ class RunningBridge:
 @contextlib.contextmanager
 def work_cell() -> Iterator[tuple[RunningBridge, Callable[[], bytes]]]:
     """Run the bridge on a copy of the example; also give a function that waits for /tf_static."""
-    from rclpy.qos import DurabilityPolicy
-    from rclpy.qos import QoSProfile
+    from rclpy.qos import DurabilityPolicy, QoSProfile
     from tf2_msgs.msg import TFMessage
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()), 'examples')
@@ -156,8 +155,7 @@ def work_cell_with_frame_at(x: float) -> str:
     'work cell: ~/reload to its transforms at a listener', counterpart='an empty service',
     goal=TimesAsFast(longest_s=LONGEST_RELOAD_S))
 def asked_reload() -> Iterator[tuple[Function, Function | None]]:
-    from std_srvs.srv import Empty
-    from std_srvs.srv import Trigger
+    from std_srvs.srv import Empty, Trigger
     with work_cell() as (bridge, next_message), contextlib.ExitStack() as stack:
         bridge.start(stack, sys.executable, '-c', MINIMAL_NODE, stderr=subprocess.DEVNULL)
         reload = bridge.client.caller(Trigger, '/sdf_pose_bridge/reload', Trigger.Request())
@@ -297,8 +295,7 @@ def answers_during_setting() -> Iterator[tuple[Function, Function | None]]:
     f'{WIDE} by the watch', counterpart='without a reload',
     goal=TimesAsFast(longest_s=LONGEST_ANSWER_S))
 def answers_during_noticed_change() -> Iterator[tuple[Function, Function | None]]:
-    from rclpy.qos import DurabilityPolicy
-    from rclpy.qos import QoSProfile
+    from rclpy.qos import DurabilityPolicy, QoSProfile
     from tf2_msgs.msg import TFMessage
     with wide_bridge() as (bridge, longest):
         next_message = bridge.client.listener(

@@ -8,14 +8,14 @@ import math
 
 import numpy as np
 
-from benchmarks.harness import AtMostTimes
-from benchmarks.harness import benchmark
-from benchmarks.harness import TimesAsFast
+from benchmarks.harness import AtMostTimes, benchmark, TimesAsFast
 from sdf_pose_bridge.geometry.formats import converted_poses
-from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
-from sdf_pose_bridge.geometry.rotations import quaternion_from_matrix
-from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
-from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
+from sdf_pose_bridge.geometry.rotations import (
+    matrix_from_quaternion,
+    quaternion_from_matrix,
+    quaternion_from_rpy,
+    rpy_from_quaternion,
+)
 
 MANY = 1_000_000
 ONE_RPY = (0.1, -0.2, 2.3)

@@ -5,8 +5,7 @@
 from __future__ import annotations
 
 import array
-from collections.abc import Callable
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 import contextlib
 import os
 from pathlib import Path
@@ -16,12 +15,7 @@ import sys
 import tempfile
 import time
 
-from benchmarks.harness import AtMostTimes
-from benchmarks.harness import benchmark
-from benchmarks.harness import DOMAINS
-from benchmarks.harness import Function
-from benchmarks.harness import PerSecond
-from benchmarks.harness import Unavailable
+from benchmarks.harness import AtMostTimes, benchmark, DOMAINS, Function, PerSecond, Unavailable
 
 POSES = 100_000
 DEADLINE_S = 20.0

@@ -4,8 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 import contextlib
 import itertools
 import os
@@ -19,14 +18,16 @@ import time
 from typing import NamedTuple
 
 from benchmarks.bench_idle import processor_time_ns
-from benchmarks.harness import AtMostTimes
-from benchmarks.harness import benchmark
-from benchmarks.harness import DOMAINS
-from benchmarks.harness import Function
-from benchmarks.harness import Medians
-from benchmarks.harness import RUNS
-from benchmarks.harness import Took
-from benchmarks.harness import Unavailable
+from benchmarks.harness import (
+    AtMostTimes,
+    benchmark,
+    DOMAINS,
+    Function,
+    Medians,
+    RUNS,
+    Took,
+    Unavailable,
+)
 
 WORK_CELL = Path(__file__).resolve().parents[1] / 'examples/work_cell.sdf'
 DEADLINE_S = 20.0
@@ -167,8 +168,7 @@ def listener(domain: int) -> Iterator[Callable[[], bool]]:
     import rclpy
     from rclpy.context import Context
     from rclpy.executors import SingleThreadedExecutor
-    from rclpy.qos import DurabilityPolicy
-    from rclpy.qos import QoSProfile
+    from rclpy.qos import DurabilityPolicy, QoSProfile
     from tf2_msgs.msg import TFMessage
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
     context = Context()

@@ -9,12 +9,7 @@ from pathlib import Path
 import subprocess
 import sys
 
-from benchmarks.harness import AtMostAsMuch
-from benchmarks.harness import AtMostTimes
-from benchmarks.harness import benchmark
-from benchmarks.harness import Function
-from benchmarks.harness import Held
-from benchmarks.harness import Took
+from benchmarks.harness import AtMostAsMuch, AtMostTimes, benchmark, Function, Held, Took
 
 ROOT = Path(__file__).resolve().parents[1]
 TOPICS = 1000

@@ -9,9 +9,7 @@ import importlib
 import pkgutil
 
 import benchmarks
-from benchmarks.harness import Benchmark
-from benchmarks.harness import Result
-from benchmarks.harness import result_of
+from benchmarks.harness import Benchmark, Result, result_of
 
 
 def all_benchmarks() -> Iterator[Benchmark]:

@@ -17,16 +17,13 @@ reason is printed in its place.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 import dataclasses
 import gc
 import statistics
 import time
-from typing import NamedTuple
-from typing import Protocol
-from typing import TypeAlias
+from typing import NamedTuple, Protocol, TypeAlias
 
 RUNS = 9
 """Runs of each of the two, in turns; the median counts."""

@@ -26,14 +26,11 @@ from geometry_msgs.msg import PoseStamped
 import rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy
-from rclpy.qos import QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_srvs.srv import Trigger
 
 from sdf_pose_bridge.ros.topic_names import topic_name_from_frame_id
-from sdf_pose_bridge_interfaces.srv import ConvertPoses
-from sdf_pose_bridge_interfaces.srv import ConvertRotation
-from sdf_pose_bridge_interfaces.srv import LookupPose
+from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose
 
 
 class NoAnswerError(Exception):

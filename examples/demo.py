@@ -17,8 +17,7 @@ import subprocess
 import sys
 import time
 
-from ament_index_python.packages import get_package_prefix
-from ament_index_python.packages import PackageNotFoundError
+from ament_index_python.packages import get_package_prefix, PackageNotFoundError
 
 PACKAGE = 'sdf_pose_bridge'
 HERE = Path(__file__).resolve().parent

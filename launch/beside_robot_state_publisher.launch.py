@@ -31,8 +31,7 @@ from __future__ import annotations
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
-from launch.substitutions import FileContent
-from launch.substitutions import LaunchConfiguration
+from launch.substitutions import FileContent, LaunchConfiguration
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 

@@ -7,8 +7,7 @@ What this needs from the network is fetched once, into .underlay-release; the re
 """
 
 import argparse
-from collections.abc import Callable
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 import contextlib
 import hashlib
 import json

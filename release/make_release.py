@@ -9,8 +9,7 @@ branch of their own, where they are the root.
 
 import argparse
 from collections.abc import Sequence
-from datetime import datetime
-from datetime import timezone
+from datetime import datetime, timezone
 from pathlib import Path
 import re
 import subprocess
@@ -18,8 +17,7 @@ import sys
 import xml.etree.ElementTree as ET
 
 from catkin_pkg.changelog_generator import FORTHCOMING_LABEL
-from catkin_pkg.package_version import get_forthcoming_label
-from catkin_pkg.package_version import rename_section
+from catkin_pkg.package_version import get_forthcoming_label, rename_section
 
 ROOT = Path(__file__).resolve().parents[1]
 INTERFACES = 'sdf_pose_bridge_interfaces'

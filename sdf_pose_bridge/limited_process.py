@@ -21,10 +21,7 @@ import sys
 import threading
 import time
 import traceback
-from typing import Any
-from typing import BinaryIO
-from typing import NamedTuple
-from typing import TypeVar
+from typing import Any, BinaryIO, NamedTuple, TypeVar
 
 KEPT_S = 60.0
 """Time in s for which a process is kept for further calls."""

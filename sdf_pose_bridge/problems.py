@@ -4,19 +4,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
-from collections.abc import Iterable
-from collections.abc import Iterator
-from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from typing import TypeVar
 
-from sdf_pose_bridge.errors import LoadError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.names import NameIndex
-from sdf_pose_bridge.names import shortened_message
+from sdf_pose_bridge.errors import LoadError, Place, SdfError, SdfWarning
+from sdf_pose_bridge.names import NameIndex, shortened_message
 
 MOST_PROBLEMS = 100
 """Largest number of errors, and of warnings, that a load keeps."""

@@ -13,8 +13,7 @@ import pytest
 from ros_domain import claimed_domain
 
 try:
-    from hypothesis import HealthCheck
-    from hypothesis import settings
+    from hypothesis import HealthCheck, settings
 except ImportError:  # the tests that need it are skipped
     pass
 else:

@@ -9,8 +9,7 @@ file is another one. Every model names its canonical link, so the order changes 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from dataclasses import field
+from dataclasses import dataclass, field
 from xml.sax.saxutils import quoteattr
 
 from matrices import matrix_from_degrees

@@ -19,17 +19,10 @@ import sys
 import tempfile
 import time
 
-from bridge_process import BridgeProcess
-from bridge_process import SECONDS
-from changes import BRIDGE
-from changes import last_x
-from changes import listen_to_tf
-from changes import replace
-from changes import world
-from geometry_msgs.msg import PoseStamped
-from geometry_msgs.msg import TransformStamped
-from listener import latched
-from listener import Listener
+from bridge_process import BridgeProcess, SECONDS
+from changes import BRIDGE, last_x, listen_to_tf, replace, world
+from geometry_msgs.msg import PoseStamped, TransformStamped
+from listener import latched, Listener
 import numpy as np
 from ros_domain import claimed_domain
 

@@ -5,16 +5,18 @@
 import pytest
 
 from benchmarks import harness
-from benchmarks.harness import AtMostTimes
-from benchmarks.harness import benchmark
-from benchmarks.harness import Medians
-from benchmarks.harness import PerSecond
-from benchmarks.harness import result_of
-from benchmarks.harness import table
-from benchmarks.harness import TimesAsFast
-from benchmarks.harness import Took
-from benchmarks.harness import Unavailable
-from benchmarks.harness import wait_until
+from benchmarks.harness import (
+    AtMostTimes,
+    benchmark,
+    Medians,
+    PerSecond,
+    result_of,
+    table,
+    TimesAsFast,
+    Took,
+    Unavailable,
+    wait_until,
+)
 
 
 @pytest.fixture(autouse=True)

@@ -12,20 +12,11 @@ from random import Random
 import pytest
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
-from differential.batches import compare_scenes
-from differential.batches import difference_from_asked
-from differential.batches import write_scene
-from differential.comparison import difference_between
-from differential.comparison import own_answer
-from differential.reference import Answer
-from differential.reference import built_reference
-from differential.reference import CRASH
-from differential.reference import ReferenceMissingError
-from differential.scene_chains import chain_scene
-from differential.scene_chains import FAMILIES
-from differential.scene_chains import text_of
-from differential.scene_parts import Feature
-from differential.scene_parts import features_of_release
+from differential.batches import compare_scenes, difference_from_asked, write_scene
+from differential.comparison import difference_between, own_answer
+from differential.reference import Answer, built_reference, CRASH, ReferenceMissingError
+from differential.scene_chains import chain_scene, FAMILIES, text_of
+from differential.scene_parts import Feature, features_of_release
 from differential.scene_setting import with_pose_set
 
 ROOT = Path(__file__).resolve().parents[1]

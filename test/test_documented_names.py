@@ -10,8 +10,7 @@ import pytest
 
 from sdf_pose_bridge.cli.main import new_parser
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.geometry.formats import POSE_FORMATS
-from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
+from sdf_pose_bridge.geometry.formats import POSE_FORMATS, ROTATION_FORMATS
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES

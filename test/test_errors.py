@@ -7,13 +7,15 @@ import pickle
 import pytest
 
 from sdf_pose_bridge import errors
-from sdf_pose_bridge.errors import FileReadError
-from sdf_pose_bridge.errors import LoadError
-from sdf_pose_bridge.errors import ParsingError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.errors import UnknownFrameError
+from sdf_pose_bridge.errors import (
+    FileReadError,
+    LoadError,
+    ParsingError,
+    Place,
+    SdfError,
+    SdfWarning,
+    UnknownFrameError,
+)
 
 PLACE = Place('a.sdf', 7, '/sdf')
 CLASSES = [

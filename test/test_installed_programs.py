@@ -9,9 +9,7 @@ import subprocess
 import sys
 import sysconfig
 
-from command_line import AS_MODULE
-from command_line import executable_of_workspace
-from command_line import skip_without
+from command_line import AS_MODULE, executable_of_workspace, skip_without
 import mesh_texts
 import pytest
 

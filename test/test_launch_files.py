@@ -14,8 +14,10 @@ pytest.importorskip('launch_xml', reason='needs launch_xml, which is not install
 from launch import LaunchContext
 from launch.actions import IncludeLaunchDescription
 from launch.conditions import InvalidConditionExpressionError
-from launch.launch_description_sources import AnyLaunchDescriptionSource
-from launch.launch_description_sources import get_launch_description_from_any_launch_file
+from launch.launch_description_sources import (
+    AnyLaunchDescriptionSource,
+    get_launch_description_from_any_launch_file,
+)
 from launch.substitutions.substitution_failure import SubstitutionFailure
 from launch.utilities import perform_substitutions
 from launch_ros.actions import Node

@@ -14,10 +14,12 @@ import time
 import pytest
 
 from sdf_pose_bridge import limited_process
-from sdf_pose_bridge.limited_process import Allowance
-from sdf_pose_bridge.limited_process import LimitedProcess
-from sdf_pose_bridge.limited_process import LimitExceededError
-from sdf_pose_bridge.limited_process import ProcessEndedError
+from sdf_pose_bridge.limited_process import (
+    Allowance,
+    LimitedProcess,
+    LimitExceededError,
+    ProcessEndedError,
+)
 
 DEADLINE_S = 60.0
 AMPLE = Allowance(memory_bytes=2_000_000_000, processor_s=DEADLINE_S, wall_s=DEADLINE_S)

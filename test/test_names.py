@@ -6,13 +6,15 @@ import time
 
 import pytest
 
-from sdf_pose_bridge.names import hint_from_names
-from sdf_pose_bridge.names import is_reserved
-from sdf_pose_bridge.names import NameIndex
-from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.names import quoted_names
-from sdf_pose_bridge.names import scoped_name
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.names import (
+    hint_from_names,
+    is_reserved,
+    NameIndex,
+    printable,
+    quoted_names,
+    scoped_name,
+    shortened,
+)
 
 
 @pytest.mark.parametrize('name', ['world', '__model__', '__root__', '____', '__a__', '_____'])

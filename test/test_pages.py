@@ -8,8 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
-from urllib.parse import unquote
-from urllib.parse import urlsplit
+from urllib.parse import unquote, urlsplit
 import xml.etree.ElementTree as ET
 
 import pytest

@@ -4,13 +4,8 @@
 
 import pytest
 
-from sdf_pose_bridge.errors import LoadError
-from sdf_pose_bridge.errors import ParsingError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.problems import MOST_CHARACTERS_OF_HINTS
-from sdf_pose_bridge.problems import MOST_HINTS
-from sdf_pose_bridge.problems import MOST_PROBLEMS
-from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.errors import LoadError, ParsingError, Place
+from sdf_pose_bridge.problems import MOST_CHARACTERS_OF_HINTS, MOST_HINTS, MOST_PROBLEMS, Problems
 
 PLACE = Place('a.sdf', 7, '/sdf')
 

@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a small file could make the reader do again and again is found in its source."""
 
-from growth.raw_calls import faults
-from growth.raw_calls import raw_calls
+from growth.raw_calls import faults, raw_calls
 import pytest
 
 

@@ -7,10 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from ros_domain import claimed_domain
-from ros_domain import claims
-from ros_domain import port_of_claim
-from ros_domain import remove_incomplete_segments
+from ros_domain import claimed_domain, claims, port_of_claim, remove_incomplete_segments
 
 
 def test_a_process_that_is_left_behind_keeps_its_domain_claimed():

@@ -2,18 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Properties of all scenes: composition of poses, and changes that move nothing."""
 
-from matrices import assert_same_pose
-from matrices import matrix_from_degrees
-from matrices import matrix_from_pose
+from matrices import assert_same_pose, matrix_from_degrees, matrix_from_pose
 import numpy as np
 import pytest
 from random_scenes import random_scenes
 from sdf_texts import names_of
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
-from hypothesis import given
-from hypothesis import HealthCheck
-from hypothesis import settings
+from hypothesis import given, HealthCheck, settings
 from hypothesis import strategies as st
 
 import sdf_pose_bridge

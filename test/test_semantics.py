@@ -11,15 +11,13 @@ end left out), each in the frame that the one before it reached, or ``inverse`` 
 import json
 from pathlib import Path
 
-from matrices import assert_same_pose
-from matrices import matrix_from_degrees
+from matrices import assert_same_pose, matrix_from_degrees
 import numpy as np
 import pytest
 from sdf_texts import warning_codes
 
 import sdf_pose_bridge
-from sdf_pose_bridge import Kind
-from sdf_pose_bridge import SdfError
+from sdf_pose_bridge import Kind, SdfError
 
 FOLDER = Path(__file__).parent / 'semantics'
 CASES = {

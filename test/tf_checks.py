@@ -8,8 +8,7 @@ import pytest
 
 import sdf_pose_bridge
 from sdf_pose_bridge import SdfError
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 
 def model(name, children, pose=''):

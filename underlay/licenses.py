@@ -4,8 +4,7 @@
 """Print a Markdown table of the licences of everything that the lock files install here."""
 
 from collections import defaultdict
-from importlib.metadata import distribution
-from importlib.metadata import PackageNotFoundError
+from importlib.metadata import distribution, PackageNotFoundError
 from pathlib import Path
 import re
 import sys

@@ -12,8 +12,7 @@ has changed; a step that was interrupted has no stamp and is done again.
 """
 
 import argparse
-from collections.abc import Callable
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 import configparser
 import contextlib
 import fcntl
@@ -30,9 +29,7 @@ from types import FrameType
 from typing import NamedTuple
 
 import machine
-from steps import CommandError
-from steps import RefusalError
-from steps import Steps
+from steps import CommandError, RefusalError, Steps
 
 # To be raised when an environment made by an older version of this script would not do.
 FORMAT = 1

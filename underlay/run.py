@@ -17,8 +17,7 @@ import subprocess
 import sys
 from types import FrameType
 
-from ament_index_python.packages import get_package_prefix
-from ament_index_python.packages import PackageNotFoundError
+from ament_index_python.packages import get_package_prefix, PackageNotFoundError
 
 PACKAGE = 'sdf_pose_bridge'
 EXECUTABLE = 'bridge'

@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Run the long steps: each command's output into a log, progress for whoever waits."""
 
-from collections.abc import Callable
-from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 import os
 from pathlib import Path
 import signal

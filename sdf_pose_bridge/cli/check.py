@@ -10,22 +10,19 @@ import os
 import re
 import sys
 
-from sdf_pose_bridge.cli.loading import add_file_arguments
-from sdf_pose_bridge.cli.loading import load_file
-from sdf_pose_bridge.cli.printing import in_order
-from sdf_pose_bridge.cli.printing import print_problems
-from sdf_pose_bridge.cli.records import add_format_argument
-from sdf_pose_bridge.cli.records import GITHUB
-from sdf_pose_bridge.cli.records import JSON
-from sdf_pose_bridge.cli.records import print_annotations
-from sdf_pose_bridge.cli.records import print_json
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.cli.loading import add_file_arguments, load_file
+from sdf_pose_bridge.cli.printing import in_order, print_problems
+from sdf_pose_bridge.cli.records import (
+    add_format_argument,
+    GITHUB,
+    JSON,
+    print_annotations,
+    print_json,
+)
+from sdf_pose_bridge.errors import Place, SdfError, SdfWarning
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.include.uris import resource_finder
-from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
+from sdf_pose_bridge.sdformat.include.uris import resource_finder, ResourceFinder
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 _FOLDER = re.compile('(?:model|package)://+[^/]+', re.IGNORECASE)

@@ -14,15 +14,16 @@ from typing import TypeAlias
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.formats import converted_poses
-from sdf_pose_bridge.geometry.formats import converted_rotations
-from sdf_pose_bridge.geometry.formats import Format
-from sdf_pose_bridge.geometry.formats import POSE_FORMATS
-from sdf_pose_bridge.geometry.formats import PoseFormatError
-from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
-from sdf_pose_bridge.geometry.formats import without_rounding_errors
-from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.geometry.formats import (
+    converted_poses,
+    converted_rotations,
+    Format,
+    POSE_FORMATS,
+    PoseFormatError,
+    ROTATION_FORMATS,
+    without_rounding_errors,
+)
+from sdf_pose_bridge.names import printable, shortened
 
 LINES_AT_A_TIME = 10_000
 """Number of lines that are converted together, so that memory is bounded for any input."""

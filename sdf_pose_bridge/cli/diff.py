@@ -8,24 +8,25 @@ import argparse
 import math
 import sys
 
-from sdf_pose_bridge.cli.loading import add_kinds_argument
-from sdf_pose_bridge.cli.loading import add_loading_arguments
-from sdf_pose_bridge.cli.loading import load_file
-from sdf_pose_bridge.cli.loading import sdf_name
+from sdf_pose_bridge.cli.loading import (
+    add_kinds_argument,
+    add_loading_arguments,
+    load_file,
+    sdf_name,
+)
 from sdf_pose_bridge.cli.printing import print_problems
-from sdf_pose_bridge.cli.records import add_format_argument
-from sdf_pose_bridge.cli.records import CSV
-from sdf_pose_bridge.cli.records import JSON
-from sdf_pose_bridge.cli.records import print_csv
-from sdf_pose_bridge.cli.records import print_csv_header
-from sdf_pose_bridge.cli.records import print_json
-from sdf_pose_bridge.cli.records import TEXT
+from sdf_pose_bridge.cli.records import (
+    add_format_argument,
+    CSV,
+    JSON,
+    print_csv,
+    print_csv_header,
+    print_json,
+    TEXT,
+)
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.scene.comparison import Change
-from sdf_pose_bridge.scene.comparison import Difference
-from sdf_pose_bridge.scene.comparison import differences_of_scenes
-from sdf_pose_bridge.scene.comparison import TOLERANCE
+from sdf_pose_bridge.scene.comparison import Change, Difference, differences_of_scenes, TOLERANCE
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

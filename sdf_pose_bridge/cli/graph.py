@@ -9,9 +9,7 @@ The graph is written in the language DOT; the program ``dot`` of Graphviz lays i
 from __future__ import annotations
 
 import argparse
-from collections.abc import Container
-from collections.abc import Iterator
-from collections.abc import Sequence
+from collections.abc import Container, Iterator, Sequence
 import os
 from pathlib import Path
 import shutil
@@ -19,15 +17,14 @@ import subprocess
 
 import numpy as np
 
-from sdf_pose_bridge.cli.loading import add_file_arguments
-from sdf_pose_bridge.cli.loading import add_kinds_argument
-from sdf_pose_bridge.cli.loading import add_model_argument
-from sdf_pose_bridge.cli.loading import scene_of
-from sdf_pose_bridge.cli.printing import add_output_argument
-from sdf_pose_bridge.cli.printing import CommandError
-from sdf_pose_bridge.cli.printing import write_text
-from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.cli.loading import (
+    add_file_arguments,
+    add_kinds_argument,
+    add_model_argument,
+    scene_of,
+)
+from sdf_pose_bridge.cli.printing import add_output_argument, CommandError, write_text
+from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.tree import elements_in_model

@@ -5,18 +5,12 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Collection
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 import sys
 from typing import NamedTuple
 
-from sdf_pose_bridge.cli.printing import DEGREES
-from sdf_pose_bridge.cli.printing import METRES
-from sdf_pose_bridge.cli.printing import MILLIMETRES
-from sdf_pose_bridge.cli.printing import print_problems
-from sdf_pose_bridge.cli.printing import RADIANS
-from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.cli.printing import DEGREES, METRES, MILLIMETRES, print_problems, RADIANS
+from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
@@ -25,9 +19,7 @@ from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.lookup import PoseLookup
-from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, tf_tree_from_scene, TfOptions
 
 SHOWN_KINDS = tuple(kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD))
 """The kinds that ``--kinds`` accepts."""

@@ -14,18 +14,9 @@ import os
 import sys
 
 import sdf_pose_bridge
-from sdf_pose_bridge.cli import check
-from sdf_pose_bridge.cli import convert
-from sdf_pose_bridge.cli import diff
-from sdf_pose_bridge.cli import graph
-from sdf_pose_bridge.cli import poses
+from sdf_pose_bridge.cli import check, convert, diff, graph, poses, tree, urdf, view
 from sdf_pose_bridge.cli import set as set_command
-from sdf_pose_bridge.cli import tree
-from sdf_pose_bridge.cli import urdf
-from sdf_pose_bridge.cli import view
-from sdf_pose_bridge.cli.printing import CommandError
-from sdf_pose_bridge.cli.printing import discard_output
-from sdf_pose_bridge.cli.printing import print_problems
+from sdf_pose_bridge.cli.printing import CommandError, discard_output, print_problems
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 from sdf_pose_bridge.names import printable

@@ -5,25 +5,28 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 import sys
 from typing import Any
 
 import numpy as np
 
-from sdf_pose_bridge.cli.loading import add_file_arguments
-from sdf_pose_bridge.cli.loading import add_kinds_argument
-from sdf_pose_bridge.cli.loading import load_file
-from sdf_pose_bridge.cli.loading import LoadedFile
-from sdf_pose_bridge.cli.loading import sdf_name
+from sdf_pose_bridge.cli.loading import (
+    add_file_arguments,
+    add_kinds_argument,
+    load_file,
+    LoadedFile,
+    sdf_name,
+)
 from sdf_pose_bridge.cli.printing import print_problems
-from sdf_pose_bridge.cli.records import add_format_argument
-from sdf_pose_bridge.cli.records import CSV
-from sdf_pose_bridge.cli.records import JSON
-from sdf_pose_bridge.cli.records import print_csv
-from sdf_pose_bridge.cli.records import print_csv_header
-from sdf_pose_bridge.cli.records import print_json
+from sdf_pose_bridge.cli.records import (
+    add_format_argument,
+    CSV,
+    JSON,
+    print_csv,
+    print_csv_header,
+    print_json,
+)
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.scene import Scene

@@ -11,13 +11,9 @@ import math
 import os
 from pathlib import Path
 import sys
-from typing import NamedTuple
-from typing import TextIO
-from typing import TypeVar
+from typing import NamedTuple, TextIO, TypeVar
 
-from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.errors import UriLookupError
+from sdf_pose_bridge.errors import SdfError, SdfWarning, UriLookupError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.names import printable

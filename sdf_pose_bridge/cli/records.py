@@ -5,16 +5,13 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable
-from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 import csv
 import json
 import sys
 from typing import Any
 
-from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.names import printable
 
 TEXT, CSV, JSON, GITHUB = 'text', 'csv', 'json', 'github'

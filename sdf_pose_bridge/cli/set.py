@@ -8,27 +8,25 @@ import argparse
 from collections.abc import Mapping
 import sys
 
-from sdf_pose_bridge.cli.convert import NEGATIVE_NUMBER
-from sdf_pose_bridge.cli.convert import numbers_from_text
-from sdf_pose_bridge.cli.loading import add_file_arguments
-from sdf_pose_bridge.cli.loading import pose_lookup
-from sdf_pose_bridge.cli.loading import scene_from_file
-from sdf_pose_bridge.cli.loading import scene_of
-from sdf_pose_bridge.cli.loading import STANDARD_INPUT
-from sdf_pose_bridge.cli.printing import CommandError
-from sdf_pose_bridge.cli.printing import discard_output
-from sdf_pose_bridge.geometry.formats import converted_poses
-from sdf_pose_bridge.geometry.formats import converted_rotations
-from sdf_pose_bridge.geometry.formats import POSE_FORMATS
-from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_inverse
-from sdf_pose_bridge.geometry.poses import pose_product
+from sdf_pose_bridge.cli.convert import NEGATIVE_NUMBER, numbers_from_text
+from sdf_pose_bridge.cli.loading import (
+    add_file_arguments,
+    pose_lookup,
+    scene_from_file,
+    scene_of,
+    STANDARD_INPUT,
+)
+from sdf_pose_bridge.cli.printing import CommandError, discard_output
+from sdf_pose_bridge.geometry.formats import (
+    converted_poses,
+    converted_rotations,
+    POSE_FORMATS,
+    ROTATION_FORMATS,
+)
+from sdf_pose_bridge.geometry.poses import Pose, pose_inverse, pose_product
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.comparison import names_of_moved
-from sdf_pose_bridge.scene.pose_setting import Measure
-from sdf_pose_bridge.scene.pose_setting import pose_change
-from sdf_pose_bridge.scene.pose_setting import PoseChange
+from sdf_pose_bridge.scene.pose_setting import Measure, pose_change, PoseChange
 from sdf_pose_bridge.scene.scene import Scene
 
 

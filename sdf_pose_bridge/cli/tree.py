@@ -11,38 +11,33 @@ from itertools import compress
 import math
 import shutil
 import sys
-from typing import Any
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.cli.loading import add_file_arguments
-from sdf_pose_bridge.cli.loading import add_frame_arguments
-from sdf_pose_bridge.cli.loading import load_file
-from sdf_pose_bridge.cli.loading import SHOWN_KINDS
-from sdf_pose_bridge.cli.loading import tf_options_from_arguments
-from sdf_pose_bridge.cli.printing import is_colored
-from sdf_pose_bridge.cli.printing import kind_labels_of
-from sdf_pose_bridge.cli.printing import print_problems
-from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.records import add_format_argument
-from sdf_pose_bridge.cli.records import CSV
-from sdf_pose_bridge.cli.records import JSON
-from sdf_pose_bridge.cli.records import print_csv
-from sdf_pose_bridge.cli.records import print_csv_header
-from sdf_pose_bridge.cli.records import print_json
-from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.cli.loading import (
+    add_file_arguments,
+    add_frame_arguments,
+    load_file,
+    SHOWN_KINDS,
+    tf_options_from_arguments,
+)
+from sdf_pose_bridge.cli.printing import is_colored, kind_labels_of, print_problems, Units
+from sdf_pose_bridge.cli.records import (
+    add_format_argument,
+    CSV,
+    JSON,
+    print_csv,
+    print_csv_header,
+    print_json,
+)
+from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.names import shortened
-from sdf_pose_bridge.scene.scene import Joint
-from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.names import printable, shortened
+from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.parents import NO_PARENT
-from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
-from sdf_pose_bridge.tf.tree import elements_in_model
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, elements_in_model, tf_tree_from_scene
 
 _BOLD, _DIM, _PLAIN = '\x1b[1m', '\x1b[2m', '\x1b[0m'
 _COLORS = {

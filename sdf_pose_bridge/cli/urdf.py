@@ -8,13 +8,14 @@ import argparse
 from pathlib import Path
 import sys
 
-from sdf_pose_bridge.cli.loading import add_file_arguments
-from sdf_pose_bridge.cli.loading import add_kinds_argument
-from sdf_pose_bridge.cli.loading import add_model_argument
-from sdf_pose_bridge.cli.loading import add_naming_argument
-from sdf_pose_bridge.cli.loading import scene_of
-from sdf_pose_bridge.cli.printing import print_problems
-from sdf_pose_bridge.cli.printing import write_text
+from sdf_pose_bridge.cli.loading import (
+    add_file_arguments,
+    add_kinds_argument,
+    add_model_argument,
+    add_naming_argument,
+    scene_of,
+)
+from sdf_pose_bridge.cli.printing import print_problems, write_text
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
 

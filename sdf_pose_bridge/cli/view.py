@@ -20,15 +20,15 @@ import time
 from types import ModuleType
 from typing import Any
 
-from sdf_pose_bridge.cli.loading import add_file_arguments
-from sdf_pose_bridge.cli.loading import add_frame_arguments
-from sdf_pose_bridge.cli.loading import scene_from_file
-from sdf_pose_bridge.cli.loading import scene_of
-from sdf_pose_bridge.cli.loading import STANDARD_INPUT
-from sdf_pose_bridge.cli.loading import tf_options_from_arguments
-from sdf_pose_bridge.cli.printing import add_output_argument
-from sdf_pose_bridge.cli.printing import CommandError
-from sdf_pose_bridge.cli.printing import Units
+from sdf_pose_bridge.cli.loading import (
+    add_file_arguments,
+    add_frame_arguments,
+    scene_from_file,
+    scene_of,
+    STANDARD_INPUT,
+    tf_options_from_arguments,
+)
+from sdf_pose_bridge.cli.printing import add_output_argument, CommandError, Units
 from sdf_pose_bridge.cli.set import set_pose
 from sdf_pose_bridge.cli.viewer import LIBRARIES
 from sdf_pose_bridge.errors import SdfError
@@ -121,8 +121,7 @@ def _viewer() -> ModuleType:
 
     :raises CommandError: if a library is missing or too old.
     """
-    from importlib.metadata import PackageNotFoundError
-    from importlib.metadata import version
+    from importlib.metadata import PackageNotFoundError, version
     try:
         for library in LIBRARIES:
             name, oldest = re.split('>=|,', library)[:2]

@@ -14,8 +14,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from sdf_pose_bridge.geometry.poses import pose_products
-from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.geometry.poses import pose_products, PoseArray
 
 Indices: TypeAlias = NDArray[np.int32]
 """Shape (n,): indices of elements or nodes; -1 for none."""

@@ -14,32 +14,30 @@ All poses are those of a child in its parent.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 import enum
 import math
 from types import MappingProxyType
-from typing import Any
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from sdf_pose_bridge.geometry import floats
-from sdf_pose_bridge.geometry.formulas import degrees_from_radians
-from sdf_pose_bridge.geometry.formulas import radians_from_degrees
-from sdf_pose_bridge.geometry.rotations import canonical_quaternion
-from sdf_pose_bridge.geometry.rotations import Floats
-from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
-from sdf_pose_bridge.geometry.rotations import near_gimbal_lock
-from sdf_pose_bridge.geometry.rotations import Quaternion
-from sdf_pose_bridge.geometry.rotations import quaternion_from_matrix
-from sdf_pose_bridge.geometry.rotations import quaternion_from_rotation_vector
-from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
-from sdf_pose_bridge.geometry.rotations import rotation_vector_from_quaternion
-from sdf_pose_bridge.geometry.rotations import RotationError
-from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
-from sdf_pose_bridge.geometry.rotations import Triple
+from sdf_pose_bridge.geometry.formulas import degrees_from_radians, radians_from_degrees
+from sdf_pose_bridge.geometry.rotations import (
+    canonical_quaternion,
+    Floats,
+    matrix_from_quaternion,
+    near_gimbal_lock,
+    Quaternion,
+    quaternion_from_matrix,
+    quaternion_from_rotation_vector,
+    quaternion_from_rpy,
+    rotation_vector_from_quaternion,
+    RotationError,
+    rpy_from_quaternion,
+    Triple,
+)
 
 LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 """Last row of the 4 x 4 matrix of a pose, exactly; libfranka compares without a tolerance."""

@@ -16,8 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 import functools
 import math
-from typing import Any
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 Component: TypeAlias = Any
 """A float, or an array of floats."""

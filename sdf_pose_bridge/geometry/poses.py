@@ -12,14 +12,12 @@ this is how the functions for many poses use them.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from sdf_pose_bridge.geometry.formulas import row_blocks
-from sdf_pose_bridge.geometry.rotations import canonical_quaternion
-from sdf_pose_bridge.geometry.rotations import Floats
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion, Floats
 
 PoseArray: TypeAlias = Floats
 """Poses as rows: shape (n, 7), x y z in metres, unit quaternion x y z w."""

@@ -29,19 +29,14 @@ every representation.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import math
-from typing import NamedTuple
-from typing import overload
-from typing import TypeAlias
-from typing import TypeVar
+from typing import NamedTuple, overload, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sdf_pose_bridge.geometry import floats
-from sdf_pose_bridge.geometry import formulas
+from sdf_pose_bridge.geometry import floats, formulas
 
 Floats: TypeAlias = NDArray[np.float64]
 Triple: TypeAlias = tuple[float, float, float]

@@ -12,9 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.poses import pose_products
-from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.geometry.poses import transformed_points
+from sdf_pose_bridge.geometry.poses import pose_products, PoseArray, transformed_points
 from sdf_pose_bridge.geometry.rotations import Floats
 
 

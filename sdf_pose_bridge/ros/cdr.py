@@ -17,8 +17,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 import struct
-from typing import NamedTuple
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray

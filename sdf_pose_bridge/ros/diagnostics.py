@@ -8,21 +8,19 @@ The package diagnostic_updater is not used because it would add parameters to th
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import datetime
 
-from diagnostic_msgs.msg import DiagnosticArray
-from diagnostic_msgs.msg import DiagnosticStatus
-from diagnostic_msgs.msg import KeyValue
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 
-from sdf_pose_bridge.ros.log_lines import count_in_words
-from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints
-from sdf_pose_bridge.ros.log_lines import MissingJoints
-from sdf_pose_bridge.ros.publishers import new_publisher
-from sdf_pose_bridge.ros.publishers import Topic
+from sdf_pose_bridge.ros.log_lines import (
+    count_in_words,
+    line_about_unreported_joints,
+    MissingJoints,
+)
+from sdf_pose_bridge.ros.publishers import new_publisher, Topic
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 
 PERIOD_S = 2.0

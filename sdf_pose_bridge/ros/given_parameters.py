@@ -5,25 +5,16 @@
 from __future__ import annotations
 
 import array
-from collections.abc import Container
-from collections.abc import Iterable
-from collections.abc import Mapping
+from collections.abc import Container, Iterable, Mapping
 from typing import Any
 
-from rcl_interfaces.msg import FloatingPointRange
-from rcl_interfaces.msg import ParameterDescriptor
+from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from sdf_pose_bridge.names import hint_from_names
-from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.names import shortened
-from sdf_pose_bridge.ros.parameters import DECLARATIONS
-from sdf_pose_bridge.ros.parameters import Settings
-from sdf_pose_bridge.ros.parameters import SettingsError
-from sdf_pose_bridge.ros.parameters import Value
-from sdf_pose_bridge.ros.qos_overrides import QOS_OVERRIDES
-from sdf_pose_bridge.ros.qos_overrides import sentences_about_overrides
+from sdf_pose_bridge.names import hint_from_names, printable, shortened
+from sdf_pose_bridge.ros.parameters import DECLARATIONS, Settings, SettingsError, Value
+from sdf_pose_bridge.ros.qos_overrides import QOS_OVERRIDES, sentences_about_overrides
 
 _NAMES_OF_TYPES = {
     Parameter.Type.STRING: 'a string', Parameter.Type.BOOL: 'true or false',

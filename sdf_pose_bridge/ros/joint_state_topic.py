@@ -4,37 +4,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import contextlib
 import copy
 from dataclasses import dataclass
 import threading
 import time
-from typing import Any
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
-from rclpy.qos import qos_profile_sensor_data
-from rclpy.qos import QoSProfile
-from rclpy.qos import ReliabilityPolicy
+from rclpy.qos import qos_profile_sensor_data, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 from sensor_msgs.msg import JointState
 
-from sdf_pose_bridge.ros.cdr import joint_state_from_bytes
-from sdf_pose_bridge.ros.cdr import JointStateBytes
+from sdf_pose_bridge.ros.cdr import joint_state_from_bytes, JointStateBytes
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.publishers import NANOSECONDS
-from sdf_pose_bridge.ros.qos_overrides import overriding_options
-from sdf_pose_bridge.ros.qos_overrides import POLICIES_OF_SUBSCRIPTION
-from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION
-from sdf_pose_bridge.tf.joint_positions import Selection
+from sdf_pose_bridge.ros.qos_overrides import overriding_options, POLICIES_OF_SUBSCRIPTION
+from sdf_pose_bridge.tf.joint_positions import JointPositions, LARGEST_POSITION, Selection
 
 _WARNING_PERIOD_S = 10.0
 _MOST_PLANS = 20

@@ -22,14 +22,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from rclpy.clock import Clock
-from rclpy.clock import ClockType
+from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.timer import Timer
 
 from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic
-from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints
-from sdf_pose_bridge.ros.log_lines import MissingJoints
+from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints, MissingJoints
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.topic_names import JointStateTopics
 from sdf_pose_bridge.tf.joint_positions import NEVER

@@ -10,19 +10,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.errors import UriLookupError
-from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.names import quoted_names
+from sdf_pose_bridge.errors import SdfError, UriLookupError
+from sdf_pose_bridge.names import printable, quoted_names
 from sdf_pose_bridge.problems import MOST_PROBLEMS
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.tf.frame_ids import FrameNames
-from sdf_pose_bridge.tf.frame_ids import FrameNaming
+from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
 from sdf_pose_bridge.tf.joint_motion import dofs_from_joint
 from sdf_pose_bridge.tf.parents import NO_PARENT
-from sdf_pose_bridge.tf.tree import elements_in_model
-from sdf_pose_bridge.tf.tree import TfTree
+from sdf_pose_bridge.tf.tree import elements_in_model, TfTree
 
 MOST_LINES = 20
 """Largest number of errors, warnings or names in the log; a generated file may have thousands."""

@@ -9,8 +9,7 @@ package explain.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from collections.abc import MutableMapping
+from collections.abc import Mapping, MutableMapping
 from pathlib import Path
 from typing import NamedTuple
 

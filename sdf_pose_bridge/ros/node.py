@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
-from rclpy.clock import Clock
-from rclpy.clock import ClockType
+from rclpy.clock import Clock, ClockType
 from rclpy.exceptions import InvalidHandle
 from rclpy.logging import LoggingSeverity
 from rclpy.node import Node
@@ -24,37 +23,33 @@ from rclpy.timer import Timer
 from std_srvs.srv import Trigger
 
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.ros.background import CoroutineLock
-from sdf_pose_bridge.ros.background import PollingThread
-from sdf_pose_bridge.ros.background import run_in_thread
-from sdf_pose_bridge.ros.diagnostics import Diagnostics
-from sdf_pose_bridge.ros.diagnostics import PERIOD_S
+from sdf_pose_bridge.ros.background import CoroutineLock, PollingThread, run_in_thread
+from sdf_pose_bridge.ros.diagnostics import Diagnostics, PERIOD_S
 from sdf_pose_bridge.ros.given_parameters import changed_settings
-from sdf_pose_bridge.ros.log_lines import count_in_words
-from sdf_pose_bridge.ros.log_lines import line_about_detached_models
-from sdf_pose_bridge.ros.log_lines import line_about_gazebo
-from sdf_pose_bridge.ros.log_lines import line_about_joints_at_rest
-from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
-from sdf_pose_bridge.ros.log_lines import lines_from_error
-from sdf_pose_bridge.ros.log_lines import lines_from_warnings
-from sdf_pose_bridge.ros.log_lines import MissingJoints
+from sdf_pose_bridge.ros.log_lines import (
+    count_in_words,
+    line_about_detached_models,
+    line_about_gazebo,
+    line_about_joints_at_rest,
+    lines_about_lost_frames,
+    lines_from_error,
+    lines_from_warnings,
+    MissingJoints,
+)
 from sdf_pose_bridge.ros.parameter_services import add_parameter_services
-from sdf_pose_bridge.ros.parameters import Settings
-from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.ros.parameters import Settings, SettingsError
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import TextPublisher
 from sdf_pose_bridge.ros.scene_reader import SceneReader
-from sdf_pose_bridge.ros.services import add_services
-from sdf_pose_bridge.ros.services import SERVICE_QOS
-from sdf_pose_bridge.ros.services import set_pose
-from sdf_pose_bridge.ros.topic_names import joint_state_topics_from_patterns
-from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
-from sdf_pose_bridge.ros.topic_names import PoseTopics
+from sdf_pose_bridge.ros.services import add_services, SERVICE_QOS, set_pose
+from sdf_pose_bridge.ros.topic_names import (
+    joint_state_topics_from_patterns,
+    pose_topics_from_patterns,
+    PoseTopics,
+)
 from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
 from sdf_pose_bridge.sdformat.include.uris import AddressError
-from sdf_pose_bridge.tf.loaded_scene import files_behind_error
-from sdf_pose_bridge.tf.loaded_scene import LoadedScene
-from sdf_pose_bridge.tf.loaded_scene import may_pass
+from sdf_pose_bridge.tf.loaded_scene import files_behind_error, LoadedScene, may_pass
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge_interfaces.srv import SetPose
 

@@ -8,41 +8,36 @@ Each parameter is declared once, as an attribute of :class:`Settings`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Mapping
-from collections.abc import Sequence
-from dataclasses import dataclass
-from dataclasses import field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 import enum
-from typing import Any
-from typing import Generic
-from typing import TypeVar
+from typing import Any, Generic, TypeVar
 
 from rclpy.parameter import Parameter
 
-from sdf_pose_bridge.ros.setting_rules import anchors_setting
-from sdf_pose_bridge.ros.setting_rules import AUTO_KINDS
-from sdf_pose_bridge.ros.setting_rules import directories_setting
-from sdf_pose_bridge.ros.setting_rules import HIGHEST_FREQUENCY
-from sdf_pose_bridge.ros.setting_rules import HIGHEST_RATE
-from sdf_pose_bridge.ros.setting_rules import kinds_setting
-from sdf_pose_bridge.ros.setting_rules import LOWEST_RATE
-from sdf_pose_bridge.ros.setting_rules import path_setting
-from sdf_pose_bridge.ros.setting_rules import patterns_setting
-from sdf_pose_bridge.ros.setting_rules import prefix_setting
-from sdf_pose_bridge.ros.setting_rules import PUBLISHED_KINDS
-from sdf_pose_bridge.ros.setting_rules import refusal
-from sdf_pose_bridge.ros.setting_rules import root_frame_setting
-from sdf_pose_bridge.ros.setting_rules import separator_setting
-from sdf_pose_bridge.ros.setting_rules import topic_patterns_setting
+from sdf_pose_bridge.ros.setting_rules import (
+    anchors_setting,
+    AUTO_KINDS,
+    directories_setting,
+    HIGHEST_FREQUENCY,
+    HIGHEST_RATE,
+    kinds_setting,
+    LOWEST_RATE,
+    path_setting,
+    patterns_setting,
+    prefix_setting,
+    PUBLISHED_KINDS,
+    refusal,
+    root_frame_setting,
+    separator_setting,
+    topic_patterns_setting,
+)
 from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
-from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
-from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat, LoadRequest
+from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, TfOptions
 
 Value = str | bool | float | list[str]
 Setting = TypeVar('Setting')

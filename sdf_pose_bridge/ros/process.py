@@ -9,8 +9,7 @@ fails in many ways, and do not interrupt the reading of a file.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 import contextlib
 from contextlib import contextmanager
 import gc
@@ -29,14 +28,14 @@ from rclpy.task import Task
 from rclpy.utilities import remove_ros_args
 
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.ros.given_parameters import settings_from_node
-from sdf_pose_bridge.ros.given_parameters import warnings_about_unknown_parameters
-from sdf_pose_bridge.ros.log_lines import lines_from_error
-from sdf_pose_bridge.ros.log_lines import lines_from_warnings
+from sdf_pose_bridge.ros.given_parameters import (
+    settings_from_node,
+    warnings_about_unknown_parameters,
+)
+from sdf_pose_bridge.ros.log_lines import lines_from_error, lines_from_warnings
 from sdf_pose_bridge.ros.middleware import use_profile
 from sdf_pose_bridge.ros.parameters import SettingsError
-from sdf_pose_bridge.ros.programs import Program
-from sdf_pose_bridge.ros.programs import PROGRAMS
+from sdf_pose_bridge.ros.programs import Program, PROGRAMS
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.sdformat.include.uris import AddressError

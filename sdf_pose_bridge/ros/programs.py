@@ -4,8 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from typing import NamedTuple
 
 from sdf_pose_bridge.ros.parameters import Value

@@ -9,14 +9,11 @@ once, moving frames repeatedly.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from collections.abc import Sequence
-from functools import cached_property
-from functools import lru_cache
+from collections.abc import Mapping, Sequence
+from functools import cached_property, lru_cache
 from itertools import compress
 
-from geometry_msgs.msg import PoseStamped
-from geometry_msgs.msg import TransformStamped
+from geometry_msgs.msg import PoseStamped, TransformStamped
 import numpy as np
 from numpy.typing import NDArray
 from rclpy.publisher import Publisher
@@ -24,16 +21,10 @@ from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.ros.cdr import stamped_messages
-from sdf_pose_bridge.ros.cdr import StampedMessages
-from sdf_pose_bridge.ros.cdr import tf_message
-from sdf_pose_bridge.ros.publishers import NANOSECONDS
-from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.ros.publishers import Stamp
-from sdf_pose_bridge.ros.publishers import Topic
+from sdf_pose_bridge.ros.cdr import stamped_messages, StampedMessages, tf_message
+from sdf_pose_bridge.ros.publishers import NANOSECONDS, Publishers, Stamp, Topic
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
-from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.joint_positions import NEVER
+from sdf_pose_bridge.tf.joint_positions import JointPositions, NEVER
 from sdf_pose_bridge.tf.moving_frames import MovingFrames
 from sdf_pose_bridge.tf.tree import TfTree
 

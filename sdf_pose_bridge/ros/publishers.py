@@ -4,24 +4,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Collection
-from collections.abc import Sequence
-from typing import NamedTuple
-from typing import TypeAlias
+from collections.abc import Callable, Collection, Sequence
+from typing import NamedTuple, TypeAlias
 
-from rclpy.event_handler import PublisherEventCallbacks
-from rclpy.event_handler import QoSPublisherMatchedInfo
+from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from rclpy.qos import DurabilityPolicy
-from rclpy.qos import HistoryPolicy
-from rclpy.qos import QoSProfile
-from rclpy.qos import ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 from sdf_pose_bridge.ros.background import run_other_callbacks
-from sdf_pose_bridge.ros.qos_overrides import overriding_options
-from sdf_pose_bridge.ros.qos_overrides import POLICIES_OF_PUBLISHER
+from sdf_pose_bridge.ros.qos_overrides import overriding_options, POLICIES_OF_PUBLISHER
 
 # Number of messages or publishers, made in a few milliseconds, before other callbacks run.
 MESSAGES_AT_ONCE = 500

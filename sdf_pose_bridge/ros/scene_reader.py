@@ -5,23 +5,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-from sdf_pose_bridge.errors import FileReadError
-from sdf_pose_bridge.errors import LimitError
-from sdf_pose_bridge.errors import PassingReadError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.errors import FileReadError, LimitError, PassingReadError, Place, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.limited_process import Allowance
-from sdf_pose_bridge.limited_process import LimitedProcess
-from sdf_pose_bridge.limited_process import LimitExceededError
-from sdf_pose_bridge.limited_process import ProcessEndedError
-from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene
-from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
-from sdf_pose_bridge.tf.loaded_scene import LoadedScene
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.limited_process import (
+    Allowance,
+    LimitedProcess,
+    LimitExceededError,
+    ProcessEndedError,
+)
+from sdf_pose_bridge.tf.loaded_scene import (
+    fingerprint_of_scene,
+    loaded_scene_from_request,
+    LoadedScene,
+    LoadRequest,
+)
 
 if TYPE_CHECKING:
     from sdf_pose_bridge.tf.frame_setting import FrameChange

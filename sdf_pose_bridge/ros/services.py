@@ -7,8 +7,7 @@ from __future__ import annotations
 import array
 from collections.abc import Callable
 import traceback
-from typing import Any
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -16,24 +15,15 @@ from rclpy.clock import Clock
 from rclpy.node import Node
 from rclpy.qos import qos_profile_parameters
 
-from sdf_pose_bridge.errors import JointPositionError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import PoseNotSetError
-from sdf_pose_bridge.errors import UnknownFrameError
-from sdf_pose_bridge.geometry.formats import converted_poses
-from sdf_pose_bridge.geometry.formats import converted_rotation
-from sdf_pose_bridge.geometry.formats import PoseFormatError
+from sdf_pose_bridge.errors import JointPositionError, Place, PoseNotSetError, UnknownFrameError
+from sdf_pose_bridge.geometry.formats import converted_poses, converted_rotation, PoseFormatError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import RotationError
-from sdf_pose_bridge.ros.background import CoroutineLock
-from sdf_pose_bridge.ros.background import run_in_thread
+from sdf_pose_bridge.ros.background import CoroutineLock, run_in_thread
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 from sdf_pose_bridge.tf.lookup import PoseLookup
-from sdf_pose_bridge_interfaces.srv import ConvertPoses
-from sdf_pose_bridge_interfaces.srv import ConvertRotation
-from sdf_pose_bridge_interfaces.srv import LookupPose
-from sdf_pose_bridge_interfaces.srv import SetPose
+from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose, SetPose
 
 Answer: TypeAlias = Callable[[Any, Any], Any]
 """Fills the response to a request and returns it."""

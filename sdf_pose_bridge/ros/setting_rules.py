@@ -15,12 +15,9 @@ from pathlib import Path
 from rclpy.exceptions import InvalidTopicNameException
 from rclpy.validate_topic_name import validate_topic_name
 
-from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.tf.anchors import AnchorModels
-from sdf_pose_bridge.tf.anchors import AnchorPatterns
-from sdf_pose_bridge.tf.anchors import anchors_from_text
+from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns, anchors_from_text
 
 PUBLISHED_KINDS = {
     kind.label: kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD, Kind.ACTOR)}

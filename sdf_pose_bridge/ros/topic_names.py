@@ -26,15 +26,13 @@ name depends only on its frame id and the limit.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fnmatch import fnmatchcase
 import re
 from typing import NamedTuple
 
 from sdf_pose_bridge.ros.log_lines import names_in_line
-from sdf_pose_bridge.ros.setting_rules import MODEL_FIELD
-from sdf_pose_bridge.ros.setting_rules import WORLD_FIELD
+from sdf_pose_bridge.ros.setting_rules import MODEL_FIELD, WORLD_FIELD
 
 LONGEST_FULL_NAME = 246
 """Largest length of the full name of a topic in the middleware."""

@@ -6,23 +6,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from geometry_msgs.msg import Point
+from geometry_msgs.msg import Point, Quaternion, Vector3
 from geometry_msgs.msg import Pose as PoseMessage
-from geometry_msgs.msg import Quaternion
-from geometry_msgs.msg import Vector3
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from std_msgs.msg import ColorRGBA
-from std_msgs.msg import Header
-from visualization_msgs.msg import Marker
-from visualization_msgs.msg import MarkerArray
+from std_msgs.msg import ColorRGBA, Header
+from visualization_msgs.msg import Marker, MarkerArray
 
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.background import run_in_thread
-from sdf_pose_bridge.ros.log_lines import lines_from_error
-from sdf_pose_bridge.ros.log_lines import lines_from_warnings
-from sdf_pose_bridge.ros.publishers import new_publisher
-from sdf_pose_bridge.ros.publishers import Topic
+from sdf_pose_bridge.ros.log_lines import lines_from_error, lines_from_warnings
+from sdf_pose_bridge.ros.publishers import new_publisher, Topic
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 from sdf_pose_bridge.tf.visual_markers import VisualMarker

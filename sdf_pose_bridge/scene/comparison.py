@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.geometry.poses import relative_poses
+from sdf_pose_bridge.geometry.poses import PoseArray, relative_poses
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 

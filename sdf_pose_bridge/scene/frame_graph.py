@@ -8,33 +8,27 @@ Source: ``FrameSemantics.cc`` of libsdformat. The graph that results has no cycl
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sdf_pose_bridge.errors import AttachedToCycleError
-from sdf_pose_bridge.errors import AttachedToError
-from sdf_pose_bridge.errors import CanonicalLinkError
-from sdf_pose_bridge.errors import ModelWithoutLinkError
-from sdf_pose_bridge.errors import RelativeToCycleError
-from sdf_pose_bridge.errors import RelativeToError
-from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.geometry.chains import cycles_from_pointers
-from sdf_pose_bridge.geometry.chains import ends_from_pointers
-from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.names import quoted_names
-from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.errors import (
+    AttachedToCycleError,
+    AttachedToError,
+    CanonicalLinkError,
+    ModelWithoutLinkError,
+    RelativeToCycleError,
+    RelativeToError,
+    SdfError,
+)
+from sdf_pose_bridge.geometry.chains import cycles_from_pointers, ends_from_pointers, Indices
+from sdf_pose_bridge.names import quoted_names, WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.scene.joints import JointChecks
-from sdf_pose_bridge.scene.joints import JointEnds
-from sdf_pose_bridge.scene.name_scopes import IS_FRAME_KIND
-from sdf_pose_bridge.scene.name_scopes import NameScopes
-from sdf_pose_bridge.sdformat.elements import Elements
-from sdf_pose_bridge.sdformat.elements import ModelDetails
-from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
+from sdf_pose_bridge.scene.joints import JointChecks, JointEnds
+from sdf_pose_bridge.scene.name_scopes import IS_FRAME_KIND, NameScopes
+from sdf_pose_bridge.sdformat.elements import Elements, ModelDetails, NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.limits import Usage
 

@@ -12,25 +12,21 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from sdf_pose_bridge.errors import AttachedToError
-from sdf_pose_bridge.errors import ExpressedInError
-from sdf_pose_bridge.errors import JointChildError
-from sdf_pose_bridge.errors import JointParentError
-from sdf_pose_bridge.errors import JointSameLinkError
-from sdf_pose_bridge.errors import MimicError
-from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import (
+    AttachedToError,
+    ExpressedInError,
+    JointChildError,
+    JointParentError,
+    JointSameLinkError,
+    MimicError,
+    SdfError,
+)
 from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.names import MODEL_FRAME
-from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.names import MODEL_FRAME, SEPARATOR, WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.name_scopes import NameScopes
-from sdf_pose_bridge.sdformat.elements import Elements
-from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
-from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
-from sdf_pose_bridge.sdformat.joints import AxisDetails
-from sdf_pose_bridge.sdformat.joints import MimicDetails
-from sdf_pose_bridge.sdformat.joints import Reference
+from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
+from sdf_pose_bridge.sdformat.joints import AXIS_TAGS, AxisDetails, MimicDetails, Reference
 
 
 class AxisReferences(NamedTuple):

@@ -4,31 +4,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from collections.abc import Iterator
-from collections.abc import Mapping
-from collections.abc import Set
+from collections.abc import Iterable, Iterator, Mapping, Set
 import contextlib
 import enum
 import gc
 import os
 
-from sdf_pose_bridge.errors import LimitError
-from sdf_pose_bridge.errors import LoadError
-from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import LimitError, LoadError, SdfError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene.frame_graph import frame_graph_from_elements
-from sdf_pose_bridge.scene.resolution import poses_in_references
-from sdf_pose_bridge.scene.resolution import scene_from_graph
+from sdf_pose_bridge.scene.resolution import poses_in_references, scene_from_graph
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.documents import Document
-from sdf_pose_bridge.sdformat.documents import document_from_file
+from sdf_pose_bridge.sdformat.documents import Document, document_from_file
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.include.merge import ModelByItself
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
-from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
-from sdf_pose_bridge.sdformat.limits import Limits
+from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS, Limits
 from sdf_pose_bridge.sdformat.reader import elements_from_tree
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement

@@ -10,23 +10,16 @@ Source: ``ScopedGraph.hh`` of libsdformat. A reference in a scope is the absolut
 from __future__ import annotations
 
 from collections import defaultdict
-from itertools import chain
-from itertools import islice
+from itertools import chain, islice
 
 import numpy as np
 
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
-from sdf_pose_bridge.names import MODEL_FRAME
-from sdf_pose_bridge.names import ROOT_FRAME
-from sdf_pose_bridge.names import scoped_name
-from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.names import MODEL_FRAME, ROOT_FRAME, scoped_name, SEPARATOR, WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.elements import Elements
-from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
+from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
-from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP, Usage
 
 _OWN_FRAME = SEPARATOR + MODEL_FRAME
 _MOST_NAMES_COMPARED = 2000

@@ -9,24 +9,22 @@ its reference, and the new numbers are checked by reading the changed file.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 import math
 import os
 from pathlib import Path
-from typing import NamedTuple
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import PoseNotSetError
-from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.geometry.poses import canonical_relative_pose
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_inverse
-from sdf_pose_bridge.geometry.poses import pose_product
-from sdf_pose_bridge.geometry.poses import relative_pose
+from sdf_pose_bridge.errors import Place, PoseNotSetError, SdfError
+from sdf_pose_bridge.geometry.poses import (
+    canonical_relative_pose,
+    Pose,
+    pose_inverse,
+    pose_product,
+    relative_pose,
+)
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.scene.comparison import TOLERANCE

@@ -4,38 +4,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import compress
 import math
 from typing import TypeVar
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.geometry.chains import poses_along_chains
-from sdf_pose_bridge.geometry.poses import canonical_poses
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_inverse
-from sdf_pose_bridge.geometry.poses import pose_product
-from sdf_pose_bridge.geometry.poses import pose_products
-from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.geometry.poses import relative_pose
-from sdf_pose_bridge.geometry.poses import transformed_points
+from sdf_pose_bridge.geometry.chains import Indices, poses_along_chains
+from sdf_pose_bridge.geometry.poses import (
+    canonical_poses,
+    Pose,
+    pose_inverse,
+    pose_product,
+    pose_products,
+    PoseArray,
+    relative_pose,
+    transformed_points,
+)
 from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.frame_graph import FrameGraph
 from sdf_pose_bridge.scene.joints import JointEnds
-from sdf_pose_bridge.scene.scene import Joint
-from sdf_pose_bridge.scene.scene import JointAxis
-from sdf_pose_bridge.scene.scene import Mimic
-from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.elements import Elements
-from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
+from sdf_pose_bridge.scene.scene import Joint, JointAxis, Mimic, Scene
+from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.inertials import Inertial
-from sdf_pose_bridge.sdformat.inertials import moments_from_matrix
-from sdf_pose_bridge.sdformat.inertials import sum_of_moments
+from sdf_pose_bridge.sdformat.inertials import Inertial, moments_from_matrix, sum_of_moments
 from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
 
 _Details = TypeVar('_Details')

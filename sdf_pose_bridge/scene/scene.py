@@ -2,33 +2,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """The scene: all elements of a file with their resolved poses, as arrays."""
 
-from collections.abc import Iterator
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 import math
 from types import MappingProxyType
-from typing import Any
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.errors import UnknownFrameError
+from sdf_pose_bridge.errors import Place, SdfWarning, UnknownFrameError
 from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.geometry.poses import canonical_relative_pose
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.names import hint_from_names
-from sdf_pose_bridge.names import scoped_name
+from sdf_pose_bridge.geometry.poses import canonical_relative_pose, Pose, PoseArray
+from sdf_pose_bridge.names import hint_from_names, scoped_name
 from sdf_pose_bridge.scene.frame_graph import default_references
 from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.inertials import Inertial
-from sdf_pose_bridge.sdformat.joints import Dynamics
-from sdf_pose_bridge.sdformat.joints import NO_DYNAMICS
+from sdf_pose_bridge.sdformat.joints import Dynamics, NO_DYNAMICS
 from sdf_pose_bridge.sdformat.shapes import Shape
 
 

@@ -9,8 +9,7 @@ file that requests them again and again reaches a limit.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 import copy
 import errno
 from itertools import chain
@@ -20,10 +19,12 @@ from typing import NamedTuple
 from lxml import etree
 
 from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_NAMED_ELEMENT
-from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.limits import (
+    CHARACTERS_OF_STEP,
+    STEPS_OF_ELEMENT,
+    STEPS_OF_NAMED_ELEMENT,
+    Usage,
+)
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 _COUNTS = tuple(etree.XPath(f'count({path})') for path in (

@@ -4,8 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from collections.abc import Set
+from collections.abc import Iterator, Set
 from pathlib import Path
 import re
 import shlex
@@ -13,21 +12,18 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from sdf_pose_bridge.errors import AttributeInvalidError
-from sdf_pose_bridge.errors import FileReadError
-from sdf_pose_bridge.errors import ParsingError
-from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import AttributeInvalidError, FileReadError, ParsingError, Place
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.versions import convert
-from sdf_pose_bridge.sdformat.versions import Version
-from sdf_pose_bridge.sdformat.versions import version_from_text
+from sdf_pose_bridge.sdformat.versions import convert, Version, version_from_text
 from sdf_pose_bridge.sdformat.xml_file import xml_from_file
-from sdf_pose_bridge.sdformat.xml_tree import child_elements
-from sdf_pose_bridge.sdformat.xml_tree import first_child
-from sdf_pose_bridge.sdformat.xml_tree import text_of
-from sdf_pose_bridge.sdformat.xml_tree import written_tag
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import (
+    child_elements,
+    first_child,
+    text_of,
+    written_tag,
+    XmlElement,
+)
 
 _XACRO_DECLARATIONS = ('xacro:arg', 'xacro:property')
 _XACRO_EXPRESSION = re.compile(r'\$[({]')

@@ -6,27 +6,21 @@ from __future__ import annotations
 
 from array import array
 from collections import defaultdict
-from collections.abc import Mapping
-from collections.abc import Sequence
-from dataclasses import dataclass
-from dataclasses import field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.errors import ElementInvalidError
-from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import ElementInvalidError, Place
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.inertials import AutomaticInertial
-from sdf_pose_bridge.sdformat.inertials import Inertial
+from sdf_pose_bridge.sdformat.inertials import AutomaticInertial, Inertial
 from sdf_pose_bridge.sdformat.joints import JointDetails
-from sdf_pose_bridge.sdformat.poses import PoseFormat
-from sdf_pose_bridge.sdformat.poses import poses_from_texts
+from sdf_pose_bridge.sdformat.poses import PoseFormat, poses_from_texts
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.sdformat.xml_tree import path_step
 

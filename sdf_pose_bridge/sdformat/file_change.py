@@ -7,12 +7,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from sdf_pose_bridge.errors import FileWriteError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.names import shortened
-from sdf_pose_bridge.sdformat.file_replacement import RefusedError
-from sdf_pose_bridge.sdformat.file_replacement import replace_range
+from sdf_pose_bridge.errors import FileWriteError, Place
+from sdf_pose_bridge.names import printable, shortened
+from sdf_pose_bridge.sdformat.file_replacement import RefusedError, replace_range
 
 _LINES_AROUND = 3
 _LONGEST_PART = 1000

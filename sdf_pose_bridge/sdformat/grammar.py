@@ -24,16 +24,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 import enum
-from functools import cache
-from functools import cached_property
+from functools import cache, cached_property
 import math
 import re
-from typing import Any
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from sdf_pose_bridge.sdformat.specification import Choice
-from sdf_pose_bridge.sdformat.specification import CHOICES
-from sdf_pose_bridge.sdformat.specification import ELEMENTS
+from sdf_pose_bridge.sdformat.specification import Choice, CHOICES, ELEMENTS
 
 
 class ValueType(enum.Enum):

@@ -12,20 +12,18 @@ from collections.abc import Sequence
 import math
 from typing import NamedTuple
 
-from sdf_pose_bridge.errors import ElementMissingError
-from sdf_pose_bridge.errors import JointChildError
-from sdf_pose_bridge.errors import JointParentError
-from sdf_pose_bridge.errors import MimicError
-from sdf_pose_bridge.errors import ReservedNameError
+from sdf_pose_bridge.errors import (
+    ElementMissingError,
+    JointChildError,
+    JointParentError,
+    MimicError,
+    ReservedNameError,
+)
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
-from sdf_pose_bridge.sdformat.specification import Motion
+from sdf_pose_bridge.sdformat.specification import JOINT_TYPES, Motion
 from sdf_pose_bridge.sdformat.values import numbers_of_child
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of
-from sdf_pose_bridge.sdformat.xml_tree import first_child
-from sdf_pose_bridge.sdformat.xml_tree import value_of
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of, first_child, value_of, XmlElement
 
 AXIS_TAGS = ('axis', 'axis2')
 """The tags of the axes of a joint."""

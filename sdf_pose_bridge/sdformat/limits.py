@@ -13,8 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from sdf_pose_bridge.errors import LimitError
-from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import LimitError, Place
 
 
 class Limits(NamedTuple):

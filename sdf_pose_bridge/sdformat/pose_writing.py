@@ -16,23 +16,20 @@ import re
 from lxml import etree
 import numpy as np
 
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import PoseNotSetError
+from sdf_pose_bridge.errors import Place, PoseNotSetError
 from sdf_pose_bridge.geometry.formulas import degrees_from_radians
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import relative_pose
+from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.sdformat.file_change import FileChange
-from sdf_pose_bridge.sdformat.poses import pose_format_of
-from sdf_pose_bridge.sdformat.poses import pose_from_text
-from sdf_pose_bridge.sdformat.poses import PoseFormat
-from sdf_pose_bridge.sdformat.poses import PoseTextError
-from sdf_pose_bridge.sdformat.versions import Version
-from sdf_pose_bridge.sdformat.versions import version_from_text
-from sdf_pose_bridge.sdformat.xml_file import START_TAG
-from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
-from sdf_pose_bridge.sdformat.xml_tree import text_of
-from sdf_pose_bridge.sdformat.xml_tree import written_tag
+from sdf_pose_bridge.sdformat.poses import (
+    pose_format_of,
+    pose_from_text,
+    PoseFormat,
+    PoseTextError,
+)
+from sdf_pose_bridge.sdformat.versions import Version, version_from_text
+from sdf_pose_bridge.sdformat.xml_file import START_TAG, xml_from_bytes
+from sdf_pose_bridge.sdformat.xml_tree import text_of, written_tag
 
 _FIRST_WITH_POSE = Version(1, 4)
 _TEXT_AFTER_COMMENTS = re.compile(rb'(?:\s*<!--.*?-->)*([^<]*)', re.DOTALL)

@@ -21,15 +21,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
-from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
-from sdf_pose_bridge.sdformat.values import boolean_from_text
-from sdf_pose_bridge.sdformat.values import DECIMAL
-from sdf_pose_bridge.sdformat.values import is_representable
-from sdf_pose_bridge.sdformat.values import LONGEST_PLAIN
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of
-from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy, rpy_from_quaternion
+from sdf_pose_bridge.sdformat.values import (
+    boolean_from_text,
+    DECIMAL,
+    is_representable,
+    LONGEST_PLAIN,
+)
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of, WHITE_SPACE, XmlElement
 
 _SHORTEST_QUATERNION = 1e-9
 """A quaternion with a smaller norm has no meaningful direction."""

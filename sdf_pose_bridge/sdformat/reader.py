@@ -11,62 +11,63 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from itertools import chain
-from itertools import islice
+from itertools import chain, islice
 from typing import Any
 
 from lxml import etree
 
-from sdf_pose_bridge.errors import AttributeInvalidError
-from sdf_pose_bridge.errors import AttributeMissingError
-from sdf_pose_bridge.errors import DuplicateNameError
-from sdf_pose_bridge.errors import ElementIncorrectTypeError
-from sdf_pose_bridge.errors import ElementInvalidError
-from sdf_pose_bridge.errors import ReservedNameError
-from sdf_pose_bridge.names import ROOT_FRAME
-from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.names import shortened
-from sdf_pose_bridge.sdformat.elements import Elements
-from sdf_pose_bridge.sdformat.elements import ElementsBuilder
-from sdf_pose_bridge.sdformat.elements import FrameDetails
-from sdf_pose_bridge.sdformat.elements import ModelDetails
-from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
-from sdf_pose_bridge.sdformat.elements import SensorDetails
-from sdf_pose_bridge.sdformat.grammar import Definition
-from sdf_pose_bridge.sdformat.grammar import definition_of
-from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.errors import (
+    AttributeInvalidError,
+    AttributeMissingError,
+    DuplicateNameError,
+    ElementIncorrectTypeError,
+    ElementInvalidError,
+    ReservedNameError,
+)
+from sdf_pose_bridge.names import ROOT_FRAME, SEPARATOR, shortened
+from sdf_pose_bridge.sdformat.elements import (
+    Elements,
+    ElementsBuilder,
+    FrameDetails,
+    ModelDetails,
+    NO_ELEMENT,
+    SensorDetails,
+)
+from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, Kind
 from sdf_pose_bridge.sdformat.inertials import inertial_from_element
-from sdf_pose_bridge.sdformat.joints import check_children_of_joint
-from sdf_pose_bridge.sdformat.joints import joint_details_from_element
-from sdf_pose_bridge.sdformat.poses import pose_format_of
-from sdf_pose_bridge.sdformat.poses import pose_numbers_from_text
-from sdf_pose_bridge.sdformat.poses import PoseFormat
-from sdf_pose_bridge.sdformat.poses import PoseTextError
-from sdf_pose_bridge.sdformat.shapes import check_material
-from sdf_pose_bridge.sdformat.shapes import check_submesh
-from sdf_pose_bridge.sdformat.shapes import shape_of
+from sdf_pose_bridge.sdformat.joints import check_children_of_joint, joint_details_from_element
+from sdf_pose_bridge.sdformat.poses import (
+    pose_format_of,
+    pose_numbers_from_text,
+    PoseFormat,
+    PoseTextError,
+)
+from sdf_pose_bridge.sdformat.shapes import check_material, check_submesh, shape_of
 from sdf_pose_bridge.sdformat.sibling_names import SiblingNames
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.specification import CAMERA_TYPES
-from sdf_pose_bridge.sdformat.specification import URDF_TAGS
+from sdf_pose_bridge.sdformat.specification import CAMERA_TYPES, URDF_TAGS
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
-from sdf_pose_bridge.sdformat.values import boolean_from_text
-from sdf_pose_bridge.sdformat.values import choice_fault
-from sdf_pose_bridge.sdformat.values import frame_of_attribute
-from sdf_pose_bridge.sdformat.values import is_of_type
-from sdf_pose_bridge.sdformat.values import judged_value
+from sdf_pose_bridge.sdformat.values import (
+    boolean_from_text,
+    choice_fault,
+    frame_of_attribute,
+    is_of_type,
+    judged_value,
+)
 from sdf_pose_bridge.sdformat.versions import allows_scoped_names
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of
-from sdf_pose_bridge.sdformat.xml_tree import child_elements
-from sdf_pose_bridge.sdformat.xml_tree import child_value
-from sdf_pose_bridge.sdformat.xml_tree import described
-from sdf_pose_bridge.sdformat.xml_tree import first_child
-from sdf_pose_bridge.sdformat.xml_tree import is_foreign
-from sdf_pose_bridge.sdformat.xml_tree import text_of
-from sdf_pose_bridge.sdformat.xml_tree import value_of
-from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
-from sdf_pose_bridge.sdformat.xml_tree import written_tag
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import (
+    attribute_of,
+    child_elements,
+    child_value,
+    described,
+    first_child,
+    is_foreign,
+    text_of,
+    value_of,
+    WHITE_SPACE,
+    written_tag,
+    XmlElement,
+)
 
 _FRAME_ID_TAGS = ('frame_id', 'gz_frame_id', 'ignition_frame_id')
 """Elements of a sensor with the frame id of its messages; the first of them counts."""

@@ -8,9 +8,7 @@ Sources: the classes of shapes of libsdformat 14, and for masses those of gz-mat
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 import enum
 import math
 from typing import NamedTuple

@@ -13,24 +13,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.errors import ElementInvalidError
-from sdf_pose_bridge.errors import ElementMissingError
-from sdf_pose_bridge.geometry.rotations import Floats
-from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
+from sdf_pose_bridge.errors import ElementInvalidError, ElementMissingError
+from sdf_pose_bridge.geometry.rotations import Floats, matrix_from_quaternion
 from sdf_pose_bridge.sdformat.grammar import ValueType
-from sdf_pose_bridge.sdformat.shape_types import Part
-from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
-from sdf_pose_bridge.sdformat.shape_types import Solid
-from sdf_pose_bridge.sdformat.shape_types import Surface
+from sdf_pose_bridge.sdformat.shape_types import Part, SHAPE_TYPES, Solid, Surface
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.values import boolean_from_text
-from sdf_pose_bridge.sdformat.values import numbers_from_text
-from sdf_pose_bridge.sdformat.values import numbers_of_child
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of
-from sdf_pose_bridge.sdformat.xml_tree import child_elements
-from sdf_pose_bridge.sdformat.xml_tree import child_value
-from sdf_pose_bridge.sdformat.xml_tree import first_child
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.values import boolean_from_text, numbers_from_text, numbers_of_child
+from sdf_pose_bridge.sdformat.xml_tree import (
+    attribute_of,
+    child_elements,
+    child_value,
+    first_child,
+    XmlElement,
+)
 
 _GRAY = (0.7, 0.7, 0.7, 1.0)
 _UP = (0.0, 0.0, 1.0)

@@ -9,22 +9,21 @@ World and Link in libsdformat.
 
 from __future__ import annotations
 
-from itertools import chain
-from itertools import count
+from itertools import chain, count
 
-from sdf_pose_bridge.errors import AttributeInvalidError
-from sdf_pose_bridge.errors import AttributeMissingError
-from sdf_pose_bridge.errors import DuplicateNameError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import ReservedNameError
-from sdf_pose_bridge.names import is_reserved
-from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.errors import (
+    AttributeInvalidError,
+    AttributeMissingError,
+    DuplicateNameError,
+    Place,
+    ReservedNameError,
+)
+from sdf_pose_bridge.names import is_reserved, WORLD_FRAME
 from sdf_pose_bridge.sdformat.elements import ElementsBuilder
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.versions import renames_duplicates
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of, XmlElement
 
 
 class SiblingNames:

@@ -11,25 +11,16 @@ first line of a start tag over several lines.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 import copy
-from typing import Any
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import Place, SdfError
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.counted import copy_of
-from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
-from sdf_pose_bridge.sdformat.limits import Limits
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_PLACE
-from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.xml_tree import described
-from sdf_pose_bridge.sdformat.xml_tree import with_ancestors
-from sdf_pose_bridge.sdformat.xml_tree import written_tag
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS, Limits, STEPS_OF_PLACE, Usage
+from sdf_pose_bridge.sdformat.xml_tree import described, with_ancestors, written_tag, XmlElement
 
 _MOST_PLACES_REMEMBERED = 1000
 

@@ -11,12 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from sdf_pose_bridge.sdformat.grammar import Definition
-from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.grammar import Definition, Kind
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_TAGS
-from sdf_pose_bridge.sdformat.xml_tree import written_tag
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import written_tag, XmlElement
 
 _ELEMENT_HINTS = {
     'origin': 'it is from URDF; SDFormat has <pose>x y z roll pitch yaw</pose>',

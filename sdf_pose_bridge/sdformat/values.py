@@ -15,13 +15,9 @@ import re
 import sys
 
 from sdf_pose_bridge.names import ROOT_FRAME
-from sdf_pose_bridge.sdformat.grammar import Definition
-from sdf_pose_bridge.sdformat.grammar import ValueType
+from sdf_pose_bridge.sdformat.grammar import Definition, ValueType
 from sdf_pose_bridge.sdformat.specification import Choice
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of
-from sdf_pose_bridge.sdformat.xml_tree import child_value
-from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import attribute_of, child_value, WHITE_SPACE, XmlElement
 
 DECIMAL = r'(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?'
 """A decimal number without its sign."""

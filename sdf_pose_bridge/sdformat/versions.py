@@ -14,21 +14,20 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from sdf_pose_bridge.errors import ConversionError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.names import MODEL_FRAME
-from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.errors import ConversionError, Place
+from sdf_pose_bridge.names import MODEL_FRAME, SEPARATOR, WORLD_FRAME
 from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import boolean_from_text
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of
-from sdf_pose_bridge.sdformat.xml_tree import child_elements
-from sdf_pose_bridge.sdformat.xml_tree import first_child
-from sdf_pose_bridge.sdformat.xml_tree import is_foreign
-from sdf_pose_bridge.sdformat.xml_tree import text_of
-from sdf_pose_bridge.sdformat.xml_tree import value_of
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import (
+    attribute_of,
+    child_elements,
+    first_child,
+    is_foreign,
+    text_of,
+    value_of,
+    XmlElement,
+)
 
 
 class Version(NamedTuple):

@@ -11,8 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 import contextlib
 import errno
-from itertools import chain
-from itertools import islice
+from itertools import chain, islice
 import os
 import re
 import stat
@@ -22,18 +21,11 @@ from xml.parsers import expat
 from lxml import etree
 import numpy as np
 
-from sdf_pose_bridge.errors import FileReadError
-from sdf_pose_bridge.errors import PassingReadError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfWarning
+from sdf_pose_bridge.errors import FileReadError, PassingReadError, Place, SdfWarning
 from sdf_pose_bridge.names import shortened_message
 from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.xml_text import DecodedText
-from sdf_pose_bridge.sdformat.xml_text import repaired
-from sdf_pose_bridge.sdformat.xml_text import text_from_bytes
-from sdf_pose_bridge.sdformat.xml_tree import is_foreign
-from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.xml_text import DecodedText, repaired, text_from_bytes
+from sdf_pose_bridge.sdformat.xml_tree import is_foreign, WHITE_SPACE, XmlElement
 
 _PASSING = frozenset({
     errno.EAGAIN, errno.EINTR, errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.ESTALE,

@@ -24,8 +24,7 @@ import re
 import sys
 from typing import NamedTuple
 
-from sdf_pose_bridge.errors import FileReadError
-from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import FileReadError, Place
 
 _MARKS = (
     (codecs.BOM_UTF8, 'utf-8'), (codecs.BOM_UTF32_LE, 'utf-32-le'),

@@ -14,19 +14,15 @@ named by ``optical_frame_id``, or like the camera with ``_optical`` appended.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 import enum
 from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.chains import ends_from_pointers
-from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_product
-from sdf_pose_bridge.names import scoped_name
-from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
+from sdf_pose_bridge.geometry.poses import Pose, pose_product
+from sdf_pose_bridge.names import scoped_name, SEPARATOR
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT

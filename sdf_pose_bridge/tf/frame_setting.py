@@ -7,19 +7,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import PoseNotSetError
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_inverse
-from sdf_pose_bridge.geometry.poses import pose_product
+from sdf_pose_bridge.errors import Place, PoseNotSetError
+from sdf_pose_bridge.geometry.poses import Pose, pose_inverse, pose_product
 from sdf_pose_bridge.scene.comparison import names_of_moved
 from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene
-from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.tf.loaded_scene import (
+    fingerprint_of_scene,
+    loaded_scene_from_request,
+    LoadRequest,
+)
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 

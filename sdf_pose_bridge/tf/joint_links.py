@@ -13,11 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import relative_pose
+from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.tf.frame_ids import FrameNames
-from sdf_pose_bridge.tf.frame_ids import FrameNaming
+from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.joint_positions import SLIDE_SUFFIX
 

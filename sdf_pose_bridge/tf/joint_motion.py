@@ -17,21 +17,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sdf_pose_bridge.geometry.chains import ends_from_pointers
-from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.geometry.chains import poses_along_chains
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_products
-from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.geometry.poses import transformed_points
-from sdf_pose_bridge.geometry.rotations import canonical_quaternion
-from sdf_pose_bridge.geometry.rotations import Floats
+from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices, poses_along_chains
+from sdf_pose_bridge.geometry.poses import Pose, pose_products, PoseArray, transformed_points
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion, Floats
 from sdf_pose_bridge.geometry.screws import ScrewMotions
-from sdf_pose_bridge.scene.scene import Joint
-from sdf_pose_bridge.scene.scene import JointAxis
-from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
-from sdf_pose_bridge.sdformat.specification import Motion
+from sdf_pose_bridge.scene.scene import Joint, JointAxis, Scene
+from sdf_pose_bridge.sdformat.specification import JOINT_TYPES, Motion
 from sdf_pose_bridge.tf.parents import TfParents
 
 NO_DOF = -1

@@ -10,9 +10,7 @@ models around it can be left out if the rest is unambiguous. A second axis is ca
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 import dataclasses
 import enum
 from typing import NamedTuple
@@ -20,20 +18,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sdf_pose_bridge.errors import JointPositionError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.names import hint_from_names
-from sdf_pose_bridge.names import JOINT_SUFFIX
-from sdf_pose_bridge.names import quoted_names
-from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.scene.scene import Mimic
-from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.errors import JointPositionError, Place, SdfWarning
+from sdf_pose_bridge.names import hint_from_names, JOINT_SUFFIX, quoted_names, SEPARATOR
+from sdf_pose_bridge.scene.scene import Mimic, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.tf.frame_ids import FrameNames
-from sdf_pose_bridge.tf.frame_ids import FrameNaming
-from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom
-from sdf_pose_bridge.tf.joint_motion import JointMotion
+from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
+from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom, JointMotion
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 
 LARGEST_POSITION = 1e9

@@ -13,25 +13,19 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from sdf_pose_bridge.errors import PassingReadError
-from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.errors import UriLookupError
-from sdf_pose_bridge.scene.loading import load_text
-from sdf_pose_bridge.scene.loading import MissingInclude
+from sdf_pose_bridge.errors import PassingReadError, SdfError, SdfWarning, UriLookupError
+from sdf_pose_bridge.scene.loading import load_text, MissingInclude
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.include.uris import AddressError
-from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
-from sdf_pose_bridge.sdformat.include.uris import resource_finder
+from sdf_pose_bridge.sdformat.include.uris import (
+    AddressError,
+    model_file_from_directory,
+    resource_finder,
+)
 from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
-from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
-from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
+from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, xml_from_bytes
+from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
 from sdf_pose_bridge.tf.lookup import PoseLookup
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
-from sdf_pose_bridge.tf.tree import TfTree
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions, TfTree
 
 
 class DescriptionFormat(enum.Enum):

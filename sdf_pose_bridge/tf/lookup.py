@@ -7,11 +7,8 @@ from __future__ import annotations
 from functools import cached_property
 from typing import NamedTuple
 
-from sdf_pose_bridge.errors import JointPositionError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import UnknownFrameError
-from sdf_pose_bridge.geometry.poses import canonical_relative_pose
-from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.errors import JointPositionError, Place, UnknownFrameError
+from sdf_pose_bridge.geometry.poses import canonical_relative_pose, Pose
 from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.joint_motion import NO_DOF

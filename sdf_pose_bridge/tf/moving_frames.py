@@ -9,15 +9,15 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sdf_pose_bridge.geometry.chains import ends_from_pointers
-from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.geometry.poses import canonical_relative_poses
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_products
-from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.geometry.poses import relative_poses
-from sdf_pose_bridge.tf.joint_motion import JointMotion
-from sdf_pose_bridge.tf.joint_motion import NO_DOF
+from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
+from sdf_pose_bridge.geometry.poses import (
+    canonical_relative_poses,
+    Pose,
+    pose_products,
+    PoseArray,
+    relative_poses,
+)
+from sdf_pose_bridge.tf.joint_motion import JointMotion, NO_DOF
 from sdf_pose_bridge.tf.parents import NO_PARENT
 
 

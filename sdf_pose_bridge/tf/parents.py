@@ -14,17 +14,13 @@ has no parent.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Container
-from collections.abc import Iterable
-from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.scene.scene import Joint
-from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 
 ROOT_IS_PARENT = -1

@@ -4,45 +4,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sdf_pose_bridge.errors import DuplicateNameError
-from sdf_pose_bridge.errors import ElementInvalidError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.errors import UnknownFrameError
-from sdf_pose_bridge.geometry.chains import ends_from_pointers
-from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.geometry.poses import canonical_relative_poses
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.names import hint_from_names
-from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.errors import (
+    DuplicateNameError,
+    ElementInvalidError,
+    Place,
+    SdfWarning,
+    UnknownFrameError,
+)
+from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
+from sdf_pose_bridge.geometry.poses import canonical_relative_poses, Pose, PoseArray
+from sdf_pose_bridge.names import hint_from_names, WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.tf.anchors import AnchorModels
-from sdf_pose_bridge.tf.anchors import AnchorPatterns
-from sdf_pose_bridge.tf.anchors import detached_bodies
-from sdf_pose_bridge.tf.frame_ids import FrameNames
-from sdf_pose_bridge.tf.frame_ids import FrameNaming
-from sdf_pose_bridge.tf.frame_ids import optical_frames_of_cameras
-from sdf_pose_bridge.tf.frame_ids import with_ids_of_sensors
+from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns, detached_bodies
+from sdf_pose_bridge.tf.frame_ids import (
+    FrameNames,
+    FrameNaming,
+    optical_frames_of_cameras,
+    with_ids_of_sensors,
+)
 from sdf_pose_bridge.tf.joint_links import joint_links_from_motion
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.moving_frames import MovingFrames
-from sdf_pose_bridge.tf.parents import NO_PARENT
-from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
-from sdf_pose_bridge.tf.parents import tf_parents_from_scene
-from sdf_pose_bridge.tf.parents import TfParents
+from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT, tf_parents_from_scene, TfParents
 
 DEFAULT_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.FRAME, Kind.SENSOR})
 """The kinds of element that become frames unless the options say otherwise."""

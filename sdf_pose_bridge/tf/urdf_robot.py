@@ -12,38 +12,25 @@ one each.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import count
 from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.errors import UrdfNotMadeError
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_inverse
-from sdf_pose_bridge.geometry.poses import pose_product
-from sdf_pose_bridge.geometry.poses import relative_pose
+from sdf_pose_bridge.errors import Place, SdfWarning, UrdfNotMadeError
+from sdf_pose_bridge.geometry.poses import Pose, pose_inverse, pose_product, relative_pose
 from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.scene.scene import JointAxis
-from sdf_pose_bridge.scene.scene import Mimic
-from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.scene.scene import JointAxis, Mimic, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
-from sdf_pose_bridge.tf.joint_links import is_same_place
-from sdf_pose_bridge.tf.joint_links import LINK_SUFFIX
+from sdf_pose_bridge.tf.joint_links import is_same_place, LINK_SUFFIX
 from sdf_pose_bridge.tf.joint_motion import dofs_from_joint
 from sdf_pose_bridge.tf.joint_positions import SLIDE_SUFFIX
-from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
-from sdf_pose_bridge.tf.parents import tf_parents_from_scene
-from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
-from sdf_pose_bridge.tf.tree import elements_in_model
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT, tf_parents_from_scene
+from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, elements_in_model, tf_tree_from_scene, TfOptions
 
 NO_LIMIT = 1e16
 """The usual value in URDF and Gazebo for no limit."""

@@ -5,18 +5,14 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection
-from collections.abc import Iterable
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Sequence
 import os
 from typing import NamedTuple
 
 from lxml import etree
 
 from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.geometry.poses import canonical_relative_poses
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_product
+from sdf_pose_bridge.geometry.poses import canonical_relative_poses, Pose, pose_product
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.problems import Problems
@@ -24,17 +20,12 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.inertials import MOMENTS
-from sdf_pose_bridge.sdformat.shape_types import Part
-from sdf_pose_bridge.sdformat.shape_types import Primitive
+from sdf_pose_bridge.sdformat.shape_types import Part, Primitive
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.sdformat.urdf.values import text_from_numbers
 from sdf_pose_bridge.tf.frame_ids import FrameNames
-from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
-from sdf_pose_bridge.tf.tree import TfOptions
-from sdf_pose_bridge.tf.urdf_robot import NO_LIMIT
-from sdf_pose_bridge.tf.urdf_robot import robot_from_scene
-from sdf_pose_bridge.tf.urdf_robot import UrdfJoint
-from sdf_pose_bridge.tf.urdf_robot import UrdfRobot
+from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, TfOptions
+from sdf_pose_bridge.tf.urdf_robot import NO_LIMIT, robot_from_scene, UrdfJoint, UrdfRobot
 
 _DIGITS = 15
 """Number of digits, and of decimals of poses, so that rounding errors are not written."""

@@ -10,26 +10,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_product
+from sdf_pose_bridge.errors import SdfError, SdfWarning
+from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.include.uris import resource_finder
-from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
+from sdf_pose_bridge.sdformat.include.uris import resource_finder, ResourceFinder
 from sdf_pose_bridge.sdformat.shape_types import Primitive
 from sdf_pose_bridge.sdformat.shapes import Shape
-from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
-from sdf_pose_bridge.tf.loaded_scene import scene_from_text
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest, scene_from_text
 from sdf_pose_bridge.tf.parents import NO_PARENT
-from sdf_pose_bridge.tf.tree import elements_in_model
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfTree
+from sdf_pose_bridge.tf.tree import elements_in_model, tf_tree_from_scene, TfTree
 
 MOST_MARKERS = 10_000
 """Largest number of markers. Sending these takes a fifth of a second, in one piece."""

@@ -6,8 +6,7 @@ import shlex
 import subprocess
 from types import SimpleNamespace
 
-from command_line import COMMAND
-from command_line import ENVIRONMENT
+from command_line import COMMAND, ENVIRONMENT
 import pytest
 
 from sdf_pose_bridge.cli.main import main

@@ -5,8 +5,7 @@
 import os
 import subprocess
 
-from command_line import COMMAND
-from command_line import ENVIRONMENT
+from command_line import COMMAND, ENVIRONMENT
 
 
 def test_check_prints_errors_in_the_order_of_the_file(sdf_pose):

@@ -10,9 +10,7 @@ import pytest
 
 from sdf_pose_bridge.cli import convert as convert_command
 from sdf_pose_bridge.cli.main import main
-from sdf_pose_bridge.geometry.formats import converted_poses
-from sdf_pose_bridge.geometry.formats import POSE_FORMATS
-from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
+from sdf_pose_bridge.geometry.formats import converted_poses, POSE_FORMATS, ROTATION_FORMATS
 
 
 @pytest.fixture

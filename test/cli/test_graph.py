@@ -8,8 +8,7 @@ import shutil
 import pytest
 from sdf_texts import model_file
 
-from sdf_pose_bridge import Kind
-from sdf_pose_bridge import load_text
+from sdf_pose_bridge import Kind, load_text
 from sdf_pose_bridge.cli.graph import dot_from_scene
 
 ARM = """

@@ -6,13 +6,14 @@ import argparse
 
 import pytest
 
-from sdf_pose_bridge import Kind
-from sdf_pose_bridge import SdfError
-from sdf_pose_bridge.cli.loading import add_file_arguments
-from sdf_pose_bridge.cli.loading import add_frame_arguments
-from sdf_pose_bridge.cli.loading import load_file
-from sdf_pose_bridge.cli.loading import scene_of
-from sdf_pose_bridge.cli.loading import tf_options_from_arguments
+from sdf_pose_bridge import Kind, SdfError
+from sdf_pose_bridge.cli.loading import (
+    add_file_arguments,
+    add_frame_arguments,
+    load_file,
+    scene_of,
+    tf_options_from_arguments,
+)
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 

@@ -8,8 +8,7 @@ import shlex
 import subprocess
 import xml.etree.ElementTree as ET
 
-from command_line import COMMAND
-from command_line import ENVIRONMENT
+from command_line import COMMAND, ENVIRONMENT
 import pytest
 from sdf_texts import model_file
 

@@ -4,9 +4,7 @@
 
 import math
 
-from sdf_pose_bridge.cli.printing import DEGREES
-from sdf_pose_bridge.cli.printing import MILLIMETRES
-from sdf_pose_bridge.cli.printing import Units
+from sdf_pose_bridge.cli.printing import DEGREES, MILLIMETRES, Units
 from sdf_pose_bridge.geometry.poses import Pose
 
 

@@ -6,8 +6,7 @@ import os
 import pty
 import subprocess
 
-from command_line import COMMAND
-from command_line import ENVIRONMENT
+from command_line import COMMAND, ENVIRONMENT
 import pytest
 
 ARM = """<sdf version="1.10">

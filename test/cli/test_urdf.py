@@ -3,8 +3,7 @@
 """``sdf_pose urdf``: what is written where, and what is wrong."""
 
 import pytest
-from sdf_texts import model_file
-from sdf_texts import world_file
+from sdf_texts import model_file, world_file
 
 ARM = model_file(
     '<link name="base"><visual name="v"><geometry><plane/></geometry></visual></link>'

@@ -16,15 +16,10 @@ import shutil
 import sys
 import time
 
-from differential.batches import compare_scenes
-from differential.batches import Tally
-from differential.batches import write_scene
+from differential.batches import compare_scenes, Tally, write_scene
 from differential.minimal import minimal_scene
-from differential.reference import built_reference
-from differential.reference import Reference
-from differential.reference import ReferenceMissingError
-from differential.scene_parts import Feature
-from differential.scene_parts import features_of_release
+from differential.reference import built_reference, Reference, ReferenceMissingError
+from differential.scene_parts import Feature, features_of_release
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / 'build' / 'differential'

@@ -6,31 +6,23 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 import shutil
 import subprocess
 import tempfile
 
-from hypothesis import given
-from hypothesis import HealthCheck
-from hypothesis import Phase
-from hypothesis import seed
-from hypothesis import settings
+from hypothesis import given, HealthCheck, Phase, seed, settings
 
-from differential.comparison import Difference
-from differential.comparison import difference_between
-from differential.comparison import has_wrong_moments
-from differential.comparison import is_same_pose
-from differential.comparison import own_answer
-from differential.reference import Answer
-from differential.reference import Key
-from differential.reference import PoseValues
-from differential.reference import Reference
-from differential.scene_parts import Feature
-from differential.scene_parts import SCENE
-from differential.scene_parts import SceneFiles
+from differential.comparison import (
+    Difference,
+    difference_between,
+    has_wrong_moments,
+    is_same_pose,
+    own_answer,
+)
+from differential.reference import Answer, Key, PoseValues, Reference
+from differential.scene_parts import Feature, SCENE, SceneFiles
 from differential.scene_strategy import scenes
 from differential.scene_values import ODD_VALUES
 

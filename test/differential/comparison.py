@@ -8,17 +8,10 @@ from dataclasses import dataclass
 import math
 from pathlib import Path
 
-from differential.known_defects import JOINT_SENSOR
-from differential.known_defects import MERGED_PLACEMENT
-from differential.known_defects import PROJECTOR
-from differential.reference import Answer
-from differential.reference import AxisValues
-from differential.reference import CRASH
-from differential.reference import JointValues
-from differential.reference import PoseValues
+from differential.known_defects import JOINT_SENSOR, MERGED_PLACEMENT, PROJECTOR
+from differential.reference import Answer, AxisValues, CRASH, JointValues, PoseValues
 import sdf_pose_bridge
-from sdf_pose_bridge.scene.scene import Joint
-from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
 

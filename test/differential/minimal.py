@@ -4,8 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import islice
 from pathlib import Path
 import tempfile
@@ -13,9 +12,7 @@ from typing import TypeAlias
 from xml.etree import ElementTree
 
 from differential.batches import write_scene
-from differential.comparison import Difference
-from differential.comparison import difference_between
-from differential.comparison import own_answer
+from differential.comparison import Difference, difference_between, own_answer
 from differential.reference import Reference
 from differential.scene_parts import SceneFiles
 

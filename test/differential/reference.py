@@ -5,15 +5,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
-from dataclasses import field
+from dataclasses import dataclass, field
 import json
 from pathlib import Path
 import shutil
 import subprocess
-from typing import Any
-from typing import NamedTuple
-from typing import TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 SOURCE = Path(__file__).with_name('print_poses.cpp')
 RELEASES = ('sdformat14', 'sdformat15', 'sdformat', 'sdformat13', 'sdformat12')

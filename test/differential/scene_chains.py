@@ -13,8 +13,7 @@ from random import Random
 from typing import NamedTuple
 from xml.etree import ElementTree
 
-from differential.scene_parts import SCENE
-from differential.scene_parts import SceneFiles
+from differential.scene_parts import SCENE, SceneFiles
 from differential.scene_values import ODD_VALUES
 
 Element = ElementTree.Element

@@ -10,9 +10,7 @@ from xml.etree import ElementTree
 from hypothesis import strategies as st
 
 from differential.scene_parts import Feature
-from differential.scene_text import Draw
-from differential.scene_text import NAMES
-from differential.scene_text import new_pose
+from differential.scene_text import Draw, NAMES, new_pose
 
 AXES = {
     'fixed': 0, 'ball': 0, 'revolute': 1, 'continuous': 1, 'prismatic': 1, 'screw': 1,

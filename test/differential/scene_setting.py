@@ -10,8 +10,7 @@ from pathlib import Path
 from random import Random
 import tempfile
 
-from differential.scene_parts import SCENE
-from differential.scene_parts import SceneFiles
+from differential.scene_parts import SCENE, SceneFiles
 import sdf_pose_bridge
 from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.scene import Scene

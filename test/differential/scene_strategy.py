@@ -18,28 +18,22 @@ from hypothesis import strategies as st
 
 from differential.scene_chains import chain_scene
 from differential.scene_defects import add_defect
-from differential.scene_links import joint_body
-from differential.scene_links import LinkBuilder
-from differential.scene_links import UNKNOWN_FRAME
-from differential.scene_parts import Built
-from differential.scene_parts import Feature
-from differential.scene_parts import first_canonical_body
-from differential.scene_parts import MODEL
-from differential.scene_parts import OWN
-from differential.scene_parts import SCENE
-from differential.scene_parts import SceneFiles
-from differential.scene_parts import Visible
-from differential.scene_parts import WORLD
+from differential.scene_links import joint_body, LinkBuilder, UNKNOWN_FRAME
+from differential.scene_parts import (
+    Built,
+    Feature,
+    first_canonical_body,
+    MODEL,
+    OWN,
+    SCENE,
+    SceneFiles,
+    Visible,
+    WORLD,
+)
 from differential.scene_setting import with_pose_set
-from differential.scene_text import BOOLEANS
-from differential.scene_text import Draw
-from differential.scene_text import new_name
-from differential.scene_text import new_pose
-from differential.scene_text import SEEDS
-from differential.scene_urdf import RobotBuilder
-from differential.scene_urdf import text_from_robot
-from differential.scene_values import odd_scene
-from differential.scene_values import ODD_VALUES
+from differential.scene_text import BOOLEANS, Draw, new_name, new_pose, SEEDS
+from differential.scene_urdf import RobotBuilder, text_from_robot
+from differential.scene_values import odd_scene, ODD_VALUES
 from differential.scene_xml import with_oddities
 
 

@@ -8,19 +8,17 @@ from random import Random
 from typing import Any
 from xml.etree import ElementTree
 
-from differential.scene_parts import Built
-from differential.scene_parts import MODEL
-from differential.scene_parts import OWN
-from differential.scene_parts import Visible
-from differential.scene_parts import WORLD
-from differential.scene_text import Draw
-from differential.scene_text import LENGTHS
-from differential.scene_text import new_name
-from differential.scene_text import new_pose
-from differential.scene_text import number_from
-from differential.scene_text import SEEDS
-from differential.scene_text import text_from_number
-from differential.scene_text import TURNS
+from differential.scene_parts import Built, MODEL, OWN, Visible, WORLD
+from differential.scene_text import (
+    Draw,
+    LENGTHS,
+    new_name,
+    new_pose,
+    number_from,
+    SEEDS,
+    text_from_number,
+    TURNS,
+)
 
 JOINT_TYPES = ('fixed', 'fixed', 'fixed', 'revolute', 'continuous', 'prismatic')
 MOVED = ('sensor', 'sensor', 'light', 'projector')

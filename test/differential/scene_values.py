@@ -12,11 +12,8 @@ from functools import cache
 from random import Random
 from xml.etree import ElementTree
 
-from differential.scene_parts import Feature
-from differential.scene_parts import SceneFiles
-from sdf_pose_bridge.sdformat.grammar import Definition
-from sdf_pose_bridge.sdformat.grammar import definition_of
-from sdf_pose_bridge.sdformat.grammar import ValueType
+from differential.scene_parts import Feature, SceneFiles
+from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, ValueType
 
 ODD_VALUES = 'odd-values'
 """The trait of a scene that nobody can say more of than libsdformat."""

@@ -20,17 +20,12 @@ import time
 import atheris
 
 with atheris.instrument_imports(include=['sdf_pose_bridge']):
-    from sdf_pose_bridge import load
-    from sdf_pose_bridge import load_text
-    from sdf_pose_bridge import SdfError
+    from sdf_pose_bridge import load, load_text, SdfError
     import sdf_pose_bridge.sdformat.include.expansion  # noqa: F401  # else imported at first use
-    from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-    from sdf_pose_bridge.tf.tree import TfOptions
+    from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 from differential.scene_strategy import scenes
-from hypothesis import given
-from hypothesis import HealthCheck
-from hypothesis import settings
+from hypothesis import given, HealthCheck, settings
 
 from fuzzing.hostile_files import files_from_choices
 

@@ -8,8 +8,7 @@ They are drawn from a grammar that knows what may stand where, and breaks that n
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 Choose = Callable[[Sequence[str]], str]
 """Returns one of some values; the first one when nothing is left to draw from."""

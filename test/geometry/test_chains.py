@@ -9,9 +9,11 @@ pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sdf_pose_bridge.geometry.chains import cycles_from_pointers
-from sdf_pose_bridge.geometry.chains import ends_from_pointers
-from sdf_pose_bridge.geometry.chains import poses_along_chains
+from sdf_pose_bridge.geometry.chains import (
+    cycles_from_pointers,
+    ends_from_pointers,
+    poses_along_chains,
+)
 from sdf_pose_bridge.geometry.poses import Pose
 
 POINTERS = st.integers(1, 40).flatmap(

@@ -11,10 +11,8 @@ pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sdf_pose_bridge.geometry.formats import converted_rotation
-from sdf_pose_bridge.geometry.formats import Given
-from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
-from sdf_pose_bridge.geometry.rotations import RotationError
+from sdf_pose_bridge.geometry.formats import converted_rotation, Given
+from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy, RotationError
 
 NO_RPY = (math.nan, math.nan, math.nan)
 NO_QUATERNION = (0.0, 0.0, 0.0, 0.0)

@@ -9,22 +9,20 @@ import re
 
 import numpy as np
 import pytest
-from rotation_sets import half_turns
-from rotation_sets import largest_angle
-from rotation_sets import lock_rpy
-from rotation_sets import MAX_ANGLE
-from rotation_sets import random_quaternions
+from rotation_sets import half_turns, largest_angle, lock_rpy, MAX_ANGLE, random_quaternions
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sdf_pose_bridge.geometry.formats import converted_poses
-from sdf_pose_bridge.geometry.formats import converted_rotations
-from sdf_pose_bridge.geometry.formats import POSE_FORMATS
-from sdf_pose_bridge.geometry.formats import PoseFormatError
-from sdf_pose_bridge.geometry.formats import ROTATION_FORMATS
-from sdf_pose_bridge.geometry.formats import without_rounding_errors
+from sdf_pose_bridge.geometry.formats import (
+    converted_poses,
+    converted_rotations,
+    POSE_FORMATS,
+    PoseFormatError,
+    ROTATION_FORMATS,
+    without_rounding_errors,
+)
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
 
 LENGTHS = {

@@ -11,8 +11,7 @@ pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sdf_pose_bridge.geometry import floats
-from sdf_pose_bridge.geometry import formulas
+from sdf_pose_bridge.geometry import floats, formulas
 from sdf_pose_bridge.geometry.formulas import InvalidRotationError
 
 EYE = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))

@@ -7,20 +7,21 @@ import numpy as np
 import pytest
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
-from hypothesis import given
-from hypothesis import settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sdf_pose_bridge import Pose
-from sdf_pose_bridge.geometry.poses import canonical_poses
-from sdf_pose_bridge.geometry.poses import canonical_relative_pose
-from sdf_pose_bridge.geometry.poses import canonical_relative_poses
-from sdf_pose_bridge.geometry.poses import pose_inverse
-from sdf_pose_bridge.geometry.poses import pose_product
-from sdf_pose_bridge.geometry.poses import pose_products
-from sdf_pose_bridge.geometry.poses import relative_pose
-from sdf_pose_bridge.geometry.poses import relative_poses
-from sdf_pose_bridge.geometry.poses import transformed_points
+from sdf_pose_bridge.geometry.poses import (
+    canonical_poses,
+    canonical_relative_pose,
+    canonical_relative_poses,
+    pose_inverse,
+    pose_product,
+    pose_products,
+    relative_pose,
+    relative_poses,
+    transformed_points,
+)
 
 NUMBERS = st.floats(-100.0, 100.0, allow_subnormal=False)
 QUATERNIONS = st.tuples(*[st.floats(-1.0, 1.0)] * 4).filter(

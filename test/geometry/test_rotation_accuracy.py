@@ -5,18 +5,20 @@
 import math
 
 import pytest
-from rotation_sets import exact_angle
-from rotation_sets import exact_matrix
-from rotation_sets import exact_norm
-from rotation_sets import exact_quaternion
-from rotation_sets import extended_quaternions
-from rotation_sets import half_turns
-from rotation_sets import HAS_LONG_DOUBLE
-from rotation_sets import largest_angle
-from rotation_sets import MAX_ANGLE
-from rotation_sets import random_quaternions
-from rotation_sets import random_rpy
-from rotation_sets import RPY_SETS
+from rotation_sets import (
+    exact_angle,
+    exact_matrix,
+    exact_norm,
+    exact_quaternion,
+    extended_quaternions,
+    half_turns,
+    HAS_LONG_DOUBLE,
+    largest_angle,
+    MAX_ANGLE,
+    random_quaternions,
+    random_rpy,
+    RPY_SETS,
+)
 from sizes import size
 
 from sdf_pose_bridge.geometry import rotations

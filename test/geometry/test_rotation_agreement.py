@@ -7,13 +7,15 @@ import warnings
 
 import numpy as np
 import pytest
-from rotation_sets import half_turns
-from rotation_sets import large_rpy
-from rotation_sets import largest_angle
-from rotation_sets import lock_rpy
-from rotation_sets import random_quaternions
-from rotation_sets import random_rpy
-from rotation_sets import tiny_rpy
+from rotation_sets import (
+    half_turns,
+    large_rpy,
+    largest_angle,
+    lock_rpy,
+    random_quaternions,
+    random_rpy,
+    tiny_rpy,
+)
 
 from sdf_pose_bridge.geometry import rotations
 from sdf_pose_bridge.geometry.poses import pose_products

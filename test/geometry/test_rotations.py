@@ -6,14 +6,16 @@ import math
 
 import numpy as np
 import pytest
-from rotation_sets import exact_angle
-from rotation_sets import exact_quaternion
-from rotation_sets import half_turns
-from rotation_sets import largest_angle
-from rotation_sets import lock_rpy
-from rotation_sets import MAX_ANGLE
-from rotation_sets import random_quaternions
-from rotation_sets import random_rpy
+from rotation_sets import (
+    exact_angle,
+    exact_quaternion,
+    half_turns,
+    largest_angle,
+    lock_rpy,
+    MAX_ANGLE,
+    random_quaternions,
+    random_rpy,
+)
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given

@@ -3,8 +3,7 @@
 """Screw motions, against exponentials of matrices."""
 
 from joint_trees import exponential
-from matrices import assert_same_pose
-from matrices import matrix_from_pose
+from matrices import assert_same_pose, matrix_from_pose
 import numpy as np
 import pytest
 
@@ -12,8 +11,7 @@ pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sdf_pose_bridge.geometry.rotations import canonical_quaternion
-from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion, quaternion_from_rpy
 from sdf_pose_bridge.geometry.screws import ScrewMotions
 
 NUMBERS = st.floats(-3.0, 3.0)

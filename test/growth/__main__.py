@@ -12,12 +12,10 @@ worst of them as rows of the table.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
-from itertools import combinations
-from itertools import pairwise
+from itertools import combinations, pairwise
 import math
 import os
 from pathlib import Path
@@ -27,14 +25,16 @@ import sys
 import tempfile
 from typing import NamedTuple
 
-from growth.families import changed_contents
-from growth.families import CONTENTS
-from growth.families import FAMILIES
-from growth.families import Files
-from growth.families import included_contents
-from growth.families import Link
-from growth.families import merged_contents
-from growth.families import model
+from growth.families import (
+    changed_contents,
+    CONTENTS,
+    FAMILIES,
+    Files,
+    included_contents,
+    Link,
+    merged_contents,
+    model,
+)
 
 WIDTH = 56
 """Of the column of names."""

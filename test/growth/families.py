@@ -8,8 +8,7 @@ A new construct gets a row of the table by one more function here.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 

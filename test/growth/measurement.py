@@ -41,14 +41,11 @@ def peak_bytes() -> int:
 
 def outcome_of_load(path: str) -> str:
     """Load a file as the node does; return the codes of its errors, or its size."""
-    from sdf_pose_bridge import load
-    from sdf_pose_bridge import SdfError
+    from sdf_pose_bridge import load, SdfError
     from sdf_pose_bridge.ros.cdr import tf_message
     from sdf_pose_bridge.tf.joint_positions import JointPositions
     from sdf_pose_bridge.tf.lookup import PoseLookup
-    from sdf_pose_bridge.tf.tree import FrameNames
-    from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-    from sdf_pose_bridge.tf.tree import TfOptions
+    from sdf_pose_bridge.tf.tree import FrameNames, tf_tree_from_scene, TfOptions
     try:
         scene = load(path)
         tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))

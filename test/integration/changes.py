@@ -11,16 +11,14 @@ from pathlib import Path
 import time
 
 from bridge_process import SECONDS
-from diagnostic_msgs.msg import DiagnosticArray
-from diagnostic_msgs.msg import DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from listener import latched
 from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
 from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 
-from sdf_pose_bridge_interfaces.srv import ConvertRotation
-from sdf_pose_bridge_interfaces.srv import LookupPose
+from sdf_pose_bridge_interfaces.srv import ConvertRotation, LookupPose
 
 BRIDGE = '/sdf_pose_bridge'
 

@@ -8,8 +8,7 @@ It is a program because the launch service needs the main thread and its signals
 
 import sys
 
-from launch import LaunchDescription
-from launch import LaunchService
+from launch import LaunchDescription, LaunchService
 from launch.actions import IncludeLaunchDescription
 from launch.launch_description_sources import AnyLaunchDescriptionSource
 

@@ -5,15 +5,11 @@
 import time
 
 from bridge_process import SECONDS
-from geometry_msgs.msg import PoseStamped
-from geometry_msgs.msg import TransformStamped
+from geometry_msgs.msg import PoseStamped, TransformStamped
 import rclpy
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.qos import DurabilityPolicy
-from rclpy.qos import qos_profile_parameters
-from rclpy.qos import QoSProfile
-from rclpy.qos import ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, qos_profile_parameters, QoSProfile, ReliabilityPolicy
 from tf2_msgs.msg import TFMessage
 
 LOST_S = 2.0

@@ -6,27 +6,25 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from changes import BRIDGE
-from changes import last_x
-from changes import listen_to_tf
-from changes import Monitor
-from changes import reload
-from changes import replace
-from changes import set_parameters
-from changes import wait_for_x
-from changes import world
+from changes import (
+    BRIDGE,
+    last_x,
+    listen_to_tf,
+    Monitor,
+    reload,
+    replace,
+    set_parameters,
+    wait_for_x,
+    world,
+)
 from diagnostic_msgs.msg import DiagnosticStatus
-from rcl_interfaces.msg import ParameterType
-from rcl_interfaces.msg import ParameterValue
-from rcl_interfaces.srv import GetParameters
-from rcl_interfaces.srv import SetParameters
-from rcl_interfaces.srv import SetParametersAtomically
+from rcl_interfaces.msg import ParameterType, ParameterValue
+from rcl_interfaces.srv import GetParameters, SetParameters, SetParametersAtomically
 from rclpy.parameter import Parameter
 from slow_file import SlowFile
 from std_srvs.srv import Trigger
 
-from sdf_pose_bridge_interfaces.srv import ConvertRotation
-from sdf_pose_bridge_interfaces.srv import LookupPose
+from sdf_pose_bridge_interfaces.srv import ConvertRotation, LookupPose
 
 
 @pytest.fixture(name='slow')

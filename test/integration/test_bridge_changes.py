@@ -9,21 +9,21 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from changes import last_x
-from changes import listen_to_tf
-from changes import Monitor
-from changes import reload
-from changes import replace
-from changes import set_parameters
-from changes import wait_for_x
-from changes import world
+from changes import (
+    last_x,
+    listen_to_tf,
+    Monitor,
+    reload,
+    replace,
+    set_parameters,
+    wait_for_x,
+    world,
+)
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import TransformStamped
 from listener import latched
 from rcl_interfaces.msg import Parameter
-from rcl_interfaces.srv import GetParameters
-from rcl_interfaces.srv import ListParameters
-from rcl_interfaces.srv import SetParameters
+from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters
 from sizes import size
 from tf2_msgs.msg import TFMessage
 

@@ -7,8 +7,7 @@ What is expected is worked out here, from the numbers in the file, with matrices
 for TF parents; nothing of the package takes part.
 """
 
-from matrices import assert_same_pose
-from matrices import matrix_from_degrees
+from matrices import assert_same_pose, matrix_from_degrees
 import numpy as np
 import pytest
 

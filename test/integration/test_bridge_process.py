@@ -12,13 +12,11 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from bridge_process import LoggedProcess
 from builtin_interfaces.msg import Time
-from changes import Monitor
-from changes import reload
+from changes import Monitor, reload
 from rosgraph_msgs.msg import Clock
 from slow_file import SlowFile
 
-from sdf_pose_bridge.ros.middleware import PROFILES
-from sdf_pose_bridge.ros.middleware import VARIABLES
+from sdf_pose_bridge.ros.middleware import PROFILES, VARIABLES
 
 PROFILE = PROFILES[os.environ['ROS_DISTRO']]
 (OTHER_VARIABLE,) = set(VARIABLES) - {PROFILE.variable}

@@ -9,24 +9,22 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from bridge_process import STARTED
-from changes import BRIDGE
-from changes import last_x
-from changes import listen_to_tf
-from changes import Monitor
-from changes import reload
-from changes import replace
-from changes import set_parameters
-from changes import wait_for_x
-from changes import world
+from changes import (
+    BRIDGE,
+    last_x,
+    listen_to_tf,
+    Monitor,
+    reload,
+    replace,
+    set_parameters,
+    wait_for_x,
+    world,
+)
 from diagnostic_msgs.msg import DiagnosticStatus
-from geometry_msgs.msg import PoseStamped
-from geometry_msgs.msg import TransformStamped
+from geometry_msgs.msg import PoseStamped, TransformStamped
 from listener import latched
-from rcl_interfaces.msg import Parameter
-from rcl_interfaces.msg import ParameterType
-from rcl_interfaces.msg import ParameterValue
-from rcl_interfaces.srv import SetParameters
-from rcl_interfaces.srv import SetParametersAtomically
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from slow_file import SlowFile
 
 INCLUDING = """<sdf version="1.10"><world name="w">

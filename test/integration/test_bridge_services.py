@@ -12,9 +12,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from changes import world
 from sizes import size
 
-from sdf_pose_bridge_interfaces.srv import ConvertPoses
-from sdf_pose_bridge_interfaces.srv import ConvertRotation
-from sdf_pose_bridge_interfaces.srv import LookupPose
+from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose
 
 ROTATION = '/sdf_pose_bridge/convert_rotation'
 POSES = '/sdf_pose_bridge/convert_poses'

@@ -8,16 +8,12 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from changes import BRIDGE
-from changes import listen_to_tf
-from changes import set_parameters
-from changes import wait_for_x
+from changes import BRIDGE, listen_to_tf, set_parameters, wait_for_x
 from geometry_msgs.msg import PoseStamped
 from joint_publisher import JointPublisher
 
 from sdf_pose_bridge import load
-from sdf_pose_bridge_interfaces.srv import LookupPose
-from sdf_pose_bridge_interfaces.srv import SetPose
+from sdf_pose_bridge_interfaces.srv import LookupPose, SetPose
 
 ARM = """<sdf version="1.11"><world name="w"><model name="arm"><static>false</static>
 <link name="base"/><link name="tool"><pose>1 0 0 0 0 0</pose></link>

@@ -2,16 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """``~/visuals`` of a running bridge, received by another process."""
 
-from changes import BRIDGE
-from changes import reload
-from changes import replace
+from changes import BRIDGE, reload, replace
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from listener import latched
-from visualization_msgs.msg import Marker
-from visualization_msgs.msg import MarkerArray
+from visualization_msgs.msg import Marker, MarkerArray
 
 
 def crate(*visuals):

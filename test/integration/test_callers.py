@@ -9,28 +9,23 @@ import sys
 import pytest
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
-from hypothesis import given
-from hypothesis import settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from bridge_process import LoggedProcess
-from changes import BRIDGE
-from changes import reload
-from changes import Waiting
-from changes import world
-from geometry_msgs.msg import Quaternion
-from geometry_msgs.msg import Vector3
-from rcl_interfaces.msg import Parameter
-from rcl_interfaces.msg import ParameterType
-from rcl_interfaces.msg import ParameterValue
-from rcl_interfaces.srv import DescribeParameters
-from rcl_interfaces.srv import GetParameters
-from rcl_interfaces.srv import GetParameterTypes
-from rcl_interfaces.srv import ListParameters
-from rcl_interfaces.srv import SetParameters
-from rcl_interfaces.srv import SetParametersAtomically
+from changes import BRIDGE, reload, Waiting, world
+from geometry_msgs.msg import Quaternion, Vector3
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import (
+    DescribeParameters,
+    GetParameters,
+    GetParameterTypes,
+    ListParameters,
+    SetParameters,
+    SetParametersAtomically,
+)
 from rclpy.qos import qos_profile_parameters
 from sizes import size
 from slow_file import SlowFile
@@ -38,9 +33,7 @@ from std_srvs.srv import Trigger
 
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
-from sdf_pose_bridge_interfaces.srv import ConvertPoses
-from sdf_pose_bridge_interfaces.srv import ConvertRotation
-from sdf_pose_bridge_interfaces.srv import LookupPose
+from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose
 
 LONG_NAME = 'abcdefghijklmnopqrstuvwxyz' * 7
 CALLS = size(200, 100_000)

@@ -19,8 +19,7 @@ EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
 @pytest.fixture(scope='module')
 def cpp_client(tmp_path_factory):
     """The command of the client in C++, which is compiled here."""
-    from ament_index_python.packages import get_package_prefix
-    from ament_index_python.packages import PackageNotFoundError
+    from ament_index_python.packages import get_package_prefix, PackageNotFoundError
     try:
         get_package_prefix('rclcpp')
     except PackageNotFoundError:

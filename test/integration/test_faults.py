@@ -15,18 +15,9 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from bridge_process import LoggedProcess
-from bridge_process import SECONDS
-from bridge_process import STARTED
+from bridge_process import LoggedProcess, SECONDS, STARTED
 from builtin_interfaces.msg import Time
-from changes import BRIDGE
-from changes import listen_to_tf
-from changes import Monitor
-from changes import reload
-from changes import replace
-from changes import wait_for_x
-from changes import Waiting
-from changes import world
+from changes import BRIDGE, listen_to_tf, Monitor, reload, replace, wait_for_x, Waiting, world
 from diagnostic_msgs.msg import DiagnosticStatus
 from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter

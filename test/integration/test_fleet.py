@@ -2,18 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """A bridge that follows the joint states of several robots of a world, each on its own topic."""
 
-from math import cos
-from math import isclose
-from math import sin
+from math import cos, isclose, sin
 
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from changes import BRIDGE
-from changes import pose_of
-from changes import replace
-from changes import set_parameters
+from changes import BRIDGE, pose_of, replace, set_parameters
 
 ROBOT = """<sdf version="1.11"><model name="robot">
 <link name="base"/><link name="arm"><pose>1 0 0 0 0 0</pose></link>

@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A bridge that follows joint states: publisher, bridge and listener are three processes."""
 
-from math import isclose
-from math import nan
-from math import pi
+from math import isclose, nan, pi
 import signal
 import sys
 
@@ -13,15 +11,8 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from bridge_process import LoggedProcess
-from changes import BRIDGE
-from changes import listen_to_tf
-from changes import pose_of
-from changes import reload
-from changes import replace
-from changes import set_parameters
-from changes import Waiting
-from geometry_msgs.msg import PoseStamped
-from geometry_msgs.msg import TransformStamped
+from changes import BRIDGE, listen_to_tf, pose_of, reload, replace, set_parameters, Waiting
+from geometry_msgs.msg import PoseStamped, TransformStamped
 from joint_publisher import JointPublisher
 from listener import latched
 from slow_file import SlowFile

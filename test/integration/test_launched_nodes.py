@@ -6,8 +6,7 @@ from pathlib import Path
 import signal
 import sys
 
-from bridge_process import LoggedProcess
-from bridge_process import STARTED
+from bridge_process import LoggedProcess, STARTED
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -139,8 +138,7 @@ def test_two_robots_have_frames_of_their_own_in_one_tree(launch, listener):
 
 def test_beside_robot_state_publisher_no_frame_has_two_parents(
         launch, listener, sdf_file, tmp_path):
-    from ament_index_python.packages import get_package_prefix
-    from ament_index_python.packages import PackageNotFoundError
+    from ament_index_python.packages import get_package_prefix, PackageNotFoundError
     try:
         get_package_prefix('robot_state_publisher')
     except PackageNotFoundError:

@@ -13,17 +13,13 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from ament_index_python.packages import get_package_prefix
-from ament_index_python.packages import get_package_share_directory
+from ament_index_python.packages import get_package_prefix, get_package_share_directory
 import bridge_process
-from bridge_process import LoggedProcess
-from bridge_process import STARTED
-from changes import replace
-from changes import world
+from bridge_process import LoggedProcess, STARTED
+from changes import replace, world
 from sizes import size
 
-from sdf_pose_bridge.ros.middleware import FAST_DDS_3
-from sdf_pose_bridge.ros.middleware import PROFILES
+from sdf_pose_bridge.ros.middleware import FAST_DDS_3, PROFILES
 
 ADDRESSES = {'a': '10.211.7.1', 'b': '10.211.7.2'}
 LEASE = '<leaseDuration><sec>3</sec></leaseDuration>'

@@ -8,12 +8,7 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from changes import listen_to_tf
-from changes import reload
-from changes import replace
-from changes import set_parameters
-from changes import wait_for_x
-from changes import world
+from changes import listen_to_tf, reload, replace, set_parameters, wait_for_x, world
 from listener import latched
 from std_msgs.msg import String
 

@@ -11,8 +11,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from ament_index_python.packages import get_package_share_directory
-from changes import BRIDGE
-from changes import world
+from changes import BRIDGE, world
 
 
 @pytest.fixture(scope='module')

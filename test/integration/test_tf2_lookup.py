@@ -8,8 +8,7 @@ tf2 composes the transforms; what it finds is compared with the poses that the c
 
 from pathlib import Path
 
-from matrices import assert_same_pose
-from matrices import matrix_from_pose
+from matrices import assert_same_pose, matrix_from_pose
 import numpy as np
 import pytest
 
@@ -18,14 +17,11 @@ pytest.importorskip('tf2_ros', reason='needs tf2_ros, which is not installed')
 
 from rclpy.time import Time
 from std_srvs.srv import Trigger
-from tf2_ros import Buffer
-from tf2_ros import LookupException
-from tf2_ros import TransformListener
+from tf2_ros import Buffer, LookupException, TransformListener
 
 import sdf_pose_bridge
 from sdf_pose_bridge.tf.anchors import AnchorModels
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
 FILE = """\

@@ -13,10 +13,8 @@ import urllib.error
 from urllib.parse import urlsplit
 import urllib.request
 
-from browser import browser
-from browser import DEADLINE_S
-from command_line import COMMAND
-from command_line import ENVIRONMENT
+from browser import browser, DEADLINE_S
+from command_line import COMMAND, ENVIRONMENT
 import mesh_texts
 import numpy as np
 import pytest

@@ -11,10 +11,12 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from rclpy.task import Future
 
 from sdf_pose_bridge.ros import background
-from sdf_pose_bridge.ros.background import CoroutineLock
-from sdf_pose_bridge.ros.background import PollingThread
-from sdf_pose_bridge.ros.background import run_in_thread
-from sdf_pose_bridge.ros.background import run_other_callbacks
+from sdf_pose_bridge.ros.background import (
+    CoroutineLock,
+    PollingThread,
+    run_in_thread,
+    run_other_callbacks,
+)
 
 SECONDS = 20.0
 

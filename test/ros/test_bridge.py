@@ -8,8 +8,7 @@ import sys
 
 import pytest
 
-from sdf_pose_bridge.ros.bridge import BUILD_COMMAND
-from sdf_pose_bridge.ros.bridge import sentence_from_import_error
+from sdf_pose_bridge.ros.bridge import BUILD_COMMAND, sentence_from_import_error
 
 ROOT = Path(__file__).resolve().parents[2]
 

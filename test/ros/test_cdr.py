@@ -18,10 +18,12 @@ pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sdf_pose_bridge.ros.cdr import joint_state_from_bytes
-from sdf_pose_bridge.ros.cdr import MOST_BYTES
-from sdf_pose_bridge.ros.cdr import stamped_messages
-from sdf_pose_bridge.ros.cdr import tf_message
+from sdf_pose_bridge.ros.cdr import (
+    joint_state_from_bytes,
+    MOST_BYTES,
+    stamped_messages,
+    tf_message,
+)
 
 STAMPS = st.tuples(st.integers(0, 2**31 - 1), st.integers(0, 999_999_999))
 NAMES = st.text(st.characters(codec='utf-8', exclude_characters='\0'), max_size=20)

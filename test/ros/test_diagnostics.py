@@ -8,8 +8,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from sdf_pose_bridge.ros.diagnostics import Diagnostics
-from sdf_pose_bridge.ros.diagnostics import status_from_scene
+from sdf_pose_bridge.ros.diagnostics import Diagnostics, status_from_scene
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
 from sdf_pose_bridge.ros.log_lines import MissingJoints
 from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request

@@ -11,15 +11,16 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from rclpy.parameter import Parameter
 
-from sdf_pose_bridge.ros.given_parameters import changed_settings
-from sdf_pose_bridge.ros.given_parameters import hint_about_command_line
-from sdf_pose_bridge.ros.given_parameters import parameter_with_type
-from sdf_pose_bridge.ros.given_parameters import settings_from_node
-from sdf_pose_bridge.ros.given_parameters import settings_from_values
-from sdf_pose_bridge.ros.given_parameters import warnings_about_unknown_parameters
-from sdf_pose_bridge.ros.given_parameters import words_about_wrong_type
-from sdf_pose_bridge.ros.parameters import DECLARATIONS
-from sdf_pose_bridge.ros.parameters import SettingsError
+from sdf_pose_bridge.ros.given_parameters import (
+    changed_settings,
+    hint_about_command_line,
+    parameter_with_type,
+    settings_from_node,
+    settings_from_values,
+    warnings_about_unknown_parameters,
+    words_about_wrong_type,
+)
+from sdf_pose_bridge.ros.parameters import DECLARATIONS, SettingsError
 from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels

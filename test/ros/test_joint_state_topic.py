@@ -9,10 +9,8 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from builtin_interfaces.msg import Time
-from rclpy.serialization import deserialize_message
-from rclpy.serialization import serialize_message
-from sdf_texts import joint
-from sdf_texts import world_file
+from rclpy.serialization import deserialize_message, serialize_message
+from sdf_texts import joint, world_file
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 
@@ -21,8 +19,7 @@ from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 ROBOT = f"""<model name="{{}}"><link name="base"/><link name="upper"/><link name="finger"/>
 {joint('<parent>base</parent><child>upper</child><axis><xyz>0 0 1</xyz></axis>', 'turn',

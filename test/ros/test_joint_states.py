@@ -14,9 +14,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped
 from rclpy.parameter import Parameter
-from rclpy.qos import DurabilityPolicy
-from rclpy.qos import QoSProfile
-from rclpy.qos import ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
@@ -24,16 +22,12 @@ from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.ros.joint_states import JointStates
-from sdf_pose_bridge.ros.joint_states import SUBSCRIPTIONS_AT_ONCE
-from sdf_pose_bridge.ros.joint_states import TOPICS_PERIOD_S
+from sdf_pose_bridge.ros.joint_states import JointStates, SUBSCRIPTIONS_AT_ONCE, TOPICS_PERIOD_S
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.topic_names import JointStateTopics
-from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 ARM = """<sdf version="1.11"><model name="arm">
 <link name="base"/><link name="upper"/><link name="slide"/><link name="finger"/>

@@ -6,35 +6,30 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from sdf_texts import fixed_joint
-from sdf_texts import joint
-from sdf_texts import model_file
-from sdf_texts import world_file
+from sdf_texts import fixed_joint, joint, model_file, world_file
 from tf_checks import tree_of
 import urdf_texts as urdf
 
-from sdf_pose_bridge.errors import LoadError
-from sdf_pose_bridge.errors import ParsingError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import LoadError, ParsingError, Place, SdfError
 from sdf_pose_bridge.problems import MOST_PROBLEMS
-from sdf_pose_bridge.ros.log_lines import line_about_detached_models
-from sdf_pose_bridge.ros.log_lines import line_about_gazebo
-from sdf_pose_bridge.ros.log_lines import line_about_joints_at_rest
-from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints
-from sdf_pose_bridge.ros.log_lines import lines_about_lost_frames
-from sdf_pose_bridge.ros.log_lines import lines_from_error
-from sdf_pose_bridge.ros.log_lines import lines_from_warnings
-from sdf_pose_bridge.ros.log_lines import MissingJoints
-from sdf_pose_bridge.ros.log_lines import MOST_LINES
+from sdf_pose_bridge.ros.log_lines import (
+    line_about_detached_models,
+    line_about_gazebo,
+    line_about_joints_at_rest,
+    line_about_unreported_joints,
+    lines_about_lost_frames,
+    lines_from_error,
+    lines_from_warnings,
+    MissingJoints,
+    MOST_LINES,
+)
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 
 def test_each_error_of_a_file_has_its_line_with_its_place():

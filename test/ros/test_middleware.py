@@ -9,10 +9,7 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from sdf_pose_bridge.ros.middleware import FAST_DDS_2
-from sdf_pose_bridge.ros.middleware import FAST_DDS_3
-from sdf_pose_bridge.ros.middleware import PROFILES
-from sdf_pose_bridge.ros.middleware import use_profile
+from sdf_pose_bridge.ros.middleware import FAST_DDS_2, FAST_DDS_3, PROFILES, use_profile
 
 ROOT = Path(__file__).resolve().parents[2]
 JAZZY = {'ROS_DISTRO': 'jazzy'}

@@ -8,19 +8,15 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from geometry_msgs.msg import PoseStamped
-from geometry_msgs.msg import TransformStamped
-from rclpy.qos import DurabilityPolicy
-from rclpy.qos import QoSProfile
+from geometry_msgs.msg import PoseStamped, TransformStamped
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from tf_checks import tree_of
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 OTHERS = {'/tf_static', '/bridge/transforms'}
 LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)

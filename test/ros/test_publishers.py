@@ -9,14 +9,11 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from geometry_msgs.msg import PoseStamped
-from rclpy.qos import DurabilityPolicy
-from rclpy.qos import QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
 from sdf_pose_bridge.ros import publishers as publishers_module
-from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.ros.publishers import TextPublisher
-from sdf_pose_bridge.ros.publishers import Topic
+from sdf_pose_bridge.ros.publishers import Publishers, TextPublisher, Topic
 
 
 @pytest.fixture(name='publishers')

@@ -7,9 +7,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from rclpy.parameter import Parameter
-from rclpy.qos import DurabilityPolicy
-from rclpy.qos import qos_profile_sensor_data
-from rclpy.qos import ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, qos_profile_sensor_data, ReliabilityPolicy
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
@@ -17,13 +15,14 @@ from sdf_pose_bridge.ros.joint_states import JointStates
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.ros.qos_overrides import overriding_options
-from sdf_pose_bridge.ros.qos_overrides import POLICIES_OF_PUBLISHER
-from sdf_pose_bridge.ros.qos_overrides import sentences_about_overrides
+from sdf_pose_bridge.ros.qos_overrides import (
+    overriding_options,
+    POLICIES_OF_PUBLISHER,
+    sentences_about_overrides,
+)
 from sdf_pose_bridge.ros.topic_names import JointStateTopics
 from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 MODEL = '<sdf version="1.11"><model name="m"><link name="l"/></model></sdf>'
 

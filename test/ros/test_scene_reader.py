@@ -7,19 +7,14 @@ import signal
 import sys
 
 import pytest
-from sdf_texts import model_file
-from sdf_texts import world_file
+from sdf_texts import model_file, world_file
 
-from sdf_pose_bridge.errors import FileReadError
-from sdf_pose_bridge.errors import LimitError
-from sdf_pose_bridge.errors import PassingReadError
-from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import FileReadError, LimitError, PassingReadError, SdfError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.limited_process import LimitedProcess
 from sdf_pose_bridge.ros import scene_reader
 from sdf_pose_bridge.sdformat.include.uris import AddressError
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
-from sdf_pose_bridge.tf.loaded_scene import may_pass
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest, may_pass
 
 LINK = """<link name="l"><pose>1 0 0 0 0 0</pose>
   <visual name="v"><geometry><box/></geometry></visual></link>"""

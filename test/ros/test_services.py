@@ -14,28 +14,23 @@ import numpy as np
 from rclpy.clock import Clock
 from rclpy.logging import get_logger
 from rclpy.time import Time
-from sdf_texts import joint
-from sdf_texts import model_file
-from sdf_texts import posed
-from sdf_texts import world_file
+from sdf_texts import joint, model_file, posed, world_file
 
 from sdf_pose_bridge import load
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
-from sdf_pose_bridge.ros.services import answer_to_convert_poses
-from sdf_pose_bridge.ros.services import answer_to_convert_rotation
-from sdf_pose_bridge.ros.services import answer_to_lookup_pose
-from sdf_pose_bridge.ros.services import never_raising
-from sdf_pose_bridge.ros.services import set_pose
+from sdf_pose_bridge.ros.services import (
+    answer_to_convert_poses,
+    answer_to_convert_rotation,
+    answer_to_lookup_pose,
+    never_raising,
+    set_pose,
+)
 from sdf_pose_bridge.scene.loading import load_text
-from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request, LoadRequest
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge_interfaces.srv import ConvertPoses
-from sdf_pose_bridge_interfaces.srv import ConvertRotation
-from sdf_pose_bridge_interfaces.srv import LookupPose
-from sdf_pose_bridge_interfaces.srv import SetPose
+from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose, SetPose
 
 
 def convert_rotation(given=0, rpy=(0.0, 0.0, 0.0), quat_xyzw=(0.0, 0.0, 0.0, 1.0), degrees=False):

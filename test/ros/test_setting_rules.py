@@ -12,8 +12,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from sdf_pose_bridge.ros import setting_rules as rules
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.tf.anchors import AnchorModels
-from sdf_pose_bridge.tf.anchors import AnchorPatterns
+from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns
 
 PUBLISH_RATE = DECLARATIONS['publish_rate'].convert
 PUBLISH_FREQUENCY = DECLARATIONS['publish_frequency'].convert

@@ -14,12 +14,14 @@ from hypothesis import strategies as st
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from sdf_pose_bridge.ros.parameters import DECLARATIONS
-from sdf_pose_bridge.ros.topic_names import joint_state_topics_from_patterns
-from sdf_pose_bridge.ros.topic_names import LONGEST_FULL_NAME
-from sdf_pose_bridge.ros.topic_names import LONGEST_NAME
-from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns
-from sdf_pose_bridge.ros.topic_names import SHORTEST_LIMIT
-from sdf_pose_bridge.ros.topic_names import topic_name_from_frame_id
+from sdf_pose_bridge.ros.topic_names import (
+    joint_state_topics_from_patterns,
+    LONGEST_FULL_NAME,
+    LONGEST_NAME,
+    pose_topics_from_patterns,
+    SHORTEST_LIMIT,
+    topic_name_from_frame_id,
+)
 
 NODE = '/sdf_pose_bridge'
 

@@ -9,20 +9,14 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from rclpy.qos import DurabilityPolicy
-from rclpy.qos import QoSProfile
-from rclpy.serialization import deserialize_message
-from rclpy.serialization import serialize_message
-from visualization_msgs.msg import Marker
-from visualization_msgs.msg import MarkerArray
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.serialization import deserialize_message, serialize_message
+from visualization_msgs.msg import Marker, MarkerArray
 
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.ros.visuals import message_from_markers
-from sdf_pose_bridge.ros.visuals import VisualPublisher
-from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
-from sdf_pose_bridge.tf.visual_markers import Form
-from sdf_pose_bridge.tf.visual_markers import VisualMarker
+from sdf_pose_bridge.ros.visuals import message_from_markers, VisualPublisher
+from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request, LoadRequest
+from sdf_pose_bridge.tf.visual_markers import Form, VisualMarker
 
 SDF = """<sdf version="1.10"><model name="m"><link name="l">
 <visual name="v"><geometry><{shape}/></geometry></visual></link></model></sdf>"""

@@ -5,12 +5,9 @@
 import math
 
 import pytest
-from sdf_texts import model_file
-from sdf_texts import posed
-from sdf_texts import world_file
+from sdf_texts import model_file, posed, world_file
 
-from sdf_pose_bridge import load_text
-from sdf_pose_bridge import UnknownFrameError
+from sdf_pose_bridge import load_text, UnknownFrameError
 from sdf_pose_bridge.scene.comparison import differences_of_scenes
 
 A, B = posed('link', 'a', '1 0 0 0 0 0'), posed('frame', 'b', '0 0 1 0 0 0', 'a')

@@ -3,18 +3,19 @@
 """The frame graph: unknown names, cycles, default references, and attachment."""
 
 import pytest
-from sdf_texts import assert_at
-from sdf_texts import codes_of
-from sdf_texts import fixed_joint
-from sdf_texts import model_file
-from sdf_texts import names_of
-from sdf_texts import only_error
-from sdf_texts import posed
-from sdf_texts import warning_codes
-from sdf_texts import world_file
+from sdf_texts import (
+    assert_at,
+    codes_of,
+    fixed_joint,
+    model_file,
+    names_of,
+    only_error,
+    posed,
+    warning_codes,
+    world_file,
+)
 
-from sdf_pose_bridge import Kind
-from sdf_pose_bridge import load_text
+from sdf_pose_bridge import Kind, load_text
 
 A = '<link name="a"/>'
 B = posed('link', 'b', '1 0 0 0 0 1.5707963267948966')

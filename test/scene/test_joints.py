@@ -3,13 +3,15 @@
 """Joints join two bodies: every rule, at every depth of nesting."""
 
 import pytest
-from sdf_texts import codes_of
-from sdf_texts import errors_of
-from sdf_texts import fixed_joint
-from sdf_texts import model_file
-from sdf_texts import only_error
-from sdf_texts import TWO_LINKS
-from sdf_texts import world_file
+from sdf_texts import (
+    codes_of,
+    errors_of,
+    fixed_joint,
+    model_file,
+    only_error,
+    TWO_LINKS,
+    world_file,
+)
 
 import sdf_pose_bridge
 

@@ -6,9 +6,7 @@ import gc
 from pathlib import Path
 
 import pytest
-from sdf_texts import codes_of
-from sdf_texts import errors_of
-from sdf_texts import model_file
+from sdf_texts import codes_of, errors_of, model_file
 
 import sdf_pose_bridge
 from sdf_pose_bridge.errors import LoadError

@@ -5,14 +5,16 @@
 import time
 
 import pytest
-from sdf_texts import element
-from sdf_texts import errors_of
-from sdf_texts import fixed_joint
-from sdf_texts import LINK
-from sdf_texts import model_file
-from sdf_texts import only_error
-from sdf_texts import posed
-from sdf_texts import world_file
+from sdf_texts import (
+    element,
+    errors_of,
+    fixed_joint,
+    LINK,
+    model_file,
+    only_error,
+    posed,
+    world_file,
+)
 
 import sdf_pose_bridge
 

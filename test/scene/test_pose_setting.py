@@ -4,15 +4,10 @@
 
 import numpy as np
 import pytest
-from sdf_texts import fixed_joint
-from sdf_texts import model_file
-from sdf_texts import posed
-from sdf_texts import world_file
-from sdf_texts import write_files
+from sdf_texts import fixed_joint, model_file, posed, world_file, write_files
 import urdf_texts
 
-from sdf_pose_bridge import load
-from sdf_pose_bridge import Pose
+from sdf_pose_bridge import load, Pose
 from sdf_pose_bridge.errors import PoseNotSetError
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose
 from sdf_pose_bridge.scene.pose_setting import pose_change

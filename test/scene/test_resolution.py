@@ -2,15 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Poses in the root: chains of references, and placement frames."""
 
-from matrices import assert_same_pose
-from matrices import matrix_from_degrees
+from matrices import assert_same_pose, matrix_from_degrees
 import numpy as np
 import pytest
-from sdf_texts import assert_at
-from sdf_texts import fixed_joint
-from sdf_texts import model_file
-from sdf_texts import posed
-from sdf_texts import world_file
+from sdf_texts import assert_at, fixed_joint, model_file, posed, world_file
 
 from sdf_pose_bridge import load_text
 

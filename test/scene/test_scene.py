@@ -4,21 +4,13 @@
 
 import copy
 
-from matrices import assert_same_pose
-from matrices import matrix_from_degrees
-from matrices import matrix_from_rpy
+from matrices import assert_same_pose, matrix_from_degrees, matrix_from_rpy
 import numpy as np
 import pytest
-from sdf_texts import element
-from sdf_texts import fixed_joint
-from sdf_texts import model_file
-from sdf_texts import names_of
-from sdf_texts import posed
-from sdf_texts import world_file
+from sdf_texts import element, fixed_joint, model_file, names_of, posed, world_file
 
 import sdf_pose_bridge
-from sdf_pose_bridge import SdfError
-from sdf_pose_bridge import UnknownFrameError
+from sdf_pose_bridge import SdfError, UnknownFrameError
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 

@@ -8,18 +8,13 @@ from lxml import etree
 import pytest
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
-from hypothesis import given
-from hypothesis import settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sdf_pose_bridge.errors import LimitError
-from sdf_pose_bridge.errors import Place
+from sdf_pose_bridge.errors import LimitError, Place
 from sdf_pose_bridge.sdformat import counted
-from sdf_pose_bridge.sdformat.counted import copy_of
-from sdf_pose_bridge.sdformat.counted import file_lookups
-from sdf_pose_bridge.sdformat.counted import steps_of_copy
-from sdf_pose_bridge.sdformat.limits import Limits
-from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.counted import copy_of, file_lookups, steps_of_copy
+from sdf_pose_bridge.sdformat.limits import Limits, Usage
 
 PLACE = Place('cell.sdf')
 

@@ -3,22 +3,20 @@
 """Reading files into trees: the outermost element, its version, the top model's pose, xacro."""
 
 import pytest
-from sdf_texts import assert_at
-from sdf_texts import codes_of
-from sdf_texts import errors_of
-from sdf_texts import errors_of_file
-from sdf_texts import LINK
-from sdf_texts import model_file
-from sdf_texts import names_of
-from sdf_texts import only_error
-from sdf_texts import write_files
-from urdf_texts import joint
-from urdf_texts import link
-from urdf_texts import origin
+from sdf_texts import (
+    assert_at,
+    codes_of,
+    errors_of,
+    errors_of_file,
+    LINK,
+    model_file,
+    names_of,
+    only_error,
+    write_files,
+)
+from urdf_texts import joint, link, origin
 
-from sdf_pose_bridge import load
-from sdf_pose_bridge import load_text
-from sdf_pose_bridge import SdfError
+from sdf_pose_bridge import load, load_text, SdfError
 
 
 def test_missing_file_is_refused(tmp_path):

@@ -4,15 +4,11 @@
 
 import numpy as np
 import pytest
-from sdf_texts import model_file
-from sdf_texts import only_error
-from sdf_texts import world_file
+from sdf_texts import model_file, only_error, world_file
 
-from sdf_pose_bridge import Kind
-from sdf_pose_bridge import load_text
+from sdf_pose_bridge import Kind, load_text
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.elements import ElementsBuilder
-from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
+from sdf_pose_bridge.sdformat.elements import ElementsBuilder, NO_ELEMENT
 from sdf_pose_bridge.sdformat.poses import PoseFormat
 
 

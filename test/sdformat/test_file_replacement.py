@@ -17,8 +17,7 @@ import time
 import pytest
 
 from sdf_pose_bridge.sdformat import file_replacement
-from sdf_pose_bridge.sdformat.file_replacement import RefusedError
-from sdf_pose_bridge.sdformat.file_replacement import replace_range
+from sdf_pose_bridge.sdformat.file_replacement import RefusedError, replace_range
 
 ROOT = Path(__file__).resolve().parents[2]
 IMPORT = 'from sdf_pose_bridge.sdformat.file_replacement import replace_range\n'

@@ -11,19 +11,10 @@ import subprocess
 import sys
 
 import pytest
-from sdf_texts import element
-from sdf_texts import LINK
-from sdf_texts import LINK_CHILDREN
-from sdf_texts import link_with
-from sdf_texts import model_file
-from sdf_texts import names_of
-from sdf_texts import world_file
+from sdf_texts import element, LINK, LINK_CHILDREN, link_with, model_file, names_of, world_file
 
-from sdf_pose_bridge import Kind
-from sdf_pose_bridge import load_text
-from sdf_pose_bridge.sdformat.grammar import Definition
-from sdf_pose_bridge.sdformat.grammar import definition_of
-from sdf_pose_bridge.sdformat.grammar import ValueType
+from sdf_pose_bridge import Kind, load_text
+from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, ValueType
 from sdf_pose_bridge.sdformat.specification import CHOICES
 
 PACKAGE = Path(__file__).resolve().parents[2] / 'sdf_pose_bridge'

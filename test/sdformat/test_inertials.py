@@ -6,18 +6,14 @@ import math
 
 import numpy as np
 import pytest
-from sdf_texts import codes_of
-from sdf_texts import link_with
-from sdf_texts import model_file
+from sdf_texts import codes_of, link_with, model_file
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.sdformat.inertials import Inertial
-from sdf_pose_bridge.sdformat.inertials import matrix_from_moments
-from sdf_pose_bridge.sdformat.inertials import moments_from_matrix
+from sdf_pose_bridge.sdformat.inertials import Inertial, matrix_from_moments, moments_from_matrix
 
 AUTO = '<inertial auto="true"/>'
 UNIT_BOX = '<box><size>1 1 1</size></box>'

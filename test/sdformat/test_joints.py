@@ -5,12 +5,7 @@
 import math
 
 import pytest
-from sdf_texts import codes_of
-from sdf_texts import joint
-from sdf_texts import model_file
-from sdf_texts import only_error
-from sdf_texts import TWO_LINKS
-from sdf_texts import world_file
+from sdf_texts import codes_of, joint, model_file, only_error, TWO_LINKS, world_file
 
 from sdf_pose_bridge import load_text
 

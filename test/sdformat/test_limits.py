@@ -7,21 +7,11 @@ import os
 import time
 
 import pytest
-from sdf_texts import errors_of_file
-from sdf_texts import LINK
-from sdf_texts import model_file
-from sdf_texts import names_of
-from sdf_texts import world_file
-from sdf_texts import write_files
+from sdf_texts import errors_of_file, LINK, model_file, names_of, world_file, write_files
 
-from sdf_pose_bridge import Limits
-from sdf_pose_bridge import load
-from sdf_pose_bridge import load_text
-from sdf_pose_bridge import SdfError
+from sdf_pose_bridge import Limits, load, load_text, SdfError
 from sdf_pose_bridge.problems import MOST_PROBLEMS
-from sdf_pose_bridge.sdformat.limits import BYTES_OF_STEP
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_INCLUDE
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_MERGE
+from sdf_pose_bridge.sdformat.limits import BYTES_OF_STEP, STEPS_OF_INCLUDE, STEPS_OF_MERGE
 
 FILES = 30
 TWICE = ('<include><name>a</name><uri>{0}.sdf</uri></include>'

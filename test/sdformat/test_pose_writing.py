@@ -8,8 +8,7 @@ import pytest
 from sdf_texts import model_file
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
-from hypothesis import example
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from sdf_pose_bridge import Pose

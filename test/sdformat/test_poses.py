@@ -5,10 +5,7 @@
 import math
 import re
 
-from matrices import assert_same_pose
-from matrices import matrix_from_degrees
-from matrices import matrix_from_pose
-from matrices import matrix_from_rpy
+from matrices import assert_same_pose, matrix_from_degrees, matrix_from_pose, matrix_from_rpy
 import numpy as np
 import pytest
 
@@ -17,10 +14,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.sdformat.poses import pose_from_text
-from sdf_pose_bridge.sdformat.poses import PoseFormat
-from sdf_pose_bridge.sdformat.poses import poses_from_texts
-from sdf_pose_bridge.sdformat.poses import PoseTextError
+from sdf_pose_bridge.sdformat.poses import (
+    pose_from_text,
+    PoseFormat,
+    poses_from_texts,
+    PoseTextError,
+)
 
 RPY = PoseFormat()
 RPY_DEGREES = PoseFormat(is_degrees=True)

@@ -3,26 +3,27 @@
 """Reading elements: the top of a file, poses, scoped names, depth, what only some kinds have."""
 
 import pytest
-from sdf_texts import assert_at
-from sdf_texts import codes_of
-from sdf_texts import errors_of
-from sdf_texts import errors_of_file
-from sdf_texts import fixed_joint
-from sdf_texts import joint
-from sdf_texts import LINK
-from sdf_texts import LINK_CHILDREN
-from sdf_texts import link_with
-from sdf_texts import model_file
-from sdf_texts import names_of
-from sdf_texts import only_error
-from sdf_texts import posed
-from sdf_texts import TWO_LINKS
-from sdf_texts import warning_codes
-from sdf_texts import world_file
-from sdf_texts import write_files
+from sdf_texts import (
+    assert_at,
+    codes_of,
+    errors_of,
+    errors_of_file,
+    fixed_joint,
+    joint,
+    LINK,
+    LINK_CHILDREN,
+    link_with,
+    model_file,
+    names_of,
+    only_error,
+    posed,
+    TWO_LINKS,
+    warning_codes,
+    world_file,
+    write_files,
+)
 
-from sdf_pose_bridge import load
-from sdf_pose_bridge import load_text
+from sdf_pose_bridge import load, load_text
 
 WAYPOINT = ('<actor name="a"><script><trajectory id="0" type="walk"><waypoint><time>0</time>'
             '<pose>{}</pose></waypoint></trajectory></script></actor>')

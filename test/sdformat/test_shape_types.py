@@ -8,8 +8,7 @@ from sdf_texts import link_with
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
-from sdf_pose_bridge.sdformat.shape_types import Primitive
-from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
+from sdf_pose_bridge.sdformat.shape_types import Primitive, SHAPE_TYPES
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge.tf.visual_markers import visual_markers_from_scene
 

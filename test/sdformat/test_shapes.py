@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from sdf_texts import codes_of
-from sdf_texts import link_with
+from sdf_texts import codes_of, link_with
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.shapes import Shape

@@ -3,20 +3,22 @@
 """Names of siblings: missing, empty, reserved and duplicate names, and new ones in old files."""
 
 import pytest
-from sdf_texts import assert_at
-from sdf_texts import codes_of
-from sdf_texts import element
-from sdf_texts import fixed_joint
-from sdf_texts import LINK
-from sdf_texts import LINK_CHILDREN
-from sdf_texts import link_with
-from sdf_texts import model_file
-from sdf_texts import names_of
-from sdf_texts import only_error
-from sdf_texts import posed
-from sdf_texts import TWO_LINKS
-from sdf_texts import warning_codes
-from sdf_texts import world_file
+from sdf_texts import (
+    assert_at,
+    codes_of,
+    element,
+    fixed_joint,
+    LINK,
+    LINK_CHILDREN,
+    link_with,
+    model_file,
+    names_of,
+    only_error,
+    posed,
+    TWO_LINKS,
+    warning_codes,
+    world_file,
+)
 
 from sdf_pose_bridge import load_text
 

@@ -3,15 +3,9 @@
 """Where elements were written: files and lines, also beyond the lines that libxml2 counts."""
 
 import pytest
-from sdf_texts import errors_of_file
-from sdf_texts import LINK
-from sdf_texts import model_file
-from sdf_texts import only_error
-from sdf_texts import world_file
-from sdf_texts import write_files
+from sdf_texts import errors_of_file, LINK, model_file, only_error, world_file, write_files
 
-from sdf_pose_bridge import load
-from sdf_pose_bridge import load_text
+from sdf_pose_bridge import load, load_text
 
 # Lines: libxml2 counts no more than 65,535 of them
 

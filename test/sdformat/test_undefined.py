@@ -3,14 +3,9 @@
 """Warnings of elements and attributes that SDFormat does not define."""
 
 import pytest
-from sdf_texts import LINK
-from sdf_texts import link_with
-from sdf_texts import model_file
-from sdf_texts import world_file
-from sdf_texts import write_files
+from sdf_texts import LINK, link_with, model_file, world_file, write_files
 
-from sdf_pose_bridge import load
-from sdf_pose_bridge import load_text
+from sdf_pose_bridge import load, load_text
 
 
 def messages_of(text):

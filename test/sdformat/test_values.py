@@ -6,18 +6,11 @@
 import math
 
 import pytest
-from sdf_texts import codes_of
-from sdf_texts import link_with
-from sdf_texts import model_file
-from sdf_texts import only_error
-from sdf_texts import TWO_LINKS
-from sdf_texts import world_file
+from sdf_texts import codes_of, link_with, model_file, only_error, TWO_LINKS, world_file
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.grammar import ValueType
-from sdf_pose_bridge.sdformat.values import boolean_from_text
-from sdf_pose_bridge.sdformat.values import is_of_type
-from sdf_pose_bridge.sdformat.values import numbers_from_text
+from sdf_pose_bridge.sdformat.values import boolean_from_text, is_of_type, numbers_from_text
 
 
 def visual(content):

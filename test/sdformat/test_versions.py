@@ -3,11 +3,7 @@
 """Versions: which exist, and how files of old ones are converted to the newest grammar."""
 
 import pytest
-from sdf_texts import codes_of
-from sdf_texts import LINK
-from sdf_texts import model_file
-from sdf_texts import names_of
-from sdf_texts import TWO_LINKS
+from sdf_texts import codes_of, LINK, model_file, names_of, TWO_LINKS
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.sdformat.documents import document_from_file

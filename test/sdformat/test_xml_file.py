@@ -9,26 +9,22 @@ import time
 
 from lxml import etree
 import pytest
-from sdf_texts import assert_at
-from sdf_texts import codes_of
-from sdf_texts import LINK
-from sdf_texts import link_with
-from sdf_texts import model_file
-from sdf_texts import names_of
-from sdf_texts import only_error
-from sdf_texts import world_file
-from sdf_texts import write_files
+from sdf_texts import (
+    assert_at,
+    codes_of,
+    LINK,
+    link_with,
+    model_file,
+    names_of,
+    only_error,
+    world_file,
+    write_files,
+)
 
-from sdf_pose_bridge import load
-from sdf_pose_bridge import load_text
-from sdf_pose_bridge import SdfError
-from sdf_pose_bridge.errors import FileReadError
-from sdf_pose_bridge.errors import LimitError
-from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS
-from sdf_pose_bridge.sdformat.limits import Limits
-from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
-from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
+from sdf_pose_bridge import load, load_text, SdfError
+from sdf_pose_bridge.errors import FileReadError, LimitError
+from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS, Limits, Usage
+from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, xml_from_bytes
 
 NESTED_ENTITIES = ''.join(
     f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' if i else '<!ENTITY e0 "1 2 3 0 0 0 ">'

@@ -7,15 +7,11 @@ import tracemalloc
 
 from lxml import etree
 import pytest
-from sdf_texts import LINK
-from sdf_texts import model_file
-from sdf_texts import names_of
+from sdf_texts import LINK, model_file, names_of
 
-from sdf_pose_bridge import load_text
-from sdf_pose_bridge import SdfError
+from sdf_pose_bridge import load_text, SdfError
 from sdf_pose_bridge.errors import FileReadError
-from sdf_pose_bridge.sdformat.xml_text import repaired
-from sdf_pose_bridge.sdformat.xml_text import text_from_bytes
+from sdf_pose_bridge.sdformat.xml_text import repaired, text_from_bytes
 
 
 def root_of(text):

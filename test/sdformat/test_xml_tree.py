@@ -5,14 +5,16 @@
 import pytest
 
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of
-from sdf_pose_bridge.sdformat.xml_tree import child_elements
-from sdf_pose_bridge.sdformat.xml_tree import described
-from sdf_pose_bridge.sdformat.xml_tree import first_child
-from sdf_pose_bridge.sdformat.xml_tree import is_foreign
-from sdf_pose_bridge.sdformat.xml_tree import text_of
-from sdf_pose_bridge.sdformat.xml_tree import value_of
-from sdf_pose_bridge.sdformat.xml_tree import written_tag
+from sdf_pose_bridge.sdformat.xml_tree import (
+    attribute_of,
+    child_elements,
+    described,
+    first_child,
+    is_foreign,
+    text_of,
+    value_of,
+    written_tag,
+)
 
 
 def xml(text):

@@ -3,17 +3,11 @@
 """Which models get a transform from the root frame: words, and patterns of their names."""
 
 import pytest
-from sdf_texts import fixed_joint
-from sdf_texts import LINK
-from sdf_texts import model_file
-from sdf_texts import world_file
+from sdf_texts import fixed_joint, LINK, model_file, world_file
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.tf.anchors import AnchorModels
-from sdf_pose_bridge.tf.anchors import AnchorPatterns
-from sdf_pose_bridge.tf.anchors import anchors_from_text
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns, anchors_from_text
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 
 def model(name, content=LINK):

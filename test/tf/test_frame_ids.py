@@ -2,26 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frame ids made of scoped names."""
 
-from matrices import assert_same_pose
-from matrices import matrix_from_pose
-from matrices import matrix_from_rpy
+from matrices import assert_same_pose, matrix_from_pose, matrix_from_rpy
 import numpy as np
 import pytest
-from sdf_texts import element
-from sdf_texts import fixed_joint
-from sdf_texts import model_file
-from sdf_texts import posed
-from sdf_texts import TWO_LINKS
-from sdf_texts import world_file
-from tf_checks import model
-from tf_checks import only_tree_error
-from tf_checks import parents_of
-from tf_checks import pose_of
-from tf_checks import tree_of
+from sdf_texts import element, fixed_joint, model_file, posed, TWO_LINKS, world_file
+from tf_checks import model, only_tree_error, parents_of, pose_of, tree_of
 
 import sdf_pose_bridge
-from sdf_pose_bridge.tf.frame_ids import FrameNames
-from sdf_pose_bridge.tf.frame_ids import FrameNaming
+from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
 
 NESTED = '<link name="l"/><model name="n"><link name="k"/></model>'
 CHILDREN = ['visual', 'collision', 'light', 'particle_emitter', 'projector']

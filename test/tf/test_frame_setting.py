@@ -4,17 +4,17 @@
 
 import numpy as np
 import pytest
-from sdf_texts import joint
-from sdf_texts import model_file
-from sdf_texts import posed
+from sdf_texts import joint, model_file, posed
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.tf.frame_setting import frame_change_from_request
-from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene
-from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.tf.loaded_scene import (
+    fingerprint_of_scene,
+    loaded_scene_from_request,
+    LoadRequest,
+)
 from sdf_pose_bridge.tf.tree import TfOptions
 
 ARM = model_file(

@@ -3,13 +3,10 @@
 """The frames at joints that URDF has links for; test_urdf_robot.py compares their poses."""
 
 import pytest
-from sdf_texts import joint
-from sdf_texts import model_file
-from sdf_texts import world_file
+from sdf_texts import joint, model_file, world_file
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 ENDS = '<parent>a</parent><child>b</child>'
 AWAY = f'<pose>0 1 0 0 0 0</pose>{ENDS}'

@@ -4,23 +4,14 @@
 
 import dataclasses
 
-from joint_trees import link_matrices
-from joint_trees import model_text
-from joint_trees import pose_text
-from joint_trees import POSES
-from joint_trees import POSITIONS
-from joint_trees import random_joints
-from matrices import assert_same_pose
-from matrices import matrix_from_degrees
-from matrices import matrix_from_pose
+from joint_trees import link_matrices, model_text, pose_text, POSES, POSITIONS, random_joints
+from matrices import assert_same_pose, matrix_from_degrees, matrix_from_pose
 import numpy as np
 import pytest
-from sdf_texts import model_file
-from sdf_texts import world_file
+from sdf_texts import model_file, world_file
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
-from hypothesis import given
-from hypothesis import settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sdf_pose_bridge.scene.loading import load_text

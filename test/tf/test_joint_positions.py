@@ -4,17 +4,13 @@
 
 import numpy as np
 import pytest
-from sdf_texts import joint
-from sdf_texts import model_file
-from sdf_texts import world_file
+from sdf_texts import joint, model_file, world_file
 
 from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.frame_ids import FrameNames
-from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.joint_positions import scene_at_positions
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.joint_positions import JointPositions, scene_at_positions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 ENDS = '<parent>a</parent><child>b</child>'
 LINKS = '<link name="a"/><link name="b"/><link name="c"/>'

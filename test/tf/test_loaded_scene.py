@@ -8,16 +8,16 @@ import pickle
 from lxml import etree
 import numpy as np
 import pytest
-from sdf_texts import joint
-from sdf_texts import model_file
-from sdf_texts import world_file
+from sdf_texts import joint, model_file, world_file
 
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat
-from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene
-from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
-from sdf_pose_bridge.tf.loaded_scene import unicode_text
+from sdf_pose_bridge.tf.loaded_scene import (
+    DescriptionFormat,
+    fingerprint_of_scene,
+    loaded_scene_from_request,
+    LoadRequest,
+    unicode_text,
+)
 from sdf_pose_bridge.tf.tree import TfOptions
 
 GOOD = '<model name="m"><link name="l"><pose>1 0 0 0 0 0</pose></link><frame name="f"/></model>'

@@ -2,23 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Look-ups of poses by the names of SDF and of TF."""
 
-from matrices import assert_same_pose
-from matrices import matrix_from_degrees
+from matrices import assert_same_pose, matrix_from_degrees
 import numpy as np
 import pytest
-from sdf_texts import joint
-from sdf_texts import model_file
-from sdf_texts import world_file
+from sdf_texts import joint, model_file, world_file
 
 from sdf_pose_bridge import Kind
-from sdf_pose_bridge.errors import JointPositionError
-from sdf_pose_bridge.errors import UnknownFrameError
+from sdf_pose_bridge.errors import JointPositionError, UnknownFrameError
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 ROBOT = """\
 <model name="robot">

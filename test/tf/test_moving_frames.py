@@ -2,15 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The frames of a tree that joints move, and their transforms."""
 
-from joint_trees import model_text
-from joint_trees import POSES
-from joint_trees import POSITIONS
-from joint_trees import random_joints
+from joint_trees import model_text, POSES, POSITIONS, random_joints
 import numpy as np
 import pytest
-from sdf_texts import fixed_joint
-from sdf_texts import joint
-from sdf_texts import model_file
+from sdf_texts import fixed_joint, joint, model_file
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
@@ -20,13 +15,10 @@ from sdf_pose_bridge import Kind
 from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.anchors import AnchorModels
-from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.joint_positions import UnreportedJoints
+from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
 from sdf_pose_bridge.tf.lookup import PoseLookup
-from sdf_pose_bridge.tf.parents import NO_PARENT
-from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 CAMERA = '<sensor name="s" type="camera"><pose>1 0 0 0 0 0</pose></sensor>'
 ARM = (

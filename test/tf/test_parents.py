@@ -3,11 +3,7 @@
 """Parents in TF: what a frame is fixed to, or what a joint connects it to."""
 
 import pytest
-from sdf_texts import element
-from sdf_texts import fixed_joint
-from sdf_texts import model_file
-from sdf_texts import posed
-from sdf_texts import world_file
+from sdf_texts import element, fixed_joint, model_file, posed, world_file
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given

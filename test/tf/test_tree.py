@@ -4,37 +4,31 @@
 
 from pathlib import Path
 
-from matrices import assert_same_pose
-from matrices import matrix_from_pose
+from matrices import assert_same_pose, matrix_from_pose
 import numpy as np
 import pytest
 from random_scenes import random_scenes
-from sdf_texts import fixed_joint
-from sdf_texts import model_file
-from sdf_texts import warning_codes
-from sdf_texts import world_file
-from tf_checks import assert_is_tree
-from tf_checks import model
-from tf_checks import only_tree_error
-from tf_checks import parents_of
-from tf_checks import pose_of
-from tf_checks import tree_errors_of
-from tf_checks import tree_of
+from sdf_texts import fixed_joint, model_file, warning_codes, world_file
+from tf_checks import (
+    assert_is_tree,
+    model,
+    only_tree_error,
+    parents_of,
+    pose_of,
+    tree_errors_of,
+    tree_of,
+)
 import urdf_texts as urdf
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
-from hypothesis import given
-from hypothesis import HealthCheck
-from hypothesis import settings
+from hypothesis import given, HealthCheck, settings
 from hypothesis import strategies as st
 
 import sdf_pose_bridge
 from sdf_pose_bridge import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
-from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, tf_tree_from_scene, TfOptions
 
 EXAMPLES = sorted((Path(__file__).parents[2] / 'examples').rglob('*.sdf'))
 ALL_KINDS = frozenset(Kind) - {Kind.ROOT, Kind.WORLD}

@@ -6,33 +6,20 @@ import math
 
 import numpy as np
 import pytest
-from sdf_texts import LINK
-from sdf_texts import model_file
-from sdf_texts import world_file
+from sdf_texts import LINK, model_file, world_file
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
-from hypothesis import assume
-from hypothesis import given
-from hypothesis import settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from joint_trees import model_text
-from joint_trees import pose_text
-from joint_trees import POSES
-from joint_trees import POSITIONS
-from joint_trees import random_joints
+from joint_trees import model_text, pose_text, POSES, POSITIONS, random_joints
 from matrices import matrix_from_pose
 from random_scenes import random_scenes
 
-from sdf_pose_bridge import Kind
-from sdf_pose_bridge import load_text
-from sdf_pose_bridge import scene_at_positions
-from sdf_pose_bridge import SdfError
-from sdf_pose_bridge import UnknownFrameError
+from sdf_pose_bridge import Kind, load_text, scene_at_positions, SdfError, UnknownFrameError
 from sdf_pose_bridge.errors import UrdfNotMadeError
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 from sdf_pose_bridge.tf.urdf_robot import robot_from_scene
 from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
 

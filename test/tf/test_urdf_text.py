@@ -4,14 +4,10 @@
 
 from lxml import etree
 import pytest
-from sdf_texts import link_with
-from sdf_texts import model_file
-from sdf_texts import write_files
+from sdf_texts import link_with, model_file, write_files
 
 import sdf_pose_bridge
-from sdf_pose_bridge import load
-from sdf_pose_bridge import load_text
-from sdf_pose_bridge import urdf_from_scene
+from sdf_pose_bridge import load, load_text, urdf_from_scene
 from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 
 BOX = '<box><size>1 2 3</size></box>'

@@ -6,9 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sdf_texts import link_with
-from sdf_texts import model_file
-from sdf_texts import world_file
+from sdf_texts import link_with, model_file, world_file
 from tf_checks import model
 
 from sdf_pose_bridge import load_text
@@ -17,13 +15,13 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf import visual_markers
 from sdf_pose_bridge.tf.anchors import AnchorModels
-from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene
-from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
-from sdf_pose_bridge.tf.loaded_scene import LoadRequest
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
-from sdf_pose_bridge.tf.visual_markers import markers_from_text
-from sdf_pose_bridge.tf.visual_markers import visual_markers_from_scene
+from sdf_pose_bridge.tf.loaded_scene import (
+    fingerprint_of_scene,
+    loaded_scene_from_request,
+    LoadRequest,
+)
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
+from sdf_pose_bridge.tf.visual_markers import markers_from_text, visual_markers_from_scene
 
 BOX = '<box><size>1 2 3</size></box>'
 MESH = '<mesh><uri>{}</uri>{}</mesh>'

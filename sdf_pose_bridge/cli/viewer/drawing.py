@@ -4,8 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import math
 import textwrap
 from typing import Any
@@ -18,27 +17,26 @@ from sdf_pose_bridge.cli.printing import kind_labels_of
 from sdf_pose_bridge.cli.viewer.browser_script import NamesInScene
 from sdf_pose_bridge.cli.viewer.labels import labels_from_names
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
-from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene
-from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
-from sdf_pose_bridge.cli.viewer.surfaces import boxes_of_surfaces
-from sdf_pose_bridge.cli.viewer.surfaces import lines_from_not_drawn
-from sdf_pose_bridge.cli.viewer.surfaces import NotDrawn
-from sdf_pose_bridge.cli.viewer.surfaces import Surface
-from sdf_pose_bridge.cli.viewer.surfaces import surfaces_from_scene
-from sdf_pose_bridge.cli.viewer.view_point import bounds_of_interest
-from sdf_pose_bridge.cli.viewer.view_point import bounds_with_axes
-from sdf_pose_bridge.cli.viewer.view_point import grid_spacing_m
-from sdf_pose_bridge.cli.viewer.view_point import home_view
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene, ShownScene
+from sdf_pose_bridge.cli.viewer.surfaces import (
+    boxes_of_surfaces,
+    lines_from_not_drawn,
+    NotDrawn,
+    Surface,
+    surfaces_from_scene,
+)
+from sdf_pose_bridge.cli.viewer.view_point import (
+    bounds_of_interest,
+    bounds_with_axes,
+    grid_spacing_m,
+    home_view,
+)
+from sdf_pose_bridge.geometry.poses import Pose, PoseArray
 from sdf_pose_bridge.geometry.rotations import Floats
-from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.names import printable, SEPARATOR, shortened
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.tf.parents import NO_PARENT
-from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
+from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
 MOST_NAMES = 500

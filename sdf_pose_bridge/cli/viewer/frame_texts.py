@@ -4,28 +4,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from collections.abc import Iterator
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 import html
 import math
 from pathlib import Path
 import shlex
 from xml.sax.saxutils import quoteattr
 
-from sdf_pose_bridge.cli.printing import kind_labels_of
-from sdf_pose_bridge.cli.printing import POSE_LABELS
-from sdf_pose_bridge.cli.printing import Units
+from sdf_pose_bridge.cli.printing import kind_labels_of, POSE_LABELS, Units
 from sdf_pose_bridge.cli.viewer.browser_script import html_of_copy_button
 from sdf_pose_bridge.geometry.formats import converted_poses
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import relative_pose
-from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.geometry.poses import Pose, relative_pose
+from sdf_pose_bridge.names import printable, SEPARATOR
 from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.tf.parents import NO_PARENT
-from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
+from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
 _FILE_STYLE = 'margin:0 1em;font-size:0.8em;overflow-wrap:anywhere'

@@ -8,8 +8,7 @@ from collections import Counter
 from collections.abc import Mapping
 from functools import partial
 import math
-from typing import Any
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import viser
 

@@ -9,35 +9,30 @@ Readers of mesh formats trust their files.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
-from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 import io
 import os
 from pathlib import Path
 import re
-from typing import Any
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import trimesh
 from trimesh.resolvers import FilePathResolver
 
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.limited_process import Allowance
-from sdf_pose_bridge.limited_process import LimitedProcess
-from sdf_pose_bridge.limited_process import LimitExceededError
-from sdf_pose_bridge.limited_process import ProcessEndedError
-from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.names import quoted_names
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.limited_process import (
+    Allowance,
+    LimitedProcess,
+    LimitExceededError,
+    ProcessEndedError,
+)
+from sdf_pose_bridge.names import printable, quoted_names, shortened
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
-from sdf_pose_bridge.sdformat.limits import Limits
-from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.limits import Limits, Usage
 from sdf_pose_bridge.sdformat.shapes import Shape
-from sdf_pose_bridge.sdformat.xml_file import bytes_from_file
-from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
+from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, xml_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 MOST_BYTES = 100_000_000

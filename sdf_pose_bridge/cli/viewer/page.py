@@ -4,40 +4,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import partial
 from itertools import cycle
 
 import numpy as np
 import viser
 
-from sdf_pose_bridge.cli.printing import DEGREES
-from sdf_pose_bridge.cli.printing import RADIANS
-from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.viewer.browser_script import html_of_names
-from sdf_pose_bridge.cli.viewer.browser_script import html_of_opacity
-from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
-from sdf_pose_bridge.cli.viewer.drawing import Drawing
-from sdf_pose_bridge.cli.viewer.drawing import GROUPS
-from sdf_pose_bridge.cli.viewer.drawing import HIDDEN_AT_FIRST
+from sdf_pose_bridge.cli.printing import DEGREES, RADIANS, Units
+from sdf_pose_bridge.cli.viewer.browser_script import (
+    html_of_names,
+    html_of_opacity,
+    page_with_script,
+)
+from sdf_pose_bridge.cli.viewer.drawing import Drawing, GROUPS, HIDDEN_AT_FIRST
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_lines
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
 from sdf_pose_bridge.cli.viewer.labels import Labels
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
-from sdf_pose_bridge.cli.viewer.pose_edit import EditedFrame
-from sdf_pose_bridge.cli.viewer.pose_edit import PoseEdit
-from sdf_pose_bridge.cli.viewer.pose_edit import SetPose
+from sdf_pose_bridge.cli.viewer.pose_edit import EditedFrame, PoseEdit, SetPose
 from sdf_pose_bridge.cli.viewer.selected_frame import SelectedFrame
-from sdf_pose_bridge.cli.viewer.server import Events
-from sdf_pose_bridge.cli.viewer.server import server_for_its_owner
+from sdf_pose_bridge.cli.viewer.server import Events, server_for_its_owner
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
-from sdf_pose_bridge.cli.viewer.view_point import bounds_of_points
-from sdf_pose_bridge.cli.viewer.view_point import DIRECTIONS
-from sdf_pose_bridge.cli.viewer.view_point import FIELD_OF_VIEW_RAD
-from sdf_pose_bridge.cli.viewer.view_point import View
-from sdf_pose_bridge.cli.viewer.view_point import view_in_window
-from sdf_pose_bridge.cli.viewer.view_point import view_of_bounds
+from sdf_pose_bridge.cli.viewer.view_point import (
+    bounds_of_points,
+    DIRECTIONS,
+    FIELD_OF_VIEW_RAD,
+    View,
+    view_in_window,
+    view_of_bounds,
+)
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.tf.joint_positions import scene_at_positions

@@ -4,24 +4,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import viser
 
-from sdf_pose_bridge.cli.printing import POSE_LABELS
-from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.viewer.frame_texts import html_of_difference
-from sdf_pose_bridge.cli.viewer.frame_texts import html_of_edit
-from sdf_pose_bridge.cli.viewer.frame_texts import html_of_lines
+from sdf_pose_bridge.cli.printing import POSE_LABELS, Units
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_difference, html_of_edit, html_of_lines
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_product
-from sdf_pose_bridge.geometry.poses import relative_pose
-from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
-from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
+from sdf_pose_bridge.geometry.poses import Pose, pose_product, relative_pose
+from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy, rpy_from_quaternion
 from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_change import FileChange

@@ -13,11 +13,8 @@ from typing import Any
 import viser
 
 from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.viewer.frame_texts import escaped
-from sdf_pose_bridge.cli.viewer.frame_texts import html_of_frame
-from sdf_pose_bridge.cli.viewer.frame_texts import rows_of_tree
-from sdf_pose_bridge.cli.viewer.server import Events
-from sdf_pose_bridge.cli.viewer.server import id_of_button
+from sdf_pose_bridge.cli.viewer.frame_texts import escaped, html_of_frame, rows_of_tree
+from sdf_pose_bridge.cli.viewer.server import Events, id_of_button
 from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT

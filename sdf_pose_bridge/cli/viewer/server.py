@@ -8,17 +8,14 @@ Private names of viser are used only here.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 import contextlib
 from dataclasses import replace
 from http import HTTPStatus
 import logging
-from queue import Empty
-from queue import SimpleQueue
+from queue import Empty, SimpleQueue
 import secrets
-from typing import Any
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from urllib.parse import urlsplit
 
 import rich
@@ -26,8 +23,7 @@ import viser
 from websockets.asyncio import server as websockets_server
 from websockets.asyncio.server import ServerConnection
 from websockets.datastructures import Headers
-from websockets.http11 import Request
-from websockets.http11 import Response
+from websockets.http11 import Request, Response
 
 from sdf_pose_bridge.cli.printing import CommandError
 from sdf_pose_bridge.cli.viewer import LIBRARIES

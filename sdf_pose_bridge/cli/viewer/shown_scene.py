@@ -4,29 +4,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sdf_pose_bridge.cli.printing import kind_labels_of
-from sdf_pose_bridge.cli.viewer.joint_sliders import JointRange
-from sdf_pose_bridge.cli.viewer.joint_sliders import range_of_dof
+from sdf_pose_bridge.cli.viewer.joint_sliders import JointRange, range_of_dof
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.joint_motion import JointMotion
-from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.joint_positions import scene_at_positions
-from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
-from sdf_pose_bridge.tf.parents import tf_parents_from_scene
-from sdf_pose_bridge.tf.tree import elements_in_model
-from sdf_pose_bridge.tf.tree import tf_tree_from_scene
-from sdf_pose_bridge.tf.tree import TfOptions
-from sdf_pose_bridge.tf.tree import TfTree
+from sdf_pose_bridge.tf.joint_positions import JointPositions, scene_at_positions
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT, tf_parents_from_scene
+from sdf_pose_bridge.tf.tree import elements_in_model, tf_tree_from_scene, TfOptions, TfTree
 
 
 class PosedScene(NamedTuple):

@@ -11,12 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 import trimesh
 
-from sdf_pose_bridge.cli.viewer.meshes import MeshPart
-from sdf_pose_bridge.cli.viewer.meshes import MeshReader
-from sdf_pose_bridge.geometry.rotations import Floats
-from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
-from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.names import quoted_names
+from sdf_pose_bridge.cli.viewer.meshes import MeshPart, MeshReader
+from sdf_pose_bridge.geometry.rotations import Floats, matrix_from_quaternion
+from sdf_pose_bridge.names import printable, quoted_names
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.shapes import Shape

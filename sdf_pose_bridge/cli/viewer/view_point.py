@@ -10,12 +10,10 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from sdf_pose_bridge.geometry.poses import PoseArray
-from sdf_pose_bridge.geometry.rotations import Floats
-from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
+from sdf_pose_bridge.geometry.rotations import Floats, matrix_from_quaternion
 
 FIELD_OF_VIEW_RAD = 0.8
 """The vertical field of view of the camera."""

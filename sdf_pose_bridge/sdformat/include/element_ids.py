@@ -10,18 +10,18 @@ whose name is the longest beginning of the id, and continues only inside this on
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import islice
 
-from sdf_pose_bridge.names import scoped_name
-from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.names import scoped_name, SEPARATOR
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of
-from sdf_pose_bridge.sdformat.xml_tree import child_elements
-from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
-from sdf_pose_bridge.sdformat.xml_tree import written_tag
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import (
+    attribute_of,
+    child_elements,
+    WHITE_SPACE,
+    written_tag,
+    XmlElement,
+)
 
 _MOST_IDS_COMPARED = 2000
 _MOST_ELEMENTS_SEARCHED = 10_000

@@ -16,50 +16,47 @@ from pathlib import Path
 
 from lxml import etree
 
-from sdf_pose_bridge.errors import AttributeInvalidError
-from sdf_pose_bridge.errors import AttributeMissingError
-from sdf_pose_bridge.errors import ElementIncorrectTypeError
-from sdf_pose_bridge.errors import ElementInvalidError
-from sdf_pose_bridge.errors import ElementMissingError
-from sdf_pose_bridge.errors import FileReadError
-from sdf_pose_bridge.errors import LimitError
-from sdf_pose_bridge.errors import ParsingError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import PlacementFrameError
-from sdf_pose_bridge.errors import ReservedNameError
-from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.errors import UriLookupError
-from sdf_pose_bridge.names import ROOT_FRAME
-from sdf_pose_bridge.names import shortened
-from sdf_pose_bridge.sdformat.counted import copy_of
-from sdf_pose_bridge.sdformat.counted import file_lookups
-from sdf_pose_bridge.sdformat.counted import FileLookups
-from sdf_pose_bridge.sdformat.counted import steps_of_copy
-from sdf_pose_bridge.sdformat.documents import Document
-from sdf_pose_bridge.sdformat.documents import document_from_file
-from sdf_pose_bridge.sdformat.grammar import Definition
-from sdf_pose_bridge.sdformat.grammar import definition_of
-from sdf_pose_bridge.sdformat.include.merge import merge
-from sdf_pose_bridge.sdformat.include.merge import ModelByItself
+from sdf_pose_bridge.errors import (
+    AttributeInvalidError,
+    AttributeMissingError,
+    ElementIncorrectTypeError,
+    ElementInvalidError,
+    ElementMissingError,
+    FileReadError,
+    LimitError,
+    ParsingError,
+    Place,
+    PlacementFrameError,
+    ReservedNameError,
+    SdfError,
+    UriLookupError,
+)
+from sdf_pose_bridge.names import ROOT_FRAME, shortened
+from sdf_pose_bridge.sdformat.counted import copy_of, file_lookups, FileLookups, steps_of_copy
+from sdf_pose_bridge.sdformat.documents import Document, document_from_file
+from sdf_pose_bridge.sdformat.grammar import Definition, definition_of
+from sdf_pose_bridge.sdformat.include.merge import merge, ModelByItself
 from sdf_pose_bridge.sdformat.include.params import apply_params
-from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
-from sdf_pose_bridge.sdformat.include.uris import ModelFile
-from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_INCLUDE
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_MERGE
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_MOVED_CHILD
+from sdf_pose_bridge.sdformat.include.uris import (
+    model_file_from_directory,
+    ModelFile,
+    ResourceFinder,
+)
+from sdf_pose_bridge.sdformat.limits import STEPS_OF_INCLUDE, STEPS_OF_MERGE, STEPS_OF_MOVED_CHILD
 from sdf_pose_bridge.sdformat.reader import check_element
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.values import boolean_from_text
-from sdf_pose_bridge.sdformat.xml_tree import child_elements
-from sdf_pose_bridge.sdformat.xml_tree import child_value
-from sdf_pose_bridge.sdformat.xml_tree import described
-from sdf_pose_bridge.sdformat.xml_tree import first_child
-from sdf_pose_bridge.sdformat.xml_tree import value_of
-from sdf_pose_bridge.sdformat.xml_tree import with_ancestors
-from sdf_pose_bridge.sdformat.xml_tree import written_tag
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import (
+    child_elements,
+    child_value,
+    described,
+    first_child,
+    value_of,
+    with_ancestors,
+    written_tag,
+    XmlElement,
+)
 
 _MOST_TOPS_SHOWN = 5
 """Largest number of elements at the top of a file that an error names."""

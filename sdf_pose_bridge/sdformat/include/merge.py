@@ -16,23 +16,22 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from sdf_pose_bridge.errors import AttributeInvalidError
-from sdf_pose_bridge.errors import MergeIncludeError
+from sdf_pose_bridge.errors import AttributeInvalidError, MergeIncludeError
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.names import MODEL_FRAME
-from sdf_pose_bridge.names import ROOT_FRAME
-from sdf_pose_bridge.names import WORLD_FRAME
+from sdf_pose_bridge.names import MODEL_FRAME, ROOT_FRAME, WORLD_FRAME
 from sdf_pose_bridge.sdformat.counted import copy_of
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.poses import text_from_pose
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of
-from sdf_pose_bridge.sdformat.xml_tree import child_elements
-from sdf_pose_bridge.sdformat.xml_tree import described
-from sdf_pose_bridge.sdformat.xml_tree import first_child
-from sdf_pose_bridge.sdformat.xml_tree import value_of
-from sdf_pose_bridge.sdformat.xml_tree import written_tag
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import (
+    attribute_of,
+    child_elements,
+    described,
+    first_child,
+    value_of,
+    written_tag,
+    XmlElement,
+)
 
 _MOVED_TAGS = frozenset({'frame', 'gripper', 'include', 'joint', 'link', 'model', 'plugin'})
 _NOT_IN_WORLDS = ('gripper', 'link')

@@ -11,26 +11,22 @@ from __future__ import annotations
 
 from lxml import etree
 
-from sdf_pose_bridge.errors import AttributeInvalidError
-from sdf_pose_bridge.errors import AttributeMissingError
-from sdf_pose_bridge.errors import DuplicateNameError
-from sdf_pose_bridge.errors import ElementInvalidError
-from sdf_pose_bridge.errors import ElementMissingError
+from sdf_pose_bridge.errors import (
+    AttributeInvalidError,
+    AttributeMissingError,
+    DuplicateNameError,
+    ElementInvalidError,
+    ElementMissingError,
+)
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.counted import copy_of
-from sdf_pose_bridge.sdformat.grammar import Definition
-from sdf_pose_bridge.sdformat.grammar import definition_of
-from sdf_pose_bridge.sdformat.include.element_ids import element_by_id
-from sdf_pose_bridge.sdformat.include.element_ids import hint_for_id
+from sdf_pose_bridge.sdformat.grammar import Definition, definition_of
+from sdf_pose_bridge.sdformat.include.element_ids import element_by_id, hint_for_id
 from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_LOOK
 from sdf_pose_bridge.sdformat.reader import check_element
-from sdf_pose_bridge.sdformat.sources import PARAMS_TAG
-from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.sources import PARAMS_TAG, Sources
 from sdf_pose_bridge.sdformat.specification import DEFINED_ALONE
-from sdf_pose_bridge.sdformat.xml_tree import child_elements
-from sdf_pose_bridge.sdformat.xml_tree import text_of
-from sdf_pose_bridge.sdformat.xml_tree import written_tag
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import child_elements, text_of, written_tag, XmlElement
 
 _OWN_ATTRIBUTES = ('element_id', 'action')
 _ACTIONS = ('add', 'modify', 'remove', 'replace')

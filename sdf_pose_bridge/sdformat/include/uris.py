@@ -9,32 +9,20 @@ version: ``getModelFilePath`` and ``getBestSupportedModelVersion`` of libsdforma
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from collections.abc import Iterator
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 import os
 from pathlib import Path
 import re
 from typing import NamedTuple
-from urllib.parse import unquote
-from urllib.parse import urlsplit
+from urllib.parse import unquote, urlsplit
 
-from sdf_pose_bridge.errors import FileReadError
-from sdf_pose_bridge.errors import ParsingError
-from sdf_pose_bridge.errors import Place
-from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.names import quoted_names
-from sdf_pose_bridge.names import shortened
-from sdf_pose_bridge.sdformat.counted import file_lookups
-from sdf_pose_bridge.sdformat.counted import FileLookups
+from sdf_pose_bridge.errors import FileReadError, ParsingError, Place, SdfWarning
+from sdf_pose_bridge.names import quoted_names, shortened
+from sdf_pose_bridge.sdformat.counted import file_lookups, FileLookups
 from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.versions import NEWEST
-from sdf_pose_bridge.sdformat.versions import version_numbers
+from sdf_pose_bridge.sdformat.versions import NEWEST, version_numbers
 from sdf_pose_bridge.sdformat.xml_file import xml_from_file
-from sdf_pose_bridge.sdformat.xml_tree import child_elements
-from sdf_pose_bridge.sdformat.xml_tree import first_child
-from sdf_pose_bridge.sdformat.xml_tree import text_of
-from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
+from sdf_pose_bridge.sdformat.xml_tree import child_elements, first_child, text_of, WHITE_SPACE
 
 _SCHEME = re.compile(r'([A-Za-z][A-Za-z0-9+.-]*)://')
 _SCHEME_OF_ADDRESS = re.compile(r'[A-Za-z][A-Za-z0-9+.-]+(?=:/)')

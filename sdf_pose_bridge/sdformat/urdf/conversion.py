@@ -25,37 +25,40 @@ from typing import NamedTuple
 from lxml import etree
 
 from sdf_pose_bridge.errors import RelativeToError
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.poses import pose_product
+from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.sdformat.inertials import Inertial as SdfInertial
-from sdf_pose_bridge.sdformat.inertials import MOMENTS
-from sdf_pose_bridge.sdformat.inertials import warn_of_inertial
+from sdf_pose_bridge.sdformat.inertials import MOMENTS, warn_of_inertial
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
-from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
+from sdf_pose_bridge.sdformat.specification import JOINT_TYPES, URDF_JOINT_TYPES
 from sdf_pose_bridge.sdformat.urdf.element_writer import ElementWriter
 from sdf_pose_bridge.sdformat.urdf.lumping import lumped_inertial
-from sdf_pose_bridge.sdformat.urdf.robot import gazebo_elements_of
-from sdf_pose_bridge.sdformat.urdf.robot import Inertial
-from sdf_pose_bridge.sdformat.urdf.robot import Joint
-from sdf_pose_bridge.sdformat.urdf.robot import Link
-from sdf_pose_bridge.sdformat.urdf.robot import Robot
-from sdf_pose_bridge.sdformat.urdf.robot import robot_from_tree
-from sdf_pose_bridge.sdformat.urdf.robot import robot_with_different_names
-from sdf_pose_bridge.sdformat.urdf.robot import SHAPES
-from sdf_pose_bridge.sdformat.urdf.values import leading_numbers
-from sdf_pose_bridge.sdformat.urdf.values import numbers_of
-from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy
-from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math
-from sdf_pose_bridge.sdformat.urdf.values import rpy_by_urdfdom
-from sdf_pose_bridge.sdformat.urdf.values import text_from_numbers
-from sdf_pose_bridge.sdformat.xml_tree import child_elements
-from sdf_pose_bridge.sdformat.xml_tree import first_child
-from sdf_pose_bridge.sdformat.xml_tree import text_of
-from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
-from sdf_pose_bridge.sdformat.xml_tree import written_tag
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.urdf.robot import (
+    gazebo_elements_of,
+    Inertial,
+    Joint,
+    Link,
+    Robot,
+    robot_from_tree,
+    robot_with_different_names,
+    SHAPES,
+)
+from sdf_pose_bridge.sdformat.urdf.values import (
+    leading_numbers,
+    numbers_of,
+    pose_from_xyz_rpy,
+    rpy_by_gz_math,
+    rpy_by_urdfdom,
+    text_from_numbers,
+)
+from sdf_pose_bridge.sdformat.xml_tree import (
+    child_elements,
+    first_child,
+    text_of,
+    WHITE_SPACE,
+    written_tag,
+    XmlElement,
+)
 
 _GAZEBO_TAGS = ('include', 'joint', 'link', 'model')
 """Children of ``<gazebo>`` for the model that would change the tree of a robot."""

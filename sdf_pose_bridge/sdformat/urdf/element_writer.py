@@ -4,20 +4,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Mapping
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from lxml import etree
 
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.names import MODEL_FRAME
-from sdf_pose_bridge.names import WORLD_FRAME
-from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_ELEMENT
+from sdf_pose_bridge.names import MODEL_FRAME, WORLD_FRAME
+from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP, STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math
-from sdf_pose_bridge.sdformat.urdf.values import text_from_numbers
+from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math, text_from_numbers
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
 

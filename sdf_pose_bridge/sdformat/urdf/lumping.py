@@ -14,9 +14,11 @@ import numpy as np
 
 from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
-from sdf_pose_bridge.sdformat.inertials import matrix_from_moments
-from sdf_pose_bridge.sdformat.inertials import moments_from_matrix
-from sdf_pose_bridge.sdformat.inertials import sum_of_moments
+from sdf_pose_bridge.sdformat.inertials import (
+    matrix_from_moments,
+    moments_from_matrix,
+    sum_of_moments,
+)
 from sdf_pose_bridge.sdformat.urdf.robot import Inertial
 
 

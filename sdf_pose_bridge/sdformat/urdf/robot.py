@@ -11,28 +11,23 @@ error, but in a link the parser stops at the fault and keeps the part that it ha
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from collections.abc import Sequence
-from collections.abc import Set
+from collections.abc import Mapping, Sequence, Set
 from itertools import count
 from typing import NamedTuple
 
-from sdf_pose_bridge.errors import DuplicateNameError
-from sdf_pose_bridge.errors import ElementInvalidError
-from sdf_pose_bridge.errors import ParsingError
+from sdf_pose_bridge.errors import DuplicateNameError, ElementInvalidError, ParsingError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import JOINT_SUFFIX
 from sdf_pose_bridge.sdformat.inertials import MOMENTS
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
-from sdf_pose_bridge.sdformat.urdf.values import is_true
-from sdf_pose_bridge.sdformat.urdf.values import NotFiniteError
-from sdf_pose_bridge.sdformat.urdf.values import numbers_of
-from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy
-from sdf_pose_bridge.sdformat.xml_tree import child_elements
-from sdf_pose_bridge.sdformat.xml_tree import first_child
-from sdf_pose_bridge.sdformat.xml_tree import written_tag
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.urdf.values import (
+    is_true,
+    NotFiniteError,
+    numbers_of,
+    pose_from_xyz_rpy,
+)
+from sdf_pose_bridge.sdformat.xml_tree import child_elements, first_child, written_tag, XmlElement
 
 _JOINT_PARTS = {
     'axis': 'xyz:3',

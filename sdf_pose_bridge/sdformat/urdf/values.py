@@ -9,13 +9,9 @@ import math
 import re
 
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy
-from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
+from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy, rpy_from_quaternion
 from sdf_pose_bridge.sdformat.values import number_from_word
-from sdf_pose_bridge.sdformat.xml_tree import text_of
-from sdf_pose_bridge.sdformat.xml_tree import WHITE_SPACE
-from sdf_pose_bridge.sdformat.xml_tree import written_tag
-from sdf_pose_bridge.sdformat.xml_tree import XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import text_of, WHITE_SPACE, written_tag, XmlElement
 
 _LEADING_NUMBER = re.compile(
     r'[+-]?(?:[0-9]+\.?[0-9]*(?:[eE][+-]?[0-9]+)?|\.[0-9]+(?:[eE][+-]?[0-9]+)?|inf|nan)',

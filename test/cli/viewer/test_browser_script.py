@@ -6,9 +6,7 @@ import html
 import json
 import re
 
-from sdf_pose_bridge.cli.viewer.browser_script import html_of_names
-from sdf_pose_bridge.cli.viewer.browser_script import NamesInScene
-from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
+from sdf_pose_bridge.cli.viewer.browser_script import html_of_names, NamesInScene, page_with_script
 
 HOSTILE = '"><script>'
 

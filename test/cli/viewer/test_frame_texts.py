@@ -9,9 +9,7 @@ import shlex
 import pytest
 
 from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.viewer.frame_texts import html_of_difference
-from sdf_pose_bridge.cli.viewer.frame_texts import html_of_frame
-from sdf_pose_bridge.cli.viewer.frame_texts import rows_of_tree
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_difference, html_of_frame, rows_of_tree
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT

@@ -10,11 +10,8 @@ import pytest
 pytest.importorskip('viser', reason='needs viser')
 import viser
 
-from sdf_pose_bridge.cli.printing import DEGREES
-from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.viewer.joint_sliders import JointRange
-from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
-from sdf_pose_bridge.cli.viewer.joint_sliders import range_of_dof
+from sdf_pose_bridge.cli.printing import DEGREES, Units
+from sdf_pose_bridge.cli.viewer.joint_sliders import JointRange, JointSliders, range_of_dof
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.joint_motion import JointMotion

@@ -16,8 +16,7 @@ from slow_file import SlowFile
 pytest.importorskip('trimesh', reason='needs trimesh')
 pytest.importorskip('collada', reason='needs pycollada')
 from sdf_pose_bridge.cli.viewer import meshes
-from sdf_pose_bridge.cli.viewer.meshes import mesh_from_file
-from sdf_pose_bridge.cli.viewer.meshes import MeshReader
+from sdf_pose_bridge.cli.viewer.meshes import mesh_from_file, MeshReader
 from sdf_pose_bridge.limited_process import LimitedProcess
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES

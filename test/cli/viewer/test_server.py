@@ -10,9 +10,7 @@ from websockets.datastructures import Headers
 from websockets.http11 import Request
 
 from sdf_pose_bridge.cli.printing import CommandError
-from sdf_pose_bridge.cli.viewer.server import id_of_button
-from sdf_pose_bridge.cli.viewer.server import reason_to_refuse
-from sdf_pose_bridge.cli.viewer.server import server_for_its_owner
+from sdf_pose_bridge.cli.viewer.server import id_of_button, reason_to_refuse, server_for_its_owner
 
 HERE = 'http://127.0.0.1:8080'
 

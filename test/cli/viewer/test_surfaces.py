@@ -11,10 +11,12 @@ pytest.importorskip('viser', reason='needs viser')
 from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.viewer import surfaces as surfaces_module
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
-from sdf_pose_bridge.cli.viewer.surfaces import boxes_of_surfaces
-from sdf_pose_bridge.cli.viewer.surfaces import lines_from_not_drawn
-from sdf_pose_bridge.cli.viewer.surfaces import NotDrawn
-from sdf_pose_bridge.cli.viewer.surfaces import surfaces_from_scene
+from sdf_pose_bridge.cli.viewer.surfaces import (
+    boxes_of_surfaces,
+    lines_from_not_drawn,
+    NotDrawn,
+    surfaces_from_scene,
+)
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 
 

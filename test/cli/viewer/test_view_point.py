@@ -7,15 +7,17 @@ import math
 import numpy as np
 import pytest
 
-from sdf_pose_bridge.cli.viewer.view_point import bounds_of_interest
-from sdf_pose_bridge.cli.viewer.view_point import bounds_with_axes
-from sdf_pose_bridge.cli.viewer.view_point import DIRECTIONS
-from sdf_pose_bridge.cli.viewer.view_point import FIELD_OF_VIEW_RAD
-from sdf_pose_bridge.cli.viewer.view_point import grid_spacing_m
-from sdf_pose_bridge.cli.viewer.view_point import home_view
-from sdf_pose_bridge.cli.viewer.view_point import View
-from sdf_pose_bridge.cli.viewer.view_point import view_in_window
-from sdf_pose_bridge.cli.viewer.view_point import view_of_bounds
+from sdf_pose_bridge.cli.viewer.view_point import (
+    bounds_of_interest,
+    bounds_with_axes,
+    DIRECTIONS,
+    FIELD_OF_VIEW_RAD,
+    grid_spacing_m,
+    home_view,
+    View,
+    view_in_window,
+    view_of_bounds,
+)
 
 NO_BOXES = np.zeros((0, 2, 3))
 CUBE = np.array([(-1.0, -1.0, -1.0), (1.0, 1.0, 1.0)])

@@ -5,8 +5,7 @@
 import pytest
 
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.include.element_ids import element_by_id
-from sdf_pose_bridge.sdformat.include.element_ids import hint_for_id
+from sdf_pose_bridge.sdformat.include.element_ids import element_by_id, hint_for_id
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 
 ARM = """<model name="arm">

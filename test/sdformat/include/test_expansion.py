@@ -3,19 +3,20 @@
 """Includes are replaced by what they include: wrong ones, missing ones, and what they override."""
 
 import pytest
-from sdf_texts import assert_at
-from sdf_texts import errors_of_file
-from sdf_texts import fixed_joint
-from sdf_texts import LINK
-from sdf_texts import model_file
-from sdf_texts import names_of
-from sdf_texts import posed
-from sdf_texts import TWO_LINKS
-from sdf_texts import world_file
-from sdf_texts import write_files
+from sdf_texts import (
+    assert_at,
+    errors_of_file,
+    fixed_joint,
+    LINK,
+    model_file,
+    names_of,
+    posed,
+    TWO_LINKS,
+    world_file,
+    write_files,
+)
 
-from sdf_pose_bridge import Limits
-from sdf_pose_bridge import load
+from sdf_pose_bridge import Limits, load
 
 LEAF = """<sdf version="1.9"><model name="leaf"><pose>0 0 1 0 0 0</pose>
 <link name="body"><pose>0 1 0 0 0 0</pose></link></model></sdf>"""

@@ -4,14 +4,16 @@
 
 import numpy as np
 import pytest
-from sdf_texts import assert_at
-from sdf_texts import errors_of_file
-from sdf_texts import fixed_joint
-from sdf_texts import LINK
-from sdf_texts import names_of
-from sdf_texts import posed
-from sdf_texts import warning_codes
-from sdf_texts import write_files
+from sdf_texts import (
+    assert_at,
+    errors_of_file,
+    fixed_joint,
+    LINK,
+    names_of,
+    posed,
+    warning_codes,
+    write_files,
+)
 
 from sdf_pose_bridge import load
 

@@ -5,12 +5,7 @@
 import tracemalloc
 
 import pytest
-from sdf_texts import assert_at
-from sdf_texts import errors_of_file
-from sdf_texts import model_file
-from sdf_texts import names_of
-from sdf_texts import only_error
-from sdf_texts import write_files
+from sdf_texts import assert_at, errors_of_file, model_file, names_of, only_error, write_files
 
 import sdf_pose_bridge
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS

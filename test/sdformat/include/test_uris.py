@@ -8,9 +8,11 @@ from pathlib import Path
 import pytest
 
 from sdf_pose_bridge import SdfError
-from sdf_pose_bridge.sdformat.include.uris import AddressError
-from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory
-from sdf_pose_bridge.sdformat.include.uris import resource_finder
+from sdf_pose_bridge.sdformat.include.uris import (
+    AddressError,
+    model_file_from_directory,
+    resource_finder,
+)
 from sdf_pose_bridge.sdformat.limits import Usage
 
 

@@ -9,20 +9,10 @@ Where that differs from what ROS makes of a robot there are tests of both.
 import math
 
 import pytest
-from sdf_texts import errors_of_file
-from sdf_texts import names_of
-from sdf_texts import only_error
-from sdf_texts import world_file
-from urdf_texts import gazebo
-from urdf_texts import joint
-from urdf_texts import link
-from urdf_texts import origin
-from urdf_texts import robot
-from urdf_texts import shape
+from sdf_texts import errors_of_file, names_of, only_error, world_file
+from urdf_texts import gazebo, joint, link, origin, robot, shape
 
-from sdf_pose_bridge import load
-from sdf_pose_bridge import load_text
-from sdf_pose_bridge import SdfError
+from sdf_pose_bridge import load, load_text, SdfError
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.sources import Sources

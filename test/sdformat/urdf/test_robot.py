@@ -7,22 +7,12 @@ import math
 from lxml import etree
 import numpy as np
 import pytest
-from sdf_texts import errors_of
-from sdf_texts import only_error
-from sdf_texts import world_file
-from urdf_texts import gazebo
-from urdf_texts import joint
-from urdf_texts import link
-from urdf_texts import origin
-from urdf_texts import robot
-from urdf_texts import shape
+from sdf_texts import errors_of, only_error, world_file
+from urdf_texts import gazebo, joint, link, origin, robot, shape
 
-from sdf_pose_bridge import load
-from sdf_pose_bridge import load_text
-from sdf_pose_bridge import scene_at_positions
+from sdf_pose_bridge import load, load_text, scene_at_positions
 from sdf_pose_bridge.problems import MOST_PROBLEMS
-from sdf_pose_bridge.sdformat.urdf.robot import gazebo_elements_of
-from sdf_pose_bridge.sdformat.urdf.robot import GazeboElements
+from sdf_pose_bridge.sdformat.urdf.robot import gazebo_elements_of, GazeboElements
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 TWO = link('a') + link('b')

@@ -14,13 +14,15 @@ from hypothesis import strategies as st
 
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import matrix_from_rpy
-from sdf_pose_bridge.sdformat.urdf.values import is_true
-from sdf_pose_bridge.sdformat.urdf.values import NotFiniteError
-from sdf_pose_bridge.sdformat.urdf.values import numbers_of
-from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy
-from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math
-from sdf_pose_bridge.sdformat.urdf.values import rpy_by_urdfdom
-from sdf_pose_bridge.sdformat.urdf.values import text_from_numbers
+from sdf_pose_bridge.sdformat.urdf.values import (
+    is_true,
+    NotFiniteError,
+    numbers_of,
+    pose_from_xyz_rpy,
+    rpy_by_gz_math,
+    rpy_by_urdfdom,
+    text_from_numbers,
+)
 
 ANGLES = st.floats(-4, 4) | st.sampled_from([0.0, math.pi / 2, -math.pi / 2, 1.5707963, 1.57])
 
