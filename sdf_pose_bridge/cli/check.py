@@ -67,14 +67,17 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _doubts_about_frames(scene: Scene) -> tuple[SdfWarning, ...]:
-    """Return a warning for each error of the TF tree; with other parameters it may be valid."""
+    """
+    Return the warnings of the TF tree.
+
+    An error of the tree is one of them; with other parameters the tree may be valid.
+    """
     try:
-        tf_tree_from_scene(scene)
+        return tf_tree_from_scene(scene).warnings
     except SdfError as error:
         return tuple(
             SdfWarning(each.code, f'{each.message}; by default, the node rejects this', each.place)
             for each in error.errors)
-    return ()
 
 
 def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[SdfWarning, ...]:

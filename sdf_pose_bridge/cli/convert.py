@@ -8,12 +8,19 @@ import argparse
 from collections.abc import Sequence
 import io
 from itertools import islice
-import re
 import sys
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
+from sdf_pose_bridge.cli.printing import (
+    add_unit_arguments,
+    CommandError,
+    DEGREES,
+    METRES,
+    MILLIMETRES,
+    Unit,
+)
 from sdf_pose_bridge.geometry.formats import (
     converted_poses,
     converted_rotations,
@@ -28,10 +35,15 @@ from sdf_pose_bridge.names import printable, shortened
 LINES_AT_A_TIME = 10_000
 """Number of lines that are converted together, so that memory is bounded for any input."""
 
-NEGATIVE_NUMBER = re.compile(r'^-(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$|^-(inf|nan)', re.IGNORECASE)
-
 _Result: TypeAlias = tuple[list[float], ...]
 """The numbers of a pose or a rotation in several formats."""
+
+
+class _Conversion(NamedTuple):
+    source: Format
+    targets: Sequence[Format]
+    given_length: Unit
+    printed_length: Unit
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -42,13 +54,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description=(
             'Convert poses or rotations between formats. Without numbers, lines are read from\n'
             'standard input, one pose each; blank lines and those that begin with # are skipped.\n'
-            'Without --to, every format is printed.'
+            'Without --to, every format is printed. --degrees and --mm are the units of given\n'
+            'numbers, and of those printed with --to.'
         ),
         epilog=_formats_help(),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    # By default argparse parses -1e-3 as an option.
-    parser._negative_number_matcher = NEGATIVE_NUMBER  # noqa: SLF001
     names = (*ROTATION_FORMATS, *POSE_FORMATS)
     parser.add_argument(
         '--from', dest='from_format', metavar='FORMAT', choices=names, required=True,
@@ -56,6 +67,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         '--to', dest='to_format', metavar='FORMAT', choices=names,
         help='format to print; by default all of them')
+    add_unit_arguments(parser)
     parser.add_argument('numbers', nargs='*', metavar='NUMBER', help='one pose or rotation')
     parser.set_defaults(run=run)
 
@@ -74,11 +86,16 @@ def run(options: argparse.Namespace) -> int:
             f' --to {options.to_format} a {other}; a {kind} converts to {", ".join(formats)}',
             file=sys.stderr)
         return 2
-    source = formats[options.from_format]
-    targets = [formats[options.to_format]] if options.to_format else list(formats.values())
+    conversion = _Conversion(
+        format_with_unit(options.from_format, options.angle_unit), list(formats.values()),
+        options.length_unit, METRES)
+    if options.to_format:
+        conversion = conversion._replace(
+            targets=[format_with_unit(options.to_format, options.angle_unit)],
+            printed_length=options.length_unit)
     if options.numbers:
-        (result,) = _converted([' '.join(options.numbers)], source, targets)
-        print(*_texts(result, targets), sep='\n')
+        (result,) = _converted([' '.join(options.numbers)], conversion)
+        print(*_texts(result, conversion.targets), sep='\n')
         return 0
     if isinstance(sys.stdin, io.TextIOWrapper):
         # Invalid bytes are an error in their line only.
@@ -89,7 +106,7 @@ def run(options: argparse.Namespace) -> int:
         if text.strip() and not text.lstrip().startswith('#'))
     at_a_time = 1 if sys.stdin.isatty() else LINES_AT_A_TIME
     while batch := list(islice(lines, at_a_time)):
-        exit_code |= _print_lines(batch, source, targets)
+        exit_code |= _print_lines(batch, conversion)
     return exit_code
 
 
@@ -102,11 +119,26 @@ def _formats_help() -> str:
     return '\n'.join(lines)
 
 
-def numbers_from_text(text: str, source: Format) -> list[float]:
+def format_with_unit(name: str, angle_unit: Unit) -> Format:
+    """
+    Return a format; for degrees the one that has them instead of radians.
+
+    :raises CommandError: for degrees, if there is only one with radians.
+    """
+    formats = {**POSE_FORMATS, **ROTATION_FORMATS}
+    if angle_unit is DEGREES and name == 'ur_pose':
+        msg = 'ur_pose is always in radians, without --degrees'
+        raise CommandError(msg)
+    return (angle_unit is DEGREES and formats.get(f'{name}_degrees')) or formats[name]
+
+
+def numbers_from_text(text: str, source: Format, length_unit: Unit) -> list[float]:
     """
     Read the numbers of a pose or a rotation.
 
     :param source: the format of the numbers.
+    :param length_unit: the unit of lengths, if it is not that of the format.
+    :return: the numbers in the units of the format.
     :raises PoseFormatError: if they are not numbers, or not as many as in the format.
     """
     values = []
@@ -124,16 +156,23 @@ def numbers_from_text(text: str, source: Format) -> list[float]:
             f'{source.name} has {source.row_length} numbers ({source.meaning}), but {len(values)}'
             f' {"is" if len(values) == 1 else "are"} given')
         raise PoseFormatError(msg)
+    if length_unit is MILLIMETRES:
+        for index in source.position:
+            values[index] *= source.metre / length_unit.factor
     return values
 
 
-def _print_lines(
-    lines: Sequence[tuple[int, str]], source: Format, targets: Sequence[Format],
-) -> int:
+def question_about_unit(source: Format, numbers: Sequence[float]) -> str:
+    """Return a question if numbers are probably in another unit; else an empty text."""
+    doubt = source.doubt(numbers)
+    return f'{doubt.reason}; did you mean --{doubt.likely_unit}?' if doubt else ''
+
+
+def _print_lines(lines: Sequence[tuple[int, str]], conversion: _Conversion) -> int:
     """Print the result or the error of each line, with its number, and return the exit code."""
     exit_code = 0
     output = []
-    results = _converted_or_errors([text for _, text in lines], source, targets)
+    results = _converted_or_errors([text for _, text in lines], conversion)
     for (number, _), result in zip(lines, results, strict=True):
         if isinstance(result, str):
             exit_code = 1
@@ -141,8 +180,8 @@ def _print_lines(
             # A comment keeps the numbers of lines of output and input equal.
             output.append(f'# line {number} is not converted')
         else:
-            output += _texts(result, targets)
-        if len(targets) > 1:
+            output += _texts(result, conversion.targets)
+        if len(conversion.targets) > 1:
             output.append('')
     sys.stdout.write(''.join(f'{text}\n' for text in output))
     return exit_code
@@ -156,25 +195,30 @@ def _texts(result: _Result, targets: Sequence[Format]) -> list[str]:
         for target, numbers in zip(targets, result, strict=True)]
 
 
-def _converted(
-    texts: Sequence[str], source: Format, targets: Sequence[Format],
-) -> list[_Result]:
+def _converted(texts: Sequence[str], conversion: _Conversion) -> list[_Result]:
+    source, targets, given_length, printed_length = conversion
     convert = converted_poses if source.name in POSE_FORMATS else converted_rotations
-    values = np.array([numbers_from_text(text, source) for text in texts])
-    return list(zip(*(
-        without_rounding_errors(
-            convert(values, source.name, target.name), source, target).tolist()
-        for target in targets), strict=True))
+    rows = [numbers_from_text(text, source, given_length) for text in texts]
+    values, columns = np.array(rows), []
+    for target in targets:
+        shown = without_rounding_errors(convert(values, source.name, target.name), source, target)
+        if printed_length is MILLIMETRES:
+            shown[:, list(target.position)] *= printed_length.factor / target.metre
+        columns.append(shown.tolist())
+    question = next(filter(None, (question_about_unit(source, row) for row in rows)), '')
+    if question:
+        print(f'sdf_pose convert: {question}', file=sys.stderr)
+    return list(zip(*columns, strict=True))
 
 
 def _converted_or_errors(
-    texts: Sequence[str], source: Format, targets: Sequence[Format],
+    texts: Sequence[str], conversion: _Conversion,
 ) -> Sequence[_Result | str]:
     try:
-        return _converted(texts, source, targets)
+        return _converted(texts, conversion)
     except PoseFormatError as error:
         if len(texts) == 1:
             return [str(error)]
         half = len(texts) // 2
-        return [*_converted_or_errors(texts[:half], source, targets),
-                *_converted_or_errors(texts[half:], source, targets)]
+        return [*_converted_or_errors(texts[:half], conversion),
+                *_converted_or_errors(texts[half:], conversion)]

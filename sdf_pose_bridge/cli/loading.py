@@ -6,10 +6,11 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Collection, Mapping
+from pathlib import Path
 import sys
 from typing import NamedTuple
 
-from sdf_pose_bridge.cli.printing import DEGREES, METRES, MILLIMETRES, print_problems, RADIANS
+from sdf_pose_bridge.cli.printing import add_unit_arguments, print_problems
 from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.loading import load_text
@@ -55,7 +56,8 @@ def add_file_arguments(parser: argparse.ArgumentParser, *, takes_many: bool = Tr
 def add_loading_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of :func:`load_file`."""
     parser.add_argument(
-        '-I', dest='resource_paths', metavar='DIR', action='append', default=[],
+        '-I', dest='resource_paths', metavar='DIR', type=_directory_from_text, action='append',
+        default=[],
         help='a directory to search for included models, before those of GZ_SIM_RESOURCE_PATH '
              'and SDF_PATH; may be given more than once')
     parser.add_argument(
@@ -154,12 +156,7 @@ def add_frame_arguments(parser: argparse.ArgumentParser) -> None:
     add_kinds_argument(parser, 'show frames of', DEFAULT_KINDS)
     add_model_argument(parser)
     add_naming_argument(parser)
-    parser.add_argument(
-        '--degrees', dest='angle_unit', action='store_const', const=DEGREES, default=RADIANS,
-        help='angles in degrees, not radians')
-    parser.add_argument(
-        '--mm', dest='length_unit', action='store_const', const=MILLIMETRES, default=METRES,
-        help='lengths in millimetres, not metres')
+    add_unit_arguments(parser)
 
 
 def add_model_argument(parser: argparse.ArgumentParser, verb: str = 'show') -> None:
@@ -186,6 +183,13 @@ def tf_options_from_arguments(options: argparse.Namespace) -> TfOptions:
     return TfOptions(
         model=options.model, kinds=frozenset(options.kinds),
         frame_names=FrameNames(options.frame_names))
+
+
+def _directory_from_text(text: str) -> str:
+    if not Path(text).is_dir():
+        msg = f'"{text}" is not a directory'
+        raise argparse.ArgumentTypeError(msg)
+    return text
 
 
 def _kinds_from_text(text: str) -> tuple[Kind, ...]:

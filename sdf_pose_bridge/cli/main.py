@@ -11,7 +11,9 @@ import contextlib
 import importlib
 import io
 import os
+import re
 import sys
+from typing import Any, NoReturn
 
 import sdf_pose_bridge
 from sdf_pose_bridge.cli import check, convert, diff, graph, poses, tree, urdf, view
@@ -19,7 +21,11 @@ from sdf_pose_bridge.cli import set as set_command
 from sdf_pose_bridge.cli.printing import CommandError, discard_output, print_problems
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import PoseFormatError
-from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import hint_from_names, printable
+
+_NEGATIVE_NUMBER = re.compile(
+    r'^-(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$|^-(inf|nan)', re.IGNORECASE)
+_INVALID_CHOICE = re.compile(r"invalid choice: '(.*)' \(choose from (.*)\)")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -73,9 +79,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return code
 
 
+class _Parser(argparse.ArgumentParser):
+    """Parses whole options only, and negative numbers such as -1e-3 as numbers."""
+
+    def __init__(self, **arguments: Any) -> None:
+        super().__init__(**arguments, allow_abbrev=False)
+        self._negative_number_matcher = _NEGATIVE_NUMBER
+
+    def error(self, message: str) -> NoReturn:
+        """Print the error with the nearest choice, and end the process."""
+        wrong = _INVALID_CHOICE.search(message)
+        super().error(message + (
+            hint_from_names(wrong[1], re.findall(r'\w+', wrong[2])) if wrong else ''))
+
+
 def new_parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog='sdf_pose',
         description='Poses and frames of SDFormat files, exactly as libsdformat resolves them.')
     parser.add_argument('--version', action='store_true', help='show the version and exit')

@@ -131,6 +131,16 @@ class Units(NamedTuple):
             for value, unit in zip(values, self.of_pose, strict=True)]
 
 
+def add_unit_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments ``--degrees`` and ``--mm``."""
+    parser.add_argument(
+        '--degrees', dest='angle_unit', action='store_const', const=DEGREES, default=RADIANS,
+        help='angles in degrees, not radians')
+    parser.add_argument(
+        '--mm', dest='length_unit', action='store_const', const=MILLIMETRES, default=METRES,
+        help='lengths in millimetres, not metres')
+
+
 def add_output_argument(
     parser: argparse.ArgumentParser, formats: Sequence[str], what: str,
 ) -> None:

@@ -8,7 +8,11 @@ import argparse
 from collections.abc import Mapping
 import sys
 
-from sdf_pose_bridge.cli.convert import NEGATIVE_NUMBER, numbers_from_text
+from sdf_pose_bridge.cli.convert import (
+    format_with_unit,
+    numbers_from_text,
+    question_about_unit,
+)
 from sdf_pose_bridge.cli.loading import (
     add_file_arguments,
     pose_lookup,
@@ -16,17 +20,17 @@ from sdf_pose_bridge.cli.loading import (
     scene_of,
     STANDARD_INPUT,
 )
-from sdf_pose_bridge.cli.printing import CommandError, discard_output
+from sdf_pose_bridge.cli.printing import add_unit_arguments, CommandError, discard_output
 from sdf_pose_bridge.geometry.formats import (
     converted_poses,
     converted_rotations,
     POSE_FORMATS,
     ROTATION_FORMATS,
 )
-from sdf_pose_bridge.geometry.poses import Pose, pose_inverse, pose_product
-from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.geometry.poses import Pose, pose_product
+from sdf_pose_bridge.names import printable, scoped_name
 from sdf_pose_bridge.scene.comparison import names_of_moved
-from sdf_pose_bridge.scene.pose_setting import Measure, pose_change, PoseChange
+from sdf_pose_bridge.scene.pose_setting import are_close, Measure, pose_change, PoseChange
 from sdf_pose_bridge.scene.scene import Scene
 
 
@@ -37,12 +41,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description='Change the numbers of the <pose> that places a frame to a measured pose. '
                     'Nothing else in the file changes. The change, and the other frames that move '
                     'with it, are printed.')
-    # By default argparse parses -1e-3 as an option.
-    parser._negative_number_matcher = NEGATIVE_NUMBER  # noqa: SLF001
     add_file_arguments(parser, takes_many=False)
     parser.add_argument(
         'frame', metavar='FRAME', help='a name as in SDF (robot::camera) or TF (robot/camera)')
     parser.add_argument('numbers', metavar='NUMBER', nargs='+', help='the pose')
+    parser.add_argument(
+        '--by', metavar='PART', default='',
+        help='the pose is that of a frame that moves with FRAME, such as a touched nest of a '
+             'fixture: its name, also without that of FRAME')
     parser.add_argument(
         '--relative-to', metavar='OTHER', default='',
         help='the frame in which the pose was measured; by default the world, or the implicit '
@@ -51,6 +57,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         '--format', choices=(*POSE_FORMATS, *ROTATION_FORMATS), default='sdf_rpy',
         help='format of the numbers, as of "sdf_pose convert"; by default sdf_rpy: x y z roll '
              'pitch yaw in metres and radians. With a format of rotations the position stays')
+    add_unit_arguments(parser)
+    parser.add_argument(
+        '--force', action='store_true',
+        help='write numbers that look like degrees or millimetres as radians or metres')
     parser.add_argument(
         '--dry-run', action='store_true', help='print the change without writing it')
     parser.add_argument(
@@ -64,38 +74,52 @@ def run(options: argparse.Namespace) -> int:
     Set a pose.
 
     :return: exit code: 0.
-    :raises CommandError: for the standard input.
+    :raises CommandError: for the standard input, and for numbers that look like another unit.
     :raises PoseFormatError: if the numbers are wrong.
     :raises SdfError: if the pose cannot be written into the file.
     """
     if options.files[0] == STANDARD_INPUT:
         msg = 'the standard input cannot be changed; name a file'
         raise CommandError(msg)
-    numbers = numbers_from_text(
-        ' '.join(options.numbers), {**POSE_FORMATS, **ROTATION_FORMATS}[options.format])
+    source = format_with_unit(options.format, options.angle_unit)
+    numbers = numbers_from_text(' '.join(options.numbers), source, options.length_unit)
+    question = question_about_unit(source, numbers)
+    if question and not options.force:
+        msg = f'{question} --force writes them as they are'
+        raise CommandError(msg)
     scene = scene_of(options.files[0], options)
 
     def measured(scene: Scene, element: int) -> Pose:
         return pose_lookup(scene).pose_of_element(element, options.relative_to)
 
     lookup = pose_lookup(scene)
-    element, in_element = lookup.element(options.frame)
-    if options.format in POSE_FORMATS:
-        asked = Pose(*converted_poses(numbers, options.format, 'sdf_quat_xyzw').tolist())
+    element, _ = lookup.element(options.frame)
+    part = options.by or options.frame
+    if options.by and scene.has(scoped_name(scene.names[element], options.by)):
+        part = scoped_name(scene.names[element], options.by)
+    if source.name in POSE_FORMATS:
+        asked = Pose(*converted_poses(numbers, source.name, 'sdf_quat_xyzw').tolist())
     else:
-        quat_xyzw = converted_rotations(numbers, options.format, 'quaternion').tolist()
-        position = lookup.pose(options.frame, options.relative_to).pose[:3]
-        asked = Pose(*position, *quat_xyzw)
+        quat_xyzw = converted_rotations(numbers, source.name, 'quaternion').tolist()
+        asked = Pose(*lookup.pose(part, options.relative_to).pose[:3], *quat_xyzw)
     change = set_pose(
-        scene, element, pose_product(asked, pose_inverse(in_element)), measured, options,
-        all_instances=options.all_instances, dry_run=options.dry_run)
+        scene, element, pose_product(asked, lookup.pose_of_element(element, part)), measured,
+        options, all_instances=options.all_instances, dry_run=True)
+    name = printable(scene.names[element])
+    if options.by and not are_close(
+            pose_lookup(change.scene).pose(part, options.relative_to).pose, asked):
+        msg = f'"{part}" does not move with "{name}"'
+        raise CommandError(msg)
+    if not options.dry_run:
+        change.file.write()
     moved = [
         printable(name) for name in names_of_moved(scene, change.scene)
         if name != scene.names[element]]
     try:
         if change.file.path != scene.files[0]:
             print(f'the pose is in {printable(change.file.path)}')
-        print(change.file.diff, end='')
+        print(change.file.diff or f'"{name}" has this pose already; the file stays as it is\n',
+              end='')
         if moved:
             print(f'moved with it: {", ".join(moved)}')
         sys.stdout.flush()

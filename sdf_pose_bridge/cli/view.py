@@ -98,7 +98,7 @@ def run(options: argparse.Namespace) -> int:
         for line in page.reasons:
             print(f'sdf_pose view: {line}', file=sys.stderr)
         if options.output is None:
-            _open(page.address)
+            _open(page.address, options.port)
             watcher = FileWatcher()
             # The standard input cannot be read again.
             watcher.watch(() if is_input else scene.files, read_since_ns)
@@ -154,13 +154,13 @@ def _how_to_install() -> str:
         'and pip installs nothing beside the packages of apt)')
 
 
-def _open(address: str) -> None:
+def _open(address: str, port: int) -> None:
     # Imported here because other commands do not need it.
     import webbrowser
-    print(address, flush=True)
-    if not webbrowser.open(address):
-        print('sdf_pose view: there is no browser; open the address above in one',
-              file=sys.stderr)
+    if port and f':{port}/' not in address:
+        print(f'sdf_pose view: port {port} is in use', file=sys.stderr)
+    print(f'open {address} in a browser; Ctrl-C ends this program', flush=True)
+    webbrowser.open(address)
 
 
 def _follow(

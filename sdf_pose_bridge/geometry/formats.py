@@ -43,8 +43,24 @@ LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 """Last row of the 4 x 4 matrix of a pose, exactly; libfranka compares without a tolerance."""
 
 
+LARGEST_ANGLE_RAD = 2.5 * math.pi
+"""A larger angle is probably in degrees; one of a little more than a turn may be meant."""
+
+FAR_M = 100.0
+"""A position that is at least this far away is probably in millimetres."""
+
+
 class PoseFormatError(ValueError):
     """The values are not poses in the format; the message names the value and the rule."""
+
+
+class UnitDoubt(NamedTuple):
+    """Numbers are probably in another unit than their format has."""
+
+    reason: str
+    """A clause with the numbers and the unit of the format."""
+    likely_unit: str
+    """``degrees`` or ``mm``."""
 
 
 class Format(NamedTuple):
@@ -66,6 +82,22 @@ class Format(NamedTuple):
     """The largest number of a rotation in the format, unless it has roll, pitch and yaw."""
     position: tuple[int, ...] = ()
     """The indices of x, y and z of a pose."""
+    metre: float = 1.0
+    """A metre in the unit of the position."""
+
+    def doubt(self, numbers: Sequence[float]) -> UnitDoubt | None:
+        """
+        Return why numbers are probably in another unit than the format has.
+
+        :param numbers: one finite pose or rotation, shape (row_length,).
+        :return: None if they are plausible.
+        """
+        angles, xyz = numbers[-3:], [numbers[index] for index in self.position]
+        if math.pi in (self.half_turn, self.unit) and max(map(abs, angles)) > LARGEST_ANGLE_RAD:
+            return UnitDoubt(f'the angles {_shown(angles)} are radians', 'degrees')
+        if self.metre == 1.0 and max(map(abs, xyz), default=0.0) >= FAR_M:
+            return UnitDoubt(f'the position {_shown(xyz)} is in metres', 'mm')
+        return None
 
 
 class Given(enum.IntEnum):
@@ -276,6 +308,10 @@ def _degrees_from_quaternion(quat_xyzw: Floats) -> Floats:
     return rpy_deg
 
 
+def _shown(numbers: Sequence[float]) -> str:
+    return ' '.join(f'{number:g}' for number in numbers)
+
+
 def _pose(xyz_m: Floats, quat_xyzw: Floats) -> Floats:
     return np.concatenate((xyz_m, quat_xyzw), axis=1)
 
@@ -339,7 +375,7 @@ POSE_FORMATS = _registry(
         "x y z in millimetres, rotations x y z in degrees (z-y'-x'': x is roll, z is yaw)",
         lambda row: _pose(row[:, :3] / 1000.0, _quaternion_from_degrees(row[:, 3:])),
         lambda pose: _pose(pose[:, :3] * 1000.0, _degrees_from_quaternion(pose[:, 3:])),
-        half_turn=180.0, position=(0, 1, 2),
+        half_turn=180.0, position=(0, 1, 2), metre=1000.0,
     ),
     Format(
         'ur_pose', 6, 'x y z in metres, rotation vector (axis times angle) in radians',

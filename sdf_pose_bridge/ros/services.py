@@ -16,7 +16,12 @@ from rclpy.node import Node
 from rclpy.qos import qos_profile_parameters
 
 from sdf_pose_bridge.errors import JointPositionError, Place, PoseNotSetError, UnknownFrameError
-from sdf_pose_bridge.geometry.formats import converted_poses, converted_rotation, PoseFormatError
+from sdf_pose_bridge.geometry.formats import (
+    converted_poses,
+    converted_rotation,
+    POSE_FORMATS,
+    PoseFormatError,
+)
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import RotationError
 from sdf_pose_bridge.ros.background import CoroutineLock, run_in_thread
@@ -179,10 +184,15 @@ def _pose_from_request(request: SetPose.Request, loaded: LoadedScene) -> Pose:
     numbers = [
         position.x, position.y, position.z,
         quaternion.x, quaternion.y, quaternion.z, quaternion.w]
+    place = Place(str(loaded.path))
     try:
-        return Pose(*converted_poses(numbers, 'sdf_quat_xyzw', 'sdf_quat_xyzw').tolist())
+        pose = Pose(*converted_poses(numbers, 'sdf_quat_xyzw', 'sdf_quat_xyzw').tolist())
     except PoseFormatError as error:
-        raise PoseNotSetError(str(error), Place(str(loaded.path))) from error
+        raise PoseNotSetError(str(error), place) from error
+    if doubt := POSE_FORMATS['sdf_quat_xyzw'].doubt(pose):
+        msg = f'{doubt.reason}; is it in {doubt.likely_unit}? "sdf_pose set --force" writes it'
+        raise PoseNotSetError(msg, place)
+    return pose
 
 
 def never_raising(answer: Answer, log_error: Callable[[str], object]) -> Answer:

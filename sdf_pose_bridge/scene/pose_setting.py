@@ -129,7 +129,7 @@ def _change_of_own_pose(
             msg = f'with this pose the file would not be valid: {error.errors[0].message}'
             raise PoseNotSetError(msg, at) from error
         current, in_asked = measure(new, element), measure(new, reference)
-        if _distance(current, asked) <= TOLERANCE:
+        if are_close(current, asked):
             return PoseChange(change, at.line, new)
         tolerance /= 10.0
     msg = (f'no pose of "{scene.names[element]}" in the file puts it there: the frame that the '
@@ -184,6 +184,11 @@ def _check_joints(scene: Scene, element: int, in_reference: Pose, at: Place) -> 
                'which its pose in the file is relative to; move the joint back, or set the pose '
                'of another frame')
         raise PoseNotSetError(msg, at)
+
+
+def are_close(a: Pose, b: Pose) -> bool:
+    """Return whether two poses are equal to 1e-9 metres and radians."""
+    return _distance(a, b) <= TOLERANCE
 
 
 def _distance(a: Pose, b: Pose) -> float:

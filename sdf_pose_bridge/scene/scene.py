@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sdf_pose_bridge.errors import Place, SdfWarning, UnknownFrameError
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose, Pose, PoseArray
-from sdf_pose_bridge.names import hint_from_names, scoped_name
+from sdf_pose_bridge.names import hint_from_names, scoped_name, SEPARATOR
 from sdf_pose_bridge.scene.frame_graph import default_references
 from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -161,8 +161,8 @@ class Scene:
         """
         Return the pose of one element in the frame of another.
 
-        :param frame: absolute name such as ``robot::arm::hand``.
-        :param relative_to: absolute name; empty for the world or the implicit root.
+        :param frame: absolute name such as ``robot::arm::hand``, as for :meth:`elements_called`.
+        :param relative_to: likewise; empty for the world or the implicit root.
         :param world: the world, for a file with several.
         :return: pose of ``frame`` in ``relative_to``: x y z in metres, unit quaternion x y z w
             with w >= 0.
@@ -199,17 +199,28 @@ class Scene:
         """Return whether an element has an absolute name, in any world."""
         return name in self._indices
 
+    def elements_called(self, name: str) -> list[int]:
+        """
+        Return the indices of the elements with a name, in any world.
+
+        :param name: absolute name such as ``robot::arm::hand``, also as ``robot/arm/hand``; in a
+            model file also without the name of the model.
+        """
+        scoped = name.replace('/', SEPARATOR)
+        return (self._indices.get(name) or self._indices.get(scoped)
+                or self._indices.get(self._only_model + scoped, []))
+
     def index(self, name: str, *, world: str = '') -> int:
         """
         Find an element by its name.
 
         If a frame and another element have the same name, the frame is found.
 
-        :param name: absolute name such as ``robot::arm::hand``.
+        :param name: a name as for :meth:`elements_called`.
         :param world: the world, for a file with several.
         :raises UnknownFrameError: if there is no such name, or more than one.
         """
-        found = self._indices.get(name, [])
+        found = self.elements_called(name)
         if world:
             found = [i for i in found if self.world_of(i) == world]
         if len(found) > 1:
@@ -246,6 +257,13 @@ class Scene:
         return default_references(self.kinds, self.parents, self.attachments)
 
     @cached_property
+    def _only_model(self) -> str:
+        """The beginning of the names in a model file; empty for other files."""
+        top = np.flatnonzero(self.parents == 0).tolist()
+        is_model = not self.world_names and len(top) == 1 and self.kinds[top[0]] == Kind.MODEL
+        return scoped_name(self.names[top[0]], '') if is_model else ''
+
+    @cached_property
     def _indices(self) -> dict[str, list[int]]:
         indices: dict[str, list[int]] = {}
         for index, name in enumerate(self.names):
@@ -263,7 +281,9 @@ class Scene:
             msg = f'"{name}" is the name of more than one element: {kinds}'
         else:
             where = f'world "{world}"' if world else 'the file'
-            hint = '' if name in self._indices else hint_from_names(name, self._indices)
+            names = [*self._indices, *(
+                each.removeprefix(self._only_model) for each in self._indices)]
+            hint = '' if name in self._indices else hint_from_names(name, names)
             msg = f'"{name}" names nothing in {where}{hint}'
         return UnknownFrameError(msg, place)
 

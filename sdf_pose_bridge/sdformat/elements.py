@@ -15,6 +15,7 @@ import numpy as np
 
 from sdf_pose_bridge.errors import ElementInvalidError, Place
 from sdf_pose_bridge.geometry.chains import Indices
+from sdf_pose_bridge.geometry.formats import FAR_M
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -152,13 +153,17 @@ class Elements:
         name = '' if kind is Kind.INERTIAL else self.names[index]
         return f'{parent_path}/{path_step(kind.label, name)}'
 
+    def is_static(self, index: int) -> bool:
+        """Return whether an element is in a static model, or is one."""
+        while index >= 0:
+            if index in self.models and self.models[index].is_static:
+                return True
+            index = int(self.parents[index])
+        return False
+
     def place_of_pose(self, index: int) -> Place:
         """Return the place of the pose of an element."""
         return self.place(index, int(self.pose_lines[index]), 'pose')
-
-
-_FAR_M = 100.0
-"""Positions in a model that are at least this far away may be in millimetres."""
 
 
 class ElementsBuilder:
@@ -236,14 +241,15 @@ class ElementsBuilder:
 
     def _warn_of_millimetres(self, table: Elements, problems: Problems) -> None:
         """Warn once of positions in models that are too far away for metres."""
-        is_far = np.abs(table.poses[:, :3]).max(axis=1, initial=0.0) >= _FAR_M
+        is_far = np.abs(table.poses[:, :3]).max(axis=1, initial=0.0) >= FAR_M
         if not is_far.any():
             return
-        # Lights are often far away.
+        # Lights are often far away, and so are shapes as large as a sea, and parts of buildings.
         is_in_model = (
             (table.parents >= 0) & np.isin(table.kinds[table.parents], (Kind.MODEL, Kind.LINK))
-            & (table.kinds != Kind.LIGHT))
-        rows: list[int] = np.flatnonzero(is_far & is_in_model).tolist()
+            & ~np.isin(table.kinds, (Kind.LIGHT, Kind.VISUAL, Kind.COLLISION)))
+        rows = [row for row in np.flatnonzero(is_far & is_in_model).tolist()
+                if not table.is_static(row)]
         if rows:
             x, y, z = table.poses[rows[0], :3].tolist()
             more = f', and {len(rows) - 1} more in this file are as far away' if rows[1:] else ''

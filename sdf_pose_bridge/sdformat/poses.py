@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sdf_pose_bridge.geometry.formats import LARGEST_ANGLE_RAD
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy, rpy_from_quaternion
 from sdf_pose_bridge.sdformat.values import (
@@ -38,9 +39,6 @@ _LARGEST_NORM = 1e150
 
 _NORM_TOLERANCE = 1e-3
 """A quaternion whose norm differs more from 1 is probably a mistake."""
-
-_LARGEST_ANGLE_RAD = 6.3
-"""A larger angle, of more than a turn, is probably in degrees."""
 
 _IDENTITY_TEXTS = {6: '0 0 0 0 0 0', 7: '0 0 0 0 0 0 1'}
 _DECIMAL_NUMBER = re.compile(rf'[+-]?{DECIMAL}')
@@ -201,7 +199,7 @@ def _doubts(
         is_doubtful = np.abs(np.linalg.norm(numbers[:, 3:], axis=1) - 1.0) > _NORM_TOLERANCE
         doubt = 'the quaternion of the pose "{}" is not of length 1; it is normalised'
     else:
-        largest_rad = math.inf if pose_format.is_degrees else _LARGEST_ANGLE_RAD
+        largest_rad = math.inf if pose_format.is_degrees else LARGEST_ANGLE_RAD
         is_doubtful = np.abs(numbers[:, 3:]).max(axis=1, initial=0.0) > largest_rad
         doubt = 'the angles of the pose "{}" are radians; did you mean degrees="true"?'
     rows: list[int] = np.flatnonzero(is_doubtful).tolist()

@@ -154,7 +154,7 @@ class PoseLookup:
     def _element(self, name: str) -> int:
         """Find an element by its name in SDF."""
         scene = self._scene
-        if not scene.has(name):
+        if not scene.elements_called(name):
             msg = f'no frame or element is called "{name}"{self._name_index.hint(name)}'
             raise UnknownFrameError(msg, Place(scene.path))
         element = scene.index(name, world=self._tree.world)

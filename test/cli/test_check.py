@@ -109,6 +109,14 @@ def test_frame_ids_that_the_node_rejects_are_warnings(run_main, files):
     assert done.returncode == 0
 
 
+def test_a_second_world_is_a_warning(run_main, files):
+    (files / 'two.sdf').write_text(
+        '<sdf version="1.10"><world name="a"/><world name="b"/></sdf>')
+    done = run_main('check', '--strict', 'two.sdf')
+    assert (done.returncode, len(done.stdout.splitlines())) == (1, 1)
+    assert 'world "b" is not published' in done.stdout
+
+
 def test_meshes_of_a_missing_package_are_one_warning(run_main, files):
     (files / 'arm.sdf').write_text("""<sdf version="1.9"><model name="m"><link name="l">
       <visual name="a"><geometry><mesh><uri>package://p/1.stl</uri></mesh></geometry></visual>

@@ -79,7 +79,33 @@ def test_invalid_numbers_are_named_and_nothing_is_printed(convert, arguments, me
     assert len(err.splitlines()) == 1
 
 
+@pytest.mark.parametrize(('source', 'given', 'question'), [
+    ('rpy', '0 0 90', 'the angles 0 0 90 are radians; did you mean --degrees?'),
+    ('ur_pose', '0 0 0 0 9 0', 'the angles 0 9 0 are radians; did you mean --degrees?'),
+    ('sdf_quat_xyzw', '-300 0 0 0 0 0 1',
+     'the position -300 0 0 is in metres; did you mean --mm?')])
+def test_numbers_in_another_unit_are_asked_about(convert, source, given, question):
+    code, out, err = convert('--from', source, '--to', source, *given.split())
+    assert (code, err) == (0, f'sdf_pose convert: {question}\n')
+    assert out
+    assert convert('--from', source, '--to', source, lines=given)[1:] == (out, err)
+
+
+def test_a_format_without_degrees_is_refused(convert):
+    code, out, err = convert('--from', 'ur_pose', '--degrees', *'000000')
+    assert (code, out) == (1, '')
+    assert 'ur_pose is always in radians' in err
+
+
 # Output.
+
+def test_units_are_those_of_the_given_and_the_requested_numbers(convert):
+    code, out, err = convert(
+        '--from', 'sdf_rpy', '--to', 'sdf_rpy', '--degrees', '--mm', *'300 0 0 0 0 90'.split())
+    assert (code, numbers(out), err) == (0, [300.0, 0.0, 0.0, 0.0, 0.0, 90.0], '')
+    _, out, _ = convert('--from', 'sdf_rpy', '--mm', *'300 0 0 0 0 0'.split())
+    assert numbers(out.splitlines()[0].split(maxsplit=1)[1])[0] == 0.3
+
 
 def test_a_rotation_by_90_degrees(convert):
     code, out, err = convert('--from', 'rpy_degrees', '--to', 'quaternion', '0', '0', '90')

@@ -54,6 +54,12 @@ def test_an_unknown_kind_names_those_that_exist(options, capsys):
     assert '"lnk" is not a kind of element; known are model' in capsys.readouterr().err
 
 
+def test_a_missing_directory_of_models_is_an_error(options, capsys):
+    with pytest.raises(SystemExit):
+        options('-I', 'nowhere', 'good.sdf')
+    assert '"nowhere" is not a directory' in capsys.readouterr().err
+
+
 @pytest.mark.parametrize('command', [
     ('check', '-'), ('poses', '-'), ('tree', '-'), ('graph', '-'), ('diff', '-', 'good.sdf')])
 def test_standard_input_is_read(sdf_pose_in_shell, command):

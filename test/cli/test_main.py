@@ -43,7 +43,13 @@ def test_the_shell_completes_commands(files):
 def test_an_unknown_command_is_an_error_that_lists_the_known_ones(sdf_pose):
     done = sdf_pose('chekc')
     assert done.returncode == 2
-    assert all(name in done.stderr for name in ('check', 'poses', 'convert'))
+    assert all(name in done.stderr for name in ('poses', 'convert', 'did you mean "check"?'))
+
+
+def test_an_option_is_not_abbreviated(sdf_pose):
+    done = sdf_pose('check', 'good.sdf', '--stric')
+    assert (done.returncode, done.stdout) == (2, '')
+    assert 'unrecognized arguments: --stric' in done.stderr
 
 
 def test_a_lack_of_memory_is_one_sentence(files):

@@ -57,7 +57,42 @@ def test_a_rotation_leaves_the_position(run_main, path):
 def test_a_pose_that_is_there_already_changes_nothing(run_main, path):
     text = path.read_text()
     done = run_main('set', 'good.sdf', 'f', *'123000')
-    assert (done.returncode, done.stdout, path.read_text()) == (0, '', text)
+    assert (done.returncode, path.read_text()) == (0, text)
+    assert done.stdout == '"f" has this pose already; the file stays as it is\n'
+
+
+@pytest.mark.parametrize(('numbers', 'option', 'written'), [
+    ('0 0 0 0 0 90', '--degrees', '0 0 0 0 0 1.570796327'),
+    ('300 0 0 0 0 0', '--mm', '0.3 0 0 0 0 0')])
+def test_numbers_in_another_unit_are_asked_about(run_main, path, numbers, option, written):
+    text = path.read_text()
+    done = run_main('set', 'good.sdf', 'f', *numbers.split())
+    assert (done.returncode, done.stdout, path.read_text()) == (1, '', text)
+    assert done.stderr.endswith(f'did you mean {option}? --force writes them as they are\n')
+    assert run_main('set', 'good.sdf', 'f', option, *numbers.split()).returncode == 0
+    assert f'<pose>{written}</pose>' in path.read_text()
+
+
+def test_numbers_that_are_meant_are_written(run_main, path):
+    run_main('set', 'good.sdf', 'f', '--force', *'300 0 0 0 0 0'.split())
+    assert '<pose>300 0 0 0 0 0</pose>' in path.read_text()
+
+
+@pytest.mark.parametrize('part', ['tip', 'm::tip', 'm/tip'])
+def test_a_model_moves_so_that_its_part_is_there(run_main, path, part):
+    text = path.read_text()
+    path.write_text(text.replace(
+        '<link name="l"/>', '<link name="l"/><frame name="tip"><pose>0 2 0 0 0 0</pose></frame>'))
+    done = run_main('set', 'good.sdf', 'm', '--by', part, '--relative-to', 'f', *'040000')
+    assert done.returncode == 0, done.stderr
+    assert load(path).pose('m', 'f')[:3] == pytest.approx((0, 2, 0))
+
+
+def test_a_part_that_stays_is_an_error(run_main, path):
+    text = path.read_text()
+    done = run_main('set', 'good.sdf', 'm', '--by', 'f', *'000000')
+    assert (done.returncode, path.read_text()) == (1, text)
+    assert done.stderr == 'sdf_pose set: "f" does not move with "m"\n'
 
 
 def test_the_camera_moves_where_its_optical_frame_was_measured(run_main, path):

@@ -5,8 +5,10 @@
 from importlib.metadata import version
 from pathlib import Path
 import re
+import socket
 import subprocess
 import sys
+from urllib.parse import urlsplit
 import webbrowser
 
 import pytest
@@ -110,19 +112,24 @@ def test_what_is_not_drawn_is_said(run_main, files):
         f'sdf_pose view: 1 shape cannot be drawn: the mesh {reason} ')
 
 
-@pytest.mark.parametrize('has_browser', [True, False])
-def test_page_opens_in_the_browser(run_main, monkeypatch, has_browser):
+def test_page_opens_in_the_browser(run_main, monkeypatch):
     opened = []
 
     def stop(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(webbrowser, 'open', lambda uri: bool(opened.append(uri)) or has_browser)
+    monkeypatch.setattr(webbrowser, 'open', lambda uri: bool(opened.append(uri)))
     monkeypatch.setattr('sdf_pose_bridge.cli.view._follow', stop)
     done = run_main('view', 'good.sdf', '--port', '0')
-    assert re.fullmatch(r'http://127\.0\.0\.1:[0-9]+/[\w-]+/\n', done.stdout)
-    assert (done.returncode, opened) == (130, [done.stdout.strip()])
-    assert bool(done.stderr) is not has_browser
+    assert re.fullmatch(
+        r'open http://127\.0\.0\.1:[0-9]+/[\w-]+/ in a browser; Ctrl-C ends this program\n',
+        done.stdout)
+    assert (done.returncode, opened, done.stderr) == (130, [done.stdout.split()[1]], '')
+    port = urlsplit(opened[0]).port
+    with socket.create_server(('127.0.0.1', port)):
+        done = run_main('view', 'good.sdf', '--port', str(port))
+    assert done.stderr == f'sdf_pose view: port {port} is in use\n'
+    assert urlsplit(opened[1]).port != port
 
 
 def test_libraries_are_imported_only_by_the_command(files):

@@ -56,7 +56,7 @@ def view_of(folder, *arguments):
     """Show the file cell.sdf in a folder; the address of its page."""
     process = run_view(folder, 'cell.sdf', '--port', '0', *arguments)
     try:
-        yield process.stdout.readline().strip()
+        yield process.stdout.readline().split()[1]
     finally:
         process.terminate()
         process.communicate()

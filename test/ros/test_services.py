@@ -228,6 +228,7 @@ def test_an_optical_frame_is_set_by_the_pose_of_its_camera(ask, path):
     ('mark', (np.nan, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), '', 'must be a finite number'),
     ('mark', (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0), '', 'is zero, which is not a rotation'),
     ('mark', (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), 'on_mark', 'moves with it'),
+    ('mark', (300.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), '', 'is in metres; is it in mm?'),
 ])
 def test_a_wrong_request_is_refused(ask, path, frame, xyz, quat_xyzw, frame_id, reason):
     with pytest.raises(SdfError, match=reason):

@@ -52,6 +52,13 @@ def test_unknown_reference_is_refused_with_a_hint(scene):
         scene.pose('chair', 'tabel')
 
 
+def test_model_may_be_left_out_in_a_model_file():
+    scene = sdf_pose_bridge.load_text(model_file('<link name="lift"/><link name="hand"/>'))
+    assert scene.index('lift') == scene.index('m/lift') == scene.index('m::lift')
+    with pytest.raises(UnknownFrameError, match=r'"lft".*did you mean "lift"'):
+        scene.pose('lft')
+
+
 def test_unknown_name_is_a_lookup_error_and_an_error_of_the_package(scene):
     with pytest.raises(LookupError):
         scene.pose('tabel')

@@ -119,6 +119,8 @@ def test_positions_far_from_their_model_give_one_warning():
 
 @pytest.mark.parametrize('text', [
     world_file('<model name="m"><pose>500 0 0 0 0 0</pose><link name="l"/></model>'),
+    model_file('<static>1</static><link name="l"><pose>0 0 -150 0 0 0</pose></link>'),
+    model_file('<link name="l"><visual name="sea"><pose>0 0 -150 0 0 0</pose></visual></link>'),
     model_file('<link name="l"><pose>99 0 0 0 0 0</pose>'
                '<light name="k" type="point"><pose>0 0 300 0 0 0</pose></light></link>'),
 ])

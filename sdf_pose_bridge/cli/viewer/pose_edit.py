@@ -13,6 +13,7 @@ from sdf_pose_bridge.cli.printing import POSE_LABELS, Units
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_difference, html_of_edit, html_of_lines
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.formats import POSE_FORMATS
 from sdf_pose_bridge.geometry.poses import Pose, pose_product, relative_pose
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy, rpy_from_quaternion
 from sdf_pose_bridge.scene.pose_setting import PoseChange
@@ -140,8 +141,13 @@ class PoseEdit:
                     (*at[:3], *rpy_from_quaternion(at[3:])), typed, self._shown,
                     self._units.of_pose, strict=True)]
             self._shown = typed
-            self._take(pose_product(self._frame.reference, Pose(
-                *(*values[:3], *quaternion_from_rpy(tuple(values[3:]))))))
+            doubt = POSE_FORMATS['sdf_rpy'].doubt([
+                number / unit.factor
+                for number, unit in zip(typed, self._units.of_pose, strict=True)])
+            self._take(
+                pose_product(self._frame.reference, Pose(
+                    *(*values[:3], *quaternion_from_rpy(tuple(values[3:]))))),
+                [f'{doubt.reason}; did you mean {doubt.likely_unit}?'] if doubt else ())
             self._place_gizmo()
 
     def _cancel_edit(self) -> None:
@@ -149,8 +155,8 @@ class PoseEdit:
         self._place_gizmo()
         self._show_numbers()
 
-    def _take(self, pose: Pose | None) -> None:
-        self.pose, self._errors = pose, ()
+    def _take(self, pose: Pose | None, doubts: Iterable[str] = ()) -> None:
+        self.pose, self._errors = pose, doubts
         self._show()
         self._changed()
 

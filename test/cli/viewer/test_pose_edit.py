@@ -88,6 +88,14 @@ def test_numbers_that_were_not_typed_stay_exact(written):
     assert rpy_from_quaternion(poses[0][3:]) == pytest.approx((math.pi / 2, 0.0, 0.123456789))
 
 
+def test_typed_numbers_in_another_unit_are_asked_about(written):
+    _, edit = written
+    edit.begin(edited('free'), Units())
+    edit._numbers[5].value = 90.0
+    edit._take_numbers()
+    assert 'the angles 0 0 90 are radians; did you mean degrees?' in edit._text.content
+
+
 def test_numbers_are_relative_to_the_reference(written):
     _, edit = written
     edit.begin(edited('free', 1.0), Units())
