@@ -15,6 +15,7 @@ MODULES = sorted(
 PAGES = [ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').glob('*.md'))]
 
 TESTED_AS_A_WHOLE = {
+    'ros/node.py': ['integration/test_bridge_reload.py', 'integration/test_bridge_changes.py'],
     'ros/process.py': ['integration/test_bridge_process.py'],
 }
 """Modules that run only in a whole program, and the test modules that run it."""

@@ -4,12 +4,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 import contextlib
 import os
 import threading
 import time
 
+from rclpy.callback_groups import CallbackGroup
 from rclpy.exceptions import InvalidHandle
 from rclpy.executors import Executor
 from rclpy.node import Node
@@ -53,7 +54,7 @@ def run_in_thread(node: Node, function: Callable[[], object]) -> Future:
     try:
         threading.Thread(target=run, name='background', daemon=True).start()
     except RuntimeError as error:
-        msg = 'there is no room for another thread'
+        msg = 'no thread can be started'
         raise MemoryError(msg) from error
     return future
 
@@ -107,24 +108,31 @@ class CoroutineLock:
 
 class PollingThread:
     """
-    A thread that calls a function whenever a condition is true.
+    A thread that has the executor of a node run a callback whenever a condition is true.
 
     A timer of the node would wake its executor for each evaluation, which takes ten times as much
     processor time.
 
-    :param condition: is evaluated every ``PERIOD_S``.
-    :param call: is called if it is true; nothing more happens until :meth:`resume`.
+    :param node: a node with an executor.
+    :param group: callback group of the callback.
+    :param condition: is evaluated every ``PERIOD_S``, except while the callback runs.
     """
 
-    def __init__(self, condition: Callable[[], bool], call: Callable[[], None]) -> None:
+    def __init__(
+        self, node: Node, group: CallbackGroup, condition: Callable[[], bool],
+        callback: Callable[[], Awaitable[None]],
+    ) -> None:
         self._condition = condition
-        self._call = call
-        self._may_resume = threading.Event()
+        self._callback = callback
+        self._has_ended = threading.Event()
+        self._guard_condition = node.create_guard_condition(self._call, callback_group=group)
         threading.Thread(target=self._run, name='polling', daemon=True).start()
 
-    def resume(self) -> None:
-        """Evaluate the condition again, first after one period."""
-        self._may_resume.set()
+    async def _call(self) -> None:
+        try:
+            await self._callback()
+        finally:
+            self._has_ended.set()
 
     def _run(self) -> None:
         period = PERIOD_S
@@ -135,6 +143,9 @@ class PollingThread:
             is_due = self._condition()
             period = max(PERIOD_S, (time.thread_time() - begin) / LARGEST_SHARE)
             if is_due:
-                self._may_resume.clear()
-                self._call()
-                self._may_resume.wait()
+                self._has_ended.clear()
+                try:
+                    self._guard_condition.trigger()
+                except InvalidHandle:  # the node was destroyed
+                    return
+                self._has_ended.wait()

@@ -17,6 +17,7 @@ from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
 from sdf_pose_bridge.tf.joint_motion import dofs_from_joint
+from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import elements_in_model, TfTree
 
@@ -66,6 +67,23 @@ def names_in_line(names: Sequence[str]) -> str:
     :return: at most ``MOST_LINES`` names, and the number of the others.
     """
     return printable(quoted_names(names, MOST_LINES))
+
+
+def line_about_frames(loaded: LoadedScene) -> str:
+    """Return a line with the number of published frames, and their file."""
+    return f'publishing {count_in_words(len(loaded.tree.frame_ids), "frame")} of {loaded.path}'
+
+
+def lines_about_scene(loaded: LoadedScene) -> list[str]:
+    """Return lines about a scene that is published now."""
+    tree = loaded.tree
+    transforms = count_in_words(tree.transform_count, 'transform')
+    size = f'{line_about_frames(loaded)} with {transforms}, root frame "{tree.root_frame}"'
+    lines = [
+        f'{size} (read in {1e3 * loaded.seconds:.0f} ms)',
+        line_about_gazebo(loaded.gazebo_warning_count),
+        line_about_detached_models(tree, loaded.scene)]
+    return [line for line in lines if line]
 
 
 def lines_about_lost_frames(before: TfTree, after: TfTree) -> list[str]:

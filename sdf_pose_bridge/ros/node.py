@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 import contextlib
-import math
 import time
 import traceback
 from typing import TYPE_CHECKING
@@ -14,7 +13,6 @@ from typing import TYPE_CHECKING
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock, ClockType
-from rclpy.exceptions import InvalidHandle
 from rclpy.logging import LoggingSeverity
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -25,13 +23,13 @@ from std_srvs.srv import Trigger
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.ros.background import CoroutineLock, PollingThread, run_in_thread
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, PERIOD_S
+from sdf_pose_bridge.ros.file_follower import FileFollower
 from sdf_pose_bridge.ros.given_parameters import changed_settings
 from sdf_pose_bridge.ros.log_lines import (
-    count_in_words,
-    line_about_detached_models,
-    line_about_gazebo,
+    line_about_frames,
     line_about_joints_at_rest,
     lines_about_lost_frames,
+    lines_about_scene,
     lines_from_error,
     lines_from_warnings,
     MissingJoints,
@@ -47,18 +45,13 @@ from sdf_pose_bridge.ros.topic_names import (
     pose_topics_from_patterns,
     PoseTopics,
 )
-from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
 from sdf_pose_bridge.sdformat.include.uris import AddressError
-from sdf_pose_bridge.tf.loaded_scene import files_behind_error, LoadedScene, may_pass
+from sdf_pose_bridge.tf.loaded_scene import files_behind_error, LoadedScene
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge_interfaces.srv import SetPose
 
 if TYPE_CHECKING:
     from sdf_pose_bridge.ros.joint_states import JointStates
-
-
-RETRY_PERIOD_S = 1.0
-"""Seconds until the files are read again after a temporary failure."""
 
 
 class SdfPoseBridge:
@@ -78,15 +71,9 @@ class SdfPoseBridge:
         self._settings = settings
         self._loaded = loaded
         self._reader = SceneReader()
-        self._failure: list[str] = []
-        # Not reported yet, because another program may still be writing the file.
-        self._pending_failure: list[str] = []
-        # Time to read the files again after a temporary failure.
-        self._retry_time = math.inf
         self._diagnostics = Diagnostics(node, self._unreported_joints)
         self._has_told_of_joints = False
-        self._watcher = FileWatcher()
-        self._watcher.watch(loaded.files, loaded.read_since_ns)
+        self._follower = FileFollower(loaded)
         # All callbacks that change the published scene run one after the other.
         self._changes = MutuallyExclusiveCallbackGroup()
         # Held while publishing on all topics. A timer that is always due would block the callbacks
@@ -109,15 +96,9 @@ class SdfPoseBridge:
                 callback_group=self._changes)
         add_parameter_services(node, self._changes, self._set_parameters)
         node.create_timer(PERIOD_S, self._diagnostics.publish, clock=self._steady_clock)
-        guard_condition = node.create_guard_condition(
-            self._check_files, callback_group=self._changes)
-
-        def trigger() -> None:
-            # The node may have been destroyed.
-            with contextlib.suppress(InvalidHandle):
-                guard_condition.trigger()
-
-        self._polling = PollingThread(self._has_to_check_files, trigger)
+        PollingThread(
+            node, self._changes,
+            lambda: self._settings.watch and self._follower.is_due(), self._check_files)
         self._report_success()
         # Imported here because it takes 6 ms, and everything else is more urgent.
         from sdf_pose_bridge.ros.visuals import VisualPublisher
@@ -147,8 +128,7 @@ class SdfPoseBridge:
         if loaded is not before:
             lines = await run_in_thread(
                 self._node, lambda: lines_about_lost_frames(before.tree, loaded.tree))
-            await run_in_thread(
-                self._node, lambda: self._watcher.watch(loaded.files, loaded.read_since_ns))
+            await run_in_thread(self._node, lambda: self._follower.follow(loaded))
             for line in lines:
                 self._logger.warning(line)
             self._report_success()
@@ -193,35 +173,27 @@ class SdfPoseBridge:
 
     def _report_success(self) -> None:
         loaded = self._loaded
-        self._failure = self._pending_failure = []
-        self._retry_time = math.inf
         for line in lines_from_warnings(loaded.warnings):
             self._logger.warning(line)
-        self._logger.info(
-            f'publishing {count_in_words(len(loaded.tree.frame_ids), "frame")} of {loaded.path} '
-            f'with {count_in_words(loaded.tree.transform_count, "transform")}, root frame '
-            f'"{loaded.tree.root_frame}" (read in {1e3 * loaded.seconds:.0f} ms)')
-        lines = [
-            line_about_gazebo(loaded.gazebo_warning_count),
-            line_about_detached_models(loaded.tree, loaded.scene)]
+        for line in lines_about_scene(loaded):
+            self._logger.info(line)
         if not loaded.tree.moving and not self._has_told_of_joints:
             options = loaded.request.tf_options
-            lines.append(line_about_joints_at_rest(
-                loaded.scene, options.model, options.frame_names))
-            self._has_told_of_joints = bool(lines[-1])
-        for line in filter(None, lines):
-            self._logger.info(line)
+            line = line_about_joints_at_rest(loaded.scene, options.model, options.frame_names)
+            if line:
+                self._logger.info(line)
+                self._has_told_of_joints = True
         self._diagnostics.update(loaded)
 
     async def _reload(self) -> list[str]:
-        """Read the file again; return the errors, after which nothing has changed."""
+        """Read the files again; return the errors, after which nothing has changed."""
         try:
             await self._show(await self._load(self._settings))
         except Exception as error:  # noqa: BLE001 - includes defects
             files = files_behind_error(error, self._settings.load_request)
+            self._follower.retry_after(error)
             with contextlib.suppress(MemoryError):  # it is read again then
-                await run_in_thread(self._node, lambda: self._watcher.watch_also(files))
-            self._retry_time = time.monotonic() + RETRY_PERIOD_S if may_pass(error) else math.inf
+                await run_in_thread(self._node, lambda: self._follower.follow_also(files))
             return self._lines_from_error(error)
         return []
 
@@ -234,24 +206,21 @@ class SdfPoseBridge:
         return [f'internal error, see the log of the node: {error!r}']
 
     def _report_failure(self, lines: list[str]) -> None:
-        if lines != self._failure:
+        """Report errors, unless there are none."""
+        if lines:
             source = self._settings.load_request.source
             self._logger.error(f'{source} is rejected; the frames published before stay')
             for line in lines:
                 self._logger.error(line)
-        self._failure, self._pending_failure = lines, []
-        self._diagnostics.update(self._loaded, lines)
+            self._diagnostics.update(self._loaded, lines)
 
     async def _answer_to_reload(
         self, _request: Trigger.Request, response: Trigger.Response,
     ) -> Trigger.Response:
         failure = await self._reload()
-        if failure:
-            self._report_failure(failure)
+        self._report_failure(self._follower.unreported(failure))
         response.success = not failure
-        response.message = '; '.join(failure) or (
-            f'publishing {count_in_words(len(self._loaded.tree.frame_ids), "frame")} of '
-            f'{self._loaded.path}')
+        response.message = '; '.join(failure) or line_about_frames(self._loaded)
         return response
 
     async def _answer_to_set_pose(
@@ -271,35 +240,13 @@ class SdfPoseBridge:
             return response
         return answer
 
-    # Changes of files
-
-    def _has_to_check_files(self) -> bool:
-        return self._settings.watch and (
-            bool(self._pending_failure) or self._has_to_retry() or self._watcher.differs())
-
-    def _has_to_retry(self) -> bool:
-        return time.monotonic() >= self._retry_time
-
     async def _check_files(self) -> None:
-        """
-        Reload if a file has changed.
-
-        Another program may still be writing the file, so a failure is reported only if the files
-        do not change during the next period, or if the next reload fails in the same way.
-        """
-        try:
-            before = self._pending_failure
-            has_changed = False
-            with contextlib.suppress(MemoryError):  # it is looked at again
-                has_changed = await run_in_thread(self._node, self._watcher.has_changed)
-            if has_changed or self._has_to_retry():
-                self._pending_failure = await self._reload()
-                if self._pending_failure != before:
-                    return
-            if self._pending_failure:
-                self._report_failure(self._pending_failure)
-        finally:
-            self._polling.resume()
+        """Read the files again if they have changed."""
+        with contextlib.suppress(MemoryError):  # they are checked again after a period
+            failure = None
+            if await run_in_thread(self._node, self._follower.has_to_read):
+                failure = await self._reload()
+            self._report_failure(self._follower.failure_of_period(failure))
 
     # Changes of parameters
 

@@ -8,6 +8,7 @@ import weakref
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.task import Future
 
 from sdf_pose_bridge.ros import background
@@ -149,36 +150,44 @@ def test_a_thread_may_end_after_the_executor_was_shut_down(node):
 
 
 @pytest.fixture
-def calls(monkeypatch):
-    """A semaphore that counts the calls of a thread with a short period."""
+def poll(node, monkeypatch):
+    """Starts a thread that evaluates a condition with a short period."""
     monkeypatch.setattr(background, 'PERIOD_S', 0.001)
-    return threading.Semaphore(0)
+
+    def start(condition, callback=None):
+        PollingThread(node, ReentrantCallbackGroup(), condition, callback)
+    return start
 
 
-def test_a_thread_calls_once_until_it_is_resumed(calls):
-    is_due = threading.Event()
-    thread = PollingThread(is_due.is_set, calls.release)
-    is_due.set()
-    assert calls.acquire(timeout=20)
-    assert not calls.acquire(timeout=0.05)
-    for _ in range(2):
-        thread.resume()
-        assert calls.acquire(timeout=20)
-        assert not calls.acquire(timeout=0.05)
-    is_due.clear()
-    thread.resume()
+def test_a_thread_calls_a_callback_again_when_it_has_ended(node, poll):
+    calls = []
+    has_ended = Future(executor=node.executor)
+
+    async def callback():
+        calls.append(1)
+        await has_ended
+
+    poll(lambda: True, callback)
+    while not calls:
+        node.executor.spin_once(SECONDS)
+    for _ in range(20):
+        node.executor.spin_once(0.005)
+    assert len(calls) == 1
+    has_ended.set_result(None)
+    while len(calls) < 3:
+        node.executor.spin_once(SECONDS)
 
 
 def test_a_look_that_takes_too_much_of_the_processor_is_not_soon_followed_by_another(
-        calls, monkeypatch):
+        poll, monkeypatch):
     monkeypatch.setattr(background, 'LARGEST_SHARE', 1e-12)
     looks = threading.Semaphore(0)
-    PollingThread(lambda: bool(looks.release()), calls.release)
+    poll(lambda: bool(looks.release()))
     assert looks.acquire(timeout=20)
     assert not looks.acquire(timeout=0.1)
 
 
-def test_a_look_that_has_to_wait_is_soon_followed_by_another(calls):
+def test_a_look_that_has_to_wait_is_soon_followed_by_another(poll):
     looks = threading.Semaphore(0)
 
     def is_due():
@@ -186,19 +195,17 @@ def test_a_look_that_has_to_wait_is_soon_followed_by_another(calls):
         looks.release()
         return threading.Event().wait(0.1)
 
-    PollingThread(is_due, calls.release)
+    poll(is_due)
     for _ in range(3):
         assert looks.acquire(timeout=20)
 
 
-def test_a_thread_calls_nothing_while_the_condition_is_false(calls):
-    looks = threading.Semaphore(0)
-
-    def is_due():
-        looks.release()
-        return False
-
-    PollingThread(is_due, calls.release)
-    for _ in range(3):
-        assert looks.acquire(timeout=20)
-    assert not calls.acquire(blocking=False)
+def test_a_thread_ends_when_the_node_is_destroyed(node, poll):
+    threads = set(threading.enumerate())
+    is_due = threading.Event()
+    poll(is_due.is_set)
+    (thread,) = set(threading.enumerate()) - threads
+    node.destroy_node()
+    is_due.set()
+    thread.join(SECONDS)
+    assert not thread.is_alive()
