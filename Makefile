@@ -34,7 +34,7 @@ help:
 	@echo 'make test_long      all tests, some with many more calls, frames or rotations'
 	@echo 'make run FILE=...   the node on an SDFormat file; ARGS="-p name:=value" sets parameters'
 	@echo 'make coverage       lines and branches that all tests run, with those of processes'
-	@echo 'make lint           ruff, mypy, import-linter, codespell, and the work that the reader counts'
+	@echo 'make lint           ruff, mypy, import-linter and codespell'
 	@echo 'make bench          benchmarks; ARGS="..." hands arguments to them'
 	@echo 'make differential   random scenes against libsdformat; ARGS="--scenes 100" for fewer'
 	@echo 'make fuzz           hostile files by atheris; MINUTES=60 for longer, findings in fuzz_findings'
@@ -90,8 +90,7 @@ coverage: setup
 	    python -m coverage combine --quiet && python -m coverage report --skip-covered; }
 
 lint: setup
-	@. underlay/setup.bash && ruff check && mypy && lint-imports --no-logo --no-cache && codespell \
-	  && PYTHONPATH=test:$$PYTHONPATH exec python -m growth.raw_calls
+	@. underlay/setup.bash && ruff check && mypy && lint-imports --no-logo --no-cache && exec codespell
 
 bench: setup
 	@[[ -d benchmarks ]] || { echo 'There are no benchmarks yet.' >&2; exit 1; }

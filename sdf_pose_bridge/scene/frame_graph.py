@@ -30,14 +30,9 @@ from sdf_pose_bridge.scene.joints import JointChecks, JointEnds
 from sdf_pose_bridge.scene.name_scopes import IS_FRAME_KIND, NameScopes
 from sdf_pose_bridge.sdformat.elements import Elements, ModelDetails, NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.limits import Usage
 
 _MOST_NAMES_SHOWN = 5
 _LONGEST_CYCLE_SHOWN = 12
-
-_STEPS_OF_REFERENCE = 2
-"""Steps of work to follow one reference from a placement frame."""
-
 
 class FrameGraph(NamedTuple):
     """The checked references of all elements. Entry i of a sequence is about element i."""
@@ -64,18 +59,14 @@ class FrameGraph(NamedTuple):
     libsdformat loads all the same, and those that refer to an include that was not found."""
 
 
-def frame_graph_from_elements(
-    elements: Elements, usage: Usage, problems: Problems,
-) -> FrameGraph:
+def frame_graph_from_elements(elements: Elements, problems: Problems) -> FrameGraph:
     """
     Look up and check every reference.
 
-    :param usage: counts the work.
     :param problems: takes errors and warnings.
     :return: the graph; a wrong reference in it is replaced by the default of its kind.
-    :raises LimitError: if the absolute names are too long, or chains of references.
     """
-    return _Builder(elements, usage, problems).graph()
+    return _Builder(elements, problems).graph()
 
 
 def default_references(
@@ -95,11 +86,10 @@ def default_references(
 
 class _Builder:
 
-    def __init__(self, elements: Elements, usage: Usage, problems: Problems) -> None:
+    def __init__(self, elements: Elements, problems: Problems) -> None:
         self._elements = elements
-        self._usage = usage
         self._problems = problems
-        self._scopes = NameScopes(elements, usage, problems)
+        self._scopes = NameScopes(elements, problems)
         self._scope_of: list[int] = elements.scopes.tolist()
         self._reported_cycles: set[frozenset[int]] = set()
         self._links_with_automatic_inertial = {
@@ -121,7 +111,7 @@ class _Builder:
             checked for ends in joints.values() if ends.joint not in self._unresolved
             and (checked := checks.checked(ends)) is not None]
         self._set_references(references)
-        placements = self._placements(references)
+        placements = self._placements()
         self._add_dependents(references, attachments, joints, placements)
         return FrameGraph(
             self._scopes.names, self._scopes.roots, references, placements, attachments, bodies,
@@ -236,7 +226,7 @@ class _Builder:
             self._problems.warning(msg, elements.place_of_pose(index), RelativeToError.code)
         return NO_ELEMENT
 
-    def _placements(self, references: Indices) -> dict[int, int]:
+    def _placements(self) -> dict[int, int]:
         placements: dict[int, int] = {}
         for model, details in self._elements.models.items():
             name = details.placement_frame
@@ -244,7 +234,6 @@ class _Builder:
             if found is None:
                 self._report_unknown(RelativeToError, model, 'placement_frame', name, model)
             elif found != model:
-                self._count_references(found, model, references)
                 placements[model] = found
         for frame, frame_details in self._elements.frames.items():
             name, scope = frame_details.placement_frame, self._scope_of[frame]
@@ -256,14 +245,6 @@ class _Builder:
             elif found != frame:
                 placements[frame] = found
         return placements
-
-    def _count_references(self, frame: int, model: int, references: Indices) -> None:
-        """Count the references from a placement frame to its model frame, or a broken cycle."""
-        steps = 0
-        while frame not in (model, NO_ELEMENT):
-            steps += 1
-            frame = int(references[frame])
-        self._usage.add('work', _STEPS_OF_REFERENCE * steps, lambda: self._elements.place(model))
 
     # Reports
 

@@ -136,7 +136,7 @@ def _scene(
             model_by_itself=lambda root: _model_by_itself(root, sources))
         expansion.expand(document)
     elements = elements_from_tree(document.root, sources, shapes=shapes)
-    graph = frame_graph_from_elements(elements, sources.usage, sources.problems)
+    graph = frame_graph_from_elements(elements, sources.problems)
     sources.problems.raise_errors()
     return scene_from_graph(
         document.path, elements, graph, sources.problems, document.urdf_root)
@@ -151,7 +151,7 @@ def _model_by_itself(root: XmlElement, sources: Sources) -> ModelByItself | None
     """
     part = sources.with_own_problems()
     elements = elements_from_tree(root, part)
-    graph = frame_graph_from_elements(elements, part.usage, part.problems)
+    graph = frame_graph_from_elements(elements, part.problems)
     if part.problems.errors:
         part.problems.extend_parent()
         return None

@@ -19,7 +19,6 @@ from sdf_pose_bridge.names import MODEL_FRAME, ROOT_FRAME, scoped_name, SEPARATO
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP, Usage
 
 _OWN_FRAME = SEPARATOR + MODEL_FRAME
 _MOST_NAMES_COMPARED = 2000
@@ -36,22 +35,19 @@ class NameScopes:
 
     A scope is the index of the model, world or root in which a reference is written.
 
-    :param usage: counts the work of joining them.
     :param problems: those of the load, which limit the number of hints.
-    :raises LimitError: if there are too many.
 
     ``names[i]`` is the absolute name of element i, such as ``robot::arm::hand``, without the name
     of the world. ``roots[i]`` is the index of its world or implicit root; each of these is a name
     space of its own.
     """
 
-    def __init__(self, elements: Elements, usage: Usage, problems: Problems) -> None:
+    def __init__(self, elements: Elements, problems: Problems) -> None:
         self._elements = elements
-        self._usage = usage
         self._problems = problems
         # Key of the indices for hints. Using the object itself would make a circle of references.
         self._key = object()
-        self.names = _absolute_names(elements, usage)
+        self.names = _absolute_names(elements)
         self.roots: list[int] = ends_from_pointers(elements.parents).tolist()
         self._is_model: list[bool] = (elements.kinds == Kind.MODEL).tolist()
         self._frames = defaultdict[int, dict[str, int]](dict)
@@ -90,9 +86,6 @@ class NameScopes:
         steps = reference.split(SEPARATOR, _MOST_STEPS)
         end = 0
         for count, step in enumerate(steps):
-            # A name is made for each beginning of the reference.
-            self._usage.add('work', 1 + (len(self.names[scope]) + end) // CHARACTERS_OF_STEP,
-                            lambda: self._elements.place(scope))
             outer = self.frame(scope, reference[:end]) if count else scope
             uris = missing.get(NO_ELEMENT if outer is None else outer, {})
             uri = uris.get(step) or uris.get('')
@@ -141,21 +134,15 @@ class NameScopes:
         return self._problems.name_index((self._key, scope), names).hint(reference)
 
 
-def _absolute_names(elements: Elements, usage: Usage) -> list[str]:
+def _absolute_names(elements: Elements) -> list[str]:
     names: list[str] = []
     scopes: list[str] = []
-    characters, most = 0, usage.left('work') * CHARACTERS_OF_STEP
     for name, parent, kind in zip(
             elements.names, elements.parents.tolist(), elements.kinds.tolist(), strict=True):
         if parent >= 0:
             names.append(scoped_name(scopes[parent], name))
             scopes.append(names[-1])
-            characters += len(names[-1])
-            if characters > most:
-                break
         else:
             names.append(WORLD_FRAME if kind == Kind.WORLD else ROOT_FRAME)
             scopes.append('')
-    if characters:
-        usage.add('work', -(-characters // CHARACTERS_OF_STEP), elements.place(len(names) - 1))
     return names

@@ -29,7 +29,6 @@ from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.scene.comparison import TOLERANCE
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.counted import file_lookups
 from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
@@ -94,9 +93,8 @@ def _change_of_own_pose(
 ) -> PoseChange:
     _check_kind(scene, element)
     path = _place_of_pose(scene, element)[0]
-    lookups = file_lookups()
-    cache = lookups.real_path(resource_finder((), os.environ).fuel_cache)
-    if cache is not None and Path(cache) in Path(lookups.real_path(path) or path).parents:
+    cache = Path(os.path.realpath(resource_finder((), os.environ).fuel_cache))
+    if cache in Path(os.path.realpath(path)).parents:
         msg = 'the file is in the cache of Gazebo Fuel; copy the model and include the copy'
         raise PoseNotSetError(msg, Place(path))
     text = PoseText(bytes_from_file(path, Usage()), path)

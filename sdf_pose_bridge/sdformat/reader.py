@@ -108,7 +108,6 @@ def _check_scoped_names(root: XmlElement, sources: Sources) -> None:
     """Report names with ``::`` in files without scoped names, and in files that they include."""
     xmls: list[XmlElement] = root.xpath('//*[contains(@name, "::")]')
     for xml in xmls:
-        sources.count_work(sum(1 for _ in xml.iterancestors()), xml)
         # The name may be in the file that includes the element.
         is_named_by_include = sources.origin(xml).is_named_by_include
         paths = islice(sources.enclosing_paths(xml), int(is_named_by_include), None)
@@ -122,7 +121,6 @@ class _Reader:
 
     def __init__(self, sources: Sources, *, shapes: bool = False) -> None:
         self._sources = sources
-        self._deepest = sources.usage.limits.depth
         self._builder = ElementsBuilder(sources.paths, has_shapes=shapes)
         self._names = SiblingNames(self._builder, sources)
         self._undefined = UndefinedReporter(sources)
@@ -209,8 +207,7 @@ class _Reader:
                 checks = _CHECKS if definition.has_frames else _CHECKS_OF_UNREAD
                 if definition.identifier in checks:
                     checks[definition.identifier](xml, self._sources)
-            if depth > self._deepest:
-                self._sources.usage.check('depth', depth, self._sources.place(xml))
+            self._sources.check_depth(depth, xml)
             definitions = definition.children
             for child in xml:
                 child_definition = definitions.get(child.tag)

@@ -15,15 +15,22 @@ from collections.abc import Iterator, Mapping
 import copy
 from typing import Any, NamedTuple
 
+from lxml import etree
+
 from sdf_pose_bridge.errors import Place, SdfError
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.sdformat.counted import copy_of
-from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS, Limits, STEPS_OF_PLACE, Usage
-from sdf_pose_bridge.sdformat.xml_tree import described, with_ancestors, written_tag, XmlElement
+from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS, Limits, Usage
+from sdf_pose_bridge.sdformat.xml_tree import (
+    copy_of,
+    described,
+    with_ancestors,
+    written_tag,
+    XmlElement,
+)
 
 _MOST_PLACES_REMEMBERED = 1000
-
+_NUMBER_OF_ELEMENTS = etree.XPath('count(descendant-or-self::*)')
 
 PARAMS_TAG = 'experimental:params'
 """The tag of the parameters of an include."""
@@ -129,9 +136,23 @@ class Sources:
         """
         self.problems.warning(message, self.place(xml), code, is_for_gazebo=is_for_gazebo)
 
-    def count_work(self, steps: int, xml: XmlElement) -> None:
-        """Count work for an element against the limits."""
-        self.usage.add('work', steps, lambda: self.place(xml))
+    def check_depth(self, depth: int, xml: XmlElement) -> None:
+        """
+        Compare the depth of an element with the limit.
+
+        :raises LimitError: if it is greater.
+        """
+        if depth > self.usage.limits.depth:
+            self.usage.check('depth', depth, self.place(xml))
+
+    def count_copy(self, xml: XmlElement, user: XmlElement) -> None:
+        """
+        Count the elements in a copy.
+
+        :param user: the element that requests the copy.
+        :raises LimitError: if the load has copied too many.
+        """
+        self.usage.add('copied_elements', int(_NUMBER_OF_ELEMENTS(xml)), self.place(user))
 
     def add_path(self, path: str) -> None:
         """Add a file, unless it is known."""
@@ -185,20 +206,14 @@ class Sources:
         return origin.line or self._parsed_lines.get(xml) or xml.sourceline or 0
 
     def place(self, xml: XmlElement) -> Place:
-        """
-        Return the file and the line of an element, and its path in the tree.
-
-        :raises LimitError: if too many places are requested, each for an error or a warning.
-        """
+        """Return the file and the line of an element, and its path in the tree."""
         parent = xml.getparent()
         outer = Place('') if parent is None else self._place_in_tree(parent)
         origin = self.origin(xml)
         file = outer.file if origin.file is None else origin.file
-        place = Place(
+        return Place(
             file if origin.pose is None else origin.pose.file, self.line(xml),
             f'{outer.element}/{_step(xml)}')
-        self.usage.add('work', STEPS_OF_PLACE, place)
-        return place
 
     def _place_in_tree(self, xml: XmlElement) -> Place:
         """Return the file and the path of an ancestor of an element."""
@@ -212,23 +227,21 @@ class Sources:
             file = file or self.origin(element).file or ''
             steps.append(_step(element))
         place = Place(file, element='/'.join([path, *reversed(steps)]))
-        self.usage.add('work', len(steps), place._replace(line=self.line(xml)))
         if self._places is not None:
             if len(self._places) == _MOST_PLACES_REMEMBERED:
                 self._places.clear()
             self._places[xml] = place
         return place
 
-    def copy_of(
-        self, xml: XmlElement, user: XmlElement, steps: int | None = None,
-    ) -> XmlElement:
+    def copy_of(self, xml: XmlElement, user: XmlElement) -> XmlElement:
         """
         Copy an element with its content and its places into a separate tree.
 
         :param user: the element that requests it.
-        :param steps: as for :func:`~sdf_pose_bridge.sdformat.counted.copy_of`.
+        :raises LimitError: if the load has copied too many elements.
         """
-        result = copy_of(xml, self.usage, lambda: self.place(user), steps)
+        self.count_copy(xml, user)
+        result = copy_of(xml)
         if xml.getroottree().getroot() in self.composed_trees:
             for old, new in zip(xml.iter(), result.iter(), strict=True):
                 if old in self._origins:

@@ -10,13 +10,14 @@ decides the meaning of names and attributes that newer versions changed. Source:
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
 from typing import NamedTuple
 
 from lxml import etree
 
 from sdf_pose_bridge.errors import ConversionError, Place
 from sdf_pose_bridge.names import MODEL_FRAME, SEPARATOR, WORLD_FRAME
-from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.xml_tree import (
@@ -71,8 +72,9 @@ _MODELS = ('model', 'world/model')
 """Paths of models that are not in another model."""
 
 _SCOPED_TAGS = frozenset({'link', 'joint', 'frame', 'model', 'gripper'})
-_STEPS_COUNTED_TOGETHER = 1000
 _REFERENCE_ATTRIBUTES = ('relative_to', 'attached_to', 'expressed_in')
+_ELEMENTS_WITH_REFERENCES = etree.XPath(
+    f'descendant-or-self::*[{" or ".join(f"@{name}" for name in _REFERENCE_ATTRIBUTES)}]')
 
 
 def version_numbers(text: str) -> tuple[int, ...]:
@@ -130,7 +132,7 @@ def convert(root: XmlElement, version: Version, sources: Sources) -> None:
             del pose.attrib['relative_to']
     if allows_scoped_names(version) and sources.may_hold_scoped_names:
         for model in root.iterfind('world/model'):
-            _nest_scoped_elements(model, sources)
+            _nest_scoped_elements(model, sources, cache(_ELEMENTS_WITH_REFERENCES))
 
 
 def _report_deprecated(root: XmlElement, version: Version, sources: Sources) -> None:
@@ -202,7 +204,10 @@ def _express_in_model(axis: XmlElement, sources: Sources) -> None:
     xyz.set('expressed_in', MODEL_FRAME)
 
 
-def _nest_scoped_elements(model: XmlElement, sources: Sources, depth: int = 1) -> None:
+def _nest_scoped_elements(
+    model: XmlElement, sources: Sources, referrers: Callable[[XmlElement], list[XmlElement]],
+    depth: int = 1,
+) -> None:
     """
     1.7 to 1.8: move elements named ``nested::name`` into a new model ``nested``, recursively.
 
@@ -211,15 +216,17 @@ def _nest_scoped_elements(model: XmlElement, sources: Sources, depth: int = 1) -
     stops at the first model that is nested already: it converts this model, but no later elements
     of the outer model, unless an earlier element has the same ``nested``.
 
+    :param referrers: finds the elements with references in a moved element, which may move once
+        for each model in its name.
     :raises ConversionError: if a moved element refers to something outside its new model.
     """
-    sources.usage.check('depth', depth, lambda: sources.place(model))
+    sources.check_depth(depth, model)
     nested_models: dict[str, XmlElement] = {}
     is_stopped = False
     for child in list(child_elements(model)):
         scope, separator, name = attribute_of(child, 'name').partition(SEPARATOR)
         if child.tag == 'model' and scope and not separator and not is_stopped:
-            _nest_scoped_elements(child, sources, depth + 1)
+            _nest_scoped_elements(child, sources, referrers, depth + 1)
             is_stopped = True
         if child.tag not in _SCOPED_TAGS or not separator or not scope or not name:
             continue
@@ -232,13 +239,12 @@ def _nest_scoped_elements(model: XmlElement, sources: Sources, depth: int = 1) -
         if child.tag == 'frame' and name == MODEL_FRAME:
             _replace_model_frame(child, nested_models[scope], prefix)
             continue
-        _remove_prefix_from_references(child, prefix, sources)
-        sources.count_work(len(name) // CHARACTERS_OF_STEP, child)
+        _remove_prefix_from_references(child, prefix, sources, referrers)
         child.set('name', name)
         nested_models[scope].append(child)
     for nested_model in nested_models.values():
         model.append(nested_model)
-        _nest_scoped_elements(nested_model, sources, depth + 1)
+        _nest_scoped_elements(nested_model, sources, referrers, depth + 1)
 
 
 def _replace_model_frame(frame: XmlElement, nested_model: XmlElement, prefix: str) -> None:
@@ -254,7 +260,10 @@ def _replace_model_frame(frame: XmlElement, nested_model: XmlElement, prefix: st
         parent.remove(frame)
 
 
-def _remove_prefix_from_references(xml: XmlElement, prefix: str, sources: Sources) -> None:
+def _remove_prefix_from_references(
+    xml: XmlElement, prefix: str, sources: Sources,
+    referrers: Callable[[XmlElement], list[XmlElement]],
+) -> None:
     pose = first_child(xml, 'pose')
     if pose is not None:
         # If it is relative to another frame, that is looked up in the new model.
@@ -264,22 +273,17 @@ def _remove_prefix_from_references(xml: XmlElement, prefix: str, sources: Source
     if xml.tag == 'model':
         # References in it are to names in it.
         return
-    for steps, element in enumerate(xml.iter(etree.Element), 1):
-        # Each model that becomes nested visits its whole content again.
-        if steps % _STEPS_COUNTED_TOGETHER == 0:
-            sources.count_work(_STEPS_COUNTED_TOGETHER, xml)
+    for element in referrers(xml):
         for attribute in _REFERENCE_ATTRIBUTES:
             name = attribute_of(element, attribute)
             if name and element is not pose:
                 element.set(attribute, _without_prefix(name, prefix, element, sources))
-    sources.count_work(steps % _STEPS_COUNTED_TOGETHER, xml)
     if xml.tag == 'joint':
         for end in child_elements(xml, 'parent', 'child'):
             end.text = _without_prefix(value_of(end), prefix, end, sources)
 
 
 def _without_prefix(name: str, prefix: str, xml: XmlElement, sources: Sources) -> str:
-    sources.count_work(len(name) // CHARACTERS_OF_STEP, xml)
     if name.startswith(prefix):
         return name[len(prefix):]
     if name in (WORLD_FRAME, MODEL_FRAME, ''):

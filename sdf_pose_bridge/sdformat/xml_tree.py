@@ -10,6 +10,7 @@ prefix and the content of a ``<plugin>`` are not SDFormat, and are not read.
 from __future__ import annotations
 
 from collections.abc import Iterator
+import copy
 from itertools import chain
 import re
 from typing import TypeAlias
@@ -25,6 +26,13 @@ WHITE_SPACE = ' \t\n\r\f\v'
 
 _WHITE_SPACE_RUN = re.compile(r'[ \t\n\r\f\v]+')
 _COMMENT: object = etree.Comment
+
+
+def copy_of(xml: XmlElement) -> XmlElement:
+    """Copy an element with its content, without the text behind it."""
+    # lxml also copies the text behind the element, which has no meaning and can be longer.
+    xml.tail = None
+    return copy.deepcopy(xml)
 
 
 def child_elements(xml: XmlElement, *tags: str) -> Iterator[XmlElement]:

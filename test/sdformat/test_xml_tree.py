@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reading values from XML elements: text, attributes, prefixes, steps of paths."""
 
+from lxml import etree
 import pytest
 
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
     child_elements,
+    copy_of,
     described,
     first_child,
     is_foreign,
@@ -112,3 +114,10 @@ def test_other_elements_are_not_foreign(text):
 ])
 def test_step_of_a_path(text, step):
     assert described(xml(text)) == step
+
+
+# Copies
+
+def test_a_copy_has_all_but_the_text_behind_it():
+    root = xml('<a>1<b c="d">2<!-- 3 --><e/>4</b>5</a>')
+    assert etree.tostring(copy_of(root[0])) == b'<b c="d">2<!-- 3 --><e/>4</b>'

@@ -10,7 +10,7 @@ whose name is the longest beginning of the id, and continues only inside this on
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from itertools import islice
 
 from sdf_pose_bridge.names import scoped_name, SEPARATOR
@@ -28,20 +28,16 @@ _MOST_ELEMENTS_SEARCHED = 10_000
 _LONGEST_ID_COMPARED = 200
 
 
-def element_by_id(
-    top: XmlElement, element_id: str, tag: str, count: Callable[[int], object],
-) -> XmlElement | None:
+def element_by_id(top: XmlElement, element_id: str, tag: str = '') -> XmlElement | None:
     """
     Find an element.
 
     :param element_id: names from the included element, ``top``, inwards.
     :param tag: its tag, as written; empty for any.
-    :param count: called with the number of children of each searched element.
     """
     start = longest = 0
     match: XmlElement | None = top
     while match is not None:
-        count(len(match))
         children, match = child_elements(match), None
         for child in children:
             written = child.get('name')

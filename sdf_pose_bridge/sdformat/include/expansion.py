@@ -10,8 +10,8 @@ is not found or not valid is reported and stays in the tree, so that no error fo
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
 from itertools import takewhile
+import os
 from pathlib import Path
 
 from lxml import etree
@@ -32,7 +32,6 @@ from sdf_pose_bridge.errors import (
     UriLookupError,
 )
 from sdf_pose_bridge.names import ROOT_FRAME, shortened
-from sdf_pose_bridge.sdformat.counted import copy_of, file_lookups, FileLookups, steps_of_copy
 from sdf_pose_bridge.sdformat.documents import Document, document_from_file
 from sdf_pose_bridge.sdformat.grammar import Definition, definition_of
 from sdf_pose_bridge.sdformat.include.merge import merge, ModelByItself
@@ -42,7 +41,6 @@ from sdf_pose_bridge.sdformat.include.uris import (
     ModelFile,
     ResourceFinder,
 )
-from sdf_pose_bridge.sdformat.limits import STEPS_OF_INCLUDE, STEPS_OF_MERGE, STEPS_OF_MOVED_CHILD
 from sdf_pose_bridge.sdformat.reader import check_element
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
@@ -50,6 +48,7 @@ from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.xml_tree import (
     child_elements,
     child_value,
+    copy_of,
     described,
     first_child,
     value_of,
@@ -82,13 +81,11 @@ class IncludeExpansion:
         model_by_itself: Callable[[XmlElement], ModelByItself | None],
     ) -> None:
         self._finder = finder
-        self._lookups = file_lookups(sources.usage)
         self._sources = sources
         self._skips_missing = skips_missing
         self._model_by_itself = model_by_itself
         self._files: dict[str, Document | None] = {}
         self._model_files: dict[str, ModelFile | str] = {}
-        self._steps_of_copy = cache(steps_of_copy)
         self._missing: set[str] = set()
         self._merged_models: dict[tuple[XmlElement, str, bytes], ModelByItself | None] = {}
         self._undefined = UndefinedReporter(sources)
@@ -101,9 +98,7 @@ class IncludeExpansion:
 
         :param document: the file, in the newest version; it is changed in place.
         """
-        lookups = self._lookups._replace(place=Place(document.path))
-        self._expand_in(
-            document.root, (lookups.real_path(document.path) or document.path,))
+        self._expand_in(document.root, (os.path.realpath(document.path),))
 
     def _expand_in(self, root: XmlElement, files: tuple[str, ...]) -> None:
         """Replace the includes in a tree; ``files`` led to it, each included by the one before."""
@@ -144,7 +139,6 @@ class IncludeExpansion:
         self._sources.set_origin(include, missing=(name, uri))
 
     def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
-        self._sources.count_work(STEPS_OF_INCLUDE, include)
         is_merge = self._is_merge(include)
         self._undefined.report_content(include, definition_of('include'))
         for plugin in child_elements(include, 'plugin'):
@@ -162,7 +156,7 @@ class IncludeExpansion:
         chosen = self._top(include, found)
         if chosen is None or is_merge is None:
             return
-        top = self._sources.copy_of(chosen, include, self._steps_of_copy(chosen))
+        top = self._sources.copy_of(chosen, include)
         self._sources.set_origin(top, include=place)
         self._override(include, top)
         for added in apply_params(include, top, self._sources):
@@ -188,16 +182,15 @@ class IncludeExpansion:
         self, place: Place, uri: str, files: tuple[str, ...],
     ) -> Document | str | None:
         """Return a file; the reason why it is not found; or None if it cannot be read."""
-        lookups = self._lookups._replace(place=place)
-        path = self._finder.path_from_uri(uri, place.file, lookups)
+        path = self._finder.path_from_uri(uri, place.file)
         if path is None:
             return self._finder.reason_not_found(uri, place.file)
-        if lookups.is_directory(path):
-            chosen = self._model_file(path, lookups)
+        if os.path.isdir(path):  # noqa: PTH112
+            chosen = self._model_file(path)
             if isinstance(chosen, str):
                 return chosen
             path = chosen.path
-        real_path = lookups.real_path(path) or path
+        real_path = os.path.realpath(path)
         if real_path in files:
             cycle = [*files[files.index(real_path):], real_path]
             names = ' -> '.join(Path(file).name for file in cycle)
@@ -209,9 +202,9 @@ class IncludeExpansion:
             self._files[real_path] = self._read(path, (*files, real_path))
         return self._files[real_path]
 
-    def _model_file(self, directory: str, lookups: FileLookups) -> ModelFile | str:
+    def _model_file(self, directory: str) -> ModelFile | str:
         """Return the model file of a directory, read once, or why there is none."""
-        key = lookups.real_path(directory) or directory
+        key = os.path.realpath(directory)
         chosen = self._model_files.get(key)
         if chosen is None:
             try:
@@ -242,7 +235,7 @@ class IncludeExpansion:
         depth = self._sources.usage.limits.depth
         too_deep = root.xpath('descendant::*[count(ancestor::*) > $depth][1]', depth=depth)
         for xml in too_deep:
-            self._sources.usage.check('depth', depth + 1, self._sources.place(xml))
+            self._sources.check_depth(depth + 1, xml)
 
     def _report_missing(self, place: Place, uri: str, reason: str) -> None:
         msg = f'"{shortened(uri)}" cannot be included: {reason}'
@@ -257,7 +250,6 @@ class IncludeExpansion:
 
     def _top(self, include: XmlElement, document: Document) -> XmlElement | None:
         """Return the model, actor or light at the top of an included file."""
-        self._sources.count_work(len(document.root), include)
         tops = [xml for xml in child_elements(document.root) if xml.tag in _TOP_TAGS]
         if len(tops) > 1:
             names = ', '.join(map(described, tops[:_MOST_TOPS_SHOWN]))
@@ -313,7 +305,7 @@ class IncludeExpansion:
         if new is None:
             return False
         old = first_child(top, tag)
-        replacement = copy_of(new, self._sources.usage, lambda: self._sources.place(include))
+        replacement = copy_of(new)
         if old is None:
             top.insert(0, replacement)
         else:
@@ -348,11 +340,9 @@ class IncludeExpansion:
         """Merge a copy of a model; includes with the same text share the check by itself."""
         text = etree.tostring(include, with_tail=False)
         key = chosen, self._sources.path(include), text
-        self._sources.count_work(STEPS_OF_INCLUDE + STEPS_OF_MOVED_CHILD * len(top), include)
 
         def model_by_itself(root: XmlElement) -> ModelByItself | None:
             if key not in self._merged_models:
-                self._sources.count_work(STEPS_OF_MERGE + steps_of_copy(root), include)
                 self._merged_models[key] = self._model_by_itself(root)
             return self._merged_models[key]
 

@@ -19,13 +19,13 @@ from lxml import etree
 from sdf_pose_bridge.errors import AttributeInvalidError, MergeIncludeError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import MODEL_FRAME, ROOT_FRAME, WORLD_FRAME
-from sdf_pose_bridge.sdformat.counted import copy_of
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.poses import text_from_pose
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
     child_elements,
+    copy_of,
     described,
     first_child,
     value_of,
@@ -81,7 +81,7 @@ def _proxy_frame(
     pose = first_child(model, 'pose')
     proxy_pose = etree.Element('pose')
     if pose is not None:
-        proxy_pose = copy_of(pose, sources.usage, lambda: sources.place(include))
+        proxy_pose = copy_of(pose)
         sources.set_source(proxy_pose, pose)
         # By itself, the model cannot be relative to a frame.
         pose.attrib.pop('relative_to', None)

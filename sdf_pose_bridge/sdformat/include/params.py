@@ -19,23 +19,24 @@ from sdf_pose_bridge.errors import (
     ElementMissingError,
 )
 from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.sdformat.counted import copy_of
 from sdf_pose_bridge.sdformat.grammar import Definition, definition_of
 from sdf_pose_bridge.sdformat.include.element_ids import element_by_id, hint_for_id
-from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_LOOK
 from sdf_pose_bridge.sdformat.reader import check_element
 from sdf_pose_bridge.sdformat.sources import PARAMS_TAG, Sources
 from sdf_pose_bridge.sdformat.specification import DEFINED_ALONE
-from sdf_pose_bridge.sdformat.xml_tree import child_elements, text_of, written_tag, XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import (
+    child_elements,
+    copy_of,
+    text_of,
+    written_tag,
+    XmlElement,
+)
 
 _OWN_ATTRIBUTES = ('element_id', 'action')
 _ACTIONS = ('add', 'modify', 'remove', 'replace')
 _POSE_FORMAT_ATTRIBUTES = frozenset({'degrees', 'rotation_format'})
 _PARTS = ('pose', 'parent', 'child', 'axis', 'axis2')
 """Children that are in the file of their parent element."""
-
-_STEPS_OF_SOURCE = 4
-"""Steps of work to set the place of a child of a changed element."""
 
 _DEFAULT_JOINT_END = '__default__'
 """The default value of a joint's parent or child."""
@@ -53,9 +54,6 @@ def apply_params(include: XmlElement, top: XmlElement, sources: Sources) -> list
     params = next((xml for xml in child_elements(include) if written_tag(xml) == PARAMS_TAG), None)
     if params is None:
         return []
-    looks = int(params.xpath('count(.//*)'))
-    characters = len(etree.tostring(top, with_tail=False))
-    sources.count_work(looks * characters // CHARACTERS_OF_LOOK, include)
     changer = _Changer(top, sources)
     for xml in child_elements(params):
         changer.apply(xml)
@@ -82,7 +80,7 @@ class _Changer:
             self._report_action(xml)
         elif action == 'add':
             self._add(xml, tag, element_id)
-        elif (target := self._element(xml, element_id, tag)) is None:
+        elif (target := element_by_id(self._top, element_id, tag)) is None:
             msg = (f'the included model has no <{tag}> "{element_id}"'
                    f'{self._hint(element_id, tag)}')
             self._sources.error(ElementMissingError, xml, msg)
@@ -103,10 +101,10 @@ class _Changer:
         if not name:
             missing = AttributeMissingError if name is None else AttributeInvalidError
             self._sources.error(missing, xml, f'<{tag}> is to be added, so it needs a name')
-        elif tag != 'plugin' and self._element(xml, scoped, tag) is not None:
+        elif tag != 'plugin' and element_by_id(self._top, scoped, tag) is not None:
             msg = f'<{tag}> cannot be added: the included model has a <{tag}> "{scoped}" already'
             self._sources.error(DuplicateNameError, xml, msg)
-        elif (parent := self._element(xml, element_id) if element_id else self._top) is None:
+        elif (parent := element_by_id(self._top, element_id) if element_id else self._top) is None:
             msg = (f'<{tag}> cannot be added to element_id="{element_id}": the included model has '
                    f'no such element{self._hint(element_id)}')
             self._sources.error(ElementMissingError, xml, msg)
@@ -134,7 +132,8 @@ class _Changer:
 
     def _new_element(self, xml: XmlElement) -> XmlElement:
         """Copy an element without attributes that are not defined, as libsdformat does."""
-        element = copy_of(xml, self._sources.usage, lambda: self._sources.place(xml))
+        self._sources.count_copy(xml, xml)
+        element = copy_of(xml)
         definition = _definition_of_parameter(xml)
         attributes = element.keys()
         for attribute in attributes:
@@ -244,7 +243,6 @@ class _Changer:
         """Move the place of an element, and of ancestors up to that with the id, to the params."""
         path = self._sources.path(xml)
         while True:
-            self._sources.count_work(_STEPS_OF_SOURCE * len(target), xml)
             for child in child_elements(target):
                 self._sources.set_origin(child, file=self._sources.path(child))
             parts = (part for child in child_elements(target, *_PARTS)
@@ -259,17 +257,11 @@ class _Changer:
 
     # Look-ups
 
-    def _element(self, xml: XmlElement, element_id: str, tag: str = '') -> XmlElement | None:
-        return element_by_id(
-            self._top, element_id, tag,
-            lambda children: self._sources.count_work(children, xml))
-
     def _child(
         self, parent: XmlElement, xml: XmlElement, *, takes_first: bool = False,
     ) -> XmlElement | None:
         """Find the child with the tag and the name of a parameter; report it if there is none."""
         tag, name = written_tag(xml), xml.get('name')
-        self._sources.count_work(len(parent), xml)
         children = [child for child in child_elements(parent) if written_tag(child) == tag]
         definition = self._definition(parent)
         if not children and definition is not None and tag in definition.required_children:

@@ -10,6 +10,7 @@ version: ``getModelFilePath`` and ``getBestSupportedModelVersion`` of libsdforma
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
 import os
 from pathlib import Path
 import re
@@ -18,7 +19,6 @@ from urllib.parse import unquote, urlsplit
 
 from sdf_pose_bridge.errors import FileReadError, ParsingError, Place, SdfWarning
 from sdf_pose_bridge.names import quoted_names, shortened
-from sdf_pose_bridge.sdformat.counted import file_lookups, FileLookups
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.versions import NEWEST, version_numbers
 from sdf_pose_bridge.sdformat.xml_file import xml_from_file
@@ -49,9 +49,7 @@ class ResourceFinder(NamedTuple):
     fuel_cache: str
     """Directory of the models that Gazebo has downloaded."""
 
-    def path_from_uri(
-        self, uri: str, including_file: str, lookups: FileLookups | None = None,
-    ) -> str | None:
+    def path_from_uri(self, uri: str, including_file: str) -> str | None:
         """
         Find a file or directory; return its path, or None.
 
@@ -61,14 +59,9 @@ class ResourceFinder(NamedTuple):
 
         :param uri: such as ``model://box``, ``package://pkg/models/box`` or ``box.sdf``.
         :param including_file: path of the file with the include.
-        :param lookups: those of the load; by default those of one of its own.
         """
-        if lookups is None:
-            lookups = file_lookups()
-        found = (
-            str(Path(path)) for path in self._candidates(uri, including_file, lookups)
-            if lookups.real_path(path) is not None)
-        return next(found, None)
+        found = next(filter(os.path.exists, self._candidates(uri, including_file)), None)
+        return None if found is None else str(Path(found))
 
     def file_from_uri(self, uri: str, naming_file: str) -> str | None:
         """Find a file, such as a mesh, as :meth:`path_from_uri`, but no directory."""
@@ -153,14 +146,12 @@ class ResourceFinder(NamedTuple):
         return (f'{packages or "it is "}not in {quoted_names(directories, _MOST_SHOWN)}; the '
                 'variable GZ_SIM_RESOURCE_PATH and the resource paths add directories')
 
-    def _candidates(
-        self, uri: str, including_file: str, lookups: FileLookups,
-    ) -> Iterator[str]:
+    def _candidates(self, uri: str, including_file: str) -> Iterator[str]:
         scheme = _SCHEME.match(uri)
         name = uri[scheme.end():] if scheme else uri
         scheme_name = scheme[1].lower() if scheme else ''
         if scheme_name in ('http', 'https'):
-            yield from self._paths_in_fuel_cache(uri, lookups)
+            yield from self._paths_in_fuel_cache(uri)
             return
         if not name:
             return
@@ -186,7 +177,7 @@ class ResourceFinder(NamedTuple):
             if package and os.path.exists(marker):  # noqa: PTH110
                 yield Path(prefix, 'share', package)
 
-    def _paths_in_fuel_cache(self, uri: str, lookups: FileLookups) -> Iterator[str]:
+    def _paths_in_fuel_cache(self, uri: str) -> Iterator[str]:
         """
         Find a Fuel model in the cache.
 
@@ -206,13 +197,12 @@ class ResourceFinder(NamedTuple):
         version, rest = (steps[3] if len(steps) > 3 else 'tip'), steps[4:]
         model = f'{self.fuel_cache}/{parts.netloc}'
         for part in steps[:3]:
-            model = _entry_in_any_case(model, part, lookups)
+            model = _entry_in_any_case(model, part)
         versions = [version]
         if version == 'tip':
             numbers = [
-                name for name in lookups.entries(model) if name.isascii() and name.isdecimal()]
+                name for name in _entries(model) if name.isascii() and name.isdecimal()]
             versions = sorted(numbers, key=int, reverse=True)
-            lookups.usage.add('work', len(versions), lookups.place)
         for candidate in versions:
             yield '/'.join([model, candidate, *(rest[1:] if rest[:1] == ['files'] else rest)])
 
@@ -239,12 +229,26 @@ def resource_finder(
     )
 
 
-def _entry_in_any_case(directory: str, name: str, lookups: FileLookups) -> str:
+def _entry_in_any_case(directory: str, name: str) -> str:
     """Return the entry of a name; Gazebo writes owners and models in lower case."""
     plain = f'{directory}/{name}'
-    if lookups.real_path(plain) is not None:
+    if os.path.exists(plain):  # noqa: PTH110
         return plain
-    return f'{directory}/{lookups.entries(directory).get(name.lower(), name)}'
+    return f'{directory}/{_entries(directory).get(name.lower(), name)}'
+
+
+def _entries(directory: str) -> Mapping[str, str]:
+    """Return the names in a directory by their lower case; empty if it cannot be read."""
+    try:
+        return _entries_of_state(directory, os.stat(directory).st_mtime_ns)  # noqa: PTH116
+    except (OSError, ValueError):  # ValueError: a zero character
+        return {}
+
+
+@lru_cache(maxsize=64)
+def _entries_of_state(directory: str, _changed_ns: int) -> Mapping[str, str]:
+    # If names differ in case only, the first one counts.
+    return {name.lower(): name for name in reversed(os.listdir(directory))}  # noqa: PTH208
 
 
 def _is_file_name(name: str) -> bool:

@@ -66,9 +66,6 @@ _GAZEBO_TAGS = ('include', 'joint', 'link', 'model')
 _MOVED_TAGS = ('light', 'projector', 'sensor')
 """Children of ``<gazebo>`` whose poses change when their link is lumped."""
 
-_STEPS_OF_MOVE = 16
-"""Steps of work to move a sensor from a link that is lumped to the next one."""
-
 _LUMP_PREFIX = '_fixed_joint_lump__'
 
 
@@ -385,7 +382,6 @@ class _Conversion:
         while self._bases[name].link.name != name:
             if len(numbers) != 6 or not all(map(math.isfinite, numbers)):
                 return
-            self._sources.count_work(_STEPS_OF_MOVE, xml)
             joint = self._robot.parent_joints[name]
             moved = pose_product(joint.origin, pose_from_xyz_rpy(numbers[:3], numbers[3:]))
             # libsdformat writes six digits at each step.
@@ -398,7 +394,7 @@ class _Conversion:
             for end in child_elements(joint, 'parent', 'child') if joint.tag == 'joint' else ():
                 base = self._bases.get(text_of(end).strip(WHITE_SPACE))
                 if base is not None:
-                    end.text = self._write.counted(base.link.name, end)
+                    end.text = base.link.name
 
     def _report_unused_extensions(self) -> None:
         for reference, children in self._gazebo.extensions.items():

@@ -10,7 +10,6 @@ from lxml import etree
 
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import MODEL_FRAME, WORLD_FRAME
-from sdf_pose_bridge.sdformat.limits import CHARACTERS_OF_STEP, STEPS_OF_ELEMENT
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math, text_from_numbers
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
@@ -20,7 +19,7 @@ class ElementWriter:
     """
     Adds elements to a tree.
 
-    :param sources: takes the lines of the elements, and counts their characters.
+    :param sources: takes the lines of the elements.
     :param for_ros: whether rotations keep all their digits, which libsdformat rounds.
     """
 
@@ -37,21 +36,11 @@ class ElementWriter:
 
         :param source: the element of URDF that it comes from.
         :return: the new element.
-        :raises LimitError: if there are too many characters.
         """
-        # Names of links and joints go into any number of elements.
-        characters = sum(map(len, (text or '', *attributes.values())))
-        if characters >= CHARACTERS_OF_STEP:
-            self._sources.count_work(characters // CHARACTERS_OF_STEP, source)
         element = etree.SubElement(parent, tag, attributes)
         element.text = text
         self._sources.set_parsed_line(element, source)
         return element
-
-    def counted(self, name: str, xml: XmlElement) -> str:
-        """Count a name that may be longer than the text of the file at its new place."""
-        self._sources.count_work(STEPS_OF_ELEMENT + len(name) // CHARACTERS_OF_STEP, xml)
-        return name
 
     def add_pose(
         self, xml: XmlElement, source: XmlElement, pose: Pose,

@@ -32,7 +32,7 @@ def arm():
     ('base', 'frame'), ('base::shape', 'sensor'), ('tool::tip', 'link'), ('tool::end', 'frame'),
 ])
 def test_unknown_id_is_not_found(arm, element_id, tag):
-    assert element_by_id(arm, element_id, tag, [].append) is None
+    assert element_by_id(arm, element_id, tag) is None
 
 
 @pytest.mark.parametrize(('element_id', 'tag', 'name'), [
@@ -42,7 +42,7 @@ def test_unknown_id_is_not_found(arm, element_id, tag):
     ('hand_left::palm', 'visual', 'palm'), ('tool::p', 'link', 'p'), ('h', '', 'h'),
 ])
 def test_element_is_found(arm, element_id, tag, name):
-    found = element_by_id(arm, element_id, tag, [].append)
+    found = element_by_id(arm, element_id, tag)
     assert found.get('name') == name
 
 
@@ -51,7 +51,7 @@ def test_element_is_found(arm, element_id, tag, name):
     ('base::shape', 'collision'),  # the visual of that name comes first
 ])
 def test_element_that_libsdformat_does_not_find_is_not_found(arm, element_id, tag):
-    assert element_by_id(arm, element_id, tag, [].append) is None
+    assert element_by_id(arm, element_id, tag) is None
 
 
 @pytest.mark.parametrize(('element_id', 'tag', 'hint'), [

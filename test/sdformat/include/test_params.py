@@ -311,41 +311,6 @@ def test_hint_among_long_ids_takes_little_memory(write, tmp_path):
     assert peak < 20 * len(DEEP)  # 100 times as much if all ids are made
 
 
-SIBLINGS = ARM.replace('<sensor name="eye"', ''.join(
-    f'<visual name="v{i}"/>' for i in range(300)) + '<sensor name="eye"')
-
-
-@pytest.mark.parametrize('params', [
-    '<link element_id="base" action="modify"><pose>1 2 3 0 0 0</pose></link>' * 300,
-    '<link element_id="base">' + ''.join(
-        f'<visual name="v{i}" action="modify"><pose>1 2 3 0 0 0</pose></visual>'
-        for i in range(300)) + '</link>',
-    ''.join(f'<visual element_id="base::v{i}" action="remove"/>' for i in range(300)),
-])
-def test_work_of_many_parameters_on_many_siblings_is_limited(write, tmp_path, params):
-    errors = errors_of_file(
-        write(params, arm=SIBLINGS), resource_paths=[tmp_path],
-        limits=sdf_pose_bridge.Limits(work=20_000))
-    assert errors[-1].code == 'LIMIT'
-
-
-def test_work_of_looking_among_many_attributes_is_limited(write, tmp_path):
-    attributes = ' '.join(f'a{i}="1"' for i in range(3000))
-    errors = errors_of_file(
-        write('<link element_id="none" action="remove"/>' * 3000,
-              arm=ARM.replace('</model>', f'<x:y {attributes}/></model>')),
-        resource_paths=[tmp_path], limits=sdf_pose_bridge.Limits(work=20_000))
-    assert [error.code for error in errors] == ['LIMIT']
-
-
-def test_work_of_many_attributes_is_not_that_of_all_siblings_for_each(load):
-    attributes = ' '.join(f'a{i}="x"' for i in range(300))
-    scene = load(f'<link element_id="base" action="modify" {attributes}/>',
-                 arm=SIBLINGS.replace('<link name="base"', f'<link name="base" {attributes}'),
-                 limits=sdf_pose_bridge.Limits(work=20_000))
-    assert 'arm::base' in scene.names
-
-
 # Every change is read before the next one
 
 def test_wrong_pose_that_a_later_parameter_replaces_is_refused(tmp_path):

@@ -12,9 +12,8 @@ import pytest
 from sdf_texts import errors_of_file, names_of, only_error, world_file
 from urdf_texts import gazebo, joint, link, origin, robot, shape
 
-from sdf_pose_bridge import load, load_text, SdfError
+from sdf_pose_bridge import load, load_text
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
@@ -408,21 +407,6 @@ def test_what_sdformat_does_not_define_is_reported_only_in_gazebo_elements():
 
 
 # Hostile files
-
-def test_long_name_in_many_names_is_limited(tmp_path):
-    shapes = shape('visual') * 200
-    text = link('a' * 1000) + link('b', shapes) + joint('j', 'a' * 1000, 'b')
-    with pytest.raises(SdfError, match='the limit work is'):
-        load(write(tmp_path, text), limits=Limits(work=5000))
-
-
-def test_sensors_at_the_end_of_a_long_chain_are_limited(tmp_path):
-    links = ''.join(link(f'l{i}') for i in range(101))
-    joints = ''.join(joint(f'j{i}', f'l{i}', f'l{i + 1}') for i in range(100))
-    text = links + joints + gazebo(SENSOR.format('') * 10, 'l100')
-    with pytest.raises(SdfError, match='the limit work is'):
-        load(write(tmp_path, text), limits=Limits(work=999))
-
 
 def test_deep_chain_is_converted():
     count = 5000

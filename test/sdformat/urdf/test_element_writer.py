@@ -1,13 +1,11 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Elements made from URDF: their lines, their text, and what they cost."""
+"""Elements made from URDF: their lines and their text."""
 
 from lxml import etree
 import pytest
 
-from sdf_pose_bridge.errors import LimitError
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.sdformat.limits import Limits
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.urdf.element_writer import ElementWriter
 from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math
@@ -20,17 +18,11 @@ def robot():
     return etree.fromstring('<robot>\n<link/></robot>')
 
 
-def sources_of(robot, **limits):
-    sources = Sources(Limits(**limits))
+def sources_of(robot):
+    sources = Sources()
     sources.add_path('r.urdf')
     sources.add_tree('r.urdf', robot, {})
     return sources
-
-
-def test_long_names_are_counted(robot):
-    write = ElementWriter(sources_of(robot, work=100), for_ros=False)
-    with pytest.raises(LimitError):
-        write.add(etree.Element('model'), 'link', robot[0], name='l' * 1_000_000)
 
 
 def test_element_has_the_line_of_the_one_that_it_comes_from(robot):
