@@ -30,8 +30,8 @@ in_shell := . underlay/setup.bash && exec
 help:
 	@echo 'make demo           the node on an example, and what a listener receives from it'
 	@echo 'make test           all tests; ARGS="-k name" hands arguments to pytest'
-	@echo 'make test_core      the tests that need no ROS, with fewer random examples, in half a minute'
-	@echo 'make test_long      all tests, some with many more calls, frames or rotations'
+	@echo 'make test_core      the tests that need no ROS, in half a minute'
+	@echo 'make test_long      all tests, some with many more calls, frames, rotations or random examples'
 	@echo 'make run FILE=...   the node on an SDFormat file; ARGS="-p name:=value" sets parameters'
 	@echo 'make coverage       lines and branches that all tests run, with those of processes'
 	@echo 'make lint           ruff, mypy, import-linter and codespell'
@@ -68,7 +68,7 @@ test: setup
 
 # Tests that need no ROS and wait for no other process, so more processes than cores would not help.
 test_core: setup
-	@$(in_shell) python -m pytest --numprocesses $$(nproc) --dist worksteal --hypothesis-profile few_examples \
+	@$(in_shell) python -m pytest --numprocesses $$(nproc) --dist worksteal \
 	  test/geometry test/sdformat test/scene test/tf $(ARGS)
 
 # One after the other, as each of them loads the machine.

@@ -11,6 +11,7 @@ from pathlib import Path
 from lxml import etree
 import pytest
 from ros_domain import claimed_domain
+from sizes import size
 
 try:
     from hypothesis import HealthCheck, settings
@@ -19,10 +20,10 @@ except ImportError:  # the tests that need it are skipped
 else:
     # A machine that has other work to do may take long for an example.
     settings.register_profile(
-        'untimed', settings(), deadline=None, suppress_health_check=[HealthCheck.too_slow])
-    settings.load_profile('untimed')
-    # For make test_core.
-    settings.register_profile('few_examples', max_examples=25)
+        'all_examples', deadline=None, suppress_health_check=[HealthCheck.too_slow])
+    settings.register_profile(
+        'few_examples', settings.get_profile('all_examples'), max_examples=20)
+    settings.load_profile(size('few_examples', 'all_examples'))
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""How much tests do that could go on for long: less by ``make test`` than ``make test_long``."""
+"""How much tests do that could do much more: less by ``make test`` than ``make test_long``."""
 
 import os
 

@@ -9,12 +9,11 @@ from random_scenes import random_scenes
 from sdf_texts import names_of
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
-from hypothesis import given, HealthCheck, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import sdf_pose_bridge
 
-SOME = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 ORDERS = st.randoms(use_true_random=False).map(
     lambda random: lambda item, keys={}: keys.setdefault(id(item), random.random()))
 
@@ -31,7 +30,6 @@ def assert_same_scene(first, second, tolerance=1e-9):
             second.pose(name), matrix_from_pose(first.pose(name)), tolerance, name=name)
 
 
-@SOME
 @given(random_scenes())
 def test_poses_are_those_calculated_independently(drawn):
     scene = loaded(drawn.text())
@@ -42,7 +40,6 @@ def test_poses_are_those_calculated_independently(drawn):
         assert_same_pose(scene.pose(name), matrix, name=name)
 
 
-@SOME
 @given(random_scenes(), st.data())
 def test_poses_can_be_composed(drawn, data):
     scene = loaded(drawn.text())
@@ -56,13 +53,11 @@ def test_poses_can_be_composed(drawn, data):
         scene.pose(first, third), matrix_from_pose(scene.pose(second, third)) @ in_second)
 
 
-@SOME
 @given(random_scenes(), ORDERS)
 def test_order_of_siblings_moves_nothing(drawn, order):
     assert_same_scene(loaded(drawn.text()), loaded(drawn.text(order)))
 
 
-@SOME
 @given(random_scenes(is_world=False))
 def test_model_in_a_world_is_only_placed(drawn):
     place = (1.5, -2.0, 0.25, 30, -45, 60)
@@ -76,7 +71,6 @@ def test_model_in_a_world_is_only_placed(drawn):
             matrix_from_pose(alone.pose(name, drawn.root.children[0].name)), name=name)
 
 
-@SOME
 @given(random_scenes(), st.data())
 def test_pose_that_is_written_relative_to_another_frame_moves_nothing(drawn, data):
     item = data.draw(st.sampled_from([item for item in drawn.items if item.parent.kind]))
@@ -92,7 +86,6 @@ def test_pose_that_is_written_relative_to_another_frame_moves_nothing(drawn, dat
     assert_same_scene(before, loaded(drawn.text()))
 
 
-@SOME
 @given(random_scenes())
 def test_loading_twice_gives_the_same_bits(drawn):
     first, second = loaded(drawn.text()), loaded(drawn.text())

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from sdf_pose_bridge import Pose
@@ -100,21 +100,18 @@ def test_a_relative_pose_leads_back_to_the_pose(a, b):
     assert_near(pose_product(a, relative_pose(a, b)), b)
 
 
-@settings(max_examples=30)
 @given(st.lists(st.tuples(POSES, POSES), max_size=12))
 def test_many_products_are_the_same_as_one_by_one(pairs):
     products = pose_products(rows([a for a, _ in pairs]), rows([b for _, b in pairs]))
     np.testing.assert_array_equal(products, rows([pose_product(a, b) for a, b in pairs]))
 
 
-@settings(max_examples=30)
 @given(POSES, st.lists(POSES, min_size=1, max_size=12))
 def test_the_product_of_one_pose_and_many(a, poses):
     np.testing.assert_array_equal(
         pose_products(rows([a]), rows(poses)), rows([pose_product(a, b) for b in poses]))
 
 
-@settings(max_examples=30)
 @given(st.lists(st.tuples(POSES, POSES), max_size=12))
 def test_many_relative_poses_are_the_same_as_one_by_one(pairs):
     relative = relative_poses(rows([a for a, _ in pairs]), rows([b for _, b in pairs]))
@@ -122,7 +119,6 @@ def test_many_relative_poses_are_the_same_as_one_by_one(pairs):
         relative, rows([relative_pose(a, b) for a, b in pairs]))
 
 
-@settings(max_examples=30)
 @given(POSES, st.lists(POSES, min_size=1, max_size=12))
 def test_many_poses_in_one_frame_are_canonical_as_one_by_one(a, poses):
     relative = canonical_relative_poses(np.array(a), rows(poses))

@@ -11,7 +11,7 @@ import pytest
 from sdf_texts import model_file, world_file
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from sdf_pose_bridge.scene.loading import load_text
@@ -100,7 +100,6 @@ def test_the_last_joint_of_a_loop_moves_nothing():
 
 
 @given(st.data())
-@settings(max_examples=60)
 def test_what_is_attached_to_a_moved_link_moves_with_it(data):
     joints = data.draw(random_joints(2, types=('revolute', 'screw')))
     link_poses = [data.draw(POSES) for _ in range(2)]
@@ -149,7 +148,6 @@ ORTHOGONAL_AXES = st.sampled_from([
 
 
 @given(st.data(), st.integers(2, 7))
-@settings(max_examples=200)
 def test_random_trees_move_as_in_drake(data, count):
     parsing = pytest.importorskip(
         'pydrake.multibody.parsing', reason='drake, which compares poses, is not installed')

@@ -9,7 +9,7 @@ import pytest
 from sdf_texts import LINK, model_file, world_file
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from joint_trees import model_text, pose_text, POSES, POSITIONS, random_joints
 from matrices import matrix_from_pose
@@ -306,7 +306,6 @@ def assert_same_frames(text, positions, joints=(), **options):
             to_root @ matrix, matrix_from_pose(expected[name]), atol=1e-9, err_msg=name)
 
 
-@settings(max_examples=40, deadline=None)
 @given(st.data(), st.integers(2, 5))
 def test_frames_of_random_trees_of_joints(data, count):
     link_poses = data.draw(st.lists(POSES, min_size=count, max_size=count))
@@ -317,7 +316,6 @@ def test_frames_of_random_trees_of_joints(data, count):
     assert_same_frames(model_text(link_poses, joints, extra), positions, joints)
 
 
-@settings(max_examples=40, deadline=None)
 @given(random_scenes(), st.sets(st.sampled_from([Kind.FRAME, Kind.JOINT, Kind.SENSOR])))
 def test_frames_of_random_scenes(drawn, kinds):
     text = drawn.text()
