@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fixtures of tests with ROS, settings of property tests, and the number of parallel processes."""
 
-import contextlib
 from importlib.metadata import version
 import importlib.util
 import os
@@ -10,7 +9,7 @@ from pathlib import Path
 
 from lxml import etree
 import pytest
-from ros_domain import claimed_domain
+from ros_domain import environment_with_domain
 from sizes import size
 
 try:
@@ -38,15 +37,6 @@ def pytest_report_header():
     names = [f'{name} {version(name)}' for name in ('numpy', 'lxml')]
     return [f'versions: {", ".join(names)}, libxml2 {".".join(map(str, etree.LIBXML_VERSION))}',
             f'rclpy: {Path(found.origin).parent if found else "none"}']
-
-
-@contextlib.contextmanager
-def environment_with_domain(log_folder):
-    with claimed_domain() as domain, pytest.MonkeyPatch.context() as monkeypatch:
-        monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
-        monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-        monkeypatch.setenv('ROS_LOG_DIR', str(log_folder))
-        yield domain
 
 
 @pytest.fixture

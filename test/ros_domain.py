@@ -8,6 +8,8 @@ import random
 import re
 import socket
 
+import pytest
+
 _CLAIMS = []
 _FIRST_PORT = 7400
 _PORTS = 250
@@ -65,3 +67,13 @@ def claimed_domain():
             return
     msg = 'all ROS domains from 1 to 100 are taken'
     raise RuntimeError(msg)
+
+
+@contextlib.contextmanager
+def environment_with_domain(log_folder):
+    """Claim a ROS domain, which processes that are started in the context use."""
+    with claimed_domain() as domain, pytest.MonkeyPatch.context() as monkeypatch:
+        monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
+        monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+        monkeypatch.setenv('ROS_LOG_DIR', str(log_folder))
+        yield domain

@@ -13,7 +13,13 @@ import time
 from bridge_process import SECONDS
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from listener import latched
-from rcl_interfaces.srv import SetParameters
+from rcl_interfaces.msg import Parameter as ParameterMessage
+from rcl_interfaces.srv import (
+    GetParameters,
+    ListParameters,
+    SetParameters,
+    SetParametersAtomically,
+)
 from rclpy.parameter import Parameter
 from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
@@ -63,6 +69,40 @@ def set_parameters(listener, node=BRIDGE, **values):
 
 def reload(listener):
     return listener.call(Trigger, f'{BRIDGE}/reload', Trigger.Request())
+
+
+class SharedBridge:
+    """
+    A bridge that is set back to the parameters that it was started with.
+
+    :param process: the bridge.
+    :param listener: what sets them.
+    """
+
+    def __init__(self, process, listener):
+        self._process = process
+        self._listener = listener
+        names = listener.call(
+            ListParameters, f'{BRIDGE}/list_parameters', ListParameters.Request()).result.names
+        values = listener.call(
+            GetParameters, f'{BRIDGE}/get_parameters', GetParameters.Request(names=names)).values
+        self._parameters = {
+            name: ParameterMessage(name=name, value=value)
+            for name, value in zip(names, values, strict=True)}
+
+    def on(self, file):
+        """Publish a file of two frames, with nothing set and logged before."""
+        self._parameters['sdf_file'] = Parameter('sdf_file', value=str(file)).to_parameter_msg()
+        # A file that has just been written is read a second time.
+        while time.time_ns() - file.stat().st_ctime_ns < 30_000_000:
+            time.sleep(0.005)
+        request = SetParametersAtomically.Request(parameters=list(self._parameters.values()))
+        answer = self._listener.call(
+            SetParametersAtomically, f'{BRIDGE}/set_parameters_atomically', request)
+        assert answer.result.successful, answer.result.reason
+        line = self._process.wait_for_line(f'publishing 2 frames of {file}')
+        del self._process.lines[:self._process.lines.index(line)]
+        return self._process
 
 
 class Monitor:

@@ -3,7 +3,8 @@
 """
 Fixtures that start real processes in a ROS domain of the test's own.
 
-Tests of a module that only read share a bridge and a listener.
+Tests share a bridge where they can: those of a module that only read have it as they start it, and
+those with the fixture ``bridge`` find a file and parameters of their own.
 """
 
 import contextlib
@@ -11,6 +12,7 @@ from functools import partial
 
 from bridge_process import BridgeProcess
 import pytest
+from ros_domain import environment_with_domain
 
 
 @contextlib.contextmanager
@@ -35,6 +37,16 @@ def listener_in(domain):
 
 
 @pytest.fixture
+def ros_domain(request, tmp_path):
+    """Number of the ROS domain of ``bridge``, or of one that the test has to itself."""
+    if 'bridge' in request.fixturenames:
+        yield request.getfixturevalue('shared_ros_domain')
+    else:
+        with environment_with_domain(tmp_path / 'ros_log') as domain:
+            yield domain
+
+
+@pytest.fixture
 def start_bridge(ros_domain):
     """Starts the installed executable; ``start_bridge(*arguments)``."""
     with ended_later(BridgeProcess) as start:
@@ -50,10 +62,20 @@ def file(tmp_path):
     return path
 
 
+@pytest.fixture(scope='module')
+def shared_bridge(start_shared_bridge, start_shared_listener, tmp_path_factory):
+    """A bridge that tests of a module use one after the other."""
+    from changes import SharedBridge, world
+    path = tmp_path_factory.mktemp('shared') / 'cell.sdf'
+    path.write_text(world(1), encoding='utf-8')
+    bridge = start_shared_bridge('--ros-args', '-p', f'sdf_file:={path}').wait_until_started()
+    return SharedBridge(bridge, start_shared_listener())
+
+
 @pytest.fixture
-def bridge(start_bridge, file):
-    """Bridge on that file."""
-    return start_bridge('--ros-args', '-p', f'sdf_file:={file}').wait_until_started()
+def bridge(shared_bridge, file):
+    """Bridge on that file, with the default of every other parameter; it must go on running."""
+    return shared_bridge.on(file)
 
 
 @pytest.fixture

@@ -12,14 +12,14 @@ from changes import (
     listen_to_tf,
     Monitor,
     reload,
-    replace,
     set_parameters,
     wait_for_x,
     world,
 )
 from diagnostic_msgs.msg import DiagnosticStatus
+from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterType, ParameterValue
-from rcl_interfaces.srv import GetParameters, SetParameters, SetParametersAtomically
+from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.parameter import Parameter
 from slow_file import SlowFile
 from std_srvs.srv import Trigger
@@ -32,21 +32,20 @@ def make_slow_file(tmp_path):
     return SlowFile(tmp_path / 'slow.sdf')
 
 
-@pytest.fixture(name='slow_again')
-def start_on_slow_file(start_bridge, tmp_path):
-    slow = SlowFile(tmp_path / 'slow.sdf', world(1))
-    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={slow.path}', '-p', 'watch:=false')
-    bridge.wait_until_started()
-    slow.hold()
-    return slow
-
-
 @pytest.fixture(name='listener')
-def listener_to_tf(start_listener):
+def listener_to_tf(bridge, start_listener):
     listener = start_listener()
     listen_to_tf(listener)
     wait_for_x(listener, 1.0)
     return listener
+
+
+@pytest.fixture(name='slow_again')
+def published_file_that_is_slow(listener, file):
+    set_parameters(listener, watch=False)
+    slow = SlowFile(file, world(1))
+    slow.hold()
+    return slow
 
 
 def asked(listener, service_type, name, request):
@@ -79,7 +78,7 @@ def assert_services_answer(listener):
     assert value.string_value == 'world'
 
 
-def test_services_answer_while_a_parameter_has_a_file_read(bridge, slow, listener):
+def test_services_answer_while_a_parameter_has_a_file_read(slow, listener):
     setting = asked_for_file(listener, slow.path)
     with slow.opened():
         assert_services_answer(listener)
@@ -102,7 +101,7 @@ def test_services_answer_while_a_file_is_read_again(slow_again, listener):
     wait_for_x(listener, 2.0)
 
 
-def test_services_answer_while_a_changed_file_is_read(bridge, file, slow, listener):
+def test_services_answer_while_a_changed_file_is_read(file, slow, listener):
     slow.path.replace(file)
     with slow.opened():
         assert_services_answer(listener)
@@ -110,12 +109,12 @@ def test_services_answer_while_a_changed_file_is_read(bridge, file, slow, listen
     wait_for_x(listener, 2.0)
 
 
-def test_what_is_asked_for_during_a_reload_comes_after_it(
-        slow_again, file, listener):
-    replace(file, world(5))
+def test_what_is_asked_for_during_a_reload_comes_after_it(slow_again, listener, tmp_path):
+    other = tmp_path / 'other.sdf'
+    other.write_text(world(5), encoding='utf-8')
     reloading = asked(listener, Trigger, 'reload', Trigger.Request())
     with slow_again.opened():
-        setting = asked_for_file(listener, file)
+        setting = asked_for_file(listener, other)
         assert_services_answer(listener)
         assert not setting.done()
         slow_again.write(world(2))
@@ -129,7 +128,7 @@ def test_what_is_asked_for_during_a_reload_comes_after_it(
         for each in message.transforms}
 
 
-def test_what_arrives_bad_after_a_while_is_refused(bridge, slow, listener):
+def test_what_arrives_bad_after_a_while_is_refused(slow, listener):
     setting = asked_for_file(listener, slow.path)
     with slow.opened():
         slow.write('not XML')
@@ -140,7 +139,7 @@ def test_what_arrives_bad_after_a_while_is_refused(bridge, slow, listener):
     assert last_x(listener) == 1.0
 
 
-def test_diagnostics_go_on_while_a_file_is_read(bridge, slow, listener):
+def test_diagnostics_go_on_while_a_file_is_read(slow, listener):
     monitor = Monitor(listener)
     setting = asked_for_file(listener, slow.path)
     with slow.opened():
@@ -149,25 +148,15 @@ def test_diagnostics_go_on_while_a_file_is_read(bridge, slow, listener):
     assert answer_to(listener, setting).results[0].successful
 
 
-EMPTY_LISTS = [
-    ParameterType.PARAMETER_BYTE_ARRAY, ParameterType.PARAMETER_BOOL_ARRAY,
-    ParameterType.PARAMETER_INTEGER_ARRAY, ParameterType.PARAMETER_DOUBLE_ARRAY,
-    ParameterType.PARAMETER_STRING_ARRAY]
-
-
-@pytest.mark.parametrize(('service', 'name'), [
-    (SetParameters, 'set_parameters'), (SetParametersAtomically, 'set_parameters_atomically')])
-def test_an_empty_list_of_whatever_type_is_taken_for_a_list_of_strings(
-        bridge, start_listener, service, name):
-    listener = start_listener()
-    for type_ in EMPTY_LISTS:
-        assert set_parameters(listener, resource_paths=['x'])[0].successful
-        parameter = Parameter('resource_paths', value=['x']).to_parameter_msg()
-        parameter.value = ParameterValue(type=type_)
-        answer = listener.call(
-            service, f'{BRIDGE}/{name}', service.Request(parameters=[parameter]))
-        result = answer.result if hasattr(answer, 'result') else answer.results[0]
-        assert result.successful, result.reason
-        request = GetParameters.Request(names=['resource_paths'])
-        (value,) = listener.call(GetParameters, f'{BRIDGE}/get_parameters', request).values
-        assert value == ParameterValue(type=ParameterType.PARAMETER_STRING_ARRAY)
+@pytest.mark.parametrize('type_', [
+    ParameterType.PARAMETER_BYTE_ARRAY, ParameterType.PARAMETER_STRING_ARRAY])
+def test_an_empty_list_of_whatever_type_is_taken_for_a_list_of_strings(listener, type_):
+    assert set_parameters(listener, resource_paths=['x'])[0].successful
+    parameter = ParameterMessage(name='resource_paths', value=ParameterValue(type=type_))
+    (result,) = listener.call(
+        SetParameters, f'{BRIDGE}/set_parameters', SetParameters.Request(parameters=[parameter])
+    ).results
+    assert result.successful, result.reason
+    request = GetParameters.Request(names=['resource_paths'])
+    (value,) = listener.call(GetParameters, f'{BRIDGE}/get_parameters', request).values
+    assert value == ParameterValue(type=ParameterType.PARAMETER_STRING_ARRAY)

@@ -204,22 +204,3 @@ def test_names_root_and_topics_follow_the_parameters(start_bridge, start_listene
     assert listener.poses[topic].header.frame_id == 'map'
     listener.wait_for_keys(listener.transforms, ['left_robot.arm', 'left_robot.arm.hand'])
     assert len(listener.transforms) == 2
-
-
-def test_a_deep_history_keeps_every_transform_for_a_late_listener(
-        start_bridge, start_listener, tmp_path):
-    # More than the 5000 samples that Fast DDS keeps by default.
-    links = ''.join(f'<link name="l{number}"/>' for number in range(5200))
-    path = tmp_path / 'many.sdf'
-    path.write_text(f'<sdf version="1.10"><model name="m">{links}</model></sdf>', encoding='utf-8')
-    start_bridge(
-        '--ros-args', '-p', f'sdf_file:={path}', '-p', 'pose_topics:=[]',
-        '-p', 'anchor_models:=all').wait_until_started()
-    listener = start_listener()
-    from geometry_msgs.msg import TransformStamped
-    from listener import latched
-    frames = set()
-    listener.node.create_subscription(
-        TransformStamped, '/sdf_pose_bridge/transforms',
-        lambda message: frames.add(message.child_frame_id), latched(6000))
-    listener.wait(lambda: len(frames) == 5201, lambda: f'5201 frames, there are {len(frames)}')
