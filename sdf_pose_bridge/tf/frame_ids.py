@@ -14,7 +14,7 @@ named by ``optical_frame_id``, or like the camera with ``_optical`` appended.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 import enum
 from typing import NamedTuple
 
@@ -25,6 +25,7 @@ from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.names import scoped_name, SEPARATOR
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.tf.frames import Frame, Frames
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 
 _LABELLED_KINDS = (
@@ -96,18 +97,6 @@ OPTICAL_POSE = Pose(0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
 """Pose of an optical frame (REP 103: z forward, x right, y down) in its camera (x forward)."""
 
 
-class OpticalFrame(NamedTuple):
-    """The frame of a camera's image, besides that of the camera itself."""
-
-    frame_id: str
-    camera: int
-    """The element of the camera."""
-    pose: Pose
-    """Pose in the root frame."""
-    parent: int
-    """Index of the camera's frame; :data:`ROOT_IS_PARENT` if the camera uses the root frame."""
-
-
 def with_ids_of_sensors(
     elements: Indices, frame_ids: list[str], scene: Scene, naming: FrameNaming, root_frame: str,
 ) -> tuple[Indices, list[str], dict[int, str]]:
@@ -148,14 +137,12 @@ def with_ids_of_sensors(
 
 
 def optical_frames_of_cameras(
-    elements: Sequence[int], frame_ids: Sequence[str], sensor_ids: Mapping[int, str],
-    scene: Scene, naming: FrameNaming,
-) -> list[OpticalFrame]:
+    frames: Frames, sensor_ids: Mapping[int, str], scene: Scene, naming: FrameNaming,
+) -> list[Frame]:
     """
     Make the optical frames of cameras.
 
-    :param elements: the elements that have a frame.
-    :param frame_ids: the frame id of each.
+    :param frames: the frames of elements.
     :param sensor_ids: the frame id of each published sensor.
     :return: the optical frames, without those that the file has already.
     """
@@ -163,20 +150,20 @@ def optical_frames_of_cameras(
     if not cameras:
         return []
     indices: dict[str, int] = {}
-    for index, frame_id in enumerate(frame_ids):
+    for index, frame_id in enumerate(frames.ids):
         indices.setdefault(frame_id, index)
     poses: dict[str, Pose] = {}
-    frames = []
+    optical_frames = []
     for camera in cameras:
         name = scene.sensors[camera].optical_frame_id
         frame_id = naming.frame_id_from_name(name) if name else sensor_ids[camera] + OPTICAL_SUFFIX
         pose = pose_product(scene.pose_of(camera), OPTICAL_POSE)
-        other = elements[indices[frame_id]] if frame_id in indices else None
+        other = frames.owners.item(indices[frame_id]) if frame_id in indices else None
         if name and other is not None and other not in scene.sensors:
             continue
         if pose != (poses.get(frame_id) if other is None else scene.pose_of(other)):
             poses.setdefault(frame_id, pose)
-            frames.append(
-                OpticalFrame(
-                    frame_id, camera, pose, indices.get(sensor_ids[camera], ROOT_IS_PARENT)))
-    return frames
+            # A camera without a frame of its own uses the root frame.
+            parent = indices.get(sensor_ids[camera], ROOT_IS_PARENT)
+            optical_frames.append(Frame(frame_id, camera, parent, pose))
+    return optical_frames

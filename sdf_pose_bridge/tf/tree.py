@@ -20,7 +20,7 @@ from sdf_pose_bridge.errors import (
     UnknownFrameError,
 )
 from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
-from sdf_pose_bridge.geometry.poses import canonical_relative_poses, Pose, PoseArray
+from sdf_pose_bridge.geometry.poses import canonical_relative_poses, PoseArray
 from sdf_pose_bridge.names import hint_from_names, WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
@@ -32,7 +32,8 @@ from sdf_pose_bridge.tf.frame_ids import (
     optical_frames_of_cameras,
     with_ids_of_sensors,
 )
-from sdf_pose_bridge.tf.joint_links import joint_links_from_motion
+from sdf_pose_bridge.tf.frames import Frames
+from sdf_pose_bridge.tf.joint_links import frames_at_joints
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.moving_frames import MovingFrames
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT, tf_parents_from_scene, TfParents
@@ -155,70 +156,42 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     options = options or TfOptions()
     naming = FrameNaming(options.frame_names, options.frame_separator, options.frame_prefix)
     problems = Problems(scene.files)
-    elements = _published_elements(scene, options, problems)
-    frame_ids = naming.frame_ids_from_scene(scene, elements)
-    elements, frame_ids, sensor_ids = with_ids_of_sensors(
-        elements, frame_ids, scene, naming, options.root_frame)
-    elements, frame_ids = _with_link_world(elements, frame_ids, scene, options)
-    owners = elements.tolist()
-    optical_frames = optical_frames_of_cameras(
-        owners, frame_ids, sensor_ids, scene, naming) if options.optical_frames else []
-    owners += [frame.camera for frame in optical_frames]
-    frame_ids += [frame.frame_id for frame in optical_frames]
-    _check_frame_ids(frame_ids, owners, scene, options.root_frame, problems)
-    problems.raise_errors()
     tf_parents = tf_parents_from_scene(scene)
-    for joint in tf_parents.loop_joints:
-        msg = (f'joint "{scene.names[joint.element]}" closes a loop between '
-               f'"{scene.names[joint.parent]}" and "{scene.names[joint.child]}"; TF is a tree, so '
-               'it moves nothing there')
-        problems.warning(msg, scene.place(joint.element))
-    motion = JointMotion(
-        scene, tf_parents) if options.use_joint_states or options.has_joint_links else None
-    nearest_frames, parents_of_elements = _nearest_frames_and_parents(
+    elements = _published_elements(scene, options, problems)
+    elements, frame_ids, sensor_ids = with_ids_of_sensors(
+        elements, naming.frame_ids_from_scene(scene, elements), scene, naming, options.root_frame)
+    elements, frame_ids = _with_link_world(elements, frame_ids, scene, options)
+    nearest_frames, parents = _nearest_frames_and_parents(
         scene, tf_parents, elements,
         detached_bodies(scene, tf_parents, options.anchor_models, problems),
         is_world_anchored=options.anchor_models is AnchorModels.ALL)
-    extra_parents = [frame.parent for frame in optical_frames]
-    extra_poses = [frame.pose for frame in optical_frames]
-    if options.has_joint_links and motion is not None:
-        frames = {element: frame for frame, element in enumerate(elements.tolist())}
-        used = {options.root_frame, *frame_ids}
-        for link in joint_links_from_motion(scene, motion, options.frame_names):
-            body = motion.moved_bodies[link.dof]
-            frame = frames.get(body, NO_PARENT)
-            parent = int(tf_parents.parents[body])
-            frame_id = options.frame_prefix + link.name
-            # A joint to a link of another model that is not published is not in the URDF.
-            if frame >= 0 and parents_of_elements[frame] != NO_PARENT and (
-                    parent in frames or scene.parents[parent] < 0) and frame_id not in used:
-                used.add(frame_id)
-                frame_ids.append(frame_id)
-                owners.append(len(scene.kinds) + link.dof)
-                extra_parents.append(int(parents_of_elements[frame]))
-                extra_poses.append(link.pose)
-    parents = np.concatenate([parents_of_elements, np.array(extra_parents, np.int32)])
-    poses = np.concatenate([scene.poses[elements], np.reshape(extra_poses, (-1, 7))])
-    # The last two poses are for ROOT_IS_PARENT and NO_PARENT, which are negative.
-    transforms = canonical_relative_poses(
-        np.concatenate([poses, [Pose(), Pose()]])[parents], poses)
-    transforms[parents == NO_PARENT] = Pose()
+    frames = Frames(frame_ids, elements, parents, scene.poses[elements])
+    if options.optical_frames:
+        frames = frames.with_frames(optical_frames_of_cameras(frames, sensor_ids, scene, naming))
+    _check_frame_ids(frames, scene, options.root_frame, problems)
+    problems.raise_errors()
+    _warn_of_loops(scene, tf_parents, problems)
+    motion = JointMotion(
+        scene, tf_parents) if options.use_joint_states or options.has_joint_links else None
+    if motion is not None and options.has_joint_links:
+        frames = frames.with_frames(frames_at_joints(
+            frames, scene, motion, tf_parents, options.frame_names, options.frame_prefix,
+            options.root_frame))
     pose_frame = options.pose_frame or options.root_frame
-    reference = _index_of_pose_frame(pose_frame, frame_ids, options.root_frame, scene)
-    poses_in_pose_frame = poses if reference < 0 else canonical_relative_poses(
-        poses[reference], poses)
-    moving = None
-    if options.use_joint_states and motion is not None:
-        moving = MovingFrames(motion, poses, parents, np.array(owners, np.int32), reference)
+    reference = _index_of_pose_frame(pose_frame, frames.ids, options.root_frame, scene)
+    moving = MovingFrames(
+        motion, frames.poses, frames.parents, frames.owners, reference,
+    ) if motion is not None and options.use_joint_states else None
     return TfTree(
         root_frame=options.root_frame,
-        frame_ids=tuple(frame_ids),
-        poses=poses,
+        frame_ids=tuple(frames.ids),
+        poses=frames.poses,
         pose_frame=pose_frame,
-        poses_in_pose_frame=poses_in_pose_frame,
-        parents=parents,
-        transforms=transforms,
-        elements=np.concatenate([elements, np.full(len(extra_poses), -1, np.int32)]),
+        poses_in_pose_frame=frames.poses if reference < 0 else canonical_relative_poses(
+            frames.poses[reference], frames.poses),
+        parents=frames.parents,
+        transforms=frames.transforms(),
+        elements=np.where(np.arange(len(frames.ids)) < len(elements), frames.owners, -1),
         nearest_frames=nearest_frames,
         moving=moving,
         world=scene.world_names.get(0, ''),
@@ -238,6 +211,14 @@ def _published_elements(scene: Scene, options: TfOptions, problems: Problems) ->
     kinds = _kinds(scene, options)
     is_wanted = np.array([kind in kinds for kind in Kind])[scene.kinds]
     return np.flatnonzero(is_inside & is_wanted & ~is_root).astype(np.int32)
+
+
+def _warn_of_loops(scene: Scene, tf_parents: TfParents, problems: Problems) -> None:
+    for joint in tf_parents.loop_joints:
+        msg = (f'joint "{scene.names[joint.element]}" closes a loop between '
+               f'"{scene.names[joint.parent]}" and "{scene.names[joint.child]}"; TF is a tree, so '
+               'it moves nothing there')
+        problems.warning(msg, scene.place(joint.element))
 
 
 def _kinds(scene: Scene, options: TfOptions) -> frozenset[Kind]:
@@ -287,17 +268,13 @@ def elements_in_model(scene: Scene, name: str) -> NDArray[np.bool_]:
 
 
 def _check_frame_ids(
-    frame_ids: Sequence[str], owners: Sequence[int], scene: Scene, root_frame: str,
-    problems: Problems,
+    frames: Frames, scene: Scene, root_frame: str, problems: Problems,
 ) -> None:
-    """
-    Check that frame ids are unique and that TF accepts them.
-
-    :param owners: the element of each frame; the camera of an optical frame.
-    """
+    """Check that frame ids are unique and that TF accepts them."""
+    owners = frames.owners.tolist()
     first = {root_frame: ROOT_IS_PARENT}
     clashes: dict[int, list[int]] = {}
-    for index, frame_id in enumerate(frame_ids):
+    for index, frame_id in enumerate(frames.ids):
         other = first.setdefault(frame_id, index)
         if other == index and frame_id.split() == [frame_id]:
             continue
@@ -318,7 +295,7 @@ def _check_frame_ids(
     for index, others in clashes.items():
         owner, count = owners[index], len(others) - 1
         msg = (f'{_description(scene, others[0])} and {_description(scene, owner)} (line '
-               f'{scene.lines[owner]}) would share the frame id "{frame_ids[index]}"'
+               f'{scene.lines[owner]}) would share the frame id "{frames.ids[index]}"'
                f'{f", like {count} more" if count else ""}; {_cure_of_clash(scene, owner)}')
         problems.error(DuplicateNameError(msg, scene.place(others[0])))
 
