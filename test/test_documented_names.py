@@ -14,6 +14,7 @@ from sdf_pose_bridge.geometry.formats import POSE_FORMATS, ROTATION_FORMATS
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES
+from sdf_pose_bridge.sdformat.versions import NEWEST, OLDEST
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -42,6 +43,13 @@ TOPICS = sorted(names_of_policy('topic') - {'/rosout', '/parameter_events', '/cl
 
 def all_errors(error):
     return {error.code}.union(*map(all_errors, error.__subclasses__()))
+
+
+@pytest.mark.parametrize('page', [
+    'README.md', 'docs/comparison.md', 'docs/errors.md', 'docs/what_is_read.md'])
+def test_versions_of_sdformat(page):
+    text = (ROOT / page).read_text(encoding='utf-8')
+    assert set(re.findall(r'\b1\.\d+ to 1\.\d+\b', text)) == {f'{OLDEST} to {NEWEST}'}
 
 
 @pytest.mark.parametrize('command', COMMANDS)

@@ -14,6 +14,8 @@ separated by blanks:
 * ``@name`` or ``@name:type``: an attribute.
 * ``:type``: the type of the value of the element itself.
 * ``*``: any children, which are not read.
+* ``/`` or ``/name``: the element has a file of its own in the specification, of its tag or of that
+  name. So parameters of includes can add and replace it by this name. All kinds have one.
 
 ``!`` after a tag or a name: the element or attribute is required. If a required child element is
 missing, libsdformat adds it with its default value, except in joints. ``+`` is the same for an
@@ -128,9 +130,14 @@ class Kind(enum.IntEnum):
         """Tag of the element: ``particle_emitter``."""
         return self.name.lower()
 
+    @property
+    def has_name(self) -> bool:
+        """Whether its elements have names; else their label is their name."""
+        return '@name!' in self.content
+
 
 _ITEM = re.compile(
-    r'(?P<attribute>@(?=\w))?(?P<name>\w+|\*|(?=:))(?P<required>[!+]?)'
+    r'(?P<mark>@(?=\w)|/)?(?P<name>\w+|\*|(?<=/)|(?=:))(?P<required>[!+]?)'
     r'(?:=(?P<identifier>\w+(?:/\w+)?))?'
     r'(?P<value>:(?P<type>\w+)(?:\[(?P<minimum>[^,\]]*),(?P<maximum>[^,\]]*)\])?)?')
 _KINDS = {kind.label: kind for kind in Kind}
@@ -193,7 +200,7 @@ class Definition:
         """The kind of the element; None for an element that is no frame."""
         self.has_frames = has_frames
         items = [*map(_item, content.split())]
-        value = next((item for item in items if not item['name']), {})
+        value = next((item for item in items if not item['name'] and not item['mark']), {})
         self.value_type = _VALUE_TYPES.get(value.get('type', ''))
         """Type of the value; None for an element with child elements."""
         self.choice = CHOICES.get(value.get('type', ''))
@@ -211,7 +218,7 @@ class Definition:
             item['name']: Attribute(
                 _VALUE_TYPES[item['type'] or 'string'], bool(item['required']),
                 CHOICES.get(item['type']) if has_frames else None)
-            for item in items if item['attribute']}
+            for item in items if item['mark'] == '@'}
         """The attributes by name."""
         self.has_required_attributes = any(
             attribute.is_required for attribute in self.attributes.values())
@@ -222,7 +229,7 @@ class Definition:
         """The attributes that are required or have another type than string, without names of
         frames."""
         self._child_items = [
-            item for item in items if item['name'] not in ('', '*') and not item['attribute']]
+            item for item in items if item['name'] not in ('', '*') and not item['mark']]
         self.required_children = {item['name'] for item in self._child_items if item['required']}
         """Tags of the child elements that libsdformat adds if they are missing."""
 
@@ -259,20 +266,14 @@ def definition_of(
     :param has_frames: as for :class:`Definition`.
     :param is_required: as for :class:`Definition`.
     """
-    kind = _KINDS.get(identifier)
-    content = ELEMENTS[identifier] if kind is None else kind.content
-    return Definition(identifier, content, has_frames=has_frames, is_required=is_required)
+    return Definition(
+        identifier, _CONTENTS[identifier], has_frames=has_frames, is_required=is_required)
 
 
-def _check_definitions() -> None:
-    """
-    Check the definitions of all elements.
-
-    :raises ValueError: if one is not in the notation of this module.
-    """
-    for content in (*ELEMENTS.values(), *(kind.content for kind in Kind)):
-        for text in content.split():
-            _item(text)
-
-
-_check_definitions()
+_CONTENTS = {**ELEMENTS, **{kind.label: kind.content for kind in Kind}}
+STANDALONE_ELEMENTS: Mapping[str, str] = {
+    item['name'] or identifier: identifier
+    for identifier, content in _CONTENTS.items() for item in map(_item, content.split())
+    if item['mark'] == '/'} | {kind.label: kind.label for kind in Kind}
+"""Elements with a file of their own in the specification: identifiers by the names of the files.
+This reads all definitions, so that a mistake in one is an error of the import."""

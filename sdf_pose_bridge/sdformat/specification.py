@@ -126,16 +126,16 @@ ELEMENTS = {
     'sdf': '@version! include',
     'actor/animation': '@name! filename! scale:double interpolate_x:bool',
     'actor/script': 'loop:bool delay_start:double auto_start:bool trajectory',
-    'air_pressure': 'reference_altitude:double pressure',
-    'air_speed': 'pressure',
-    'altimeter': 'vertical_position vertical_velocity',
+    'air_pressure': '/ reference_altitude:double pressure',
+    'air_speed': '/ pressure',
+    'altimeter': '/ vertical_position vertical_velocity',
     'angular_velocity': 'x y z',
     'atmosphere': (
-        '@type!:atmosphere_type temperature:double pressure:double temperature_gradient:double'),
+        '/ @type!:atmosphere_type temperature:double pressure:double temperature_gradient:double'),
     'attenuation': 'range!:double linear:double constant:double quadratic:double',
     'audio': 'device!',
-    'audio_sink': '',
-    'audio_source': 'uri! pitch:double gain:double contact loop:bool pose',
+    'audio_sink': '/',
+    'audio_source': '/ uri! pitch:double gain:double contact loop:bool pose',
     'audio_source/contact': 'collision+:string',
     'auto_inertia_params': '*',
     'axis': 'xyz! dynamics limit! mimic',
@@ -146,32 +146,32 @@ ELEMENTS = {
     'axis2/limit': (
         'lower:double upper:double effort:double velocity:double stiffness:double '
         'dissipation:double'),
-    'battery': '@name! voltage!:double',
+    'battery': '/ @name! voltage!:double',
     'blend': 'min_height!:double fade_dist!:double',
     'bounce': 'restitution_coefficient:double[0,1] threshold:double',
-    'box': 'size!:vector3',
+    'box': '/box_shape size!:vector3',
     'bullet': 'solver! constraints!',
     'bullet/constraints': (
         'cfm!:double erp!:double contact_surface_layer!:double split_impulse!:bool '
         'split_impulse_penetration_threshold!:double'),
     'bullet/solver': 'type! min_step_size:double iters!:int sor!:double',
     'camera': (
-        '@name triggered:bool camera_info_topic trigger_topic '
+        '/ @name triggered:bool camera_info_topic trigger_topic '
         'horizontal_fov!:double[0.001,6.283186] image! clip! save depth_camera segmentation_type '
         'box_type noise distortion lens visibility_mask:uint optical_frame_id pose'),
     'camera/clip': 'near!:double[0,] far!:double[0.1,]',
     'camera/image': 'width!:int height!:int format anti_aliasing:int',
     'camera/noise': 'type! mean:double stddev:double',
-    'capsule': 'radius!:double length!:double',
+    'capsule': '/capsule_shape radius!:double length!:double',
     'clouds': (
         'speed:double[0,] direction:double[0,3.1456] humidity:double[0,1] '
         'mean_size:double[0,1] ambient:color'),
-    'cone': 'radius!:double length!:double',
-    'contact': 'collision!:string topic!',
+    'cone': '/cone_shape radius!:double length!:double',
+    'contact': '/ collision!:string topic!',
     'convex_decomposition': 'max_convex_hulls:uint voxel_resolution:uint',
     'custom_function': 'c1:double c2:double c3:double f:double fun!',
     'custom_rpy': ':vector3 @parent_frame:frame',
-    'cylinder': 'radius!:double length!:double',
+    'cylinder': '/cylinder_shape radius!:double length!:double',
     'dart': 'solver! collision_detector',
     'dart/solver': 'solver_type!',
     'deletions': 'name+',
@@ -180,7 +180,7 @@ ELEMENTS = {
     'distortion': 'k1:double k2:double k3:double p1:double p2:double center:vector2',
     'dynamics': (
         'damping:double friction:double spring_reference!:double spring_stiffness!:double'),
-    'ellipsoid': 'radii!:vector3',
+    'ellipsoid': '/ellipsoid_shape radii!:vector3',
     'empty': '',
     'fluid_added_mass': (
         'xx:double xy:double xz:double xp:double xq:double xr:double yy:double yz:double '
@@ -188,25 +188,26 @@ ELEMENTS = {
         'pq:double pr:double qq:double qr:double rr:double'),
     'fog': 'color:color type start:double[0,] end:double[0,] density:double[0,]',
     'force': 'x y z',
-    'force_torque': 'frame:string measure_direction force torque',
+    'force_torque': '/forcetorque frame:string measure_direction force torque',
     'friction': 'torsional ode bullet',
     'friction/bullet': (
         'friction:double[0,] friction2:double[0,] fdir1:vector3 rolling_friction:double'),
     'friction/ode': 'mu:double[0,] mu2:double[0,] fdir1:vector3 slip1:double slip2:double',
     'geometry': (
-        'empty box capsule cone cylinder ellipsoid heightmap image mesh plane polyline sphere'),
-    'gps': 'position_sensing velocity_sensing',
+        '/ empty box capsule cone cylinder ellipsoid heightmap image mesh plane polyline sphere'),
+    'gps': '/ position_sensing velocity_sensing',
     'grasp_check': 'detach_steps:int attach_steps:int min_contact_count:uint',
     'grav_dir_x': ':vector3 @parent_frame',
-    'gripper': '@name! grasp_check gripper_link+ palm_link!',
-    'gui': '@fullscreen:bool plugin camera=gui_camera',
+    'gripper': '/ @name! grasp_check gripper_link+ palm_link!',
+    'gui': '/ @fullscreen:bool plugin camera=gui_camera',
     'gui_camera': '@name! view_controller projection_type track_visual pose',
     'heightmap': (
-        'uri! size:vector3 pos:vector3 texture blend use_terrain_paging:bool sampling:uint'),
+        '/heightmap_shape uri! size:vector3 pos:vector3 texture blend use_terrain_paging:bool '
+        'sampling:uint'),
     'horizontal': 'samples!:uint resolution!:double min_angle!:double max_angle!:double',
-    'image': 'uri! scale!:double threshold!:int height!:double granularity!:int',
+    'image': '/image_shape uri! scale!:double threshold!:int height!:double granularity!:int',
     'imu': (
-        'orientation_reference_frame angular_velocity linear_acceleration '
+        '/ orientation_reference_frame angular_velocity linear_acceleration '
         'enable_orientation:bool'),
     'include': '@merge:bool uri! pose plugin name static:bool placement_frame model_state',
     'inertia': 'ixx!:double ixy!:double ixz!:double iyy!:double iyz!:double izz!:double',
@@ -221,13 +222,13 @@ ELEMENTS = {
     'lens': (
         'type! scale_to_hfov!:bool custom_function cutoff_angle:double[0,3.141592653] '
         'env_texture_size:int[4,2048] intrinsics projection'),
-    'lidar': 'scan! range! noise=camera/noise visibility_mask:uint',
+    'lidar': '/ scan! range! noise=camera/noise visibility_mask:uint',
     'light_map': ':string @uv_set:uint',
-    'light_state': '@name! pose',
+    'light_state': '/ @name! pose',
     'limit': 'cfm!:double erp!:double',
     'linear_acceleration': 'x y z',
     'link_state': (
-        '@name! angular_velocity linear_velocity:vector3 velocity:pose angular_acceleration '
+        '/ @name! angular_velocity linear_velocity:vector3 velocity:pose angular_acceleration '
         'linear_acceleration:vector3 acceleration:pose torque:vector3 force:vector3 wrench:pose '
         'collision_state pose'),
     'link_state/angular_acceleration': ':vector3 @degrees:bool',
@@ -236,19 +237,19 @@ ELEMENTS = {
     'old_link_state': (
         '@name! velocity:pose acceleration:pose wrench:pose collision=link_state/collision_state '
         'pose'),
-    'logical_camera': 'near!:double far!:double aspect_ratio!:double horizontal_fov!:double',
-    'magnetometer': 'x y z',
+    'logical_camera': '/ near!:double far!:double aspect_ratio!:double horizontal_fov!:double',
+    'magnetometer': '/ x y z',
     'material': (
-        'script shader render_order:double lighting:bool ambient:color diffuse:color '
+        '/ script shader render_order:double lighting:bool ambient:color diffuse:color '
         'specular:color shininess:double emissive:color double_sided:bool pbr'),
     'material/script': 'uri+ name!',
-    'mesh': '@optimization convex_decomposition uri! submesh scale:vector3',
+    'mesh': '/mesh_shape @optimization convex_decomposition uri! submesh scale:vector3',
     'meta': 'layer:int',
     'metal': (
         'albedo_map roughness_map roughness metalness_map metalness environment_map '
         'ambient_occlusion_map normal_map emissive_map light_map'),
-    'mimic': '@joint! @axis multiplier!:double offset!:double reference!:double',
-    'model_state': '@name! joint_state model_state frame=frame pose scale:vector3 link_state',
+    'mimic': '/ @joint! @axis multiplier!:double offset!:double reference!:double',
+    'model_state': '/ @name! joint_state model_state frame=frame pose scale:vector3 link_state',
     'old_model_state': (
         '@name! joint=old_joint_state model=old_model_state frame=frame pose scale:vector3 '
         'link=old_link_state'),
@@ -258,9 +259,9 @@ ELEMENTS = {
     'axis_state': (
         'position=quantity velocity=quantity acceleration=quantity effort:double'),
     'quantity': ':double @degrees:bool',
-    'navsat': 'position_sensing velocity_sensing',
+    'navsat': '/ position_sensing velocity_sensing',
     'noise': (
-        '@type! mean:double stddev:double[0,] bias_mean:double bias_stddev:double[0,] '
+        '/ @type! mean:double stddev:double[0,] bias_mean:double bias_stddev:double[0,] '
         'dynamic_bias_stddev:double[0,] dynamic_bias_correlation_time:double precision:double'),
     'normal_map': ':string @type',
     'ode': 'solver! constraints!',
@@ -273,14 +274,14 @@ ELEMENTS = {
     'orientation_reference_frame': 'localization! custom_rpy grav_dir_x',
     'pbr': 'metal specular',
     'physics': (
-        '@name @default:bool @type! max_step_size!:double real_time_factor!:double '
+        '/ @name @default:bool @type! max_step_size!:double real_time_factor!:double '
         'real_time_update_rate!:double max_contacts:int dart simbody bullet ode'),
-    'plane': 'normal!:vector3 size!:vector2',
-    'plugin': '@name @filename! *',
-    'polyline': 'point+:vector2 height!:double',
-    'population': '@name! box cylinder model_count!:int distribution! pose model!=model',
+    'plane': '/plane_shape normal!:vector3 size!:vector2',
+    'plugin': '/ @name @filename! *',
+    'polyline': '/polyline_shape point+:vector2 height!:double',
+    'population': '/ @name! box cylinder model_count!:int distribution! pose model!=model',
     'distribution': 'type! rows:int cols:int step:vector3',
-    'pose': ':pose @relative_to:frame @rotation_format @degrees:bool',
+    'pose': '/ :pose @relative_to:frame @rotation_format @degrees:bool',
     'position_sensing': 'horizontal vertical',
     'position_sensing/horizontal': 'noise',
     'position_sensing/vertical': 'noise',
@@ -288,14 +289,14 @@ ELEMENTS = {
     'projection': (
         'p_fx:double p_fy:double p_cx:double p_cy:double tx:double ty:double'),
     'range': 'min!:double max!:double resolution:double',
-    'ray': 'scan! range! noise=camera/noise visibility_mask:uint',
-    'rfid': '',
-    'rfidtag': '',
-    'road': '@name! width!:double point+:vector3 material',
+    'ray': '/ scan! range! noise=camera/noise visibility_mask:uint',
+    'rfid': '/',
+    'rfidtag': '/',
+    'road': '/ @name! width!:double point+:vector3 material',
     'save': '@enabled!:bool path!',
     'scan': 'horizontal! vertical',
     'scene': (
-        'ambient!:color background!:color sky shadows!:bool fog grid:bool origin_visual:bool'),
+        '/ ambient!:color background!:color sky shadows!:bool fog grid:bool origin_visual:bool'),
     'shader': '@type!:shader_type normal_map:string',
     'simbody': (
         'min_step_size:double accuracy:double max_transient_velocity:double contact'),
@@ -309,22 +310,22 @@ ELEMENTS = {
     'soft_contact': 'dart',
     'soft_contact/dart': (
         'bone_attachment!:double stiffness!:double damping!:double flesh_mass_fraction!:double'),
-    'sonar': 'geometry:string min!:double max!:double radius:double',
+    'sonar': '/ geometry:string min!:double max!:double radius:double',
     'specular': (
         'albedo_map specular_map glossiness_map glossiness environment_map '
         'ambient_occlusion_map normal_map emissive_map light_map'),
-    'sphere': 'radius!:double',
+    'sphere': '/sphere_shape radius!:double',
     'spherical_coordinates': (
-        'surface_model!:surface_model world_frame_orientation:world_frame_orientation '
+        '/ surface_model!:surface_model world_frame_orientation:world_frame_orientation '
         'latitude_deg!:double longitude_deg!:double elevation!:double '
         'surface_axis_equatorial:double surface_axis_polar:double heading_deg!:double'),
     'spot': 'inner_angle!:double outer_angle!:double falloff!:double',
     'state': (
-        '@world_name! sim_time:time wall_time:time real_time:time iterations!:uint '
+        '/ @world_name! sim_time:time wall_time:time real_time:time iterations!:uint '
         'insertions deletions model=old_model_state model_state light=light_state light_state '
         'joint_state'),
     'submesh': 'name! center:bool',
-    'surface': 'bounce friction contact soft_contact',
+    'surface': '/ bounce friction contact soft_contact',
     'surface/contact': (
         'collide_without_contact:bool collide_without_contact_bitmask:uint collide_bitmask:uint '
         'category_bitmask:uint poissons_ratio:double elastic_modulus:double ode=contact_ode '
@@ -346,7 +347,7 @@ ELEMENTS = {
         'inherit_yaw:bool'),
     'trajectory': '@id!:int @type! @tension:double waypoint',
     'transceiver': (
-        'essid frequency:double min_frequency:double max_frequency:double gain!:double '
+        '/ essid frequency:double min_frequency:double max_frequency:double gain!:double '
         'power!:double sensitivity:double'),
     'velocity_decay': 'linear:double angular:double',
     'velocity_sensing': 'horizontal vertical',
@@ -363,13 +364,3 @@ ELEMENTS = {
     'z': 'noise',
 }
 """The content of each element, by its tag, ``parent/tag`` or a name that ``tag=name`` uses."""
-
-DEFINED_ALONE = frozenset(
-    'actor air_pressure air_speed altimeter atmosphere audio_sink audio_source battery box_shape '
-    'camera capsule_shape collision cone_shape contact cylinder_shape ellipsoid_shape forcetorque '
-    'frame geometry gps gripper gui heightmap_shape image_shape imu inertial joint lidar light '
-    'light_state link link_state logical_camera magnetometer material mesh_shape mimic model '
-    'model_state navsat noise particle_emitter physics plane_shape plugin polyline_shape '
-    'population pose projector ray rfid rfidtag road root scene sensor sonar sphere_shape '
-    'spherical_coordinates state surface transceiver visual world'.split())
-"""The elements that parameters can add or replace: those with a file of the specification."""

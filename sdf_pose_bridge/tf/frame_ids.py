@@ -28,8 +28,9 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.frames import Frame, Frames
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 
-_LABELLED_KINDS = (
-    Kind.VISUAL, Kind.COLLISION, Kind.LIGHT, Kind.PARTICLE_EMITTER, Kind.PROJECTOR, Kind.ACTOR)
+_LABELLED_KINDS = [
+    kind for kind in Kind if kind.has_name and not kind.is_frame and kind is not Kind.SENSOR]
+"""The kinds with name spaces of their own. Gazebo's frame ids of sensors have no kind."""
 
 
 class FrameNames(enum.Enum):

@@ -14,8 +14,14 @@ import pytest
 from sdf_texts import element, LINK, LINK_CHILDREN, link_with, model_file, names_of, world_file
 
 from sdf_pose_bridge import Kind, load_text
-from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, ValueType
+from sdf_pose_bridge.sdformat.grammar import (
+    Definition,
+    definition_of,
+    STANDALONE_ELEMENTS,
+    ValueType,
+)
 from sdf_pose_bridge.sdformat.specification import CHOICES
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 PACKAGE = Path(__file__).resolve().parents[2] / 'sdf_pose_bridge'
 
@@ -73,6 +79,20 @@ def test_references_can_name_four_kinds():
     assert {kind.label for kind in Kind if kind.is_frame} == {'model', 'link', 'joint', 'frame'}
 
 
+@pytest.mark.parametrize('kind', Kind)
+def test_parameters_of_includes_can_add_every_kind(kind):
+    assert STANDALONE_ELEMENTS[kind.label] == kind.label
+
+
+@pytest.mark.parametrize(
+    'kind', [kind for kind in Kind if 'link' in kind.parents and kind.has_name])
+def test_kinds_in_a_link_may_share_a_name(kind):
+    others = ''.join(element(tag, kind.label) for tag in LINK_CHILDREN if tag != kind.label)
+    scene = load_text(link_with(others + element(kind.label, kind.label)))
+    tree = tf_tree_from_scene(scene, TfOptions(kinds=frozenset(Kind), optical_frames=False))
+    assert len(tree.frame_ids) == len(scene.names) - 1
+
+
 def test_number_of_a_kind_is_its_position():
     assert [int(kind) for kind in Kind] == list(range(len(Kind)))
 
@@ -123,7 +143,7 @@ MAIN = """<sdf version="1.10"><world name="w">
     <beam name="at_frame"><pose relative_to="f">1 0 0 0 0 0</pose></beam>
     <beam name="at_nested_link"><pose relative_to="n::k">1 0 0 0 0 0</pose></beam>
     <beam name="nowhere"><pose relative_to="zzz"/></beam>
-    <visual name="b"/>
+    <visual name="b"/><sensor name="b" type="imu"/>
   </link>
   <frame name="f"><pose>0 5 0 0 0 0</pose></frame>
   <model name="n"><pose>0 0 7 0 0 0</pose>
@@ -131,7 +151,9 @@ MAIN = """<sdf version="1.10"><world name="w">
   </model>
   <include merge="true"><uri>crane.sdf</uri><pose>10 0 0 0 0 0</pose></include>
 </model>
-<include><uri>crane.sdf</uri><name>c</name><pose>0 20 0 0 0 0</pose></include>
+<include><uri>crane.sdf</uri><name>c</name><pose>0 20 0 0 0 0</pose><experimental:params>
+  <beam element_id="jib" action="add" name="added"><pose>0 0 2 0 0 0</pose></beam>
+</experimental:params></include>
 </world></sdf>"""
 CRANE = """<sdf version="1.8"><model name="crane"><link name="jib">
 <beam name="b"><pose rotation_format="quat_xyzw">0 0 3 0 0 1 0</pose><length>1</length></beam>
@@ -156,7 +178,7 @@ try:
     sdf_pose_bridge.load('wrong.sdf')
 except sdf_pose_bridge.SdfError as error:
     errors = error.errors
-tree = tf_tree_from_scene(scene, TfOptions(kinds=frozenset({Kind.LINK, Kind.BEAM})))
+tree = tf_tree_from_scene(scene, TfOptions(kinds=frozenset(Kind)))
 default_tree = tf_tree_from_scene(scene)
 print(json.dumps({
     'package': sdf_pose_bridge.__file__,
@@ -166,6 +188,7 @@ print(json.dumps({
         (scene.names[element], parent)
         for element, parent in zip(tree.elements.tolist(), tree.parent_ids)
         if scene.kinds[element] == Kind.BEAM],
+    'frame_ids': tree.frame_ids,
     'default_kinds': sorted({Kind(scene.kinds[i]).label for i in default_tree.elements.tolist()}),
 }))
 """
@@ -232,20 +255,27 @@ def test_right_elements_of_a_new_kind_have_no_errors(beams):
     ('m::n::k::b', (0, 1, 8, 0, 0, 1, 0)),
     ('m::jib::b', (10, 0, 4, 0, 0, 1, 0)),
     ('c::jib::b', (0, 20, 3, 0, 0, 1, 0)),
-], ids=['link', 'frame', 'nested link', 'nested model', 'merged model', 'included model'])
+    ('c::jib::added', (0, 20, 2, 0, 0, 0, 1)),
+], ids=[
+    'link', 'frame', 'nested link', 'nested model', 'merged model', 'included model', 'params'])
 def test_element_of_a_new_kind_has_a_pose(beam_poses, name, pose):
     assert beam_poses[name] == pytest.approx(pose, abs=1e-12)
 
 
 def test_element_of_a_new_kind_with_an_unknown_reference_is_left_out(beams, beam_poses):
-    assert len(beam_poses) == 6
+    assert len(beam_poses) == 7
     assert beams['warnings'] == [['POSE_RELATIVE_TO_INVALID', 7]]
 
 
 def test_element_of_a_new_kind_is_a_tf_frame_in_its_link_if_asked_for(beams):
     assert dict(beams['parents']) == {
         'm::l::b': 'm/l', 'm::l::at_frame': 'm/l', 'm::l::at_nested_link': 'm/l',
-        'm::n::k::b': 'm/n/k', 'm::jib::b': 'm/jib', 'c::jib::b': 'c/jib'}
+        'm::n::k::b': 'm/n/k', 'm::jib::b': 'm/jib', 'c::jib::b': 'c/jib',
+        'c::jib::added': 'c/jib'}
+
+
+def test_element_of_a_new_kind_may_share_its_name_with_other_kinds(beams):
+    assert {'m/l/beam/b', 'm/l/visual/b', 'm/l/b'} <= set(beams['frame_ids'])
 
 
 def test_element_of_a_new_kind_is_no_tf_frame_by_default(beams):

@@ -19,11 +19,10 @@ from sdf_pose_bridge.errors import (
     ElementMissingError,
 )
 from sdf_pose_bridge.names import SEPARATOR
-from sdf_pose_bridge.sdformat.grammar import Definition, definition_of
+from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, STANDALONE_ELEMENTS
 from sdf_pose_bridge.sdformat.include.element_ids import element_by_id, hint_for_id
 from sdf_pose_bridge.sdformat.reader import check_element
 from sdf_pose_bridge.sdformat.sources import PARAMS_TAG, Sources
-from sdf_pose_bridge.sdformat.specification import DEFINED_ALONE
 from sdf_pose_bridge.sdformat.xml_tree import (
     child_elements,
     copy_of,
@@ -118,7 +117,8 @@ class _Changer:
             self._sources.error(AttributeMissingError, xml, msg)
         elif action not in _ACTIONS:
             self._report_action(xml)
-        elif action in ('add', 'replace') and tag not in _definition_alone(parent_tag).children:
+        elif action in ('add', 'replace') and tag not in _standalone_definition(
+                parent_tag).children:
             msg = f'SDFormat defines no <{tag}> in a <{parent_tag}>'
             self._sources.error(ElementInvalidError, xml, msg)
         elif action == 'add' and tag == 'include':
@@ -301,24 +301,22 @@ class _Changer:
 
     def _is_defined(self, xml: XmlElement) -> bool:
         tag = written_tag(xml)
-        if tag not in DEFINED_ALONE:
+        if tag not in STANDALONE_ELEMENTS:
             msg = f'<{tag}> is not an element that SDFormat defines by itself'
             self._sources.error(ElementInvalidError, xml, msg)
-        return tag in DEFINED_ALONE
+        return tag in STANDALONE_ELEMENTS
 
 
 def _definition_of_parameter(xml: XmlElement) -> Definition:
     """Return the definition of an element to add, or of a child to add to another element."""
     tag, parent = written_tag(xml), xml.getparent()
-    if tag in DEFINED_ALONE or parent is None:
-        return _definition_alone(tag)
-    return _definition_alone(written_tag(parent)).children[tag]
+    if tag in STANDALONE_ELEMENTS or parent is None:
+        return _standalone_definition(tag)
+    return _standalone_definition(written_tag(parent)).children[tag]
 
 
-def _definition_alone(tag: str) -> Definition:
-    if tag == 'forcetorque':
-        return definition_of('force_torque')
-    return definition_of(tag.removesuffix('_shape'))
+def _standalone_definition(tag: str) -> Definition:
+    return definition_of(STANDALONE_ELEMENTS[tag])
 
 
 def _start_tag(xml: XmlElement) -> str:
