@@ -10,7 +10,6 @@ pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sdf_pose_bridge.errors import FileWriteError
 from sdf_pose_bridge.sdformat.file_change import FileChange
 
 
@@ -76,10 +75,3 @@ def test_of_long_lines_and_long_changes_a_part_is_shown():
     assert f'+...{999 * "x"} 2 {999 * "y"}...\n' in diff
     many = change_of(f'a{10_000 * chr(10)}b', f'a{10_000 * chr(10)}b', '').diff
     assert len(many) < 2000
-
-
-def test_a_file_that_cannot_be_written_is_an_error_with_its_path(tmp_path):
-    path = str(tmp_path / 'missing.sdf')
-    with pytest.raises(FileWriteError, match='no such file') as caught:
-        change_of(LINES, '5', '6', path=path).write()
-    assert caught.value.place.file == path
