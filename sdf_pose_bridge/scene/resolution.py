@@ -155,17 +155,18 @@ def _place_automatic_inertials(root_poses: PoseArray, elements: Elements) -> dic
             root_poses[collisions[link]],
             np.array([(0.0, 0.0, part.center_z_m) for part in parts]))
         masses = np.array([part.mass_kg for part in parts])
-        root_poses[index, :3] = np.average(points, axis=0, weights=masses)
-        root_poses[index, 3:] = root_poses[link, 3:]
+        total_kg = float(masses.sum())
+        root_poses[index] = root_poses[link]
+        if total_kg:
+            root_poses[index, :3] = np.average(points, axis=0, weights=masses)
         to_link = matrix_from_quaternion(root_poses[link, 3:]).T
         axes = to_link @ matrix_from_quaternion(root_poses[collisions[link], 3:])
         moments = np.array([part.moments_kg_m2 for part in parts])
         offsets = (points - root_poses[index, :3]) @ to_link.T
         matrix = sum_of_moments(
             np.einsum('nij,nj,nkj->nik', axes, moments, axes), masses, offsets)
-        scale = 1.0 if mass_kg is None else mass_kg / masses.sum()
-        inertials[index] = Inertial(
-            float(scale * masses.sum()), moments_from_matrix(scale * matrix))
+        scale = 1.0 if mass_kg is None or not total_kg else mass_kg / total_kg
+        inertials[index] = Inertial(scale * total_kg, moments_from_matrix(scale * matrix))
     return inertials
 
 

@@ -32,6 +32,9 @@ DEFAULT_DENSITY_KG_M3 = 1000.0
 MOMENTS = ('ixx', 'iyy', 'izz', 'ixy', 'ixz', 'iyz')
 """The tags of the moments of an :class:`Inertial`, in their order."""
 
+_MAY_BE_MASSLESS = ('capsule', 'ellipsoid')
+"""Shapes that libsdformat also accepts with the density 0."""
+
 _MOMENTS_OF_NONE = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
 """The default moments of libsdformat."""
 _DEFAULT_TEXTS = dict(zip(MOMENTS, map(str, _MOMENTS_OF_NONE), strict=True))
@@ -221,7 +224,8 @@ def _automatic_inertial(inertial: XmlElement, sources: Sources) -> AutomaticIner
         (density,) = numbers_of_child(collision, 'density', (DEFAULT_DENSITY_KG_M3,))
         solid = None if shape is None else shape.solid
         density_kg_m3 = density if has_density else default_density
-        if solid is None or density_kg_m3 <= 0.0:
+        is_massless = density_kg_m3 == 0.0 and shape is not None and shape.type in _MAY_BE_MASSLESS
+        if solid is None or not (density_kg_m3 > 0.0 or is_massless):
             types = [name for name, each in SHAPE_TYPES.items() if each.solid is not None]
             msg = (f'an automatic inertial needs collisions of the types {", ".join(types)}, with '
                    'positive dimensions and density')

@@ -132,8 +132,12 @@ def test_collision_without_a_volume_is_refused(shape):
     assert codes_of(link_with(AUTO + collision('c', 1, shape))) == ['LINK_INERTIA_INVALID']
 
 
-def test_collision_without_a_density_above_zero_is_refused():
-    text = link_with(AUTO + collision('c', 1, UNIT_BOX, '0'))
+@pytest.mark.parametrize(('shape', 'density'), [
+    (UNIT_BOX, '0'), ('<sphere/>', '0'), ('<cylinder/>', '0'), ('<cone/>', '0'),
+    ('<ellipsoid/>', '-1'), ('<capsule/>', '-1'),
+])
+def test_collision_without_a_valid_density_is_refused(shape, density):
+    text = link_with(AUTO + collision('c', 1, shape, density))
     assert codes_of(text) == ['LINK_INERTIA_INVALID']
 
 
@@ -197,6 +201,15 @@ def test_density_is_that_of_collision_inertial_or_water(inertial, densities, x):
     assert center_of(
         inertial + collision('a', 0, UNIT_BOX, first) + collision('b', 1, UNIT_BOX, second)
     ).x == pytest.approx(x)
+
+
+@pytest.mark.parametrize('shape', ['<capsule/>', '<ellipsoid/>'])
+def test_capsule_or_ellipsoid_may_have_the_density_zero(shape):
+    massless = collision('c', 1, shape, '0')
+    inertial = inertial_of(AUTO + massless)
+    assert (inertial.mass_kg, inertial.moments_kg_m2) == (0.0, (0.0,) * 6)
+    assert center_of(f'<inertial auto="true"><mass>2</mass></inertial>{massless}').x == 0.0
+    assert center_of(AUTO + massless + collision('d', 5, UNIT_BOX)).x == 5.0
 
 
 def test_inertial_has_the_axes_of_its_link():

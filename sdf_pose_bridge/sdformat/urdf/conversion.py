@@ -305,6 +305,9 @@ class _Conversion:
         self._write.add(xml, 'child', joint.xml, text=joint.child)
         if JOINT_TYPES[joint_type].dofs:
             self._add_axis(xml, joint)
+        elif joint.name in self._gazebo.kept_joints and not self._for_ros:
+            # Other joints may mimic it, as libsdformat gives it the axis of a default.
+            self._write.add(xml, 'axis', joint.xml)
         self._add_extensions(xml, joint.name)
         return True
 

@@ -9,7 +9,7 @@ import math
 import re
 
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy, rpy_from_quaternion
+from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.sdformat.values import number_from_word
 from sdf_pose_bridge.sdformat.xml_tree import text_of, WHITE_SPACE, written_tag, XmlElement
 
@@ -85,15 +85,18 @@ def pose_from_xyz_rpy(
 
     :param xyz: x y z in metres; finite.
     :param rpy: roll pitch yaw in radians; finite.
-    :return: the pose. Its quaternion has the sign of libsdformat's, because the angles of
-        ``rpy_by_urdfdom`` and their rounding depend on the sign.
+    :return: the pose. Its quaternion has the sign and the rounding of libsdformat's
+        (``urdf::Rotation::setFromRPY``), on which the angles of ``rpy_by_urdfdom`` depend.
     """
-    x, y, z = xyz
-    halves = [angle / 2.0 for angle in rpy]
-    sign = math.copysign(
-        1.0, math.prod(map(math.cos, halves)) + math.prod(map(math.sin, halves)))
-    qx, qy, qz, qw = quaternion_from_rpy(rpy)
-    return Pose(x, y, z, sign * qx, sign * qy, sign * qz, sign * qw)
+    sin_r, sin_p, sin_y = (math.sin(angle / 2.0) for angle in rpy)
+    cos_r, cos_p, cos_y = (math.cos(angle / 2.0) for angle in rpy)
+    quaternion = (
+        sin_r * cos_p * cos_y - cos_r * sin_p * sin_y,
+        cos_r * sin_p * cos_y + sin_r * cos_p * sin_y,
+        cos_r * cos_p * sin_y - sin_r * sin_p * cos_y,
+        cos_r * cos_p * cos_y + sin_r * sin_p * sin_y)
+    norm = math.sqrt(sum(component * component for component in quaternion))
+    return Pose(*xyz, *(component / norm for component in quaternion))
 
 
 def text_from_numbers(numbers: Sequence[float], digits: int = 16) -> str:
@@ -116,6 +119,10 @@ def rpy_by_urdfdom(pose: Pose) -> Sequence[float]:
     _, _, _, x, y, z, w = pose
     sin_pitch = 2.0 * (w * y - x * z)
     if 1.0 - abs(sin_pitch) > _URDFDOM_GIMBAL_LOCK:
-        return rpy_by_gz_math(pose)
+        # At half a turn of roll, the rounding decides between pi and -pi.
+        return (
+            math.atan2(2.0 * (y * z + w * x), w * w - x * x - y * y + z * z),
+            math.asin(sin_pitch),
+            math.atan2(2.0 * (x * y + w * z), w * w + x * x - y * y - z * z))
     sign = math.copysign(1.0, sin_pitch)
     return 0.0, sign * math.pi / 2.0, 2.0 * math.atan2(-sign * x, sign * y)

@@ -97,6 +97,14 @@ def test_axis_limits_and_mimic_are_converted():
     assert axis.find('mimic').get('joint') == 'k'
 
 
+def test_preserved_fixed_joint_can_be_mimicked(tmp_path):
+    mimic = joint('k', 'b', 'c', 'continuous', '<mimic joint="j"/>')
+    preserved = gazebo('<preserveFixedJoint>true</preserveFixedJoint>', 'j')
+    scene = load(write(tmp_path, TWO + link('c') + FIXED + preserved + mimic))
+    leader, follower = scene.joints
+    assert (leader.type, follower.axes[0].mimic.joint) == ('fixed', leader.element)
+
+
 def test_mimic_of_a_joint_that_does_not_exist_is_left_out_for_ros():
     scene = load_text(robot(TWO + joint('j', 'a', 'b', 'continuous', '<mimic joint="k"/>')))
     assert scene.joints[0].axes[0].mimic is None

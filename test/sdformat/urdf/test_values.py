@@ -100,6 +100,12 @@ def test_angles_by_urdfdom_near_gimbal_lock(sign):
     assert yaw == pytest.approx(0.1 - sign * 0.3, abs=1e-2)
 
 
+def test_rounding_decides_the_sign_of_half_a_turn_as_in_urdfdom():
+    roll, pitch, yaw = rpy_by_urdfdom(pose_from_xyz_rpy([0, 0, 0], [0.0, 3.14, 3.14]))
+    assert roll == math.pi
+    assert (pitch, yaw) == pytest.approx((math.pi - 3.14, 3.14 - math.pi), abs=1e-15)
+
+
 def test_quaternion_has_the_sign_of_libsdformat():
     assert pose_from_xyz_rpy([0, 0, 0], [0, 0, 5.0]).qw == pytest.approx(math.cos(2.5))
 
