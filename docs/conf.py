@@ -47,6 +47,7 @@ highlight_language = 'text'
 myst_heading_anchors = 3
 autodoc_member_order = 'bysource'
 autodoc_typehints = 'description'
+autodoc_preserve_defaults = True
 
 
 def _highlight(_app: Sphinx, doctree: nodes.document) -> None:

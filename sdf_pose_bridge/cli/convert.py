@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import io
 from itertools import islice
 import sys
+import textwrap
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -52,12 +53,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         'convert',
         help='convert a pose or a rotation between formats',
         description=(
-            'Convert poses or rotations between formats. Without numbers, lines are read from\n'
-            'standard input, one pose each; blank lines and those that begin with # are skipped.\n'
-            'Without --to, every format is printed. --degrees and --mm are the units of given\n'
-            'numbers, and of those printed with --to.'
+            'Convert poses or rotations between formats. Without numbers, lines are read\n'
+            'from standard input, one pose each; blank lines and those that begin with #\n'
+            'are skipped. Without --to, every format is printed. --degrees and --mm are\n'
+            'the units of given numbers, and of those printed with --to.'
         ),
-        epilog=_formats_help(),
+        epilog=formats_help(),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     names = (*ROTATION_FORMATS, *POSE_FORMATS)
@@ -110,12 +111,15 @@ def run(options: argparse.Namespace) -> int:
     return exit_code
 
 
-def _formats_help() -> str:
+def formats_help() -> str:
+    """Return the formats with their numbers, for the end of a help of 80 columns."""
     width = max(len(name) for name in (*ROTATION_FORMATS, *POSE_FORMATS))
-    lines = []
+    lines, indent = [], ' ' * (width + 4)
     for title, formats in (('rotations', ROTATION_FORMATS), ('poses', POSE_FORMATS)):
         lines.append(f'formats of {title}:')
-        lines += [f'  {entry.name:{width}}  {entry.meaning}' for entry in formats.values()]
+        for entry in formats.values():
+            lines += textwrap.wrap(
+                f'  {entry.name:{width}}  {entry.meaning}', 78, subsequent_indent=indent)
     return '\n'.join(lines)
 
 

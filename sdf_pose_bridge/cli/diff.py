@@ -14,7 +14,14 @@ from sdf_pose_bridge.cli.loading import (
     load_file,
     sdf_name,
 )
-from sdf_pose_bridge.cli.printing import print_problems
+from sdf_pose_bridge.cli.printing import (
+    add_unit_arguments,
+    DEGREES,
+    print_problems,
+    print_table,
+    TableRow,
+    Units,
+)
 from sdf_pose_bridge.cli.records import (
     add_format_argument,
     CSV,
@@ -25,7 +32,6 @@ from sdf_pose_bridge.cli.records import (
     TEXT,
 )
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.comparison import Change, Difference, differences_of_scenes, TOLERANCE
 
 
@@ -49,6 +55,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='the largest distance in metres, and angle in radians, of a frame that has not '
              f'moved; by default {TOLERANCE:g}')
     add_kinds_argument(parser, 'compare only')
+    add_unit_arguments(parser, DEGREES)
     parser.set_defaults(run=run)
 
 
@@ -80,9 +87,11 @@ def run(options: argparse.Namespace) -> int:
     if options.format == CSV:
         print_csv_header(Difference._fields)
         print_csv(Difference._fields, records)
-    elif options.format == TEXT:
-        for difference in differences:
-            print(_line(difference))
+    elif options.format == TEXT and differences:
+        units = Units(options.length_unit, options.angle_unit)
+        print_table(
+            ('change', f'distance {units.length.name}', f'angle {units.angle.name}'),
+            [_table_row(difference, units) for difference in differences])
     return 2 if errors else 1 if differences else 0
 
 
@@ -94,10 +103,11 @@ def _tolerance_from_text(text: str) -> float:
     return tolerance
 
 
-def _line(difference: Difference) -> str:
-    text = f'{difference.change.value:7}  {difference.kind.label}  {printable(difference.name)}'
-    if difference.change is Change.RENAMED:
-        return f'{text}  was {printable(difference.old_name)}'
+def _table_row(difference: Difference, units: Units) -> TableRow:
+    values = [difference.change.value, '', '']
     if difference.change is Change.MOVED:
-        return f'{text}  {difference.distance_m:.6g} m  {difference.angle_rad:.6g} rad'
-    return text
+        values[1:] = [f'{round(value, 9) * unit.factor:.6g}' for value, unit in zip(
+            (difference.distance_m, difference.angle_rad), units, strict=True)]
+    is_renamed = difference.change is Change.RENAMED
+    return TableRow(difference.name, difference.kind.label, values,
+                    [f'was {difference.old_name}'] if is_renamed else ())

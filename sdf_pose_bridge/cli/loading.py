@@ -5,14 +5,17 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
+import contextlib
 from pathlib import Path
 import sys
+import threading
 from typing import NamedTuple
 
-from sdf_pose_bridge.cli.printing import add_unit_arguments, print_problems
+from sdf_pose_bridge.cli.printing import add_unit_arguments, print_problems, RADIANS, Unit
 from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
+from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -78,11 +81,27 @@ def scene_from_file(
     :raises SdfError: if the file is not valid.
     """
     is_input = path == STANDARD_INPUT
-    text = bytes_from_file('/dev/stdin' if is_input else path, Usage(), allows_pipe=True)
-    return load_text(
-        text, '<stdin>' if is_input else path,
-        resource_paths=options.resource_paths, shapes=shapes, texts=texts,
-        on_missing_include='skip' if options.skip_missing else 'error')
+    with _told_after_a_second(path):
+        text = bytes_from_file('/dev/stdin' if is_input else path, Usage(), allows_pipe=True)
+        return load_text(
+            text, '<stdin>' if is_input else path,
+            resource_paths=options.resource_paths, shapes=shapes, texts=texts,
+            on_missing_include='skip' if options.skip_missing else 'error')
+
+
+@contextlib.contextmanager
+def _told_after_a_second(path: str) -> Iterator[None]:
+    """Print to a terminal that a file is being read, if this takes longer than a second."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    timer = threading.Timer(
+        1.0, print, (f'reading {printable(path)} ...',), {'file': sys.stderr})
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
 
 
 def load_file(path: str, options: argparse.Namespace, *, shapes: bool = False) -> LoadedFile:
@@ -147,16 +166,18 @@ def add_kinds_argument(
         help=f'{instead}{what} these kinds: {_KIND_NAMES}')
 
 
-def add_frame_arguments(parser: argparse.ArgumentParser) -> None:
+def add_frame_arguments(parser: argparse.ArgumentParser, angle: Unit = RADIANS) -> None:
     """
     Add the arguments of :func:`tf_options_from_arguments`, and the units of poses.
 
     The first are named like parameters of the node.
+
+    :param angle: the unit of angles without an argument.
     """
     add_kinds_argument(parser, 'show frames of', DEFAULT_KINDS)
     add_model_argument(parser)
     add_naming_argument(parser)
-    add_unit_arguments(parser)
+    add_unit_arguments(parser, angle)
 
 
 def add_model_argument(parser: argparse.ArgumentParser, verb: str = 'show') -> None:

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping, Sequence
 import sys
 from typing import Any
 
@@ -18,7 +17,14 @@ from sdf_pose_bridge.cli.loading import (
     LoadedFile,
     sdf_name,
 )
-from sdf_pose_bridge.cli.printing import print_problems
+from sdf_pose_bridge.cli.printing import (
+    add_unit_arguments,
+    DEGREES,
+    print_problems,
+    print_table,
+    TableRow,
+    Units,
+)
 from sdf_pose_bridge.cli.records import (
     add_format_argument,
     CSV,
@@ -28,6 +34,7 @@ from sdf_pose_bridge.cli.records import (
     print_json,
 )
 from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -40,9 +47,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Add the command."""
     parser = subparsers.add_parser(
         'poses', help='print the poses of files',
-        description='Print the pose of every element of files: x y z in metres and the quaternion '
-                    'x y z w, in the world or in the implicit root of a model file. The exit code '
-                    'is 1 if a file has an error.')
+        description='Print the pose of every element of files, x y z roll pitch yaw, in the world '
+                    'or in the implicit root of a model file; --format csv and json have all '
+                    'digits and quaternions. The exit code is 1 if a file has an error.')
     add_file_arguments(parser)
     add_format_argument(parser, CSV, JSON)
     parser.add_argument(
@@ -58,6 +65,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='put a joint there, in radians or metres; all others stay at zero. May be repeated. '
              'Names are those of joint_states: elbow, arm/elbow, wrist_axis2, ball_roll')
     add_kinds_argument(parser, 'print only')
+    add_unit_arguments(parser, DEGREES)
     parser.set_defaults(run=run)
 
 
@@ -67,7 +75,7 @@ def run(options: argparse.Namespace) -> int:
 
     :return: exit code: 0 if all files are valid, else 1.
     """
-    are_valid = True
+    are_valid, units = True, Units(options.length_unit, options.angle_unit)
     if options.format == CSV:
         print_csv_header(_COLUMNS)
     for path in options.files:
@@ -93,7 +101,12 @@ def run(options: argparse.Namespace) -> int:
         elif not loaded.errors:
             if len(options.files) > 1:
                 print(printable(path))
-            _print_table(elements)
+            has_worlds = len({element['world'] for element in elements}) > 1
+            print_table(units.labels, [
+                TableRow(
+                    f'{element["world"]}: {element["name"]}' if has_worlds else element['name'],
+                    element['kind'], units.texts(Pose(*element['pose']), fewer_digits=1))
+                for element in elements])
     return 0 if are_valid else 1
 
 
@@ -117,17 +130,3 @@ def _elements(scene: Scene, options: argparse.Namespace) -> list[dict[str, Any]]
             'kind': Kind(scene.kinds[index]).label, 'name': scene.names[index], 'world': world,
             'pose': list(pose)})
     return elements
-
-
-def _print_table(elements: Sequence[Mapping[str, Any]]) -> None:
-    has_worlds = len({element['world'] for element in elements}) > 1
-    names = [
-        printable(f'{element["world"]}: {element["name"]}' if has_worlds else element['name'])
-        for element in elements]
-    width = max(map(len, names), default=0)
-    kind_width = max((len(element['kind']) for element in elements), default=0)
-    print(f'{"kind":{kind_width}}  {"name":{width}}  '
-          + ' '.join(f'{label:>10}' for label in ('x', 'y', 'z', 'qx', 'qy', 'qz', 'qw')))
-    for element, name in zip(elements, names, strict=True):
-        print(f'{element["kind"]:{kind_width}}  {name:{width}}  '
-              + ' '.join(f'{value + 0.0:10.6f}' for value in element['pose']))

@@ -10,13 +10,14 @@ from itertools import chain
 import math
 import os
 from pathlib import Path
+import shutil
 import sys
 from typing import NamedTuple, TextIO, TypeVar
 
 from sdf_pose_bridge.errors import SdfError, SdfWarning, UriLookupError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
-from sdf_pose_bridge.names import printable
+from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.tree import TfTree
@@ -103,6 +104,74 @@ METRES, MILLIMETRES = Unit('m', 1.0, 4), Unit('mm', 1000.0, 1)
 RADIANS, DEGREES = Unit('rad', 1.0, 4), Unit('deg', math.degrees(1.0), 2)
 
 
+_WIDEST_NAME, _NARROWEST_NAME = 80, 8
+_SHORT_KINDS = {'optical frame': 'optical', 'particle_emitter': 'emitter'}
+_BRANCHES, _ASCII_BRANCHES = ('├ ', '└ ', '│ ', '  '), ('|-', '`-', '| ', '  ')
+_DIM = '\x1b[2m'
+_COLORS = {
+    'model': '\x1b[35m', 'link': '\x1b[32m', 'joint': '\x1b[33m', 'frame': '\x1b[36m',
+    'sensor': '\x1b[34m', 'optical': '\x1b[34m'}
+
+
+class TableRow(NamedTuple):
+    """A row of a table of frames."""
+
+    name: str
+    kind: str
+    values: Sequence[str] = ()
+    """The texts of the other columns; none if they are blank."""
+    notes: Sequence[str] = ()
+    """Texts for the line below."""
+    branches: str = ''
+    """The branches of a tree that are before the name."""
+    is_bold: bool = False
+
+
+def branches_of_tree() -> Sequence[str]:
+    """Return the branches to one of several children and to the last, and what is below them."""
+    try:
+        ''.join(_BRANCHES).encode(sys.stdout.encoding or 'ascii')
+    except UnicodeEncodeError:
+        return _ASCII_BRANCHES
+    return _BRANCHES
+
+
+def print_table(labels: Sequence[str], rows: Sequence[TableRow]) -> None:
+    """
+    Print a table of frames. On a terminal, names are shortened so that lines are not wrapped.
+
+    :param labels: the labels of the columns behind the kinds, such as x, y and z.
+    """
+    rows = [TableRow('frame', 'kind', labels), *rows]
+    kinds = [_SHORT_KINDS.get(row.kind, row.kind) for row in rows]
+    names = [printable(row.name) for row in rows]
+    blank = ('',) * len(labels)
+    widths = [max(map(len, column)) for column in zip(
+        *(row.values or blank for row in rows), strict=True)]
+    kind_width = max(map(len, kinds))
+    columns = shutil.get_terminal_size().columns if sys.stdout.isatty() else 2 * _WIDEST_NAME
+    width = min(
+        max(len(row.branches) + len(name) for row, name in zip(rows, names, strict=True)),
+        _WIDEST_NAME, max(columns - kind_width - sum(widths) - len(widths) - 3, _NARROWEST_NAME))
+    dim, bold, plain = (_DIM, _BOLD, _PLAIN) if is_colored(sys.stdout) else ('', '', '')
+    tee, corner, bar, space = branches_of_tree()
+    for row, name, kind in zip(rows, names, kinds, strict=True):
+        room = width - min(len(name), _NARROWEST_NAME)
+        branches = row.branches[max(len(row.branches) - room, 0):]
+        longest = width - len(branches)
+        # The end of a scoped name tells most.
+        name = name if len(name) <= longest else f'...{name[3 - longest:]}'
+        color = _COLORS.get(kind, '') if plain else ''
+        print(
+            f'{dim}{branches}{plain}{bold if row.is_bold else ""}{name:{longest}}'
+            f'{plain if row.is_bold else ""}  {color}{kind:{kind_width}}{plain}  '
+            f'{" ".join(map(str.rjust, row.values or blank, widths))}'.rstrip())
+        if row.notes:
+            below = branches.replace(tee, bar).replace(corner, space) + space
+            note = shortened(printable(', '.join(row.notes)), columns - len(below))
+            print(f'{dim}{below}{note}{plain}')
+
+
 POSE_LABELS = ('x', 'y', 'z', 'roll', 'pitch', 'yaw')
 """Labels of the numbers of a pose."""
 
@@ -118,24 +187,37 @@ class Units(NamedTuple):
         """The units of x, y, z, roll, pitch and yaw."""
         return 3 * [self.length] + 3 * [self.angle]
 
-    def texts(self, pose: Pose) -> list[str]:
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """The labels of the columns of a table of poses."""
+        return f'x {self.length.name}', 'y', 'z', f'roll {self.angle.name}', 'pitch', 'yaw'
+
+    def texts(self, pose: Pose, *, fewer_digits: int = 0) -> list[str]:
         """
         Write a pose in these units.
 
+        :param fewer_digits: the number of digits to leave out.
         :return: x, y, z, roll, pitch and yaw, rounded.
         """
         values = (*pose[:3], *rpy_from_quaternion(pose[3:]))
         # Adding zero removes negative zeros.
         return [
-            f'{round(value * unit.factor, unit.digits) + 0.0:.{unit.digits}f}'
-            for value, unit in zip(values, self.of_pose, strict=True)]
+            f'{round(value * unit.factor, digits) + 0.0:.{digits}f}'
+            for value, unit, digits in zip(
+                values, self.of_pose, (unit.digits - fewer_digits for unit in self.of_pose),
+                strict=True)]
 
 
-def add_unit_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments ``--degrees`` and ``--mm``."""
-    parser.add_argument(
-        '--degrees', dest='angle_unit', action='store_const', const=DEGREES, default=RADIANS,
-        help='angles in degrees, not radians')
+def add_unit_arguments(parser: argparse.ArgumentParser, angle: Unit = RADIANS) -> None:
+    """
+    Add the arguments ``--degrees``, ``--radians`` and ``--mm``.
+
+    :param angle: the unit of angles without an argument.
+    """
+    for unit, name in ((DEGREES, 'degrees'), (RADIANS, 'radians')):
+        parser.add_argument(
+            f'--{name}', dest='angle_unit', action='store_const', const=unit, default=angle,
+            help=f'angles in {name}{", the default" if unit is angle else ""}')
     parser.add_argument(
         '--mm', dest='length_unit', action='store_const', const=MILLIMETRES, default=METRES,
         help='lengths in millimetres, not metres')

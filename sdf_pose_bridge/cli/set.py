@@ -10,6 +10,7 @@ import sys
 
 from sdf_pose_bridge.cli.convert import (
     format_with_unit,
+    formats_help,
     numbers_from_text,
     question_about_unit,
 )
@@ -38,9 +39,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Add the command."""
     parser = subparsers.add_parser(
         'set', help='write a measured pose into a file',
-        description='Change the numbers of the <pose> that places a frame to a measured pose. '
-                    'Nothing else in the file changes. The change, and the other frames that move '
-                    'with it, are printed.')
+        description=(
+            'Change the numbers of the <pose> that places a frame to a measured pose.\n'
+            'Nothing else in the file changes. The change, and the other frames that move\n'
+            'with it, are printed.'
+        ),
+        epilog=formats_help(), formatter_class=argparse.RawDescriptionHelpFormatter)
     add_file_arguments(parser, takes_many=False)
     parser.add_argument(
         'frame', metavar='FRAME', help='a name as in SDF (robot::camera) or TF (robot/camera)')
@@ -54,9 +58,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='the frame in which the pose was measured; by default the world, or the implicit '
              'root of a model file')
     parser.add_argument(
-        '--format', choices=(*POSE_FORMATS, *ROTATION_FORMATS), default='sdf_rpy',
-        help='format of the numbers, as of "sdf_pose convert"; by default sdf_rpy: x y z roll '
-             'pitch yaw in metres and radians. With a format of rotations the position stays')
+        '--format', metavar='FORMAT', choices=(*POSE_FORMATS, *ROTATION_FORMATS),
+        default='sdf_rpy',
+        help='format of the numbers; by default sdf_rpy: x y z roll pitch yaw in metres and '
+             'radians. With a format of rotations the position stays')
     add_unit_arguments(parser)
     parser.add_argument(
         '--force', action='store_true',

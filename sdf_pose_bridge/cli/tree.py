@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from itertools import compress
 import math
-import shutil
 import sys
 from typing import Any, NamedTuple
 
@@ -22,7 +21,15 @@ from sdf_pose_bridge.cli.loading import (
     SHOWN_KINDS,
     tf_options_from_arguments,
 )
-from sdf_pose_bridge.cli.printing import is_colored, kind_labels_of, print_problems, Units
+from sdf_pose_bridge.cli.printing import (
+    branches_of_tree,
+    DEGREES,
+    kind_labels_of,
+    print_problems,
+    print_table,
+    TableRow,
+    Units,
+)
 from sdf_pose_bridge.cli.records import (
     add_format_argument,
     CSV,
@@ -33,20 +40,13 @@ from sdf_pose_bridge.cli.records import (
 )
 from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.names import printable, shortened
+from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, elements_in_model, tf_tree_from_scene
 
-_BOLD, _DIM, _PLAIN = '\x1b[1m', '\x1b[2m', '\x1b[0m'
-_COLORS = {
-    'model': '\x1b[35m', 'link': '\x1b[32m', 'joint': '\x1b[33m', 'frame': '\x1b[36m',
-    'sensor': '\x1b[34m', 'optical frame': '\x1b[34m'}
-_BRANCHES = ('├─ ', '└─ ', '│  ', '   ')
-_ASCII_BRANCHES = ('|- ', '`- ', '|  ', '   ')
 _COLUMNS = ('file', 'name', 'kind', 'parent', 'x', 'y', 'z', 'qx', 'qy', 'qz', 'qw', 'note')
-_WIDEST_NAME, _SHORTEST_NAME = 80, 16
 _WIDEST_INDENT = 60
 
 
@@ -83,7 +83,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         '--scope', action='store_true',
         help='print elements as they are nested in the file, of all kinds unless --kinds is '
              'given, with poses in the frames that they are relative to')
-    add_frame_arguments(parser)
+    add_frame_arguments(parser, DEGREES)
     parser.add_argument(
         '--depth', metavar='N', type=_depth_from_text, default=math.inf,
         help='print N levels below the root, and the number of frames below them')
@@ -130,11 +130,20 @@ def run(options: argparse.Namespace) -> int:
             if len(options.files) > 1:
                 print(printable(path))
             if lines:
-                _print_lines(lines, Units(options.length_unit, options.angle_unit))
+                units = Units(options.length_unit, options.angle_unit)
+                print_table(units.labels, [_table_row(line, units) for line in lines])
             else:
                 print(f'sdf_pose tree: no whole name in {printable(path)} matches '
                       f'"{printable(options.match)}"', file=sys.stderr)
     return exit_code
+
+
+def _table_row(line: _Line, units: Units) -> TableRow:
+    branches, row, hidden, is_match = line
+    notes = [row.note] if row.note else []
+    notes += [f'{hidden} more below'] if hidden else []
+    values = () if row.pose is None else units.texts(row.pose, fewer_digits=1)
+    return TableRow(row.name, row.kind, values, notes, branches, is_match)
 
 
 def _depth_from_text(text: str) -> int:
@@ -159,7 +168,7 @@ def _rows_of_frames(
     root = _Row(tree.root_frame, tree.root_frame, 'root', -1, None)
     # The root frame is row 0, so the index of a row is that of its frame plus one.
     return [root, *(
-        _Row(frame_id, frame_id, kind, -1, None, 'no parent') if parent == NO_PARENT
+        _Row(frame_id, frame_id, kind, -1, None) if parent == NO_PARENT
         else _Row(frame_id, frame_id, kind, parent + 1, Pose(*pose))
         for frame_id, kind, parent, pose in zip(
             tree.frame_ids, kind_labels_of(scene, tree), tree.parents.tolist(),
@@ -215,7 +224,10 @@ def _lines(rows: Sequence[_Row], options: argparse.Namespace) -> list[_Line]:
     for index, row in enumerate(rows):
         if is_shown[index]:
             children.setdefault(row.parent, []).append(index)
-    tee, corner, bar, blank = _branches()
+    if not children.get(0) and len(children.get(-1, ())) > 1:
+        # Nothing is below the root frame, as in the file of a robot that odometry places.
+        children[-1].remove(0)
+    tee, corner, bar, blank = branches_of_tree()
     lines: list[_Line] = []
     waiting = [(index, 0, '', '') for index in reversed(children.get(-1, ()))]
     while waiting:
@@ -232,42 +244,3 @@ def _lines(rows: Sequence[_Row], options: argparse.Namespace) -> list[_Line]:
             (child, depth + 1, indent, corner if child == below[-1] else tee)
             for child in reversed(below)]
     return lines
-
-
-def _branches() -> Sequence[str]:
-    try:
-        ''.join(_BRANCHES).encode(sys.stdout.encoding or 'ascii')
-    except UnicodeEncodeError:
-        return _ASCII_BRANCHES
-    return _BRANCHES
-
-
-def _widest_name(other_columns: int) -> int:
-    """Return the number of characters of a line for a branch and a name."""
-    if not sys.stdout.isatty():
-        return _WIDEST_NAME
-    return max(shutil.get_terminal_size().columns - other_columns, _SHORTEST_NAME)
-
-
-def _print_lines(lines: Sequence[_Line], units: Units) -> None:
-    texts = [('',) * 6 if line.row.pose is None else units.texts(line.row.pose) for line in lines]
-    labels = (f'x {units.length.name}', 'y', 'z', f'roll {units.angle.name}', 'pitch', 'yaw')
-    widths = [max(map(len, column)) for column in zip(labels, *texts, strict=True)]
-    kind_width = max((len(line.row.kind) for line in lines), default=0)
-    colors = _COLORS if is_colored(sys.stdout) else {}
-    bold, dim, plain = (_BOLD, _DIM, _PLAIN) if is_colored(sys.stdout) else ('', '', '')
-    width = min(
-        max((len(line.branches) + len(printable(line.row.name)) for line in lines), default=0),
-        _widest_name(kind_width + sum(widths) + 9))
-    heads = ' '.join(map(str.rjust, labels, widths))
-    print(f'{"frame":{width}}  {"kind":{kind_width}}  {heads}')
-    for (branches, row, hidden, is_match), numbers in zip(lines, texts, strict=True):
-        name = shortened(printable(row.name), max(width - len(branches), _SHORTEST_NAME))
-        pad = ' ' * (width - len(branches) - len(name))
-        notes = [printable(row.note)] if row.note else []
-        notes += [f'{hidden} more below'] if hidden else []
-        print(
-            f'{dim}{branches}{plain}{bold if is_match else ""}{name}{plain if is_match else ""}'
-            f'{pad}  {colors.get(row.kind, "")}{row.kind:{kind_width}}{plain}  '
-            f'{" ".join(map(str.rjust, numbers, widths))}'
-            f'{"  " if notes else ""}{dim}{", ".join(notes)}{plain}'.rstrip())

@@ -2,8 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fixtures of tests that run the command line as a process."""
 
+import contextlib
+import fcntl
+import os
+import pty
 import shlex
+import struct
 import subprocess
+import termios
 from types import SimpleNamespace
 
 from command_line import COMMAND, ENVIRONMENT
@@ -49,6 +55,26 @@ def sdf_pose_in_shell(files):
         return subprocess.run(
             f'{shlex.join(map(str, COMMAND))} {command}', shell=True, cwd=files, env=ENVIRONMENT,
             capture_output=True, text=True, timeout=60, check=False)
+    return run
+
+
+@pytest.fixture
+def on_terminal(files):
+    """Runs it on a terminal of some columns: ``on_terminal(80, *arguments, **environment)``."""
+    def run(columns, *arguments, **environment):
+        reader, writer = pty.openpty()
+        fcntl.ioctl(writer, termios.TIOCSWINSZ, struct.pack('4H', 24, columns, 0, 0))
+        with os.fdopen(reader, 'rb') as output, subprocess.Popen(
+                [*COMMAND, *arguments], cwd=files, env={**ENVIRONMENT, **environment},
+                stdin=writer, stdout=writer, stderr=writer) as process:
+            os.close(writer)
+            text = b''
+            # Linux reports the end of a terminal as an error.
+            with contextlib.suppress(OSError):
+                while part := output.read1():
+                    text += part
+            process.wait(timeout=60)
+        return text.decode().replace('\r\n', '\n')
     return run
 
 

@@ -32,8 +32,15 @@ def test_moved_frames_have_distance_and_angle(diff):
     done = diff('1 2 3 0 0 0', '1 2 3.5 0 0 0.1')
     assert done.returncode == 1
     assert done.stdout.splitlines() == [
-        'moved    frame  f  0.5 m  0.1 rad', 'moved    model  m  0.509894 m  0.1 rad',
-        'moved    link  m::l  0.509894 m  0.1 rad']
+        'frame  kind   change distance m angle deg',
+        'f      frame   moved        0.5   5.72958',
+        'm      model   moved   0.509894   5.72958',
+        'm::l   link    moved   0.509894   5.72958']
+
+
+def test_rounding_errors_are_printed_as_zero(diff):
+    done = diff('1 2 3 0 0 0', '1 2 3.0000000000000004 0 0 0.1', '--kinds', 'frame', '--radians')
+    assert done.stdout.splitlines()[1].split()[-2:] == ['0', '0.1']
 
 
 def test_relative_to_a_frame_and_with_a_tolerance(diff):
@@ -49,8 +56,8 @@ def test_relative_to_a_frame_by_its_name_in_tf(diff):
 
 def test_added_removed_and_renamed(diff):
     done = diff('<link name="l"/>', '<link name="k"/><frame name="g"/>')
-    assert done.stdout.splitlines() == [
-        'renamed  link  m::k  was m::l', 'added    frame  m::g']
+    assert [line.split() for line in done.stdout.splitlines()[1:]] == [
+        ['m::k', 'link', 'renamed'], ['was', 'm::l'], ['m::g', 'frame', 'added']]
 
 
 @pytest.mark.skipif(shutil.which('git') is None, reason='needs git')
@@ -69,7 +76,7 @@ def test_git_shows_what_a_commit_moved(files):
         git('commit', '-q', '-m', pose)
     command = f'{sys.executable} -m sdf_pose_bridge diff'
     shown = git('difftool', '--no-prompt', '--extcmd', command, 'HEAD~1', '--', 'good.sdf')
-    assert shown.splitlines()[0] == 'moved    frame  f  1 m  0 rad'
+    assert shown.splitlines()[1].split() == ['f', 'frame', 'moved', '1', '0']
 
 
 def test_an_invalid_file_is_an_error(diff, run_main):

@@ -3,7 +3,12 @@
 """The files of a command and the frames that its arguments choose."""
 
 import argparse
+import os
+import pty
+import select
+import subprocess
 
+from command_line import COMMAND, ENVIRONMENT
 import pytest
 
 from sdf_pose_bridge import Kind, SdfError
@@ -52,6 +57,18 @@ def test_an_unknown_kind_names_those_that_exist(options, capsys):
     with pytest.raises(SystemExit):
         options('--kinds', 'lnk', 'good.sdf')
     assert '"lnk" is not a kind of element; known are model' in capsys.readouterr().err
+
+
+def test_a_long_load_is_told_on_a_terminal(files):
+    reader, writer = pty.openpty()
+    with os.fdopen(reader, 'rb') as terminal, subprocess.Popen(
+            [*COMMAND, 'check', '-'], cwd=files, env=ENVIRONMENT, stdin=subprocess.PIPE,
+            stderr=writer) as process:
+        os.close(writer)
+        assert select.select([terminal], [], [], 60)[0]
+        assert terminal.read1() == b'reading - ...\r\n'
+        process.communicate((files / 'good.sdf').read_bytes(), timeout=60)
+    assert process.returncode == 0
 
 
 def test_a_missing_directory_of_models_is_an_error(options, capsys):

@@ -9,9 +9,9 @@ import pytest
 
 def test_poses_prints_a_table(sdf_pose):
     lines = sdf_pose('poses', 'good.sdf').stdout.splitlines()
-    assert lines[0].split() == ['kind', 'name', 'x', 'y', 'z', 'qx', 'qy', 'qz', 'qw']
-    assert lines[3].split() == [
-        'link', 'm::l', '2.000000', '2.000000', '3.000000', *['0.000000'] * 3, '1.000000']
+    assert lines[0].split() == [
+        'frame', 'kind', 'x', 'm', 'y', 'z', 'roll', 'deg', 'pitch', 'yaw']
+    assert lines[3].split() == ['m::l', 'link', '2.000', '2.000', '3.000', *['0.0'] * 3]
 
 
 def test_poses_prints_a_json_object_for_each_file(sdf_pose):
