@@ -9,7 +9,7 @@ import subprocess
 import sys
 import sysconfig
 
-from command_line import AS_MODULE, executable_of_workspace, skip_without
+from command_line import executable_of_workspace, skip_without
 import mesh_texts
 import pytest
 
@@ -43,18 +43,11 @@ def program_of_workspace(name):
     return [str(executable)], os.environ.get('PYTHONPATH', '')
 
 
-@pytest.fixture(params=['executable', 'environment', 'wheel', 'module'])
+@pytest.fixture(params=['executable', 'wheel'])
 def started(request):
     """A way to start the command line, and the folder that it is imported from."""
     if request.param == 'executable':
         return program_of_workspace('sdf_pose')
-    if request.param == 'environment':
-        program = shutil.which('sdf_pose')
-        if program is None:
-            pytest.skip('needs the environment of underlay/setup.bash')
-        return [program], os.environ.get('PYTHONPATH', '')
-    if request.param == 'module':
-        return AS_MODULE, str(ROOT)
     prefix = request.getfixturevalue('prefix_of_wheel')
     library = sysconfig.get_path('purelib', vars={'base': str(prefix)})
     return [str(prefix / 'bin/sdf_pose')], library

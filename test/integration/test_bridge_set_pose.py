@@ -41,7 +41,7 @@ def ask(listener, frame, x, frame_id='', *, dry_run=False):
         SetPose, f'{BRIDGE}/set_pose', SetPose.Request(frame=frame, pose=pose, dry_run=dry_run))
 
 
-def test_a_pose_measured_by_a_moving_tool(
+def test_measured_poses_go_into_the_files(
         start_bridge, start_listener, ros_domain, path):
     start_bridge('--ros-args', '-p', f'sdf_file:={path}', '-p', 'allow_set_pose:=true',
                  '-p', 'use_joint_states:=true').wait_until_started()
@@ -67,13 +67,7 @@ def test_a_pose_measured_by_a_moving_tool(
         '5 0 0 0 0 0', '0 1.5 0 0 0 1.570796327')
     wait_for_x(observer, 0.0, 'fixture')
     assert load(path).pose('fixture')[:3] == (0.0, 1.5, 0.0)
-
-
-def test_a_frame_of_an_included_model(start_bridge, start_listener, path):
-    start_bridge('--ros-args', '-p', f'sdf_file:={path}', '-p', 'allow_set_pose:=true')
-    client, observer = start_listener(), start_listener()
-    listen_to_tf(observer)
-    wait_for_x(observer, 0.0, 'gauge/zero')
+    # One of an included model.
     assert '+<frame name="zero"><pose>0.25' in ask(client, 'gauge/zero', 0.25, dry_run=True).diff
     answer = ask(client, 'gauge/zero', 0.25)
     assert (answer.success, answer.file) == (True, str(path.with_name('gauge.sdf')))
@@ -81,11 +75,10 @@ def test_a_frame_of_an_included_model(start_bridge, start_listener, path):
     refused = ask(client, 'arm/tol', 0.0)
     assert not refused.success
     assert 'did you mean "arm/tool"' in refused.message
-    assert path.read_text(encoding='utf-8') == ARM
 
 
-def test_nobody_can_switch_it_on_while_the_node_runs(start_bridge, start_listener, path):
-    start_bridge('--ros-args', '-p', f'sdf_file:={path}').wait_until_started()
+@pytest.mark.usefixtures('bridge')
+def test_nobody_can_switch_it_on_while_the_node_runs(start_listener):
     client = start_listener()
     result, = set_parameters(client, allow_set_pose=True)
     assert not result.successful

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """``~/visuals`` of a running bridge, received by another process."""
 
-from changes import BRIDGE, reload, replace
+from changes import BRIDGE, reload, replace, set_parameters
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -26,10 +26,18 @@ BALL = ('ball', '<sphere><radius>2</radius></sphere>')
 
 
 @pytest.fixture
-def sdf_file(tmp_path):
+def file(tmp_path):
     path = tmp_path / 'crate.sdf'
     path.write_text(crate(BOX), encoding='utf-8')
     return path
+
+
+@pytest.fixture
+def listener(bridge, start_listener):
+    """A listener beside a bridge that does not notice changes."""
+    listener = start_listener()
+    set_parameters(listener, watch=False)
+    return listener
 
 
 def arrays_of(listener):
@@ -48,54 +56,30 @@ def wait_for_types(listener, arrays, *types):
     return arrays[-1]
 
 
-@pytest.mark.parametrize('comes_first', ['bridge', 'listener'])
-def test_listener_gets_the_visuals(start_bridge, start_listener, sdf_file, comes_first):
-    listener = start_listener()
-    arrays = arrays_of(listener) if comes_first == 'listener' else None
-    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={sdf_file}')
-    if arrays is None:
-        bridge.wait_until_started()
-        arrays = arrays_of(listener)
+def test_each_listener_gets_the_visuals_of_the_published_file(
+        listener, file, start_listener):
+    replace(file, crate(BALL))
+    arrays = arrays_of(listener)
     first, box = wait_for_types(listener, arrays, Marker.CUBE).markers
     assert first.action == Marker.DELETEALL
     assert (box.header.frame_id, box.ns) == ('crate/body', 'crate')
     assert (box.scale.x, box.scale.y, box.scale.z, box.pose.position.z) == (1, 2, 3, 1)
     assert len(arrays) == 1
-
-
-def test_second_listener_gets_them_too(start_bridge, start_listener, sdf_file):
-    start_bridge('--ros-args', '-p', f'sdf_file:={sdf_file}')
-    listener = start_listener()
-    wait_for_types(listener, arrays_of(listener), Marker.CUBE)
     late = start_listener()
     wait_for_types(late, arrays_of(late), Marker.CUBE)
 
 
-def test_visuals_follow_a_reload(start_bridge, start_listener, sdf_file):
-    start_bridge('--ros-args', '-p', f'sdf_file:={sdf_file}', '-p', 'watch:=false')
-    listener = start_listener()
+def test_visuals_follow_a_reload(listener, file):
     arrays = arrays_of(listener)
     wait_for_types(listener, arrays, Marker.CUBE)
-    replace(sdf_file, crate(BALL))
+    replace(file, crate(BALL))
     assert reload(listener).success
     array = wait_for_types(listener, arrays, Marker.SPHERE)
     assert array.markers[0].action == Marker.DELETEALL
 
 
-def test_visuals_are_those_of_the_published_file(start_bridge, start_listener, sdf_file):
-    start_bridge(
-        '--ros-args', '-p', f'sdf_file:={sdf_file}', '-p', 'watch:=false').wait_until_started()
-    replace(sdf_file, crate(BALL))
-    listener = start_listener()
-    arrays = arrays_of(listener)
-    wait_for_types(listener, arrays, Marker.CUBE)
+def test_visual_that_cannot_be_shown_is_reported(bridge, listener, file):
+    replace(file, crate(('part', '<mesh><uri>none.stl</uri></mesh>'), BOX))
     assert reload(listener).success
-    wait_for_types(listener, arrays, Marker.SPHERE)
-
-
-def test_visual_that_cannot_be_shown_is_reported(start_bridge, start_listener, sdf_file):
-    replace(sdf_file, crate(('part', '<mesh><uri>none.stl</uri></mesh>'), BOX))
-    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={sdf_file}')
-    listener = start_listener()
     wait_for_types(listener, arrays_of(listener), Marker.CUBE)
     bridge.wait_for_line('"crate::body::part" is not shown: the mesh "none.stl" is not found')

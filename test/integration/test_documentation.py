@@ -154,12 +154,3 @@ def test_files_of_sdf():
     assert files
     for text in files:
         load_text(text)
-
-
-def test_pages_are_built_without_a_warning(tmp_path):
-    pytest.importorskip('sphinx', reason='needs Sphinx')
-    pytest.importorskip('myst_parser', reason='needs myst-parser')
-    done = subprocess.run(
-        [sys.executable, '-m', 'sphinx', '--fail-on-warning', '--keep-going', '--quiet',
-         ROOT / 'docs', tmp_path], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr

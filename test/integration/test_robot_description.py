@@ -37,18 +37,20 @@ def wait_for_text(listener, texts, text):
     listener.wait(lambda: texts[-1:] == [text], lambda: texts)
 
 
-def start_with_text(start_bridge, text):
-    return start_bridge(
-        '--ros-args', '-p', f'robot_description:={json.dumps(text)}').wait_until_started()
-
-
 def topics_of(listener):
     return [name for name, _ in listener.node.get_topic_names_and_types()]
 
 
-def test_the_text_of_a_file_is_published_again_after_a_reload(start_bridge, start_listener, file):
-    start_bridge('--ros-args', '-p', f'sdf_file:={file}', '-p', 'watch:=false')
+@pytest.fixture
+def listener(bridge, start_listener):
     listener = start_listener()
+    listen_to_tf(listener)
+    wait_for_x(listener, 1.0, 'body')
+    return listener
+
+
+def test_the_text_of_a_file_is_published_again_after_a_reload(file, listener, start_listener):
+    set_parameters(listener, watch=False)
     texts = texts_of(listener)
     wait_for_text(listener, texts, model(1))
     replace(file, model(2))
@@ -62,7 +64,7 @@ def test_the_text_of_a_file_is_published_again_after_a_reload(start_bridge, star
 
 
 def test_a_text_is_published_as_a_file_is(start_bridge, start_listener):
-    bridge = start_with_text(start_bridge, model(3))
+    bridge = start_bridge('--ros-args', '-p', f'robot_description:={json.dumps(model(3))}')
     bridge.wait_for_line('publishing 2 frames of robot_description with')
     listener = start_listener()
     listen_to_tf(listener)
@@ -70,47 +72,30 @@ def test_a_text_is_published_as_a_file_is(start_bridge, start_listener):
     wait_for_text(listener, texts_of(listener), model(3))
 
 
-def test_a_text_can_be_set_and_is_judged_before(start_bridge, start_listener):
-    start_with_text(start_bridge, model(1))
-    listener = start_listener()
+def test_a_text_takes_the_place_of_a_file_and_is_judged_before(file, listener):
     texts = texts_of(listener)
-    listen_to_tf(listener)
-    wait_for_x(listener, 1.0, 'body')
-    wrong = model(2).replace('<pose>', '<pose relative_to="x">')
-    (result,) = set_parameters(listener, robot_description=wrong)
-    assert not result.successful
-    assert result.reason.startswith('robot_description:3: POSE_RELATIVE_TO_INVALID')
     (result,) = set_parameters(listener, robot_description=model(2))
-    assert result.successful, result.reason
+    assert 'sdf_file and robot_description are both set' in result.reason
+    wrong = model(2).replace('<pose>', '<pose relative_to="x">')
+    results = set_parameters(listener, sdf_file='', robot_description=wrong)
+    assert not any(result.successful for result in results)
+    assert results[0].reason.startswith('robot_description:3: POSE_RELATIVE_TO_INVALID')
+    results = set_parameters(listener, sdf_file='', robot_description=model(2))
+    assert all(result.successful for result in results), results
     wait_for_x(listener, 2.0, 'body')
     wait_for_text(listener, texts, model(2))
-    assert wrong not in texts
-
-
-def test_a_file_takes_the_place_of_a_text_in_one_call(start_bridge, start_listener, file):
-    start_with_text(start_bridge, model(5))
-    listener = start_listener()
-    listen_to_tf(listener)
-    (result,) = set_parameters(listener, sdf_file=str(file))
-    assert 'sdf_file and robot_description are both set' in result.reason
     results = set_parameters(listener, sdf_file=str(file), robot_description='')
     assert all(result.successful for result in results), results
     wait_for_x(listener, 1.0, 'body')
-    wait_for_text(listener, texts_of(listener), model(1))
+    wait_for_text(listener, texts, model(1))
+    assert wrong not in texts
 
 
-def test_there_is_no_topic_for_a_world_or_if_it_is_switched_off(
-        start_bridge, start_listener, file):
-    start_bridge('--ros-args', '-p', f'sdf_file:={file}')
-    listener = start_listener()
-    wait_for_text(listener, texts_of(listener), model(1))
-    listener.node.destroy_subscription(next(
-        each for each in listener.node.subscriptions
-        if each.topic_name == '/robot_description'))
-
+def test_there_is_no_topic_for_a_world_or_if_it_is_switched_off(file, listener):
     def has_topic():
         return '/robot_description' in topics_of(listener)
 
+    listener.wait(has_topic, lambda: topics_of(listener))
     set_parameters(listener, publish_robot_description=False)
     listener.wait(lambda: not has_topic(), lambda: topics_of(listener))
     set_parameters(listener, publish_robot_description=True)
@@ -120,9 +105,7 @@ def test_there_is_no_topic_for_a_world_or_if_it_is_switched_off(
 
 
 def test_urdf_is_made_of_the_model_and_again_after_each_change(
-        start_bridge, start_listener, file):
-    bridge = start_bridge('--ros-args', '-p', f'sdf_file:={file}')
-    listener = start_listener()
+        bridge, file, listener, start_listener):
     texts = texts_of(listener)
     wait_for_text(listener, texts, model(1))
     set_parameters(listener, description_format='urdf')
@@ -131,7 +114,6 @@ def test_urdf_is_made_of_the_model_and_again_after_each_change(
     replace(file, model(2))
     listener.wait(lambda: '<origin xyz="2 0 0" rpy="0 0 0"/>' in texts[-1], lambda: texts)
     # What cannot be URDF has no topic, and its frames are published all the same.
-    listen_to_tf(listener)
     replace(file, world(3).replace('</world>', '<model name="n"><link name="l"/></model></world>'))
     bridge.wait_for_line('there is no robot_description, because no URDF can be made')
     wait_for_x(listener, 3.0)
