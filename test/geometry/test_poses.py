@@ -52,11 +52,6 @@ def test_a_pose_rotates_before_it_translates():
     assert_near(pose_product(quarter, Pose(1.0, 0.0, 0.0))[:3], (1, 1, 0))
 
 
-def test_the_inverse_of_a_rotated_pose():
-    quarter = Pose(1.0, 2.0, 3.0, 0.0, 0.0, 0.5 ** 0.5, 0.5 ** 0.5)
-    assert_near(pose_inverse(quarter), (-2, 1, -3, 0, 0, -(0.5 ** 0.5), 0.5 ** 0.5))
-
-
 @given(POSES, POSES)
 def test_the_product_is_that_of_the_matrices(a, b):
     assert_near(matrix_from_pose(pose_product(a, b)), matrix_from_pose(a) @ matrix_from_pose(b))
@@ -67,32 +62,10 @@ def test_the_inverse_is_that_of_the_matrix(a):
     assert_near(matrix_from_pose(pose_inverse(a)), np.linalg.inv(matrix_from_pose(a)))
 
 
-@given(POSES, POSES, POSES)
-def test_products_are_associative(a, b, c):
-    assert_near(pose_product(pose_product(a, b), c), pose_product(a, pose_product(b, c)))
-
-
-@given(POSES)
-def test_a_pose_and_its_inverse_cancel(a):
-    assert_near(pose_product(a, pose_inverse(a)), Pose())
-    assert_near(pose_product(pose_inverse(a), a), Pose())
-
-
 @given(POSES)
 def test_the_identity_changes_nothing(a):
     assert pose_product(a, Pose()) == a
     assert_near(pose_product(Pose(), a), a)
-
-
-@given(POSES)
-def test_the_inverse_of_the_inverse(a):
-    assert_near(pose_inverse(pose_inverse(a)), a)
-
-
-@given(POSES, POSES)
-def test_the_inverse_of_a_product(a, b):
-    assert_near(
-        pose_inverse(pose_product(a, b)), pose_product(pose_inverse(b), pose_inverse(a)))
 
 
 @given(POSES, POSES)
@@ -104,12 +77,6 @@ def test_a_relative_pose_leads_back_to_the_pose(a, b):
 def test_many_products_are_the_same_as_one_by_one(pairs):
     products = pose_products(rows([a for a, _ in pairs]), rows([b for _, b in pairs]))
     np.testing.assert_array_equal(products, rows([pose_product(a, b) for a, b in pairs]))
-
-
-@given(POSES, st.lists(POSES, min_size=1, max_size=12))
-def test_the_product_of_one_pose_and_many(a, poses):
-    np.testing.assert_array_equal(
-        pose_products(rows([a]), rows(poses)), rows([pose_product(a, b) for b in poses]))
 
 
 @given(st.lists(st.tuples(POSES, POSES), max_size=12))

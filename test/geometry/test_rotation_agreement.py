@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The conversions agree with scipy, transforms3d and Drake where these are defined."""
+"""The conversions agree with scipy where that is defined."""
 
 import math
 import warnings
@@ -20,7 +20,7 @@ from rotation_sets import (
 from sdf_pose_bridge.geometry import rotations
 from sdf_pose_bridge.geometry.poses import pose_products
 
-# Rounding in the other libraries is included.
+# Rounding in scipy is included.
 ROTATION_LIMIT = 4e-15
 ANGLE_LIMIT = 2e-14
 
@@ -93,46 +93,3 @@ def test_scipy_composes_poses_the_same_way():
     assert largest_angle(products[:, 3:], theirs.as_quat()) <= ROTATION_LIMIT
     rotated = spatial.Rotation.from_quat(a).apply(origins)
     assert np.allclose(products[:, :3], rotated, atol=1e-14)
-
-
-def test_transforms3d_agrees_on_quaternions_and_matrices_from_rpy():
-    euler = pytest.importorskip('transforms3d.euler')
-    rpy = difficult_rpy(100)
-    quats = np.array([euler.euler2quat(*angles, axes='sxyz') for angles in rpy.tolist()])
-    theirs = quats[:, [1, 2, 3, 0]]
-    assert largest_angle(rotations.quaternion_from_rpy(rpy), theirs) <= ROTATION_LIMIT
-    matrices = np.array([euler.euler2mat(*angles, axes='sxyz') for angles in rpy.tolist()])
-    assert np.abs(rotations.matrix_from_rpy(rpy) - matrices).max() <= 1e-15
-
-
-def test_transforms3d_agrees_on_rpy_from_quaternions():
-    euler = pytest.importorskip('transforms3d.euler')
-    quats = difficult_quaternions(100)
-    ours = rotations.rpy_from_quaternion(quats)
-    far = far_from_lock(ours)
-    theirs = np.array(
-        [euler.quat2euler(quat, axes='sxyz') for quat in quats[:, [3, 0, 1, 2]].tolist()]
-    )
-    # It goes by way of the matrix, which loses digits near lock.
-    assert largest_difference(ours[far], theirs[far]) <= 1e-13
-
-
-def test_drake_agrees_on_quaternions_from_rpy():
-    drake = pytest.importorskip('pydrake.math', reason='Drake (PyPI: drake) is not installed')
-    rpy = difficult_rpy(300)
-    quats = np.array([drake.RollPitchYaw(angles).ToQuaternion().wxyz() for angles in rpy])
-    theirs = quats[:, [1, 2, 3, 0]]
-    assert largest_angle(rotations.quaternion_from_rpy(rpy), theirs) <= ROTATION_LIMIT
-
-
-def test_drake_agrees_on_rpy_from_quaternions():
-    drake = pytest.importorskip('pydrake.math', reason='Drake (PyPI: drake) is not installed')
-    eigen = pytest.importorskip('pydrake.common.eigen_geometry')
-    quats = rotations.canonical_quaternion(difficult_quaternions(300))
-    theirs = np.array([
-        drake.RollPitchYaw(eigen.Quaternion(wxyz=quat)).vector() for quat in quats[:, [3, 0, 1, 2]]
-    ])
-    ours = rotations.rpy_from_quaternion(quats)
-    far = far_from_lock(ours)
-    assert largest_difference(ours[far], theirs[far]) <= ANGLE_LIMIT
-    assert largest_angle(rotations.quaternion_from_rpy(theirs), quats) <= ROTATION_LIMIT

@@ -167,14 +167,6 @@ def test_long_names_have_the_bytes_of_the_serializer(serialized):
     assert not any(byte for byte, counts in zip(ours, mask, strict=True) if not counts)
 
 
-def test_names_of_two_megabytes_have_the_bytes_of_the_serializer(serialized):
-    lengths = [0, 7, 200_000, 99_999, 3, 300_000, 1, 0]
-    rows = [('p' * length, 'c' * length, [1.0] * 7) for length in lengths]
-    mask = mask_of_list([row[:2] for row in rows])
-    (ours,) = tf_message(*columns(rows)).with_stamp(1, 2)
-    assert meant(ours, mask) == meant(serialized(tf_message_object(rows, (1, 2))), mask)
-
-
 def test_long_names_take_little_more_memory_than_the_message():
     names = [str(number) * 1000 for number in range(1000, 2000)]
     tracemalloc.start()
@@ -216,15 +208,6 @@ def test_no_transforms_are_one_empty_message():
 
 def test_no_poses_are_no_messages():
     assert stamped_messages([[]], np.empty((0, 7))).with_stamp(1, 2) == []
-
-
-def test_a_message_of_100000_transforms_ends_with_the_last_number():
-    count = 100_000
-    names = [f'frame_{number}' for number in range(count)]
-    numbers = np.arange(7.0 * count).reshape(-1, 7)
-    (data,) = tf_message([['world'] * count, names], numbers).with_stamp(1, 2)
-    assert struct.unpack_from('<I', data, 4) == (count,)
-    assert struct.unpack('<7d', data[-56:]) == tuple(numbers[-1])
 
 
 @given(ROWS)

@@ -45,16 +45,10 @@ def default_settings(make_node):
      ('is link,frame, which is a string; it must be a list of strings: -p "kinds:=[\'link\', '
       '\'frame\']"')),
     ('pose_topics', '[1, 2]', 'is [1, 2], which is a list of integers; it must be a list of '),
-    ('resource_paths', '[0.5]', 'is [0.5], which is a list of numbers; it must be a list of '),
     ('publish_rate', 'fast', 'is fast, which is a string; it must be a number'),
-    ('publish_rate', '500.0', 'is 500.0; it must be 0.0 for never, or from 0.001 to 100.0'),
     ('publish_rate', '500', 'is 500.0; it must be 0.0 for never, or from 0.001 to 100.0'),
-    ('publish_rate', '1e-12', 'is 1e-12; it must be 0.0 for never, or from 0.001 to 100.0'),
-    ('publish_frequency', 'fast', 'is fast, which is a string; it must be a number'),
     ('publish_frequency', '1001', 'is 1001.0; it must be 0.0 for each message, or from 0.001'),
-    ('publish_rate', '.nan', 'is nan; it must be 0.0 for never, or from 0.001 to 100.0'),
     ('anchor_models', 'some,all', 'is "some,all"; it must be one of auto, all, static, none'),
-    ('kinds', '[]', 'is []; it must be at least one of'),
 ])
 def test_a_wrong_value_on_the_command_line_is_named_once(make_node, name, value, sentence):
     node = make_node('bridge', '-p', 'sdf_file:=cell.sdf', '-p', f'{name}:={value}')
@@ -95,13 +89,6 @@ def test_unknown_parameters_are_named_with_the_nearest_one(make_node):
     assert warnings_about_unknown_parameters(node) == sentences
 
 
-def test_too_many_patterns_are_refused(make_node):
-    settings = settings_from_node(make_node('bridge', *FILE))
-    too_many = Parameter('pose_topics', value=['x'] * 1001)
-    with pytest.raises(SettingsError, match='pose_topics has 1001 patterns; it must'):
-        changed_settings(settings, [too_many])
-
-
 def test_all_wrong_values_are_named(make_node):
     node = make_node('bridge', '-p', 'kinds:=[rope]', '-p', 'frame_names:=x', '-p', 'watch:=1')
     with pytest.raises(SettingsError) as refusal:
@@ -139,20 +126,12 @@ def test_a_file_and_a_text_together_are_refused(settings):
 @pytest.mark.parametrize(('name', 'value', 'sentence'), [
     ('sdf_file', '', 'is not set'),
     ('root_frame', '', 'is ""; it must be a frame id'),
-    ('root_frame', '/map', 'is "/map"; it must be without a leading slash'),
-    ('root_frame', 'a\nb', r'is "a\nb"; it must be without control'),
     ('root_frame', 5, 'is 5, which is an integer; it must be a string'),
-    ('anchor_models', 'some,all', 'is "some,all"; it must be one of auto, all, static, none'),
     ('on_missing_include', 'ignore', 'is "ignore"; it must be one of error, skip'),
     ('frame_names', 'Auto', 'is "Auto"; it must be one of auto, scoped, relative'),
     ('frame_separator', '', 'is ""; it must be at least one'),
     ('frame_prefix', '/robot/', 'is "/robot/"; it must be without a'),
-    ('publish_rate', 1e-12, 'is 1e-12; it must be 0.0 for never, or from 0.001 to 100.0'),
-    ('publish_rate', 101.0, 'is 101.0; it must be 0.0 for never, or from 0.001 to 100.0'),
     ('publish_rate', float('inf'), 'is inf; it must be 0.0 for never, or'),
-    ('publish_rate', float('nan'), 'is nan; it must be 0.0 for never, or'),
-    ('publish_rate', 'fast', 'is fast, which is a string; it must be a number'),
-    ('kinds', ['link', 'world'], 'is "world"; it must be made of model, link'),
 ])
 def test_a_wrong_new_value_is_named_with_its_rule(settings, name, value, sentence):
     with pytest.raises(SettingsError) as refusal:

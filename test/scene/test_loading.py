@@ -6,7 +6,7 @@ import gc
 from pathlib import Path
 
 import pytest
-from sdf_texts import codes_of, errors_of, model_file
+from sdf_texts import errors_of, model_file
 
 import sdf_pose_bridge
 from sdf_pose_bridge.errors import LoadError
@@ -67,11 +67,6 @@ def test_all_errors_are_reported(file_errors):
     assert sorted((error.line, error.code) for error in file_errors) == expected
 
 
-def test_errors_are_in_file_order(file_errors):
-    lines = [error.line for error in file_errors]
-    assert lines == sorted(lines)
-
-
 @pytest.mark.parametrize('expected', ERRORS, ids=lambda expected: f'{expected[0]}')
 def test_error_has_the_value_and_the_element(file_errors, expected):
     line, code, value, element = expected
@@ -81,58 +76,8 @@ def test_error_has_the_value_and_the_element(file_errors, expected):
     assert error.element.endswith(element)
 
 
-def test_every_error_has_the_file(file_errors):
-    assert {error.file for error in file_errors} == {'file.sdf'}
-
-
-def test_exception_has_code_and_message_of_the_first_error():
-    with pytest.raises(LoadError) as caught:
-        sdf_pose_bridge.load_text(WRONG_FILE, 'file.sdf')
-    error = caught.value
-    assert (error.code, error.line) == (error.errors[0].code, 3)
-    assert error.message == error.errors[0].message
-
-
-def test_text_of_the_exception_has_a_line_for_each_error(file_errors):
-    with pytest.raises(LoadError) as caught:
-        sdf_pose_bridge.load_text(WRONG_FILE, 'file.sdf')
-    assert str(caught.value).splitlines() == [str(error) for error in file_errors]
-
-
-def test_line_of_an_error_begins_with_its_place():
-    error = errors_of('<sdf version="1.9">\n<model name="m"/>\n</sdf>')[0]
-    assert str(error).startswith('file.sdf:2: MODEL_WITHOUT_LINK: ')
-
-
 def test_messages_have_one_line(file_errors):
     assert all(error.message.strip() and '\n' not in error.message for error in file_errors)
-
-
-def test_wrong_reference_gives_no_other_errors():
-    assert codes_of(model_file(
-        '<link name="a"/><link name="b"><pose relative_to="x"/></link>'
-        '<frame name="f" attached_to="b"/><visual/>')) == ['POSE_RELATIVE_TO_INVALID']
-
-
-def test_exception_has_the_warnings():
-    text = model_file(
-        '<link name="a"><visual name="v"><pose relative_to="x"/></visual></link>'
-        '<frame name="f" attached_to="y"/>')
-    with pytest.raises(LoadError) as caught:
-        sdf_pose_bridge.load_text(text)
-    assert [warning.code for warning in caught.value.warnings] == ['POSE_RELATIVE_TO_INVALID']
-    assert [error.code for error in caught.value.errors] == ['FRAME_ATTACHED_TO_INVALID']
-
-
-def test_warning_has_a_place():
-    scene = sdf_pose_bridge.load_text(
-        '<sdf version="1.9">\n<model name="m"><link name="a">\n<visual name="v">\n'
-        '<pose relative_to="x"/></visual></link></model></sdf>', 'file.sdf')
-    warning = scene.warnings[0]
-    assert warning.place == (
-        'file.sdf', 4,
-        '/sdf/model[@name="m"]/link[@name="a"]/visual[@name="v"]/pose')
-    assert str(warning).startswith('file.sdf:4: POSE_RELATIVE_TO_INVALID: ')
 
 
 def test_error_has_the_path_as_it_was_opened(tmp_path, monkeypatch):
@@ -148,15 +93,6 @@ def test_path_can_be_a_string_or_a_path(tmp_path, as_path):
     (tmp_path / 'größe 1.sdf').write_text(model_file('<link name="l"/>'))
     scene = sdf_pose_bridge.load(as_path(tmp_path / 'größe 1.sdf'))
     assert scene.path == str(tmp_path / 'größe 1.sdf')
-
-
-def test_load_does_not_depend_on_earlier_ones():
-    text = model_file('<link name="l"/>')
-    first = sdf_pose_bridge.load_text(text)
-    errors_of(WRONG_FILE)
-    second = sdf_pose_bridge.load_text(text)
-    assert first.names == second.names
-    assert first.poses is not second.poses
 
 
 @pytest.mark.parametrize('is_enabled', [True, False])

@@ -2,14 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which frames references name: siblings and downwards, never upwards."""
 
-import time
 
 import pytest
 from sdf_texts import (
     element,
     errors_of,
     fixed_joint,
-    LINK,
     model_file,
     only_error,
     posed,
@@ -164,11 +162,3 @@ def test_many_unknown_references_among_many_names_are_reported_fast():
     links = ''.join(f'<link name="l{i}"/>' for i in range(3000))
     wrong = ''.join(posed('frame', f'f{i}', '', f'wrong{i}') for i in range(30))
     assert len(errors_of(model_file(links + wrong))) == 30
-
-
-def test_ten_thousand_unknown_names_have_a_hundred_hints():
-    frames = ''.join(f'<frame name="f{i}" attached_to="g{i}"/>' for i in range(10_000))
-    begin = time.perf_counter()
-    errors = errors_of(model_file(LINK + frames))
-    assert time.perf_counter() - begin < 10.0  # 30 s with all hints
-    assert errors[-1].message == 'and 9900 more errors'

@@ -145,10 +145,3 @@ def test_a_file_of_the_cache_of_fuel_is_refused(change, tmp_path, monkeypatch):
     monkeypatch.setenv('GZ_FUEL_CACHE_PATH', str(tmp_path))
     with pytest.raises(PoseNotSetError, match='cache of Gazebo Fuel'):
         change('m::a')
-
-
-def test_the_difference_is_one_line(change, tmp_path):
-    write_files(tmp_path, m=MODEL.replace('><', '>\n<'))
-    added = [line for line in change('m::a').file.diff.splitlines() if line[:2] in ('+<', '-<')]
-    assert added == [
-        '-<pose>1 0 0 0 0 0</pose>', '+<pose>0.5 -1 2 1.570796327 0 1.570796327</pose>']

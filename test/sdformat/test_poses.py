@@ -150,15 +150,6 @@ def test_roll_comes_first_and_about_fixed_axes():
     assert_same_pose(rpy('1 2 3 0.3 -0.4 1.2'), matrix_from_rpy(1, 2, 3, 0.3, -0.4, 1.2), 1e-15)
 
 
-def test_formula_of_the_specification():
-    half = [angle / 2 for angle in (0.3, -0.4, 1.2)]
-    cr, cp, cy = map(math.cos, half)
-    sr, sp, sy = map(math.sin, half)
-    assert rpy('0 0 0 0.3 -0.4 1.2')[3:] == pytest.approx((
-        sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy,
-        cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy), abs=1e-15)
-
-
 def test_only_angles_are_in_degrees():
     pose = pose_from_text('10 20 30 10 90 30', RPY_DEGREES)
     assert_same_pose(pose, matrix_from_degrees(10, 20, 30, 10, 90, 30), 1e-15)

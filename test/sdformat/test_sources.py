@@ -153,28 +153,6 @@ def test_lines_of_a_long_file_that_is_merged(folder, name, file, line):
     assert place_of(scene, name) == (str(folder / f'{file}.sdf'), line)
 
 
-def test_line_of_an_error_in_a_long_file_that_is_included_twice(folder):
-    text = model_file('\n' * 70_000 + '<link name="l">\n<pose>1 2</pose></link>')
-    write_files(folder, long=text)
-    (error,) = errors_of_file(folder / 'twice.sdf')
-    assert (error.file, error.line) == (str(folder / 'long.sdf'), 70_002)
-
-
-def test_line_of_an_include_with_an_error_in_a_long_file(folder):
-    write_files(folder, long=world_file(''))
-    errors = errors_of_file(folder / 'twice.sdf')
-    assert [(error.code, error.line) for error in errors] == [
-        ('ELEMENT_MISSING', 80_001), ('ELEMENT_MISSING', 80_002)]
-
-
-def test_line_of_a_name_in_use_in_a_long_file(folder):
-    text = model_file('\n' * 70_000 + LINK + '\n' * 70_000 + LINK)
-    write_files(folder, long=text)
-    (error,) = errors_of_file(folder / 'twice.sdf')
-    assert error.line == 140_001
-    assert f'see {folder / "long.sdf"}:70001' in error.message
-
-
 def test_element_stands_where_its_include_places_it(tmp_path):
     write_files(
         tmp_path, leaf=model_file('\n' + LINK),

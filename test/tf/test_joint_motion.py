@@ -1,8 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Poses of elements at positions of joints, against matrix exponentials and against drake."""
+"""Poses of elements at positions of joints, against matrix exponentials."""
 
-import dataclasses
 
 from joint_trees import link_matrices, model_text, pose_text, POSES, POSITIONS, random_joints
 from matrices import assert_same_pose, matrix_from_degrees, matrix_from_pose
@@ -18,8 +17,6 @@ from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
-
-DRAKE_TYPES = ('revolute', 'continuous', 'prismatic', 'screw', 'universal', 'ball', 'fixed')
 
 
 def motion_of(text):
@@ -140,43 +137,3 @@ def test_joints_at_zero_leave_every_pose_as_it_is(data, count):
     elements = np.arange(len(scene.names), dtype=np.int32)
     moved = motion.moved_poses(scene.poses, elements, np.zeros(len(motion.dofs)))
     np.testing.assert_allclose(moved, scene.poses, rtol=0.0, atol=1e-14)
-
-
-ORTHOGONAL_AXES = st.sampled_from([
-    ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)), ((0.0, 0.0, 2.0), (1.0, 0.0, 0.0)),
-    ((1.0, 1.0, 0.0), (1.0, -1.0, 0.0)), ((0.0, 2.0, 1.0), (0.0, -1.0, 2.0))])
-
-
-@given(st.data(), st.integers(2, 7))
-def test_random_trees_move_as_in_drake(data, count):
-    parsing = pytest.importorskip(
-        'pydrake.multibody.parsing', reason='drake, which compares poses, is not installed')
-    from pydrake.multibody.plant import MultibodyPlant
-    # Drake cannot go from the child of these joints to the parent.
-    joints = [
-        dataclasses.replace(joint, is_reversed=False)
-        if joint.type in ('screw', 'universal', 'ball') else joint
-        for joint in data.draw(random_joints(count, DRAKE_TYPES, ORTHOGONAL_AXES))]
-    text = model_text(
-        [data.draw(POSES) for _ in range(count)], joints,
-        '<joint name="w" type="fixed"><parent>world</parent><child>l0</child></joint>')
-    plant = MultibodyPlant(0.0)
-    parsing.Parser(plant).AddModelsFromString(text, 'sdf')
-    plant.Finalize()
-    context = plant.CreateDefaultContext()
-    for _ in range(5):
-        positions = {
-            name: data.draw(POSITIONS) for joint in joints for name in joint.position_names}
-        in_drake = plant.GetPositions(context).copy()
-        for joint in joints:
-            start = plant.GetJointByName(joint.name).position_start()
-            values = [positions[name] for name in joint.position_names]
-            # The positions of a ball joint are roll, pitch and yaw there.
-            in_drake[start:start + len(values)] = (
-                values[::-1] if joint.type == 'ball' else values)
-        plant.SetPositions(context, in_drake)
-        poses = poses_at(text, positions)
-        for number in range(count):
-            matrix = plant.EvalBodyPoseInWorld(
-                context, plant.GetBodyByName(f'l{number}')).GetAsMatrix4()
-            assert_same_pose(poses[f'm::l{number}'], matrix, name=f'l{number}')

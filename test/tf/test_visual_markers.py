@@ -4,7 +4,6 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 from sdf_texts import link_with, model_file, world_file
 from tf_checks import model
@@ -129,27 +128,6 @@ def test_shape_that_rviz_has(geometry, kind, scale):
     assert len(marker.form.points) == 0
 
 
-def test_capsule_is_a_cylinder_and_two_spheres():
-    markers = markers_of(link_with(visual(
-        '<capsule><radius>1</radius><length>4</length></capsule>',
-        '<pose>5 0 0 0 1.5707963267948966 0</pose>')))
-    assert [(each.form.type, each.form.scale) for each in markers] == [
-        ('CYLINDER', (2, 2, 4)), ('SPHERE', (2, 2, 2)), ('SPHERE', (2, 2, 2))]
-    assert [each.pose.x for each in markers] == pytest.approx([5, 3, 7])
-
-
-@pytest.mark.parametrize(('geometry', 'lowest', 'highest'), [
-    ('<cone><radius>1</radius><length>4</length></cone>', (-1, -1, -2), (1, 1, 2)),
-    ('<plane><normal>0 0 1</normal><size>400 2</size></plane>', (-200, -1, 0), (200, 1, 0)),
-    ('<plane><normal>1 0 0</normal><size>4 2</size></plane>', (0, -1, -2), (0, 1, 2)),
-])
-def test_shape_of_triangles(geometry, lowest, highest):
-    form = only_marker(visual(geometry)).form
-    assert (form.type, form.scale) == ('TRIANGLE_LIST', (1, 1, 1))
-    assert len(form.points) % 3 == 0
-    np.testing.assert_allclose(extent_of(form.points), (lowest, highest), atol=1e-9)
-
-
 def test_mesh_beside_the_file_is_named_by_its_path(tmp_path):
     folder = tmp_path / 'my robot #1'
     folder.mkdir()
@@ -189,12 +167,6 @@ def test_part_of_a_mesh_is_shown_whole_with_a_warning():
         link_with(visual(MESH.format('package://a/a.dae', submesh))))
     assert marker.form.type == 'MESH_RESOURCE'
     assert 'instead of its part "lid"' in str(warning)
-
-
-def test_color_is_that_of_the_material():
-    assert only_marker(visual(BOX, material(.1, .2, .3, .5))).rgba == (.1, .2, .3, .5)
-    assert only_marker(
-        visual(MESH.format('package://a/a.stl', ''), material(1, 0, 0, 1))).rgba == (1, 0, 0, 1)
 
 
 @pytest.mark.parametrize('geometry', [
