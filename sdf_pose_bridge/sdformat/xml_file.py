@@ -20,6 +20,7 @@ from xml.parsers import expat
 
 from lxml import etree
 import numpy as np
+from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import FileReadError, PassingReadError, Place, SdfWarning
 from sdf_pose_bridge.names import shortened_message
@@ -58,10 +59,15 @@ _MOST_ERRORS = 100
 _LAST_LINE = 65_535
 """libxml2 reports this line for all elements in later lines."""
 
+_NO_TAG = (
+    rb'(?:!--.*?-->|!\[CDATA\[.*?\]\]>|![A-Z](?:[^"\'>]|"[^"]*"|\'[^\']*\')*>|\?.*?\?>)')
+"""A part of a file that may contain a text like a tag, without its first character."""
+
 START_TAG = re.compile(
-    rb'<(?:([^/!?][^"\'>]*(?:"[^"]*"[^"\'>]*|\'[^\']*\'[^"\'>]*)*)>'
-    rb'|!--.*?-->|!\[CDATA\[.*?\]\]>|![A-Z](?:[^"\'>]|"[^"]*"|\'[^\']*\')*>|\?.*?\?>)', re.DOTALL)
+    rb'<(?:([^/!?][^"\'>]*(?:"[^"]*"[^"\'>]*|\'[^\']*\'[^"\'>]*)*)>|' + _NO_TAG + rb')', re.DOTALL)
 """A start tag, its inside as group 1, or a part of a file that may contain a similar text."""
+
+_OTHER_PART = re.compile(b'<' + _NO_TAG, re.DOTALL)
 
 _NOT_TAGS_AND_BREAKS = bytes(set(range(256)) - set(b'<>\t\n'))
 _BREAK_IN_TAG = re.compile(rb'<[^/!?<>][^<>\t\n]*[\t\n]')
@@ -290,25 +296,24 @@ def _lines_and_warnings(
     has_break = has_break or rest.count(b'<') != rest.count(b'>')
     if not has_break and text.count(b'\n') < _LAST_LINE:
         return {}, []
-    tags = np.array([tag.span(1) for tag in START_TAG.finditer(text) if tag[1]])
-    line_ends = np.flatnonzero(np.frombuffer(text, np.uint8) == ord('\n'))
-    first_lines = np.searchsorted(line_ends, tags[:, 0]) + 1
-    last_lines = np.searchsorted(line_ends, tags[:, 1]) + 1
-    has_break = first_lines != last_lines
-    if b'\t' in text:
-        has_break |= [b'\t' in text[begin:end] for begin, end in tags.tolist()]
-    chosen = np.flatnonzero(has_break | (last_lines >= _LAST_LINE))
-    start = int(chosen[0]) if len(chosen) else len(tags)
+    first_lines = _lines_of_start_tags(text)
+    tags = (tag[1] for tag in START_TAG.finditer(text) if tag[1]) if has_break else ()
+    broken = {index: tag for index, tag in enumerate(tags) if b'\n' in tag or b'\t' in tag}
+    late = int(np.searchsorted(first_lines, _LAST_LINE))
+    start = min(late, next(iter(broken), late))
     # Nothing after the outermost element belongs to the tree.
     elements = list(islice(root.iter(etree.Element), start, None))
-    chosen = chosen[:np.searchsorted(chosen, start + len(elements))]
+    end = start + len(elements)
+    chosen = [*(index for index in broken if index < min(late, end)), *range(late, end)]
     lines = {
         elements[index - start]: line
-        for index, line in zip(chosen.tolist(), first_lines[chosen].tolist(), strict=True)}
+        for index, line in zip(chosen, first_lines[chosen].tolist(), strict=True)}
     warnings = []
-    for index in chosen[has_break[chosen]].tolist():
+    for index, tag in broken.items():
+        if index >= end:
+            break
         element, line = elements[index - start], int(first_lines[index])
-        name = _NAME.search(text, *tags[index].tolist())
+        name = _NAME.search(tag)
         value = name[1][1:-1].strip(WHITE_SPACE.encode()).decode() if name else ''
         found = [label for character, label in _BREAKS.items() if character in value]
         if found and not is_foreign(element):
@@ -316,3 +321,14 @@ def _lines_and_warnings(
                    'keeps it, so names differ there')
             warnings.append(SdfWarning('WARNING', shortened_message(msg), Place(path, line)))
     return lines, warnings
+
+
+def _lines_of_start_tags(text: bytes) -> NDArray[np.int64]:
+    """Return the line of each start tag, from 1."""
+    without_others = _OTHER_PART.sub(lambda part: b'\n' * part[0].count(b'\n'), text)
+    characters = np.frombuffer(without_others + b'/', np.uint8)
+    begins = np.flatnonzero(characters == ord('<'))
+    begins = begins[characters[begins + 1] != ord('/')]
+    lines: NDArray[np.int64] = np.searchsorted(
+        np.flatnonzero(characters == ord('\n')), begins) + 1
+    return lines
