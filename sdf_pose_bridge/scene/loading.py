@@ -65,8 +65,8 @@ def load(
         those of the environment variables ``GZ_SIM_RESOURCE_PATH`` and ``SDF_PATH``.
     :param on_missing_include: ``error``, or ``skip`` to leave out includes that are not found.
     :param limits: limits of the load, against hostile files.
-    :param shapes: whether to also read the shapes of visuals and collisions, and the dynamics of
-        joints.
+    :param shapes: whether to also read the shapes of visuals and collisions, masses and moments of
+        inertia, and the dynamics of joints.
     :param texts: texts to read instead of some files, by their paths as in ``Scene.files``, to try
         a change before it is written.
     :raises SdfError: if the file is not valid; its ``errors`` has all errors.

@@ -111,8 +111,8 @@ class Scene:
     sensors: Mapping[int, SensorDetails]
     """Details of each sensor, by its index."""
     inertials: Mapping[int, Inertial]
-    """Masses and moments of inertia, by the indices of inertials; also of automatic ones that are
-    computed."""
+    """Masses and moments of inertia, by the indices of inertials; without shapes only those of
+    automatic ones that are computed."""
     has_shapes: bool
     """Whether the load read shapes."""
     shapes: Mapping[int, Shape]

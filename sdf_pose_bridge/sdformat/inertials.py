@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 import math
-from operator import itemgetter
 import sys
 from typing import NamedTuple
 
@@ -37,8 +36,6 @@ _MAY_BE_MASSLESS = ('capsule', 'ellipsoid')
 
 _MOMENTS_OF_NONE = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
 """The default moments of libsdformat."""
-_DEFAULT_TEXTS = dict(zip(MOMENTS, map(str, _MOMENTS_OF_NONE), strict=True))
-_texts_of_moments = itemgetter(*MOMENTS)
 _TOLERANCE = 10.0 * sys.float_info.epsilon
 """Tolerance of gz-math for rules of moments, relative to half their sum."""
 
@@ -134,21 +131,22 @@ def sum_of_moments(matrices: Floats, masses: Floats, offsets: Floats) -> Floats:
 
 
 def inertial_from_element(
-    xml: XmlElement, sources: Sources,
+    xml: XmlElement, sources: Sources, *, reads_masses: bool,
 ) -> Inertial | AutomaticInertial | None:
     """
     Read an ``<inertial>`` in its link.
 
     :param sources: takes a warning about an inertial that libsdformat rejects; no pose depends on
         it.
-    :return: the inertial; None for an automatic one that cannot be computed.
+    :param reads_masses: whether to read one that is not automatic.
+    :return: the inertial; None if it is not read, or cannot be computed.
     """
     auto = xml.get('auto')
     if auto and boolean_from_text(auto):
         return _automatic_inertial(xml, sources)
-    inertial = _inertial_from_plain_numbers(xml)
-    if inertial is None or not inertial.is_valid:
-        inertial = _inertial_from_values(xml)
+    if not reads_masses:
+        return None
+    inertial = _inertial_from_values(xml)
     if not inertial.is_valid:
         link = xml.getparent()
         warn_of_inertial(xml, '' if link is None else attribute_of(link, 'name'), sources)
@@ -179,23 +177,6 @@ def _inertial_from_values(xml: XmlElement) -> Inertial:
         number for tag, default in zip(MOMENTS, _MOMENTS_OF_NONE, strict=True)
         for number in (
             (default,) if inertia is None else numbers_of_child(inertia, tag, (default,)))))
-
-
-def _inertial_from_plain_numbers(xml: XmlElement) -> Inertial | None:
-    """Read an inertial in little time, as every load does; return None for unusual texts."""
-    # Of several elements with one name, the first counts.
-    children = {child.tag: child for child in xml.iterchildren(reversed=True)}
-    inertia = children.get('inertia', ())
-    texts = _DEFAULT_TEXTS | {child.tag: child.text for child in reversed(inertia)}
-    mass = children.get('mass')
-    try:
-        words = '1' if mass is None else mass.text, *_texts_of_moments(texts)
-        if '_' in ''.join(words):  # which Python reads
-            return None
-        mass_kg, *moments = map(float, words)
-    except (TypeError, ValueError):
-        return None
-    return Inertial(mass_kg, tuple(moments))
 
 
 def _automatic_inertial(inertial: XmlElement, sources: Sources) -> AutomaticInertial | None:

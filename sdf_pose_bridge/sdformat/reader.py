@@ -89,7 +89,7 @@ def elements_from_tree(root: XmlElement, sources: Sources, *, shapes: bool = Fal
         one that was not found.
     :param sources: takes errors and warnings about structure, names, attributes and values;
         references are not looked up here.
-    :param shapes: whether to read the shapes of visuals and collisions.
+    :param shapes: whether to read shapes, masses and the dynamics of joints.
     :return: the elements. An element with an error is kept if possible, so that further errors are
         found and none only follows from the first.
     """
@@ -133,7 +133,8 @@ class _Reader:
             Kind.JOINT: ('joints', partial(
                 joint_details_from_element, sources=sources, reads_dynamics=shapes)),
             Kind.SENSOR: ('sensors', _sensor_details),
-            Kind.INERTIAL: ('inertials', partial(inertial_from_element, sources=sources)),
+            Kind.INERTIAL: ('inertials', partial(
+                inertial_from_element, sources=sources, reads_masses=shapes)),
         }
         """Details of some kinds: the field of the elements, and the function that reads it or
         None."""

@@ -30,7 +30,7 @@ def center_of(content):
 
 
 def inertial_of(content):
-    scene = load_text(link_with(content))
+    scene = load_text(link_with(content), shapes=True)
     assert scene.warnings == ()
     return scene.inertials[scene.index('m::l::inertial')]
 
@@ -53,7 +53,7 @@ def inertia(*moments, mass='2'):
     inertia(1, 1, 1, '1e200', 0, 0),
 ])
 def test_moments_that_no_body_can_have_are_a_warning(content):
-    scene = load_text(link_with(f'\n{content}'), 'm.sdf')
+    scene = load_text(link_with(f'\n{content}'), 'm.sdf', shapes=True)
     (warning,) = scene.warnings
     assert (warning.code, warning.place.line) == ('LINK_INERTIA_INVALID', 2)
     assert 'moments of inertia of link "l"' in warning.message
@@ -104,13 +104,13 @@ def test_inertial_has_mass_and_moments(content, mass_kg, moments):
 @pytest.mark.parametrize('mass', [
     '2</mass><mass>3', '2<!-- a comment -->', '2 kg', '2_0'])
 def test_first_number_of_the_first_element_counts(mass):
-    scene = load_text(link_with(inertia(1, 1, 1, 0, 0, 0, mass=mass)))
+    scene = load_text(link_with(inertia(1, 1, 1, 0, 0, 0, mass=mass)), shapes=True)
     assert scene.inertials[scene.index('m::l::inertial')].mass_kg == 2.0
 
 
 def test_elements_of_other_places_are_not_read():
     other = '<inertia><mass>7</mass></inertia><user:mass>8</user:mass><ixx>9</ixx>'
-    scene = load_text(link_with(f'<inertial>{other}</inertial>'))
+    scene = load_text(link_with(f'<inertial>{other}</inertial>'), shapes=True)
     inertial = scene.inertials[scene.index('m::l::inertial')]
     assert inertial == Inertial(1.0, (1.0, 1.0, 1.0, 0.0, 0.0, 0.0))
 
@@ -275,3 +275,8 @@ def test_given_mass_scales_the_moments():
 def test_automatic_inertial_of_a_mesh_is_not_known():
     scene = load_text(link_with(AUTO + collision('c', 1, '<mesh><uri>a</uri></mesh>')))
     assert scene.inertials == {}
+
+
+def test_masses_are_read_on_request_only():
+    scene = load_text(link_with(inertia(1, 1, 1, 0, 0, 0, mass=-1)))
+    assert (scene.inertials, scene.warnings) == ({}, ())
