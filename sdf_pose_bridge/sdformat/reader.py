@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from itertools import chain, islice
-from typing import Any
+from typing import Any, NamedTuple
 
 from lxml import etree
 
@@ -71,8 +71,6 @@ from sdf_pose_bridge.sdformat.xml_tree import (
 
 _FRAME_ID_TAGS = ('frame_id', 'gz_frame_id', 'ignition_frame_id')
 """Elements of a sensor with the frame id of its messages; the first of them counts."""
-_READ_ALREADY = definition_of('plugin')
-"""A definition without children, so that none is read."""
 _CHECKS = {'material': check_material, 'submesh': check_submesh}
 """Functions that check elements without a frame, by the identifiers of these."""
 _CHECKS_OF_UNREAD = {
@@ -117,15 +115,28 @@ def _check_scoped_names(root: XmlElement, sources: Sources) -> None:
         sources.error_in_name(ReservedNameError, xml, msg)
 
 
+class _Outer(NamedTuple):
+    """The element around others, a row of a table."""
+
+    table: ElementsBuilder
+    names: SiblingNames
+    path: str
+    """Its file."""
+    element: int = NO_ELEMENT
+    """Its index in the table; -1 for the file itself."""
+    scope: int = NO_ELEMENT
+    """The model, world or root whose names references use."""
+
+
 class _Reader:
 
     def __init__(self, sources: Sources, *, shapes: bool = False) -> None:
         self._sources = sources
-        self._builder = ElementsBuilder(sources.paths, has_shapes=shapes)
-        self._names = SiblingNames(self._builder, sources)
+        self._deepest = sources.usage.limits.depth
+        self._table = ElementsBuilder(sources.paths, has_shapes=shapes)
+        self._parts_of_actors = ElementsBuilder(sources.paths)
+        """Links and joints of actors with their content, which are checked, but have no frames."""
         self._undefined = UndefinedReporter(sources)
-        self._of_actors: _Reader | None = None
-        """Reads the parts of actors, which are not in the table."""
         self._file_indices = sources.file_indices
         self._readers_of_details: dict[Kind, tuple[str, Callable[[XmlElement], Any]]] = {
             Kind.MODEL: ('models', _model_details),
@@ -136,8 +147,7 @@ class _Reader:
             Kind.INERTIAL: ('inertials', partial(
                 inertial_from_element, sources=sources, reads_masses=shapes)),
         }
-        """Details of some kinds: the field of the elements, and the function that reads it or
-        None."""
+        """Details of some kinds: the field of the elements, and the function that reads it."""
         if shapes:
             for kind in (Kind.VISUAL, Kind.COLLISION):
                 self._readers_of_details[kind] = ('shapes', shape_of)
@@ -145,28 +155,28 @@ class _Reader:
     def elements(self, root: XmlElement) -> Elements:
         """Read worlds, and the one model, light or actor that may stand beside them."""
         definition = definition_of('sdf', has_frames=True)
-        path = self._sources.path(root)
+        outer = _Outer(
+            self._table, SiblingNames(self._table, self._sources), self._sources.path(root))
         first = ''
         for child in root:
             child_definition = definition.children.get(child.tag)
             if child_definition is None:
                 self._undefined.report_element(child, definition)
             elif child_definition.kind is Kind.WORLD:
-                self.read(child, child_definition, path=path)
+                self.read(child, child_definition, outer)
             elif first:
                 self._check_attributes(child, child_definition)
                 self._report_second_top(child, first)
             else:
                 first = described(child)
-                index = self._builder.add(
-                    Kind.ROOT, ROOT_FRAME, NO_ELEMENT, NO_ELEMENT, self._file_indices[path],
+                index = self._table.add(
+                    Kind.ROOT, ROOT_FRAME, NO_ELEMENT, NO_ELEMENT, self._file_indices[outer.path],
                     self._sources.line(child))
-                self.read(child, child_definition, index, index, path)
-        if not self._builder.names:
+                self.read(child, child_definition, outer._replace(element=index, scope=index))
+        if not self._table.names:
             self._sources.warning(root, 'the file has no world, model, light or actor')
-        if self._of_actors is not None:
-            self._of_actors._builder.elements(self._sources.problems)  # noqa: SLF001
-        return self._builder.elements(self._sources.problems)
+        self._parts_of_actors.elements(self._sources.problems)
+        return self._table.elements(self._sources.problems)
 
     def _report_second_top(self, xml: XmlElement, first: str) -> None:
         if described(xml) == first:
@@ -177,18 +187,20 @@ class _Reader:
                    'model, light or actor may')
             self._sources.error_in_name(ElementIncorrectTypeError, xml, msg)
 
-    # The walk. ``parent`` is the index of the parent element, if it has a frame, ``scope`` that of
-    # the model, world or root whose names references use, and ``path`` the file of the parent.
+    # The walk
 
     def read(
-        self, xml: XmlElement, definition: Definition, parent: int = NO_ELEMENT,
-        scope: int = NO_ELEMENT, path: str = '', depth: int = 1,
+        self, xml: XmlElement, definition: Definition, outer: _Outer | None = None, depth: int = 1,
     ) -> None:
-        """Read an element and its content."""
+        """
+        Read an element and its content.
+
+        :param outer: its parent element; None if this has no frame.
+        """
         if definition.has_required_attributes or xml.keys():
             self._check_attributes(xml, definition)
         if definition.is_pose:
-            self._read_pose(xml, definition, parent)
+            self._read_pose(xml, definition, outer)
         elif definition.value_type is not None:
             fault, doubt = judged_value(text_of(xml), definition)
             if fault:
@@ -197,59 +209,59 @@ class _Reader:
                 self._sources.warning(xml, f'{_described_value(xml)} {doubt}')
         elif definition.identifier == 'include':
             missing = self._sources.origin(xml).missing
-            if parent != NO_ELEMENT and missing is not None:
-                self._builder.details['missing_includes'].setdefault(parent, {}).update([missing])
+            if outer is not None and missing is not None:
+                missing_includes = outer.table.details['missing_includes']
+                missing_includes.setdefault(outer.element, {}).update([missing])
         else:
-            if definition.kind is not None:
-                definition, parent, scope, path = self._added(
-                    xml, definition, definition.kind, parent, scope, path)
-            else:
-                parent = NO_ELEMENT
+            inner = None
+            if definition.kind is None:
                 checks = _CHECKS if definition.has_frames else _CHECKS_OF_UNREAD
                 if definition.identifier in checks:
                     checks[definition.identifier](xml, self._sources)
-            self._sources.check_depth(depth, xml)
+            elif outer is not None:
+                inner = self._added(xml, definition, definition.kind, outer)
+                if inner is None:
+                    definition = definition_of(definition.identifier)
+            if depth > self._deepest:
+                self._sources.check_depth(depth, xml)
             definitions = definition.children
             for child in xml:
                 child_definition = definitions.get(child.tag)
                 if child_definition is None:
                     self._undefined.report_element(child, definition)
                     continue
-                self.read(child, child_definition, parent, scope, path, depth + 1)
+                self.read(child, child_definition, inner, depth + 1)
                 if child_definition.value_type is not None and len(child):
                     for grandchild in child:
                         self._undefined.report_element(grandchild, child_definition)
 
     def _added(
-        self, xml: XmlElement, definition: Definition, kind: Kind, parent: int, scope: int,
-        path: str,
-    ) -> tuple[Definition, int, int, str]:
-        """Add an element to the table; return the arguments to read its children."""
-        if parent >= 0 and self._builder.kinds[parent] == Kind.ACTOR:
-            # Links and joints of actors are checked, but nothing can refer to them, so their names
-            # may repeat: each gets another parent.
-            self._of_actors = self._of_actors or _Reader(self._sources)
-            number = len(self._of_actors._builder.names)  # noqa: SLF001
-            self._of_actors.read(xml, definition, NO_ELEMENT - 1 - number, path=path)
-            return _READ_ALREADY, NO_ELEMENT, scope, path
+        self, xml: XmlElement, definition: Definition, kind: Kind, outer: _Outer,
+    ) -> _Outer | None:
+        """Add an element to the table, unless its name has an error; return it."""
+        table, names, path, parent, scope = outer
+        if parent >= 0 and table.kinds[parent] == Kind.ACTOR:
+            # Nothing can refer to the links and joints of actors, so their names may repeat.
+            table, parent, scope = self._parts_of_actors, NO_ELEMENT, NO_ELEMENT
+            names = SiblingNames(table, self._sources)
         has_name = 'name' in definition.attributes
-        name = self._names.add(kind, xml, parent, path) if has_name else kind.label
+        name = names.add(kind, xml, parent, path) if has_name else kind.label
         if name is None:
-            return definition_of(kind.label), NO_ELEMENT, scope, path
+            return None
         origin = self._sources.origin(xml)
         path = path if origin.file is None else origin.file
-        index = self._builder.add(
+        index = table.add(
             kind, name, parent, scope,
             self._file_indices[path if origin.pose is None else origin.pose.file],
             self._sources.line(xml))
         if origin.include is not None:
-            self._builder.details['includes'][index] = origin.include
+            table.details['includes'][index] = origin.include
         if kind in self._readers_of_details:
             field, details_from_element = self._readers_of_details[kind]
             details = details_from_element(xml)
             if details is not None:
-                self._builder.details[field][index] = details
-        return definition, index, index if definition.is_scope else scope, path
+                table.details[field][index] = details
+        return _Outer(table, names, path, index, index if definition.is_scope else scope)
 
     # Attributes and poses
 
@@ -278,18 +290,20 @@ class _Reader:
                         value.strip(WHITE_SPACE)) if problems.allows_hint() else ''
                     self._sources.error(error, xml, msg + hint)
 
-    def _read_pose(self, xml: XmlElement, definition: Definition, parent: int) -> None:
+    def _read_pose(
+        self, xml: XmlElement, definition: Definition, outer: _Outer | None,
+    ) -> None:
         """Keep the pose of an element, or check another pose."""
-        is_first = parent != NO_ELEMENT and not self._builder.has_pose[parent]
-        if is_first and xml.keys():
-            self._read_relative_to(xml, definition, parent)
+        posed = None if outer is None or outer.table.has_pose[outer.element] else outer
+        if posed is not None and xml.keys():
+            self._read_relative_to(xml, definition, posed)
         try:
             text, pose_format = text_of(xml), pose_format_of(xml)
         except PoseTextError as error:
             self._sources.error(ElementInvalidError, xml, str(error))
             text, pose_format = '', PoseFormat()
-        if is_first:
-            self._builder.set_pose(parent, text, pose_format, self._sources.line(xml))
+        if posed is not None:
+            posed.table.set_pose(posed.element, text, pose_format, self._sources.line(xml))
             return
         if definition.is_required and not text_of(xml):
             msg = f'<{written_tag(xml)}> is empty; it must have a value'
@@ -298,24 +312,24 @@ class _Reader:
             pose_numbers_from_text(text, pose_format)
         except PoseTextError as error:
             self._sources.error(ElementInvalidError, xml, str(error))
-        if parent != NO_ELEMENT:
+        if outer is not None:
             self._sources.warning(xml, 'a second <pose> is ignored; the first one counts')
 
-    def _read_relative_to(self, xml: XmlElement, definition: Definition, index: int) -> None:
-        builder = self._builder
+    def _read_relative_to(self, xml: XmlElement, definition: Definition, outer: _Outer) -> None:
+        table, index = outer.table, outer.element
         relative_to = frame_of_attribute(xml, 'relative_to')
         if not relative_to or 'relative_to' not in definition.attributes:
             return
         reason = ''
-        if builder.kinds[index] == Kind.ACTOR:
+        if table.kinds[index] == Kind.ACTOR:
             reason = 'an actor is placed in the world'
-        elif (builder.kinds[index] == Kind.LIGHT
-                and builder.kinds[builder.parents[index]] == Kind.ROOT):
+        elif (table.kinds[index] == Kind.LIGHT
+                and table.kinds[table.parents[index]] == Kind.ROOT):
             reason = 'a light at the top of a file is placed in the implicit root'
         if reason:
             self._sources.warning(xml, f'relative_to="{relative_to}" is ignored; {reason}')
         else:
-            builder.details['relative_to'][index] = relative_to
+            table.details['relative_to'][index] = relative_to
 
 
 # Details of some kinds
