@@ -21,6 +21,7 @@ from sdf_pose_bridge.cli.records import (
 )
 from sdf_pose_bridge.errors import Place, SdfError, SdfWarning
 from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import resource_finder, ResourceFinder
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
@@ -82,34 +83,33 @@ def _doubts_about_frames(scene: Scene) -> tuple[SdfWarning, ...]:
 
 def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[SdfWarning, ...]:
     """
-    Return a warning for each shape without extent, and for each mesh that is not found.
+    Return warnings about shapes without extent, and about meshes that are not found.
 
     A shape of a file that is included often has one, and so have all meshes of a missing package.
     """
     finder = resource_finder(resource_paths, os.environ)
-    doubts: dict[tuple[str, int, str], SdfWarning] = {}
+    problems = Problems(scene.files)
     places: dict[tuple[str, str], Place] = {}
     for element, shape in scene.shapes.items():
         place = scene.place(element)
         if not shape.has_extent:
             sizes = ' '.join(f'{size:g}' for size in shape.sizes_m or shape.mesh_scale)
-            reason = f'a size or the scale of the {shape.type} is not a positive number ({sizes})'
-            doubts.setdefault(
-                (place.file, place.line, reason), SdfWarning('WARNING', reason, place))
+            msg = f'a size or the scale of the {shape.type} is not a positive number ({sizes})'
+            problems.warning(msg, place)
         elif shape.mesh_uri:
             key = shape.mesh_uri, place.file
             places[key] = min(place, places.get(key, place), key=lambda each: each.line)
     missing: dict[tuple[str, str], list[str]] = {}
     for uri, file in sorted(places, key=lambda key: places[key].line):
         if finder.file_from_uri(uri, file) is None:
-            folder = _FOLDER.match(uri)
-            is_folder_missing = folder and finder.path_from_uri(folder[0], file) is None
-            key = (folder[0] if folder and is_folder_missing else uri), file
+            match = _FOLDER.match(uri)
+            is_folder_missing = match and finder.path_from_uri(match[0], file) is None
+            key = (match[0] if match and is_folder_missing else uri), file
             missing.setdefault(key, []).append(uri)
-    return (*doubts.values(), *(
-        SdfWarning(
-            'WARNING', _reason_without_meshes(folder, uris, file, finder), places[uris[0], file])
-        for (folder, file), uris in missing.items()))
+    for (folder, file), uris in missing.items():
+        problems.warning(
+            _reason_without_meshes(folder, uris, file, finder), places[uris[0], file])
+    return problems.warnings
 
 
 def _reason_without_meshes(

@@ -50,6 +50,9 @@ MOST_STEPS = 1_000_000_000
 """Largest product of the characters of all patterns with wildcards and of all frame ids. Comparing
 so many takes some seconds in the worst case, in a thread."""
 
+LONGEST_MATCHED = 10_000
+"""Longest frame id that is compared with patterns; other threads wait for each comparison."""
+
 _WILDCARD = re.compile(r'[*?[]')
 
 _ESCAPED = re.compile(r"""
@@ -135,8 +138,11 @@ def pose_topics_from_patterns(
     unmatched = []
     known = set(frame_ids)
     for pattern in dict.fromkeys(patterns):
-        if _WILDCARD.search(pattern):
-            found = {frame_id for frame_id in frame_ids if fnmatchcase(frame_id, pattern)}
+        if pattern == '*':
+            found = known
+        elif _WILDCARD.search(pattern):
+            found = {frame_id for frame_id in frame_ids
+                     if len(frame_id) <= LONGEST_MATCHED and fnmatchcase(frame_id, pattern)}
         else:
             found = known & {pattern}
         chosen |= found

@@ -29,7 +29,7 @@ from sdf_pose_bridge.scene.joints import JointEnds
 from sdf_pose_bridge.scene.scene import Joint, JointAxis, Mimic, Scene
 from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.sdformat.inertials import Inertial, moments_from_matrix, sum_of_moments
+from sdf_pose_bridge.sdformat.inertials import Inertial, moments_from_matrix, moved_moments
 from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
 
 _Details = TypeVar('_Details')
@@ -144,27 +144,37 @@ def _place_automatic_inertials(root_poses: PoseArray, elements: Elements) -> dic
 
     :return: the inertials, with the axes of their links.
     """
-    collisions: dict[int, list[int]] = {}
-    if elements.automatic_inertials:
-        for index in np.flatnonzero(elements.kinds == Kind.COLLISION).tolist():
-            collisions.setdefault(int(elements.parents[index]), []).append(index)
+    automatic = elements.automatic_inertials
+    if not automatic:
+        return {}
+    indices = np.array([*automatic])
+    links = elements.parents[indices]
+    collisions_of: dict[int, list[int]] = {}
+    for index in np.flatnonzero(elements.kinds == Kind.COLLISION).tolist():
+        collisions_of.setdefault(int(elements.parents[index]), []).append(index)
+    # One row for each collision, ordered by inertials; ``owners`` has the position of its own.
+    collisions = [index for link in links.tolist() for index in collisions_of[link]]
+    parts = [part for inertial in automatic.values() for part in inertial.collisions]
+    owners = np.repeat(
+        np.arange(len(indices)), [len(inertial.collisions) for inertial in automatic.values()])
+    points = transformed_points(
+        root_poses[collisions], np.array([(0.0, 0.0, part.center_z_m) for part in parts]))
+    masses = np.array([part.mass_kg for part in parts])
+    starts = np.searchsorted(owners, np.arange(len(indices)))
+    totals = np.add.reduceat(masses, starts)
+    root_poses[indices] = root_poses[links]
+    has_mass = totals != 0.0
+    sums = np.add.reduceat(masses[:, np.newaxis] * points, starts)
+    root_poses[indices[has_mass], :3] = sums[has_mass] / totals[has_mass, np.newaxis]
+    to_links = matrix_from_quaternion(root_poses[links, 3:]).transpose(0, 2, 1)[owners]
+    axes = to_links @ matrix_from_quaternion(root_poses[collisions, 3:])
+    moments = np.array([part.moments_kg_m2 for part in parts])
+    offsets = np.einsum('nij,nj->ni', to_links, points - root_poses[indices[owners], :3])
+    matrices = np.add.reduceat(moved_moments(
+        np.einsum('nij,nj,nkj->nik', axes, moments, axes), masses, offsets), starts)
     inertials = {}
-    for index, (parts, mass_kg) in elements.automatic_inertials.items():
-        link = int(elements.parents[index])
-        points = transformed_points(
-            root_poses[collisions[link]],
-            np.array([(0.0, 0.0, part.center_z_m) for part in parts]))
-        masses = np.array([part.mass_kg for part in parts])
-        total_kg = float(masses.sum())
-        root_poses[index] = root_poses[link]
-        if total_kg:
-            root_poses[index, :3] = np.average(points, axis=0, weights=masses)
-        to_link = matrix_from_quaternion(root_poses[link, 3:]).T
-        axes = to_link @ matrix_from_quaternion(root_poses[collisions[link], 3:])
-        moments = np.array([part.moments_kg_m2 for part in parts])
-        offsets = (points - root_poses[index, :3]) @ to_link.T
-        matrix = sum_of_moments(
-            np.einsum('nij,nj,nkj->nik', axes, moments, axes), masses, offsets)
+    for index, total_kg, matrix in zip(automatic, totals.tolist(), matrices, strict=True):
+        mass_kg = automatic[index].mass_kg
         scale = 1.0 if mass_kg is None or not total_kg else mass_kg / total_kg
         inertials[index] = Inertial(scale * total_kg, moments_from_matrix(scale * matrix))
     return inertials

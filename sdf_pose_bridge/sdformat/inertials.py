@@ -115,19 +115,19 @@ def moments_from_matrix(matrix: Floats) -> tuple[float, ...]:
     return tuple(matrix[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]].tolist())
 
 
-def sum_of_moments(matrices: Floats, masses: Floats, offsets: Floats) -> Floats:
+def moved_moments(matrices: Floats, masses: Floats, offsets: Floats) -> Floats:
     """
-    Add the moments of inertia of bodies that are one, by Steiner's theorem.
+    Return moments of inertia about other points, by Steiner's theorem.
 
-    :param matrices: shape (n, 3, 3), the moments of each about its own center of mass.
+    :param matrices: shape (n, 3, 3), the moments of each body about its own center of mass.
     :param masses: shape (n,), in kg.
-    :param offsets: shape (n, 3), the center of each from that of all, in the same axes.
-    :return: shape (3, 3), the moments about the center of all.
+    :param offsets: shape (n, 3), the center of each body from the other point, in the same axes.
+    :return: shape (n, 3, 3). The sum for one point is that of bodies that are one.
     """
-    total: Floats = (
-        matrices.sum(axis=0) + np.eye(3) * (masses @ (offsets ** 2).sum(axis=1))
-        - np.einsum('n,ni,nj->ij', masses, offsets, offsets))
-    return total
+    squares = (offsets ** 2).sum(axis=1)[:, np.newaxis, np.newaxis] * np.eye(3)
+    products = offsets[:, :, np.newaxis] * offsets[:, np.newaxis]
+    moved: Floats = matrices + masses[:, np.newaxis, np.newaxis] * (squares - products)
+    return moved
 
 
 def inertial_from_element(

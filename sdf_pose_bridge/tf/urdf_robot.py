@@ -151,6 +151,9 @@ class _RobotMaker:
         self._joint_names = _Names(set())
         self._dofs: dict[tuple[int, int | None], tuple[str, Mimic | None]] = {}
         """For each degree of freedom the name of its joint, and the joint that it follows."""
+        self._leaders: dict[str, UrdfMimic | str] = {}
+        """For joints that mimic another one the joint that they follow in the end, or the reason
+        why there is none."""
         self._children: defaultdict[str, list[UrdfLink]] = defaultdict(list)
 
     def robot(self) -> UrdfRobot:
@@ -264,22 +267,37 @@ class _RobotMaker:
 
     def _mimic(self, step: _Step, element: int) -> UrdfMimic | None:
         """Return the joint that a joint follows in the end, as not all readers follow several."""
-        follows, leader, factor, offset = step.axis.mimic, '', 1.0, 0.0
-        passed = {step.name}
-        while follows is not None:
-            offset += factor * (follows.offset - follows.multiplier * follows.reference)
-            factor *= follows.multiplier
-            leader, next_follows = self._dofs.get((follows.joint, follows.axis), ('', None))
-            if not leader or leader in passed:
-                self._problems.warning(
-                    f'joint "{step.name}" mimics nothing in URDF: '
-                    f'"{self._scene.names[follows.joint]}" '
-                    f'{"follows it in turn" if leader else "does not move"}',
-                    self._scene.place(self._tf_parents.joints[element].element))
-                return None
-            passed.add(leader)
-            follows = next_follows
-        return UrdfMimic(leader, factor, offset) if leader else None
+        found = None if step.axis.mimic is None else self._leader(step.name, step.axis.mimic)
+        if isinstance(found, str):
+            self._problems.warning(
+                f'joint "{step.name}" mimics nothing in URDF: {found}',
+                self._scene.place(self._tf_parents.joints[element].element))
+            return None
+        return found
+
+    def _leader(self, name: str, follows: Mimic | None) -> UrdfMimic | str:
+        """Return the joint that a joint follows in the end, or the reason why there is none."""
+        passed: dict[str, Mimic] = {}
+        found: UrdfMimic | str | None = None
+        while found is None:
+            if follows is None:
+                found = UrdfMimic(name, 1.0, 0.0)
+            elif name in self._leaders:
+                found = self._leaders[name]
+            else:
+                passed[name] = follows
+                leader, next_follows = self._dofs.get((follows.joint, follows.axis), ('', None))
+                if not leader or leader in passed:
+                    found = (f'"{self._scene.names[follows.joint]}" '
+                             f'{"follows it in turn" if leader else "does not move"}')
+                name, follows = leader, next_follows
+        for passed_name, mimic in reversed(passed.items()):
+            if isinstance(found, UrdfMimic):
+                found = UrdfMimic(
+                    found.joint, mimic.multiplier * found.multiplier,
+                    mimic.multiplier * (found.offset - mimic.reference) + mimic.offset)
+            self._leaders[passed_name] = found
+        return found
 
 
 def _names_of_joints(scene: Scene, naming: FrameNaming) -> dict[int, str]:

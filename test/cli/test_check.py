@@ -6,6 +6,7 @@ import os
 import subprocess
 
 from command_line import COMMAND, ENVIRONMENT
+from sdf_texts import model_file
 
 
 def test_check_prints_errors_in_the_order_of_the_file(sdf_pose):
@@ -152,6 +153,16 @@ def test_shapes_of_a_file_that_is_included_twice_have_one_warning(run_main, file
         '</world></sdf>')
     lines = run_main('check', 'two.sdf').stdout.splitlines()
     assert [line.split(':')[1] for line in lines] == ['2', '3']
+
+
+def test_a_hundred_missing_meshes_are_named_and_the_others_counted(run_main, files):
+    meshes = ''.join(
+        f'<visual name="v{i}"><geometry><mesh><uri>none{i}.stl</uri></mesh></geometry></visual>'
+        for i in range(110))
+    (files / 'meshes.sdf').write_text(model_file(f'<link name="l">{meshes}</link>'))
+    lines = run_main('check', 'meshes.sdf').stdout.splitlines()
+    assert len(lines) == 101
+    assert lines[0].endswith('and 10 more warnings')
 
 
 def test_missing_mesh_and_impossible_sizes_are_warnings(run_main, files):

@@ -162,6 +162,11 @@ def test_patterns_that_match_nothing_are_named():
     assert 'for "a::*", "C" in pose_topics: no frame id matches' in topics.warning
 
 
+@pytest.mark.parametrize(('pattern', 'count'), [('*', 1), ('?*', 0), ('a' * 20_000, 1)])
+def test_an_endless_frame_id_is_not_compared_with_wildcards(pattern, count):
+    assert len(pose_topics_from_patterns(['a' * 20_000], [pattern], NODE).names) == count
+
+
 def test_an_empty_pattern_is_no_mistake():
     assert pose_topics_from_patterns(['a'], ['', 'a'], NODE).warning == ''
 

@@ -251,7 +251,7 @@ def test_joints_that_follow_one_another_follow_nothing():
     assert [link.joint.mimic for link in robot.links if link.joint] == [None] * 3
     assert [warning.message for warning in robot.warnings] == [
         'joint "j0" mimics nothing in URDF: "m::j0" follows it in turn',
-        'joint "j1" mimics nothing in URDF: "m::j1" follows it in turn']
+        'joint "j1" mimics nothing in URDF: "m::j0" follows it in turn']
 
 
 def test_follower_of_a_joint_that_does_not_move_follows_nothing():

@@ -17,7 +17,7 @@ from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
 from sdf_pose_bridge.sdformat.inertials import (
     matrix_from_moments,
     moments_from_matrix,
-    sum_of_moments,
+    moved_moments,
 )
 from sdf_pose_bridge.sdformat.urdf.robot import Inertial
 
@@ -40,6 +40,7 @@ def lumped_inertial(parent: Inertial, lumped: Inertial) -> Inertial:
     places = [relative_pose(origin, parent.origin), relative_pose(origin, lumped.origin)]
     axes = np.array([matrix_from_quaternion(place[3:]) for place in places])
     matrices = np.array([matrix_from_moments(each.moments) for each in (parent, lumped)])
-    return Inertial(mass, origin, moments_from_matrix(sum_of_moments(
+    moved = moved_moments(
         axes @ matrices @ axes.transpose(0, 2, 1), np.array([parent.mass, lumped.mass]),
-        np.array([place[:3] for place in places]))))
+        np.array([place[:3] for place in places]))
+    return Inertial(mass, origin, moments_from_matrix(moved.sum(axis=0)))
