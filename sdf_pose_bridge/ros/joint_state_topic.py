@@ -25,7 +25,7 @@ from sdf_pose_bridge.ros.cdr import joint_state_from_bytes, JointStateBytes
 from sdf_pose_bridge.ros.log_lines import names_in_line
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.publishers import NANOSECONDS
-from sdf_pose_bridge.ros.qos_overrides import overriding_options, POLICIES_OF_SUBSCRIPTION
+from sdf_pose_bridge.ros.qos_overrides import SUBSCRIPTION_OVERRIDES
 from sdf_pose_bridge.tf.joint_positions import JointPositions, LARGEST_POSITION, Selection
 
 _WARNING_PERIOD_S = 10.0
@@ -116,8 +116,7 @@ class JointStateTopic:
             else copy.copy(qos_profile_sensor_data),
             callback_group=self._gate, raw=True,
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
-            qos_overriding_options=overriding_options(
-                node, name, 'subscription', POLICIES_OF_SUBSCRIPTION))
+            qos_overriding_options=SUBSCRIPTION_OVERRIDES)
         self._take_message = _take_message_from_subscription(self._subscription)
         self._gate.keeps_messages = self._take_message is not None
 

@@ -34,7 +34,7 @@ from sdf_pose_bridge.ros.log_lines import (
     lines_from_warnings,
     MissingJoints,
 )
-from sdf_pose_bridge.ros.parameter_services import add_parameter_services
+from sdf_pose_bridge.ros.parameter_services import add_setting_services
 from sdf_pose_bridge.ros.parameters import Settings, SettingsError
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import TextPublisher
@@ -94,7 +94,7 @@ class SdfPoseBridge:
             node.create_service(
                 SetPose, '~/set_pose', self._answer_to_set_pose, qos_profile=SERVICE_QOS,
                 callback_group=self._changes)
-        add_parameter_services(node, self._changes, self._set_parameters)
+        add_setting_services(node, self._changes, self._set_parameters)
         node.create_timer(PERIOD_S, self._diagnostics.publish, clock=self._steady_clock)
         PollingThread(
             node, self._changes,

@@ -1,11 +1,10 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Offer the services that read and set parameters; calls that are too large are rejected."""
+"""Offer the services that set parameters instead of rclpy's, which offers the others."""
 
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Sequence
-import contextlib
 from typing import Any
 
 from rcl_interfaces.msg import Parameter as ParameterMessage
@@ -14,12 +13,10 @@ from rcl_interfaces.srv import (
     DescribeParameters,
     GetParameters,
     GetParameterTypes,
-    ListParameters,
     SetParameters,
     SetParametersAtomically,
 )
 from rclpy.callback_groups import CallbackGroup
-from rclpy.exceptions import ParameterNotDeclaredException, ParameterUninitializedException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_parameters
@@ -32,27 +29,42 @@ from sdf_pose_bridge.ros.setting_rules import MOST_VALUES
 MOST_REASONS = 20
 """Number of results of a rejected call that contain the reason."""
 
-MOST_CHARACTERS_OF_REPEATED = 1_000_000
-"""Largest number of characters of all values in a response that repeats some of them."""
-
-WARNING_PERIOD_S = 10.0
-
 _KINDS_OF_LISTS = ('byte', 'bool', 'integer', 'double', 'string')
 
 
-def add_parameter_services(
+def restrict_parameter_services(node: Node) -> None:
+    """
+    Restrict rclpy's parameter services, before a client can have found them.
+
+    The services that set parameters are removed: they set the parameters of a call one after the
+    other and block the executor. The file would be read for each of them, with settings that
+    nobody requested. The services that read parameters by their names return nothing if a name is
+    repeated: a few bytes could request gigabytes.
+    """
+    for service in list(node.services):
+        if service.srv_type in (SetParameters, SetParametersAtomically):
+            node.destroy_service(service)
+        elif service.srv_type in (DescribeParameters, GetParameters, GetParameterTypes):
+            service.callback = _without_repetition(service.callback)
+
+
+def _without_repetition(callback: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
+    def answer(request: Any, response: Any) -> Any:
+        is_unique = len(set(request.names)) == len(request.names)
+        return callback(request, response) if is_unique else response
+    return answer
+
+
+def add_setting_services(
     node: Node, group: CallbackGroup,
     set_parameters: Callable[[list[Parameter]], Awaitable[SetParametersResult]],
 ) -> None:
     """
-    Offer the parameter services of a node; a call that sets parameters sets all of them or none.
-
-    rclpy's services set the parameters of a call one after the other and block the executor: the
-    file would be read for each of them, with settings that nobody requested.
+    Offer the services that set parameters; a call sets all of its parameters or none.
 
     Calls that are too large are rejected first.
 
-    :param group: callback group of the services that set parameters.
+    :param group: callback group of the services.
     :param set_parameters: sets declared parameters, and returns the result for the response.
     """
     async def result(messages: Sequence[ParameterMessage]) -> SetParametersResult:
@@ -79,76 +91,12 @@ def add_parameter_services(
         response.result = await result(request.parameters)
         return response
 
-    services = [
-        (SetParameters, 'set_parameters', set_each, group),
-        (SetParametersAtomically, 'set_parameters_atomically', set_atomically, group),
-        *((type_, name, read, None) for type_, name, read in _reading_services(node))]
-    for service_type, name, callback, callback_group in services:
+    for service_type, name, callback in (
+            (SetParameters, 'set_parameters', set_each),
+            (SetParametersAtomically, 'set_parameters_atomically', set_atomically)):
         node.create_service(
             service_type, f'~/{name}', callback, qos_profile=qos_profile_parameters,
-            callback_group=callback_group)
-
-
-def _reading_services(node: Node) -> list[tuple[type, str, Callable[[Any, Any], Any]]]:
-    """Return types, names and callbacks of the services that read parameters, as rclpy's do."""
-    def has_too_much(names: Sequence[str], values: Sequence[object] = ()) -> bool:
-        """Return whether a response would be too large; it has no field for the reason."""
-        reason = ''
-        if len(names) > MOST_VALUES:
-            reason = f'{len(names)} names; it can have at most {MOST_VALUES}'
-        elif len(set(names)) < len(names):
-            size = sum(len(value) for value in values if isinstance(value, str))
-            if size > MOST_CHARACTERS_OF_REPEATED:
-                reason = f'names again and again, whose values have {size} characters together'
-        if reason:
-            node.get_logger().warning(
-                f'a call that reads parameters is not answered: it has {reason}',
-                throttle_duration_sec=WARNING_PERIOD_S)
-        return bool(reason)
-
-    # If a name is not declared, or has no value, these services return nothing at all.
-    def describe(
-        request: DescribeParameters.Request, response: DescribeParameters.Response,
-    ) -> DescribeParameters.Response:
-        if not has_too_much(request.names):
-            with contextlib.suppress(ParameterNotDeclaredException):
-                response.descriptors = node.describe_parameters(request.names)
-        return response
-
-    def values(
-        request: GetParameters.Request, response: GetParameters.Response,
-    ) -> GetParameters.Response:
-        if has_too_much(request.names):
-            return response
-        with contextlib.suppress(ParameterNotDeclaredException, ParameterUninitializedException):
-            parameters = node.get_parameters(request.names)
-            if not has_too_much(request.names, [parameter.value for parameter in parameters]):
-                response.values = [parameter.get_parameter_value() for parameter in parameters]
-        return response
-
-    def types(
-        request: GetParameterTypes.Request, response: GetParameterTypes.Response,
-    ) -> GetParameterTypes.Response:
-        if not has_too_much(request.names):
-            with contextlib.suppress(ParameterNotDeclaredException):
-                response.types = [
-                    Parameter.Type(type_).value
-                    for type_ in node.get_parameter_types(request.names)]
-        return response
-
-    def names(
-        request: ListParameters.Request, response: ListParameters.Response,
-    ) -> ListParameters.Response:
-        if not has_too_much(request.prefixes):
-            with contextlib.suppress(TypeError, ValueError):
-                response.result = node.list_parameters(request.prefixes, request.depth)
-        return response
-
-    return [
-        (DescribeParameters, 'describe_parameters', describe),
-        (GetParameters, 'get_parameters', values),
-        (GetParameterTypes, 'get_parameter_types', types),
-        (ListParameters, 'list_parameters', names)]
+            callback_group=group)
 
 
 def _parameters_from_messages(

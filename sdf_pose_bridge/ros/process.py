@@ -34,6 +34,7 @@ from sdf_pose_bridge.ros.given_parameters import (
 )
 from sdf_pose_bridge.ros.log_lines import lines_from_error, lines_from_warnings
 from sdf_pose_bridge.ros.middleware import use_profile
+from sdf_pose_bridge.ros.parameter_services import restrict_parameter_services
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.programs import Program, PROGRAMS
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
@@ -72,7 +73,8 @@ def run(args: Sequence[str], program_name: str) -> int:
                 program, f'the argument "{words[program.takes_file]}" is not understood\n\n'
                 f'{program.usage}')
             return 1
-        node = Node(program.node_name, start_parameter_services=False)
+        node = Node(program.node_name)
+        restrict_parameter_services(node)
     except InvalidParameterTypeException as error:
         # A parameter of rclpy, such as use_sim_time. Its name comes last again.
         _complain(program, str(error).rpartition(': ')[0])

@@ -13,7 +13,7 @@ from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 from sdf_pose_bridge.ros.background import run_other_callbacks
-from sdf_pose_bridge.ros.qos_overrides import overriding_options, POLICIES_OF_PUBLISHER
+from sdf_pose_bridge.ros.qos_overrides import PUBLISHER_OVERRIDES
 
 # Number of messages or publishers, made in a few milliseconds, before other callbacks run.
 MESSAGES_AT_ONCE = 500
@@ -126,9 +126,7 @@ def new_publisher(
     # callback, a thousand of them in a large scene.
     return node.create_publisher(
         topic.message_type, topic.name, quality,
-        qos_overriding_options=overriding_options(
-            node, topic.name, 'publisher', POLICIES_OF_PUBLISHER)
-        if topic.is_overridable else None,
+        qos_overriding_options=PUBLISHER_OVERRIDES if topic.is_overridable else None,
         event_callbacks=PublisherEventCallbacks(matched=matched, use_default_callbacks=False))
 
 

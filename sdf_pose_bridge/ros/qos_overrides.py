@@ -3,15 +3,13 @@
 """
 Parameters that override the quality of service of topics, as in nodes of rclcpp and rclpy.
 
-Their names are ``qos_overrides.<topic>.<publisher or subscription>.<policy>``. Only given ones are
-declared.
+Their names are ``qos_overrides.<topic>.<publisher or subscription>.<policy>``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSPolicyKind, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
@@ -19,31 +17,13 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 QOS_OVERRIDES = 'qos_overrides.'
 """Prefix of the names of these parameters."""
 
-POLICIES_OF_PUBLISHER = (
-    QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
-POLICIES_OF_SUBSCRIPTION = (QoSPolicyKind.RELIABILITY, QoSPolicyKind.DURABILITY)
+PUBLISHER_OVERRIDES = QoSOverridingOptions.with_default_policies()
+SUBSCRIPTION_OVERRIDES = QoSOverridingOptions((
+    QoSPolicyKind.RELIABILITY, QoSPolicyKind.DURABILITY))
 """Without the depth, which the node chooses."""
 
 _VALUES = {
     'reliability': ReliabilityPolicy, 'durability': DurabilityPolicy, 'history': HistoryPolicy}
-
-
-def overriding_options(
-    node: Node, topic: str, entity: str, policies: Sequence[QoSPolicyKind],
-) -> QoSOverridingOptions | None:
-    """
-    Return the policies that parameters override for a topic.
-
-    :param topic: its name, before it is remapped.
-    :param entity: ``publisher`` or ``subscription``.
-    :param policies: the policies that can be overridden.
-    :return: the policies for which parameters are given; None if there are none.
-    """
-    begin = f'{QOS_OVERRIDES}{node.resolve_topic_name(topic)}.{entity}.'
-    # rclpy has no public interface to the given parameters.
-    names = getattr(node, '_parameter_overrides', {})
-    given = [policy for policy in policies if begin + policy.name.lower() in names]
-    return QoSOverridingOptions(given) if given else None
 
 
 def sentences_about_overrides(given: Mapping[str, Parameter]) -> list[str]:

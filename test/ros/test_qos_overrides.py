@@ -15,11 +15,7 @@ from sdf_pose_bridge.ros.joint_states import JointStates
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.ros.qos_overrides import (
-    overriding_options,
-    POLICIES_OF_PUBLISHER,
-    sentences_about_overrides,
-)
+from sdf_pose_bridge.ros.qos_overrides import sentences_about_overrides
 from sdf_pose_bridge.ros.topic_names import JointStateTopics
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
@@ -42,19 +38,14 @@ def qualities(node):
     return {each.topic_name: each.qos_profile for each in [*node.publishers, subscription]}
 
 
-def test_without_any_nothing_is_declared(make_node):
+def test_policies_are_declared_with_their_defaults(make_node):
     node = make_node('bridge')
     found = qualities(node)
     assert found['/tf'].depth == 100
     assert found['/joint_states'].reliability is ReliabilityPolicy.BEST_EFFORT
-    assert not node.get_parameters_by_prefix('qos_overrides')
-
-
-def test_none_is_found_without_the_private_name_of_rclpy(make_node):
-    node = make_node('bridge', '-p', 'qos_overrides./tf.publisher.depth:=7')
-    assert overriding_options(node, '/tf', 'publisher', POLICIES_OF_PUBLISHER) is not None
-    del node._parameter_overrides
-    assert overriding_options(node, '/tf', 'publisher', POLICIES_OF_PUBLISHER) is None
+    assert node.get_parameter('qos_overrides./tf.publisher.depth').value == 100
+    assert node.get_parameter(
+        'qos_overrides./joint_states.subscription.reliability').value == 'best_effort'
 
 
 def test_policies_are_overridden_under_the_remapped_name(make_node):
