@@ -175,7 +175,7 @@ class JointStates:
                 self._topics[key] = JointStateTopic(
                     self._node, *key, self._topic_count,
                     waits=self._period_timer is not None, receive=self._receive)
-            except RuntimeError as error:
+            except (RuntimeError, ValueError) as error:
                 # Security may forbid it. The rest of the message names lines of the source of ROS.
                 reason = str(error).partition(', at /')[0]
                 self._logger.warning(f'no subscription to {key[0]}: {reason}')
