@@ -12,12 +12,11 @@ from random import Random
 import pytest
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
-from differential.batches import compare_scenes, difference_from_asked, write_scene
+from differential.batches import compare_scenes, write_scene
 from differential.comparison import difference_between, own_answer
 from differential.reference import Answer, built_reference, CRASH, ReferenceMissingError
-from differential.scene_chains import chain_scene, FAMILIES, text_of
+from differential.scene_chains import FAMILIES, text_of
 from differential.scene_parts import Feature, features_of_release
-from differential.scene_setting import with_pose_set
 
 ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = sorted((ROOT / 'examples').rglob('*.sdf'))
@@ -54,16 +53,6 @@ def test_odd_scene_is_resolved_or_refused(family, tmp_path):
         answer = own_answer(path, tmp_path)
         assert CRASH not in answer.codes, (number, answer.message)
         assert answer.accepted == (not answer.codes)
-
-
-def test_pose_is_set_in_a_random_scene(tmp_path):
-    dice = Random(1)
-    scenes = [with_pose_set(chain_scene(dice), dice) for _ in range(12)]
-    asked = [scene for scene in scenes if scene.asked is not None]
-    assert len(asked) > 1
-    for number, scene in enumerate(asked):
-        answer = own_answer(write_scene(scene.files, tmp_path, f'scene_{number}'), tmp_path)
-        assert difference_from_asked(*scene.asked, answer) is None
 
 
 def test_libsdformat_judges_random_scenes_as_they_are_meant(reference):

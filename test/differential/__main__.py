@@ -17,8 +17,7 @@ import sys
 import time
 
 from differential.batches import compare_scenes, Tally, write_scene
-from differential.minimal import minimal_scene
-from differential.reference import built_reference, Reference, ReferenceMissingError
+from differential.reference import built_reference, ReferenceMissingError
 from differential.scene_parts import Feature, features_of_release
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -37,8 +36,6 @@ def main() -> int:
     parser.add_argument('--reference-only', action='store_true',
                         help='only check the scenes themselves: libsdformat has to accept the '
                         'valid ones and to refuse the broken ones')
-    parser.add_argument('--show', type=int, default=5,
-                        help='how many differences to cut down and write (default: 5)')
     parser.add_argument('--folder', type=Path, default=FOLDER,
                         help='for the compiled program and for scenes that differ')
     arguments = parser.parse_args()
@@ -61,7 +58,7 @@ def main() -> int:
                 print(f'  {tally.scenes} scenes, {len(tally.differences)} differences', flush=True)
     report(tally, time.monotonic() - started)
     folder = arguments.folder / 'differences' / f'seed_{arguments.seed}'
-    write_differences(tally, reference, folder, arguments.show)
+    write_differences(tally, folder)
     return 1 if tally.differences else 0
 
 
@@ -77,30 +74,14 @@ def report(tally: Tally, seconds: float) -> None:
     print(f'{len(tally.differences)} differences')
 
 
-def write_differences(tally: Tally, reference: Reference, folder: Path, most: int) -> None:
-    """Write all scenes that differ, and cut some of them down, one of each sort first."""
+def write_differences(tally: Tally, folder: Path) -> None:
+    """Write all scenes that differ."""
     shutil.rmtree(folder, ignore_errors=True)
-    seen: dict[str, int] = {}
-    ranked = []
-    for entry in tally.differences:
-        sort = f'{entry[2].kind} {entry[1].defect}'
-        seen[sort] = seen.get(sort, 0) + 1
-        ranked.append((seen[sort], entry))
-        path = write_scene(entry[1].files, folder / 'whole', entry[0])
-        text = f'{sort}\n{entry[2].text}\n'
+    for name, scene, difference in tally.differences:
+        path = write_scene(scene.files, folder, name)
+        text = f'{difference.kind} {scene.defect}\n{difference.text}\n'
         (path.parent / 'difference.txt').write_text(text, encoding='utf-8')
-        print(f'{entry[0]}: {sort}: {entry[2].text}')
-    for _, (name, scene, difference) in sorted(ranked, key=lambda pair: pair[0])[:most]:
-        print(f'\n{name} ({difference.kind}{", " if scene.defect else ""}{scene.defect})')
-        files, text = scene.files, difference.text
-        if difference.kind != 'intent':
-            # What a scene is meant to be does not survive cutting.
-            files, text = minimal_scene(scene, reference)
-        path = write_scene(files, folder / 'cut', name)
-        (path.parent / 'difference.txt').write_text(text + '\n', encoding='utf-8')
-        print(f'  {text}\n  {path}')
-        for part in sorted(files):
-            print('\n'.join(f'  | {line}' for line in [f'{part}:', *files[part].split('\n')]))
+        print(f'{path}: {text}')
 
 
 if __name__ == '__main__':

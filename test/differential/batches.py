@@ -18,17 +18,14 @@ from differential.comparison import (
     Difference,
     difference_between,
     has_wrong_moments,
-    is_same_pose,
     own_answer,
 )
-from differential.reference import Answer, Key, PoseValues, Reference
+from differential.reference import Answer, Reference
 from differential.scene_parts import Feature, SCENE, SceneFiles
 from differential.scene_strategy import scenes
 from differential.scene_values import ODD_VALUES
 
 BATCH = 200
-SET_TOLERANCE = 1e-7
-"""Metres and radians by which an element may miss the pose that was set."""
 
 
 @dataclass
@@ -163,8 +160,6 @@ def add_batch(tally: Tally, batch: Batch, reference: Reference) -> None:
         if own is not None:
             difference = difference_between(
                 own, answer, reference.version, scene.traits) or difference
-            if scene.asked is not None and answer.accepted:
-                difference = difference or difference_from_asked(*scene.asked, answer)
             if has_wrong_moments(answer):
                 tally.wrong_moments += 1
             elif not own.accepted and not answer.accepted:
@@ -173,15 +168,6 @@ def add_batch(tally: Tally, batch: Batch, reference: Reference) -> None:
                 tally.later_first_code += not is_first and answer.codes[0] in own.codes
         if difference:
             tally.differences.append((name, scene, difference))
-
-
-def difference_from_asked(key: Key, asked: PoseValues, answer: Answer) -> Difference | None:
-    """Check that an element is where it was put."""
-    pose = answer.poses.get(key)
-    if pose is not None and is_same_pose(asked, pose, SET_TOLERANCE):
-        return None
-    text = f'{key[1]} "{key[2]}": {list(asked)} was set, {pose and list(pose)} by libsdformat'
-    return Difference('set', text)
 
 
 def difference_from_intent(scene: SceneFiles, answer: Answer) -> Difference | None:

@@ -70,8 +70,6 @@ class SceneFiles:
     """What is in it that comparing has to know of."""
     defect: str = ''
     """What is wrong with it, or nothing."""
-    asked: tuple[tuple[str, str, str], tuple[float, ...]] | None = None
-    """World, kind and name of an element that was put somewhere, and its pose in the root."""
 
 
 @dataclass

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Set a pose in a random scene, so that libsdformat can tell whether the element is there then."""
+"""Set a pose in a random scene, so that libsdformat can resolve the file that was written."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ def with_pose_set(scene: SceneFiles, dice: Random) -> SceneFiles:
 
     :param scene: a scene.
     :param dice: what is drawn.
-    :return: the scene with the changed file, and what was asked for; the same scene if it is not
-        valid, or no pose in it can be set so.
+    :return: the scene with the changed file; the same scene if it is not valid, or no pose in it
+        can be set so.
     """
     with tempfile.TemporaryDirectory(prefix='differential-') as name:
         folder = Path(name).resolve()
@@ -47,8 +47,5 @@ def with_pose_set(scene: SceneFiles, dice: Random) -> SceneFiles:
             return scene
         path = str(Path(change.file.path).resolve().relative_to(folder / 'scene'))
         text = change.file.new_text.decode(errors='surrogateescape').replace('scene/', f'{SCENE}/')
-        key = (before.world_of(element), before.kinds[element], before.names[element])
-    kind = sdf_pose_bridge.Kind(int(key[1])).label
     return replace(
-        scene, files={**scene.files, path: text}, traits=scene.traits | {'pose-set'},
-        asked=((key[0], kind, key[2]), tuple(pose)))
+        scene, files={**scene.files, path: text}, traits=scene.traits | {'pose-set'})

@@ -146,19 +146,6 @@ def test_every_frame_has_its_pose_in_the_root_frame(listener):
             (xyz.x, xyz.y, xyz.z, quat.x, quat.y, quat.z, quat.w), pose, name=frame)
 
 
-def test_there_are_no_other_topics_of_poses(late_listener):
-    def published():
-        if 'sdf_pose_bridge' not in late_listener.node.get_node_names():
-            return set()
-        names_and_types = late_listener.node.get_publisher_names_and_types_by_node(
-            'sdf_pose_bridge', '/')
-        return {name for name, _ in names_and_types if '/poses/' in name}
-
-    late_listener.wait(
-        lambda: published() >= set(TOPICS.values()), lambda: set(TOPICS.values()) - published())
-    assert published() == set(TOPICS.values())
-
-
 def test_the_type_of_tf_static_is_the_one_on_every_ros_machine(late_listener):
     late_listener.wait(lambda: late_listener.tf_messages, lambda: '/tf_static')
     (publisher,) = late_listener.node.get_publishers_info_by_topic('/tf_static')

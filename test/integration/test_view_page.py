@@ -9,9 +9,7 @@ import re
 import subprocess
 import time
 from types import SimpleNamespace
-import urllib.error
 from urllib.parse import urlsplit
-import urllib.request
 
 from browser import browser, DEADLINE_S
 from command_line import COMMAND, ENVIRONMENT
@@ -324,12 +322,6 @@ def test_nobody_else_may_connect(shown, origin, has_secret):
     else:
         with pytest.raises(exceptions.InvalidStatus, match='HTTP 403'):
             first_message()
-
-
-def test_nothing_is_served_without_the_secret(shown):
-    address = urlsplit(shown.address)
-    with pytest.raises(urllib.error.HTTPError, match='403'):
-        urllib.request.urlopen(f'{address.scheme}://{address.netloc}/', timeout=DEADLINE_S)
 
 
 def test_the_file_that_would_be_written_is_shown(page, shown):

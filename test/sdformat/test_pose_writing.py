@@ -92,12 +92,6 @@ def test_other_texts_are_refused(text, reason):
         PoseText(text.encode(), 'file.sdf').with_pose(3, NEW, 1e-9)
 
 
-def test_only_the_range_that_differs_is_replaced():
-    text = model_file('<link name="l"><pose>1.5 0 0 0 0 1.570796327</pose></link>').encode()
-    change = PoseText(text, 'file.sdf').with_pose(3, NEW, 1e-9)
-    assert (text[change.begin:change.end], change.new) == (b'0 0', b'-2 0.25')
-
-
 def test_each_tag_has_a_line():
     text = PoseText(model_file('<link name="a"/><link name="b"\n/>').encode(), 'file.sdf')
     assert [text.element_at_line(line) for line in (1, 2, 3, 4)] == [0, 1, 2, 3]

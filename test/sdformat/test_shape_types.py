@@ -116,13 +116,6 @@ def test_surface_is_centered(name):
     assert lowest == pytest.approx(-highest)
 
 
-@pytest.mark.parametrize('name', WITH_PARTS)
-def test_parts_extend_as_far_as_the_surface(name):
-    ends = [ends_of(part.extent_m, part.z_m) for part in parts_of(name)]
-    np.testing.assert_allclose(
-        extent_of(np.concatenate(ends)), extent_of(surface_of(name)[0]), rtol=1e-12)
-
-
 @pytest.mark.parametrize('name', WITH_SURFACE)
 def test_marker_extends_as_far_as_the_surface(name):
     scene = scene_with('visual', name)

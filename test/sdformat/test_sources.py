@@ -71,13 +71,6 @@ def test_lines_of_bytes_in_any_encoding(encoding):
     assert scene.lines[scene.index(f'm::{name}')] == 70_001
 
 
-@pytest.mark.parametrize('encoding', ['UTF-16', 'UTF-32'])
-def test_lines_of_bytes_with_a_byte_order_mark_alone(encoding):
-    text = model_file('\n' * 70_000 + LINK).encode(encoding)
-    scene = load_text(text)
-    assert scene.lines[scene.index('m::l')] == 70_001
-
-
 @pytest.mark.parametrize('encoding', ['utf-8', 'ISO-8859-1', 'UTF-16'])
 def test_lines_of_decoded_text(encoding):
     text = f'<?xml version="1.0" encoding="{encoding}"?>' + model_file('\n' * 70_000 + LINK)
@@ -133,15 +126,6 @@ def folder(tmp_path):
 ])
 def test_lines_of_a_long_file_that_is_included_twice(folder, name, file, line):
     scene = load(folder / 'twice.sdf')
-    assert place_of(scene, name) == (str(folder / f'{file}.sdf'), line)
-
-
-@pytest.mark.parametrize(('name', 'file', 'line'), [
-    ('m::n::l', 'long', 70_001), ('m::n::f', 'long', 140_001), ('m::k', 'middle', 66_002),
-    ('g', 'outer', 2),
-])
-def test_lines_of_a_long_file_in_an_included_file(folder, name, file, line):
-    scene = load(folder / 'outer.sdf')
     assert place_of(scene, name) == (str(folder / f'{file}.sdf'), line)
 
 

@@ -5,7 +5,6 @@
 from concurrent.futures import ThreadPoolExecutor
 import os
 import socket
-import time
 
 from lxml import etree
 import pytest
@@ -17,11 +16,9 @@ from sdf_texts import (
     model_file,
     names_of,
     only_error,
-    world_file,
-    write_files,
 )
 
-from sdf_pose_bridge import load, load_text, SdfError
+from sdf_pose_bridge import load_text, SdfError
 from sdf_pose_bridge.errors import FileReadError, LimitError
 from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS, Limits, Usage
 from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, xml_from_bytes
@@ -238,14 +235,6 @@ def test_long_runs_that_are_not_well_formed_are_refused(text):
     assert codes_of(text) == ['FILE_READ']
 
 
-@pytest.mark.parametrize('content', [
-    '<!--' * 20_000, '<a b="' * 20_000, "<a b='" * 20_000, '<![CDATA[' * 20_000, '<' * 20_000,
-    '<?' * 20_000,
-], ids=lambda content: content[:9])
-def test_long_runs_beyond_the_last_line_of_libxml2_are_refused(content):
-    assert codes_of(model_file(LINK + '\n' * 70_000 + content)) == ['FILE_READ']
-
-
 # Well-formedness that libsdformat does not need
 
 @pytest.mark.parametrize('text', [
@@ -267,12 +256,6 @@ def test_elements_and_attributes_with_a_prefix_are_skipped(text):
 def test_many_undeclared_prefixes_are_accepted():
     text = f' \n<?xml version="1.0"?>{model_file(MANY_PREFIXES)}<x/>'
     assert names_in(text) == ['m', 'm::l']
-
-
-@pytest.mark.parametrize('encoding', ['ISO-8859-1', 'UTF-16', 'UTF-32'])
-def test_many_undeclared_prefixes_in_another_encoding_are_accepted(encoding):
-    text = f'<?xml version="1.0" encoding="{encoding}"?>{model_file(MANY_PREFIXES)}'
-    assert names_in(text.encode(encoding)) == ['m', 'm::l']
 
 
 @pytest.mark.parametrize('text', [
@@ -298,20 +281,6 @@ def test_what_looks_like_a_name_space_stays():
     text = model_file(f'<link name="{name}"/><!-- <a xmlns="b"> -->').replace(
         '<sdf', '<sdf xmlns:x="u"')
     assert names_in(text) == ['m', f'm::{name.strip()}']
-
-
-def test_many_name_spaces_of_what_is_included_take_no_long_time(tmp_path):
-    spaces = ''.join(f' xmlns:p{number}="u"' for number in range(5000))
-    elements = ''.join(f'<p{number}:x/>' for number in range(5000))
-    write_files(
-        tmp_path, part=model_file(LINK + elements, attributes=spaces),
-        main=world_file(''.join(
-            f'<include><uri>part.sdf</uri><name>m{number}</name></include>'
-            for number in range(10))))
-    begin = time.thread_time()
-    load(tmp_path / 'main.sdf')
-    # 3 s where each prefix of each copy is searched.
-    assert time.thread_time() - begin < 1.0
 
 
 @pytest.mark.parametrize('rest', ['<sdf version="1.9"/>', '<a/><b/>', '</a>'])
@@ -360,13 +329,6 @@ def test_comments_with_hyphens_behind_many_undeclared_prefixes_are_accepted():
     assert names_in(text) == ['m', 'm::l', 'm::k']
 
 
-def test_hyphens_in_several_comments_give_one_warning():
-    scene = load_text(model_file('\n<!-- fine -->\n<!--- a --->' + LINK + '<!-- b --->\n'))
-    (warning,) = scene.warnings
-    assert (warning.message, warning.place.line) == (
-        'this is not well-formed XML: a comment holds two hyphens in a row', 3)
-
-
 def test_hyphens_in_one_comment_give_a_warning():
     (warning,) = load_text(model_file('<!-- a ---- b --->' + LINK)).warnings
     assert warning.message == 'this is not well-formed XML: a comment holds two hyphens in a row'
@@ -396,12 +358,6 @@ def test_byte_order_mark_is_skipped():
 
 def test_default_encoding_is_utf_8():
     assert names_in(model_file('<link name="größe 手"/>').encode()) == ['m', 'm::größe 手']
-
-
-@pytest.mark.parametrize('encoding', ['utf-8', 'ISO-8859-1', 'UTF-16'])
-def test_bytes_are_in_the_encoding_that_is_declared(encoding):
-    text = f'<?xml version="1.0" encoding="{encoding}"?>' + model_file('<link name="größe"/>')
-    assert names_in(text.encode(encoding)) == ['m', 'm::größe']
 
 
 @pytest.mark.parametrize('encoding', ['utf-8', 'ISO-8859-1', 'UTF-16'])

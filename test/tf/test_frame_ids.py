@@ -202,7 +202,7 @@ def test_z_of_an_optical_frame_is_ahead_and_y_down():
 
 @pytest.mark.parametrize('kind', [
     'camera', 'depth_camera', 'rgbd_camera', 'thermal_camera', 'segmentation_camera',
-    'boundingbox_camera', 'wide_angle_camera', 'wideanglecamera', 'multicamera'])
+    'boundingbox_camera', 'wide_angle_camera', 'wideanglecamera', 'multicamera', 'thermal'])
 def test_every_type_of_camera(kind):
     text = model_file(f'<link name="l"><sensor name="cam" type="{kind}"/></link>')
     assert 'l/cam_optical' in tree_of(text).frame_ids
@@ -257,10 +257,3 @@ def test_two_cameras_elsewhere_name_one_optical_frame():
 def test_an_optical_frame_would_take_the_id_of_a_link():
     text = model_file(f'<link name="l">{camera()}</link><link name="l/cam_optical"/>')
     assert only_tree_error(text).code == 'DUPLICATE_NAME'
-
-
-@pytest.mark.parametrize('sensor_type', ['camera', 'depth_camera', 'rgbd_camera', 'thermal'])
-def test_every_type_of_camera_has_an_optical_frame(sensor_type):
-    tree = tree_of(model_file(
-        f'<link name="l"><sensor name="s" type="{sensor_type}"/></link>'))
-    assert 'l/s_optical' in tree.frame_ids

@@ -114,18 +114,6 @@ def test_poses_in_the_pose_frame_are_those_that_a_lookup_finds(pose_frame):
         np.testing.assert_allclose(poses, expected, atol=1e-15)
 
 
-def test_a_lookup_follows_the_positions():
-    scene = load_text(model_file(ARM + '<frame name="f" attached_to="b"/>'))
-    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
-    joints = known_positions(scene, tree, np.zeros(2))
-    lookup = PoseLookup(scene, tree, joints)
-    assert lookup.pose('m::b::s').pose[:3] == (1.0, 0.0, 0.0)
-    joints.values[0] = np.pi / 2
-    for name in ('m::b::s', 'b/s', 'b/s_optical'):
-        np.testing.assert_allclose(lookup.pose(name).pose[:3], [0.0, 1.0, 0.0], atol=1e-15)
-    np.testing.assert_allclose(lookup.pose('b/s', 'f').pose[:3], [1.0, 0.0, 0.0], atol=1e-15)
-
-
 def test_transforms_need_the_positions_that_they_cross():
     moving = moving_tree(
         model_file(ARM + '<frame name="f" attached_to="c"/>'),
