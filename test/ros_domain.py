@@ -21,6 +21,16 @@ def port_of_claim(domain):
     return _FIRST_PORT + _PORTS * domain + 5
 
 
+def has_participants(domain):
+    """Tell whether a process on this machine has a port of a domain beside that of a claim."""
+    ports = {_FIRST_PORT + _PORTS * domain + number for number in range(_PORTS)}
+    ports.remove(port_of_claim(domain))
+    # The second column is the local address and port, in hexadecimal digits.
+    lines = [line for table in ('udp', 'udp6') if (path := Path('/proc/net', table)).exists()
+             for line in path.read_text(encoding='ascii').splitlines()[1:]]
+    return any(int(line.split()[1].rpartition(':')[2], 16) in ports for line in lines)
+
+
 def remove_incomplete_segments(domain, folder=Path('/dev/shm')):
     """
     Remove the shared memory of a domain that a killed process had begun to create.
@@ -50,13 +60,16 @@ def claimed_domain():
     """
     Claim a ROS domain until the context ends, and until no process has :func:`claims` any more.
 
-    Holding the port keeps other tests out, in this process and in others.
+    Holding the port keeps other tests out, in this process and in others. A domain that other
+    programs use is left to them.
     """
     for domain in random.sample(range(1, 101), 100):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as claim:
             try:
                 claim.bind(('127.0.0.1', port_of_claim(domain)))
             except OSError:
+                continue
+            if has_participants(domain):
                 continue
             _CLAIMS.append(claim)
             remove_incomplete_segments(domain)
