@@ -36,13 +36,10 @@ COUNTERPART = """
 import sys
 import rclpy
 from benchmarks.bench_joints import JointBroadcaster
-rclpy.init()
+rclpy.init(signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
 node = rclpy.create_node('counterpart')
 broadcaster = JointBroadcaster(node, int(sys.argv[1]), '/tf_of_counterpart')
-try:
-    rclpy.spin(node)
-except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
-    pass
+rclpy.spin(node)
 """
 
 
@@ -50,14 +47,11 @@ RECEIVER = """
 import rclpy
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import JointState
-rclpy.init()
+rclpy.init(signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
 node = rclpy.create_node('counterpart')
 node.create_subscription(
     JointState, 'joint_states', lambda message: None, qos_profile_sensor_data)
-try:
-    rclpy.spin(node)
-except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
-    pass
+rclpy.spin(node)
 """
 """A minimal node that receives the messages and does nothing."""
 

@@ -41,7 +41,7 @@ def latched(depth):
     return QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 frames, topics = int(sys.argv[1]), int(sys.argv[2])
-rclpy.init()
+rclpy.init(signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
 node = rclpy.create_node('sdf_pose_bridge')
 message = TFMessage()
 for number in range(frames):
@@ -59,10 +59,7 @@ for number in range(topics):
     pose.pose.position.x = float(number)
     node.create_publisher(PoseStamped, f'~/poses/f{number}', latched(1)).publish(pose)
 print('ready', flush=True)
-try:
-    rclpy.spin(node)
-except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
-    pass
+rclpy.spin(node)
 """
 
 

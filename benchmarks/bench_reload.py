@@ -103,7 +103,12 @@ class RunningBridge:
     def start(
         self, stack: contextlib.ExitStack, *command: object, **options: object,
     ) -> subprocess.Popen[str]:
-        """Start another process in its domain."""
+        """
+        Start another process in its domain, which SIGTERM ends.
+
+        A node in Python leaves that to the system: with rclpy's handlers it goes on waiting for
+        ever where the signal comes just as it begins to spin.
+        """
         process = stack.enter_context(subprocess.Popen(
             list(map(str, command)), env=self.environment, text=True, **options))
         stack.callback(process.terminate)

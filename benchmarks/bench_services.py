@@ -27,15 +27,12 @@ import rclpy
 from sdf_pose_bridge_interfaces.srv import ConvertRotation
 from sdf_pose_bridge_interfaces.srv import LookupPose
 from std_srvs.srv import Empty
-rclpy.init()
+rclpy.init(signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
 node = rclpy.create_node('minimal')
 node.create_service(Empty, '~/empty', lambda request, response: response)
 node.create_service(ConvertRotation, '~/same_type', lambda request, response: response)
 node.create_service(LookupPose, '~/type_of_lookup', lambda request, response: response)
-try:
-    rclpy.spin(node)
-except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
-    pass
+rclpy.spin(node)
 """
 
 

@@ -8,7 +8,8 @@ and with VERSIONS=noble in .underlay-noble, build-noble and so on.
 
 Called by the script of the same name, with the Python that the environment shall have. Each step
 leaves a stamp, the hash of everything that it was made from, so that a later run does only what
-has changed; a step that was interrupted has no stamp and is done again.
+has changed; a step that was interrupted has no stamp and is done again, but for the packages that
+pip has installed already.
 """
 
 import argparse
@@ -185,11 +186,11 @@ class Underlay:
                 'tf2_msgs', tf2_msgs, UNDERLAY / 'share/tf2_msgs/package.xml',
                 'building tf2_msgs', 10, self._build_tf2_msgs))
         due = [step for step in plan if not step.is_done()]
-        if plan[0] in due or plan[1] in due:
+        if plan[0] in due:
             due = plan
         if not due:
             return
-        self._check_machine(all_steps=due is plan)
+        self._check_machine(all_steps=plan[1] in due)
         self._steps = Steps(len(due), LOG, self._lock)
         for step in due:
             step.stamp_file.unlink(missing_ok=True)
@@ -225,6 +226,11 @@ class Underlay:
         (UNDERLAY / 'COLCON_IGNORE').touch()
 
     def _install_packages(self) -> None:
+        # pip writes the record of a package last, and would take what it left half installed for
+        # installed.
+        for folder in UNDERLAY.glob('lib/python3.*/site-packages/*.dist-info'):
+            if not (folder / 'RECORD').exists():
+                _remove(folder)
         for locks in self._locks:
             # The lock files name every package that any of them needs: nothing is to be resolved.
             self._steps.command(
