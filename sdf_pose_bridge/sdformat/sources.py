@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 import copy
+from itertools import takewhile
 from typing import Any, NamedTuple
 
 from lxml import etree
@@ -217,21 +218,17 @@ class Sources:
 
     def _place_in_tree(self, xml: XmlElement) -> Place:
         """Return the file and the path of an ancestor of an element."""
-        file, path = '', ''
-        steps: list[str] = []
-        for element in with_ancestors(xml):
-            if self._places and element in self._places:
-                outer = self._places[element]
-                file, path = file or outer.file, outer.element
-                break
-            file = file or self.origin(element).file or ''
-            steps.append(_step(element))
-        place = Place(file, element='/'.join([path, *reversed(steps)]))
-        if self._places is not None:
-            if len(self._places) == _MOST_PLACES_REMEMBERED:
-                self._places.clear()
-            self._places[xml] = place
-        return place
+        known = {} if self._places is None else self._places
+        if len(known) > _MOST_PLACES_REMEMBERED:
+            known.clear()
+        unknown = list(takewhile(lambda each: each not in known, with_ancestors(xml)))
+        for element in reversed(unknown):
+            parent = element.getparent()
+            outer = Place('') if parent is None else known[parent]
+            known[element] = Place(
+                self.origin(element).file or outer.file,
+                element=f'{outer.element}/{_step(element)}')
+        return known[xml]
 
     def copy_of(self, xml: XmlElement, user: XmlElement) -> XmlElement:
         """
