@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from itertools import chain, islice
+from itertools import chain, takewhile
 from typing import Any, NamedTuple
 
 from lxml import etree
@@ -61,10 +61,11 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     child_value,
     described,
     first_child,
-    is_foreign,
+    is_foreign_itself,
     text_of,
     value_of,
     WHITE_SPACE,
+    with_ancestors,
     written_tag,
     XmlElement,
 )
@@ -104,12 +105,18 @@ def check_element(xml: XmlElement, definition: Definition, sources: Sources) -> 
 
 def _check_scoped_names(root: XmlElement, sources: Sources) -> None:
     """Report names with ``::`` in files without scoped names, and in files that they include."""
+    is_allowed: dict[XmlElement | None, bool] = {None: True}
     xmls: list[XmlElement] = root.xpath('//*[contains(@name, "::")]')
     for xml in xmls:
         # The name may be in the file that includes the element.
-        is_named_by_include = sources.origin(xml).is_named_by_include
-        paths = islice(sources.enclosing_paths(xml), int(is_named_by_include), None)
-        if is_foreign(xml) or all(allows_scoped_names(sources.versions[path]) for path in paths):
+        named_in = xml.getparent() if sources.origin(xml).is_named_by_include else xml
+        around = () if named_in is None else with_ancestors(named_in)
+        for each in reversed([*takewhile(lambda each: each not in is_allowed, around)]):
+            file = sources.origin(each).file
+            is_allowed[each] = is_foreign_itself(each) or (
+                is_allowed[each.getparent()]
+                and (file is None or allows_scoped_names(sources.versions[file])))
+        if is_allowed[named_in]:
             continue
         msg = f'the name "{xml.get("name")}" holds "{SEPARATOR}", which separates scopes'
         sources.error_in_name(ReservedNameError, xml, msg)

@@ -11,7 +11,7 @@ first line of a start tag over several lines.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 import copy
 from itertools import takewhile
 from typing import Any, NamedTuple
@@ -192,12 +192,8 @@ class Sources:
 
     def path(self, xml: XmlElement) -> str:
         """Return the path of the file of an element."""
-        return next(self.enclosing_paths(xml))
-
-    def enclosing_paths(self, xml: XmlElement) -> Iterator[str]:
-        """Iterate over the files around an element, from its own to the outermost."""
         files = (self.origin(each).file for each in with_ancestors(xml))
-        return (file for file in files if file is not None)
+        return next(file for file in files if file is not None)
 
     def line(self, xml: XmlElement) -> int:
         """Return the line in which an element begins, from 1; 0 if it is not known."""

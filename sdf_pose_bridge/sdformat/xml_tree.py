@@ -60,9 +60,12 @@ def written_tag(xml: XmlElement) -> str:
 
 def is_foreign(xml: XmlElement) -> bool:
     """Return whether an element is not SDFormat: in a ``<plugin>``, or with a prefix."""
-    return any(
-        element.tag == 'plugin' or ':' in written_tag(element)
-        for element in with_ancestors(xml))
+    return any(map(is_foreign_itself, with_ancestors(xml)))
+
+
+def is_foreign_itself(xml: XmlElement) -> bool:
+    """Return whether an element is a ``<plugin>``, or has a prefix."""
+    return xml.tag == 'plugin' or ':' in written_tag(xml)
 
 
 def with_ancestors(xml: XmlElement) -> Iterator[XmlElement]:
