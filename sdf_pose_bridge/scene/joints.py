@@ -26,7 +26,7 @@ from sdf_pose_bridge.names import MODEL_FRAME, SEPARATOR, WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.name_scopes import NameScopes
 from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
-from sdf_pose_bridge.sdformat.joints import AXIS_TAGS, AxisDetails, MimicDetails, Reference
+from sdf_pose_bridge.sdformat.joints import AXIS_TAGS, AxisDetails, Reference
 
 
 class AxisReferences(NamedTuple):
@@ -68,7 +68,7 @@ class JointChecks:
         """Return a joint with the references of its axes; None if it does not join two bodies."""
         axes = tuple(
             AxisReferences(
-                self._expressed_in(ends.joint, axis), self._leader(ends.joint, index, axis.mimic))
+                self._expressed_in(ends.joint, axis), self._leader(ends.joint, index, axis))
             if axis is not None else AxisReferences(ends.joint, NO_ELEMENT)
             for index, axis in enumerate(self._elements.joints[ends.joint].axes))
         is_valid = self._are_ends_valid(ends) and self._are_bodies_valid(ends)
@@ -84,21 +84,21 @@ class JointChecks:
             return joint
         return found
 
-    def _leader(self, joint: int, axis: int, mimic: MimicDetails | None) -> int:
+    def _leader(self, joint: int, index: int, axis: AxisDetails) -> int:
+        mimic, name = axis.axis.mimic, axis.leader.name
         if mimic is None:
             return NO_ELEMENT
-        name = mimic.joint.name
         leader = self._scopes.frame(self._scope_of[joint], name) if name else None
         if leader is None or leader not in self._elements.joints:
             msg = f'mimic joint="{name}" names no joint'
         elif not self._is_found_by_parts(leader, self._scope_of[joint], name):
             msg = (f'mimic joint="{name}" names no joint: libsdformat finds none in a model whose '
                    f'own name holds "{SEPARATOR}"')
-        elif self._elements.joints[leader].axes[AXIS_TAGS.index(mimic.axis)] is None:
-            msg = f'mimic: joint "{name}" has no <{mimic.axis}>'
+        elif self._elements.joints[leader].axes[mimic.axis] is None:
+            msg = f'mimic: joint "{name}" has no <{AXIS_TAGS[mimic.axis]}>'
         else:
             return leader
-        self._report(MimicError, msg, joint, mimic.joint.line, AXIS_TAGS[axis])
+        self._report(MimicError, msg, joint, axis.leader.line, AXIS_TAGS[index])
         return NO_ELEMENT
 
     def _is_found_by_parts(self, leader: int, scope: int, name: str) -> bool:

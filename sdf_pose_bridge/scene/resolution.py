@@ -26,11 +26,11 @@ from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.frame_graph import FrameGraph
 from sdf_pose_bridge.scene.joints import JointEnds
-from sdf_pose_bridge.scene.scene import Joint, JointAxis, Mimic, Scene
+from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.inertials import Inertial, moments_from_matrix, moved_moments
-from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
+from sdf_pose_bridge.sdformat.joints import JointAxis
 
 _Details = TypeVar('_Details')
 
@@ -110,17 +110,15 @@ def _joint(
 ) -> Joint:
     details = elements.joints[ends.joint]
     axes = []
-    for axis, (expressed_in, leader) in zip(details.axes, ends.axes, strict=True):
-        if axis is None:
+    for written, (expressed_in, leader) in zip(details.axes, ends.axes, strict=True):
+        if written is None:
             axes.append(JointAxis((0.0, 0.0, 1.0)))
             continue
-        mimic, leader = axis.mimic, new_index_of[leader]
-        axes.append(JointAxis(
-            _axis_in_joint(axis.xyz, expressed_in, ends.joint, poses), axis.lower, axis.upper,
-            None if mimic is None or leader == NO_ELEMENT else Mimic(
-                leader, AXIS_TAGS.index(mimic.axis), mimic.multiplier, mimic.offset,
-                mimic.reference),
-            axis.dynamics))
+        axis, leader = written.axis, new_index_of[leader]
+        axes.append(axis._replace(
+            xyz=_axis_in_joint(axis.xyz, expressed_in, ends.joint, poses),
+            mimic=None if axis.mimic is None or leader == NO_ELEMENT else axis.mimic._replace(
+                joint=leader)))
     return Joint(
         new_index_of[ends.joint], details.type, new_index_of[ends.parent],
         new_index_of[ends.child], (axes[0], axes[1]), details.screw_pitch_m)

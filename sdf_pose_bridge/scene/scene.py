@@ -5,7 +5,6 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-import math
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -20,38 +19,8 @@ from sdf_pose_bridge.scene.frame_graph import default_references
 from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.inertials import Inertial
-from sdf_pose_bridge.sdformat.joints import Dynamics, NO_DYNAMICS
+from sdf_pose_bridge.sdformat.joints import JointAxis
 from sdf_pose_bridge.sdformat.shapes import Shape
-
-
-class Mimic(NamedTuple):
-    """
-    The joint axis that an axis follows.
-
-    Its position is ``multiplier * (position of the leader - reference) + offset``.
-    """
-
-    joint: int
-    """The joint of the leader, as an index into the scene."""
-    axis: int
-    """The axis of that joint: 0 for ``<axis>``, 1 for ``<axis2>``."""
-    multiplier: float
-    offset: float
-    reference: float
-
-
-class JointAxis(NamedTuple):
-    """An axis of a joint."""
-
-    xyz: tuple[float, float, float]
-    """Unit vector in the frame of the joint."""
-    lower: float = -math.inf
-    """Lower limit of the position, in radians or metres."""
-    upper: float = math.inf
-    """Upper limit of the position, in radians or metres."""
-    mimic: Mimic | None = None
-    dynamics: Dynamics = NO_DYNAMICS
-    """Defaults unless the load reads shapes."""
 
 
 class Joint(NamedTuple):

@@ -22,7 +22,7 @@ from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 from sdf_pose_bridge.sdformat.shapes import shape_of
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.values import boolean_from_text, numbers_of_child
+from sdf_pose_bridge.sdformat.values import boolean_from_text, number_of_child
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of, child_elements, first_child, XmlElement
 
 DEFAULT_DENSITY_KG_M3 = 1000.0
@@ -172,11 +172,12 @@ def warn_of_inertial(
 def _inertial_from_values(xml: XmlElement) -> Inertial:
     """Read an inertial; values that libsdformat cannot read are those of an empty one."""
     inertia = first_child(xml, 'inertia')
-    (mass_kg,) = numbers_of_child(xml, 'mass', (1.0,))
+    mass_kg = number_of_child(xml, 'mass', 1.0)
+    if inertia is None:
+        return Inertial(mass_kg, _MOMENTS_OF_NONE)
     return Inertial(mass_kg, tuple(
-        number for tag, default in zip(MOMENTS, _MOMENTS_OF_NONE, strict=True)
-        for number in (
-            (default,) if inertia is None else numbers_of_child(inertia, tag, (default,)))))
+        number_of_child(inertia, tag, default)
+        for tag, default in zip(MOMENTS, _MOMENTS_OF_NONE, strict=True)))
 
 
 def _automatic_inertial(inertial: XmlElement, sources: Sources) -> AutomaticInertial | None:
@@ -190,7 +191,7 @@ def _automatic_inertial(inertial: XmlElement, sources: Sources) -> AutomaticIner
     if pose is not None:
         msg = 'the pose of an automatic inertial is ignored; the collisions give it'
         sources.warning(pose, msg)
-    (default_density,) = numbers_of_child(inertial, 'density', (DEFAULT_DENSITY_KG_M3,))
+    default_density = number_of_child(inertial, 'density', DEFAULT_DENSITY_KG_M3)
     masses = []
     for collision in collisions:
         shape = shape_of(collision)
@@ -202,7 +203,7 @@ def _automatic_inertial(inertial: XmlElement, sources: Sources) -> AutomaticIner
             return None
         # An empty density means the default of the element, and not that of the inertial.
         has_density = first_child(collision, 'density') is not None
-        (density,) = numbers_of_child(collision, 'density', (DEFAULT_DENSITY_KG_M3,))
+        density = number_of_child(collision, 'density', DEFAULT_DENSITY_KG_M3)
         solid = None if shape is None else shape.solid
         density_kg_m3 = density if has_density else default_density
         is_massless = density_kg_m3 == 0.0 and shape is not None and shape.type in _MAY_BE_MASSLESS
@@ -217,5 +218,5 @@ def _automatic_inertial(inertial: XmlElement, sources: Sources) -> AutomaticIner
                 mass_kg, solid.center_z_m,
                 tuple(mass_kg * moment for moment in solid.moments_m2)))
     has_mass = first_child(inertial, 'mass') is not None
-    (mass_kg,) = numbers_of_child(inertial, 'mass', (1.0,))
+    mass_kg = number_of_child(inertial, 'mass', 1.0)
     return AutomaticInertial(tuple(masses), mass_kg if has_mass else None) if masses else None

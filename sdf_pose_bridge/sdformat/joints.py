@@ -22,7 +22,7 @@ from sdf_pose_bridge.errors import (
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES, Motion
-from sdf_pose_bridge.sdformat.values import numbers_of_child
+from sdf_pose_bridge.sdformat.values import number_of_child, numbers_of_child
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of, first_child, value_of, XmlElement
 
 AXIS_TAGS = ('axis', 'axis2')
@@ -35,18 +35,6 @@ class Reference(NamedTuple):
     name: str
     """As written; empty for none."""
     line: int = 0
-
-
-class MimicDetails(NamedTuple):
-    """The joint axis that an axis follows: ``multiplier * (leader - reference) + offset``."""
-
-    joint: Reference
-    """The joint of the leader."""
-    axis: str
-    """The axis of the leader: ``axis`` or ``axis2``."""
-    multiplier: float
-    offset: float
-    reference: float
 
 
 class Dynamics(NamedTuple):
@@ -65,19 +53,46 @@ class Dynamics(NamedTuple):
 NO_DYNAMICS = Dynamics()
 
 
-class AxisDetails(NamedTuple):
+class Mimic(NamedTuple):
+    """
+    The joint axis that an axis follows.
+
+    Its position is ``multiplier * (position of the leader - reference) + offset``.
+    """
+
+    joint: int
+    """The joint of the leader, as an index into the scene; -1 as long as only its name is
+    known."""
+    axis: int
+    """The axis of that joint: 0 for ``<axis>``, 1 for ``<axis2>``."""
+    multiplier: float
+    offset: float
+    reference: float
+
+
+class JointAxis(NamedTuple):
     """An axis of a joint."""
 
     xyz: tuple[float, float, float]
-    """As written; not zero."""
-    expressed_in: Reference
-    """The frame that ``xyz`` is expressed in; empty for the frame of the joint."""
-    lower: float
+    """Unit vector in the frame of the joint."""
+    lower: float = -math.inf
     """Lower limit of the position, in radians or metres."""
-    upper: float
+    upper: float = math.inf
     """Upper limit of the position, in radians or metres."""
-    mimic: MimicDetails | None
-    dynamics: Dynamics
+    mimic: Mimic | None = None
+    dynamics: Dynamics = NO_DYNAMICS
+    """Defaults unless the load reads shapes."""
+
+
+class AxisDetails(NamedTuple):
+    """An axis of a joint, with its references as written."""
+
+    axis: JointAxis
+    """Its vector is as written, and not zero."""
+    expressed_in: Reference
+    """The frame that the vector is expressed in; empty for the frame of the joint."""
+    leader: Reference
+    """The joint that it mimics; empty for none."""
 
 
 class JointDetails(NamedTuple):
@@ -155,17 +170,19 @@ def _axis(
     lower, upper = -math.inf, math.inf
     limit = first_child(axis, 'limit')
     if limit is not None:
-        (lower,) = numbers_of_child(limit, 'lower', (lower,))
-        (upper,) = numbers_of_child(limit, 'upper', (upper,))
+        lower = number_of_child(limit, 'lower', lower)
+        upper = number_of_child(limit, 'upper', upper)
         joint_type = JOINT_TYPES.get(attribute_of(joint, 'type').lower())
         if any(map(_may_be_degrees, (lower, upper))) and joint_type is not None and any(
                 dof.motion is Motion.TURN for dof in joint_type.dofs):
             msg = (f'the limits {lower:g} to {upper:g} of joint "{attribute_of(joint, "name")}" '
                    'are radians; they look like degrees')
             sources.warning(limit, msg)
+    mimic, leader = _mimic(joint, axis, tag, sources)
     return AxisDetails(
-        (x, y, z), expressed_in, lower, upper, _mimic(joint, axis, tag, sources),
-        _dynamics(axis) if reads_dynamics else NO_DYNAMICS)
+        JointAxis(
+            (x, y, z), lower, upper, mimic, _dynamics(axis) if reads_dynamics else NO_DYNAMICS),
+        expressed_in, leader)
 
 
 def _may_be_degrees(limit: float) -> bool:
@@ -180,7 +197,7 @@ def _dynamics(axis: XmlElement) -> Dynamics:
         if part is None:
             continue
         for name in names:
-            (value,) = numbers_of_child(part, name, (values[name],))
+            value = number_of_child(part, name, values[name])
             # In older files, a limit below zero means no limit.
             values[name] = math.inf if tag == 'limit' and value < 0.0 else value
     return Dynamics(**values)
@@ -188,13 +205,11 @@ def _dynamics(axis: XmlElement) -> Dynamics:
 
 def _mimic(
     joint: XmlElement, axis: XmlElement, tag: str, sources: Sources,
-) -> MimicDetails | None:
+) -> tuple[Mimic | None, Reference]:
+    """Read a mimic, and the name of its leader."""
     xml = first_child(axis, 'mimic')
     if xml is None:
-        return None
-    (multiplier,) = numbers_of_child(xml, 'multiplier', (1.0,))
-    (offset,) = numbers_of_child(xml, 'offset', (0.0,))
-    (reference,) = numbers_of_child(xml, 'reference', (0.0,))
+        return None, _NO_REFERENCE
     leader = attribute_of(xml, 'joint')
     leader_tag = attribute_of(xml, 'axis') or AXIS_TAGS[0]
     msg = ''
@@ -204,9 +219,11 @@ def _mimic(
         msg = 'an axis cannot mimic itself'
     if msg:
         sources.error(MimicError, xml, msg)
-        return None
-    return MimicDetails(
-        Reference(leader, sources.line(xml)), leader_tag, multiplier, offset, reference)
+        return None, _NO_REFERENCE
+    return Mimic(
+        -1, AXIS_TAGS.index(leader_tag), number_of_child(xml, 'multiplier', 1.0),
+        number_of_child(xml, 'offset', 0.0), number_of_child(xml, 'reference', 0.0),
+    ), Reference(leader, sources.line(xml))
 
 
 def _screw_pitch_m(joint: XmlElement) -> float:
@@ -218,7 +235,6 @@ def _screw_pitch_m(joint: XmlElement) -> float:
     """
     if first_child(joint, 'screw_thread_pitch') is None and (
             first_child(joint, 'thread_pitch') is not None):
-        (rad_per_m,) = numbers_of_child(joint, 'thread_pitch', (1.0,))
+        rad_per_m = number_of_child(joint, 'thread_pitch', 1.0)
         return -2.0 * math.pi / rad_per_m if rad_per_m else 0.0
-    (pitch_m,) = numbers_of_child(joint, 'screw_thread_pitch', (1.0,))
-    return pitch_m
+    return number_of_child(joint, 'screw_thread_pitch', 1.0)

@@ -18,7 +18,12 @@ from sdf_pose_bridge.geometry.rotations import Floats, matrix_from_quaternion
 from sdf_pose_bridge.sdformat.grammar import ValueType
 from sdf_pose_bridge.sdformat.shape_types import Part, SHAPE_TYPES, Solid, Surface
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.values import boolean_from_text, numbers_from_text, numbers_of_child
+from sdf_pose_bridge.sdformat.values import (
+    boolean_from_text,
+    number_of_child,
+    numbers_from_text,
+    numbers_of_child,
+)
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
     child_elements,
@@ -129,7 +134,7 @@ def shape_of(xml: XmlElement) -> Shape | None:
     sizes_m = (
         numbers_of_child(shape, name, size) for name, size in SHAPE_TYPES[tag].sizes_m.items())
     submesh = first_child(shape, 'submesh')
-    (transparency,) = numbers_of_child(xml, 'transparency', (0.0,))
+    transparency = number_of_child(xml, 'transparency', 0.0)
     return Shape(
         type=tag,
         sizes_m=tuple(size_m for each in sizes_m for size_m in each),

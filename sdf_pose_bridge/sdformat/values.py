@@ -214,7 +214,7 @@ def _plain_numbers(text: str, value_type: ValueType) -> Sequence[float]:
 
 
 def number_from_word(word: str) -> Sequence[float]:
-    """Return the number at the beginning of a text, as ``std::stod`` reads it; or None."""
+    """Return the number at the beginning of a text, as ``std::stod`` reads it, or none."""
     match = _C_NUMBER.match(word)
     if match is None:
         return ()
@@ -261,3 +261,9 @@ def numbers_of_child(
     """
     numbers = tuple(numbers_from_text(child_value(parent, tag), _TYPES_BY_COUNT[len(default)]))
     return numbers if len(numbers) == len(default) else default
+
+
+def number_of_child(parent: XmlElement, tag: str, default: float) -> float:
+    """Return the number in a child element, or the default, as :func:`numbers_of_child`."""
+    (number,) = numbers_of_child(parent, tag, (default,))
+    return number

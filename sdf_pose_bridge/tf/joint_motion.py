@@ -21,7 +21,8 @@ from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices, poses_a
 from sdf_pose_bridge.geometry.poses import Pose, pose_products, PoseArray, transformed_points
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion, Floats
 from sdf_pose_bridge.geometry.screws import ScrewMotions
-from sdf_pose_bridge.scene.scene import Joint, JointAxis, Scene
+from sdf_pose_bridge.scene.scene import Joint, Scene
+from sdf_pose_bridge.sdformat.joints import JointAxis
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES, Motion
 from sdf_pose_bridge.tf.parents import TfParents
 

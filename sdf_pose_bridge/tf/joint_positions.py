@@ -20,8 +20,9 @@ from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import JointPositionError, Place, SdfWarning
 from sdf_pose_bridge.names import hint_from_names, JOINT_SUFFIX, quoted_names, SEPARATOR
-from sdf_pose_bridge.scene.scene import Mimic, Scene
+from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.joints import Mimic
 from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
 from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom, JointMotion
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene

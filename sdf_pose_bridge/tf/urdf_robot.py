@@ -22,8 +22,9 @@ from sdf_pose_bridge.errors import Place, SdfWarning, UrdfNotMadeError
 from sdf_pose_bridge.geometry.poses import Pose, pose_inverse, pose_product, relative_pose
 from sdf_pose_bridge.names import quoted_names
 from sdf_pose_bridge.problems import Problems
-from sdf_pose_bridge.scene.scene import JointAxis, Mimic, Scene
+from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.joints import JointAxis, Mimic
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNaming
 from sdf_pose_bridge.tf.joint_links import is_same_place, LINK_SUFFIX

@@ -7,8 +7,9 @@ import re
 import pytest
 
 from sdf_pose_bridge import Kind
-from sdf_pose_bridge.scene.scene import Joint, JointAxis
+from sdf_pose_bridge.scene.scene import Joint
 from sdf_pose_bridge.sdformat.grammar import definition_of, ValueType
+from sdf_pose_bridge.sdformat.joints import JointAxis
 from sdf_pose_bridge.sdformat.specification import CHOICES, ELEMENTS, JOINT_TYPES, URDF_JOINT_TYPES
 from sdf_pose_bridge.tf.joint_motion import dofs_from_joint
 
