@@ -26,8 +26,8 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import resource_finder, ResourceFinder
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
-_FOLDER = re.compile('(?:model|package)://+[^/]+', re.IGNORECASE)
-"""The package or model at the beginning of a URI."""
+_FOLDER = re.compile('(?:model|package|file)://+[^/]+', re.IGNORECASE)
+"""The package, model or folder at the beginning of a URI."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -61,7 +61,7 @@ def run(options: argparse.Namespace) -> int:
         elif options.format == GITHUB:
             print_annotations(in_order(loaded.errors, loaded.warnings))
         else:
-            print_problems(loaded.errors, loaded.warnings, sys.stdout)
+            print_problems(loaded.errors, loaded.warnings, sys.stdout, for_gazebo=True)
         if loaded.errors or (options.strict and loaded.warnings):
             exit_code = 1
     return exit_code

@@ -38,9 +38,20 @@ def is_colored(stream: TextIO) -> bool:
 
 
 def print_problems(
-    errors: tuple[SdfError, ...], warnings: tuple[SdfWarning, ...], stream: TextIO,
+    errors: tuple[SdfError, ...], warnings: tuple[SdfWarning, ...], stream: TextIO, *,
+    for_gazebo: bool = False,
 ) -> None:
-    """Print errors and warnings in the order of files and lines; in color on a terminal."""
+    """
+    Print errors and warnings in the order of files and lines; in color on a terminal.
+
+    :param for_gazebo: whether to print warnings that concern Gazebo only; else their number.
+    """
+    hidden = [] if for_gazebo else [each for each in warnings if each.is_for_gazebo]
+    if hidden:
+        warnings = tuple(each for each in warnings if not each.is_for_gazebo)
+        count = f'{len(hidden)} warning{"s" if hidden[1:] else ""}'
+        print(f'{printable(hidden[0].place.file)}: "sdf_pose check" has {count} about Gazebo',
+              file=stream)
     # Earlier output comes first, also if both streams go to one place.
     sys.stdout.flush()
     has_colors = is_colored(stream)

@@ -44,7 +44,7 @@ def settings_from_node(
     sentences = sentences_about_overrides(given)
     if sentences:
         raise SettingsError(sentences)
-    settings = changed_settings(Settings({}), parameters, shows_command_line=True)
+    settings = changed_settings(Settings({}), parameters, node=node.get_fully_qualified_name())
     for parameter in parameters:
         _declare(node, parameter)
     return settings
@@ -62,14 +62,15 @@ def settings_from_values(values: Mapping[str, Any]) -> Settings:
 
 
 def changed_settings(
-    settings: Settings, parameters: Iterable[Parameter], *, shows_command_line: bool = False,
+    settings: Settings, parameters: Iterable[Parameter], *, node: str = '',
 ) -> Settings:
     """
     Convert new values of parameters.
 
     :param parameters: the new values, as :func:`parameter_with_type` returns them; parameters that
         are not declared here are ignored.
-    :param shows_command_line: whether to show how to write a value on the command line.
+    :param node: the full name of the node, at its start; messages show how to write a value on the
+        command line then.
     :raises SettingsError: if a value has the wrong type or is not allowed.
     """
     values = dict(settings.values)
@@ -77,7 +78,7 @@ def changed_settings(
     for given in parameters:
         if given.name in DECLARATIONS:
             try:
-                values[given.name] = _converted(given, shows_command_line=shows_command_line)
+                values[given.name] = _converted(given, shows_command_line=bool(node))
             except ValueError as error:
                 sentences.append(f'parameter {given.name} {error}')
     sources = [values.get(name) for name in ('sdf_file', 'robot_description')]
@@ -89,7 +90,13 @@ def changed_settings(
         sentences.insert(
             0, 'parameter sdf_file is not set; name the file to publish: --ros-args -p '
             'sdf_file:=cell.sdf after "ros2 run ...", sdf_file:=cell.sdf after "ros2 launch '
-            '..."; or set robot_description to its text')
+            '..."; or set robot_description to its text'
+            + (f'; in a parameter file, they are below the name of this node, {node}' if node
+               else ''))
+    elif sources[1] and '<' not in sources[1]:
+        sentences.insert(
+            0, f'parameter robot_description is "{shortened(sources[1])}", which is no text of '
+            'SDFormat or URDF; the parameter sdf_file takes a path')
     if sentences:
         raise SettingsError(sentences)
     return Settings(values)

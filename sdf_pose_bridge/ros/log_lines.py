@@ -136,8 +136,8 @@ def line_about_gazebo(count: int) -> str:
         return ''
     return (
         f'{count_in_words(count, "warning")} about Gazebo '
-        f'{"is" if count == 1 else "are"} not shown; "sdf_pose check" shows '
-        f'{"it" if count == 1 else "them"}')
+        f'{"is" if count == 1 else "are"} not shown; "sdf_pose check FILE", or "sdf_pose check -" '
+        f'for a text, shows {"it" if count == 1 else "them"}')
 
 
 def line_about_unreported_joints(joints: MissingJoints) -> str:

@@ -194,7 +194,7 @@ class Settings:
         FrameNames.AUTO,
         'Names of models in frame ids: "scoped" keeps the names of all models (robot/arm/tool), '
         '"relative" leaves out that of the top-level model (arm/tool), "auto" is relative for a '
-        'model file and scoped for a world.',
+        'model file in which no frame has the name of the model, else scoped.',
     )
     frame_separator = Declaration(
         '/',
@@ -207,7 +207,7 @@ class Settings:
         '',
         'Precedes every frame id except that of root_frame, without a separator; also that of the '
         'link "world" of a URDF.',
-        'no leading slash, at most 255 characters',
+        'at most 255 characters; a leading slash is left out, as by tf2',
         prefix_setting,
     )
     kinds = Declaration(

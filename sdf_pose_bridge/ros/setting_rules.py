@@ -56,14 +56,14 @@ def root_frame_setting(value: str) -> str:
     """Reject texts that are no frame id of the root."""
     if not value:
         raise refusal(value, 'a frame id, which is not empty')
-    return prefix_setting(value)
-
-
-def prefix_setting(value: str) -> str:
-    """Reject invalid beginnings of frame ids."""
     if value.startswith('/'):
         raise refusal(value, 'without a leading slash, which TF does not allow')
     return _name_setting(value, MOST_CHARACTERS)
+
+
+def prefix_setting(value: str) -> str:
+    """Return the beginning of frame ids without its leading slash, as tf2 drops it."""
+    return _name_setting(value.removeprefix('/'), MOST_CHARACTERS)
 
 
 def separator_setting(value: str) -> str:

@@ -297,8 +297,8 @@ class _Builder:
         for uri in sorted(set(self._unresolved.values()) - {''}):
             indices = sorted(index for index, cause in self._unresolved.items() if cause == uri)
             names = [self._scopes.names[index] for index in indices]
-            msg = (f'because "{uri}" is missing, {len(indices)} more elements are left out, which '
-                   f'refer to it: {quoted_names(names, _MOST_NAMES_SHOWN)}')
+            msg = (f'because "{uri}" is missing, what refers to it is left out too: '
+                   f'{quoted_names(names, _MOST_NAMES_SHOWN)}')
             self._problems.warning(msg, self._elements.place(indices[0]))
 
     def _break_cycles(

@@ -117,6 +117,9 @@ class NameScopes:
             rest = reference[len(first) + len(SEPARATOR):]
             return (f'; inside a model its own name is not visible, write '
                     f'"{rest or MODEL_FRAME}"')
+        if self._is_model[scope] and reference == WORLD_FRAME:
+            return ('; in a model only joints can name the world, and the <pose> of the model '
+                    'itself is relative to it')
         scoped = reference.replace('/', SEPARATOR)
         if scoped != reference and self.frame(scope, scoped) is not None:
             return f'; did you mean "{scoped}"?'

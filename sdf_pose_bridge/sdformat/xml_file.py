@@ -122,9 +122,17 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
             usage.add('bytes_read', len(text) - status.st_size, place)
             return text
     except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
-        msg = f'the file cannot be read: {getattr(error, "strerror", None) or error}'
+        msg = f'the file cannot be read: {getattr(error, "strerror", None) or error}{_cure(path)}'
         is_passing = isinstance(error, OSError) and error.errno in _PASSING
         raise (PassingReadError if is_passing else FileReadError)(msg, place) from error
+
+
+def _cure(path: str) -> str:
+    if os.path.isdir(path):  # noqa: PTH112 - Path.is_dir raises for a zero byte
+        return '; name a file in it'
+    if '$' in path or path.startswith('~'):
+        return '; $ and ~ stay as they are in quotes and in parameter files'
+    return '; this is a URI, and not a path' if '://' in path else ''
 
 
 def _descriptor_without_waiting(path: str, flags: int) -> int:

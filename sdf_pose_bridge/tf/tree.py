@@ -159,7 +159,8 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     tf_parents = tf_parents_from_scene(scene)
     elements = _published_elements(scene, options, problems)
     elements, frame_ids, sensor_ids = with_ids_of_sensors(
-        elements, naming.frame_ids_from_scene(scene, elements), scene, naming, options.root_frame)
+        elements, _frame_ids(naming, scene, elements, problems), scene, naming,
+        options.root_frame)
     elements, frame_ids = _with_link_world(elements, frame_ids, scene, options)
     nearest_frames, parents = _nearest_frames_and_parents(
         scene, tf_parents, elements,
@@ -298,6 +299,24 @@ def _check_frame_ids(
                f'{scene.lines[owner]}) would share the frame id "{frames.ids[index]}"'
                f'{f", like {count} more" if count else ""}; {_cure_of_clash(scene, owner)}')
         problems.error(DuplicateNameError(msg, scene.place(others[0])))
+
+
+def _frame_ids(
+    naming: FrameNaming, scene: Scene, elements: Indices, problems: Problems,
+) -> list[str]:
+    """Make frame ids; scoped ones for a model file in which a frame has the name of the model."""
+    frame_ids = naming.frame_ids_from_scene(scene, elements)
+    if naming.names is not FrameNames.AUTO or not frame_ids:
+        return frame_ids
+    model = scene.top_level_element(int(elements[0]))
+    name = naming.frame_id_from_name(scene.names[model])
+    scoped = naming._replace(names=FrameNames.SCOPED)
+    if frame_ids.count(name) < 2 or scene.world_names:
+        return frame_ids
+    msg = (f'a frame in the model has the name of the model, "{name}", so frame ids begin with '
+           'it, as with frame_names "scoped"')
+    problems.warning(msg, scene.place(model))
+    return scoped.frame_ids_from_scene(scene, elements)
 
 
 def _cure_of_clash(scene: Scene, element: int) -> str:

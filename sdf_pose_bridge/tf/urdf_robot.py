@@ -109,8 +109,8 @@ def _model(scene: Scene, name: str) -> int:
     if len(models) != 1:
         names = [scene.names[model] for model in models]
         msg = 'URDF describes one robot, and the file has ' + (
-            f'the models {quoted_names(names, _MOST_NAMES_SHOWN)}; name one of them' if names
-            else 'no model')
+            f'the models {quoted_names(names, _MOST_NAMES_SHOWN)}; choose one by --model or the '
+            'parameter model' if names else 'no model')
         raise UrdfNotMadeError(msg, Place(scene.path))
     return int(models[0])
 

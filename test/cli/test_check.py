@@ -101,11 +101,11 @@ def test_errors_and_warnings_are_in_the_order_of_lines(run_main, files):
 
 def test_frame_ids_that_the_node_rejects_are_warnings(run_main, files):
     (files / 'pipe.sdf').write_text(
-        '<sdf version="1.9"><model name="pipe">\n<link name="pipe"/></model></sdf>')
+        '<sdf version="1.9"><model name="pipe">\n<link name="/a"/><link name="a"/></model></sdf>')
     done = run_main('check', 'pipe.sdf')
     assert done.stdout.startswith(
-        'pipe.sdf:2: WARNING: DUPLICATE_NAME: link "pipe::pipe" and model "pipe" (line 1) would '
-        'share the frame id "pipe"')
+        'pipe.sdf:2: WARNING: DUPLICATE_NAME: link "pipe::a" and link "pipe::/a" (line 2) would '
+        'share the frame id "a"')
     assert done.stdout.endswith('; by default, the node rejects this\n')
     assert done.returncode == 0
 

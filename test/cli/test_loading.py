@@ -71,6 +71,25 @@ def test_a_long_load_is_told_on_a_terminal(files):
     assert process.returncode == 0
 
 
+@pytest.mark.parametrize(('path', 'cure'), [
+    ('.', 'name a file in it'), ('$HOME/cell.sdf', '$ and ~ stay as they are'),
+    ('~/cell.sdf', '$ and ~ stay as they are'), ('model://table', 'this is a URI')])
+def test_a_path_that_the_shell_left_as_it_is_has_a_cure(options, path, cure):
+    (error,) = load_file(path, options('good.sdf')).errors
+    assert cure in error.message
+
+
+def test_warnings_about_gazebo_are_counted(run_main, files):
+    moments = ' '.join(f'i{axes}="0"' for axes in ('xx', 'xy', 'xz', 'yy', 'yz'))
+    (files / 'r.urdf').write_text(
+        '<robot name="r"><link name="l"><inertial><mass value="1"/>'
+        f'<inertia {moments} izz="1"/></inertial></link></robot>')
+    done = run_main('tree', 'r.urdf')
+    assert (done.returncode, done.stderr) == (
+        0, 'r.urdf: "sdf_pose check" has 1 warning about Gazebo\n')
+    assert 'LINK_INERTIA_INVALID' in run_main('check', 'r.urdf').stdout
+
+
 def test_a_missing_directory_of_models_is_an_error(options, capsys):
     with pytest.raises(SystemExit):
         options('-I', 'nowhere', 'good.sdf')

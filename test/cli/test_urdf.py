@@ -24,7 +24,7 @@ def arm(files):
 @pytest.mark.parametrize(('arguments', 'reason'), [
     (['bad.sdf'], 'bad.sdf:3: ELEMENT_INVALID'),
     (['none.sdf'], 'FILE_READ'),
-    (['cell.sdf'], 'the file has the models "table", "robot"; name one of them'),
+    (['cell.sdf'], 'the file has the models "table", "robot"; choose one by --model'),
     (['cell.sdf', '--model', 'rubot'], 'there is no model "rubot" to publish; did you mean'),
     (['arm.sdf', '-o', 'none/arm.urdf'],
      'sdf_pose urdf: cannot write none/arm.urdf: No such file or directory'),

@@ -130,7 +130,6 @@ def test_a_file_and_a_text_together_are_refused(settings):
     ('on_missing_include', 'ignore', 'is "ignore"; it must be one of error, skip'),
     ('frame_names', 'Auto', 'is "Auto"; it must be one of auto, scoped, relative'),
     ('frame_separator', '', 'is ""; it must be at least one'),
-    ('frame_prefix', '/robot/', 'is "/robot/"; it must be without a'),
     ('publish_rate', float('inf'), 'is inf; it must be 0.0 for never, or'),
 ])
 def test_a_wrong_new_value_is_named_with_its_rule(settings, name, value, sentence):
@@ -138,6 +137,16 @@ def test_a_wrong_new_value_is_named_with_its_rule(settings, name, value, sentenc
         changed_settings(settings, [Parameter(name, value=value)])
     (found,) = refusal.value.sentences
     assert found.startswith(f'parameter {name} {sentence}')
+
+
+def test_a_path_is_no_text():
+    with pytest.raises(SettingsError, match=r'"a\.sdf", which is no text .* takes a path'):
+        settings_from_values({'robot_description': 'a.sdf'})
+
+
+def test_the_name_for_a_parameter_file_is_told(make_node):
+    with pytest.raises(SettingsError, match='below the name of this node, /bridge'):
+        settings_from_node(make_node('bridge'))
 
 
 def test_a_change_to_no_value_is_refused(settings):

@@ -184,8 +184,8 @@ def test_the_line_about_a_urdf_names_its_root_and_its_link_world():
 
 
 @pytest.mark.parametrize(('count', 'begin', 'end'), [
-    (1, '1 warning about Gazebo is', 'check" shows it'),
-    (7, '7 warnings about Gazebo are', 'check" shows them')])
+    (1, '1 warning about Gazebo is', 'shows it'),
+    (7, '7 warnings about Gazebo are', 'shows them')])
 def test_warnings_for_gazebo_are_counted(count, begin, end):
     line = line_about_gazebo(count)
     assert line.startswith(begin)

@@ -131,7 +131,8 @@ def test_a_world_of_several_models_has_no_urdf():
     assert description == ''
     assert warning == (
         'robot_description: URDF_NOT_MADE: there is no robot_description, because no URDF can be '
-        'made: URDF describes one robot, and the file has the models "m", "n"; name one of them')
+        'made: URDF describes one robot, and the file has the models "m", "n"; choose one by '
+        '--model or the parameter model')
 
 
 def test_urdf_is_that_of_the_model_that_is_published():

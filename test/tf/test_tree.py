@@ -63,7 +63,7 @@ def scoped_ids(scene, kinds):
 @pytest.mark.parametrize(('text', 'options', 'frame_id'), [
     (model_file('<link name="a/b"/><model name="a"><link name="b"/></model>'), {}, 'a/b'),
     (world_file(model('m/x', LINK) + model('m', '<link name="x"/><link name="x/l"/>')), {}, 'm/x'),
-    (model_file('<link name="m"/>'), {}, 'm'),
+    (model_file('<link name="m"/>'), {'frame_names': FrameNames.RELATIVE}, 'm'),
     (world_file(model('p', LINK) + model('q', LINK)), {'frame_names': FrameNames.RELATIVE}, 'l'),
     (world_file(model('l', '<link name="k"/>') + model('q', LINK)),
      {'frame_names': FrameNames.RELATIVE}, 'l'),
@@ -77,6 +77,14 @@ def test_two_elements_would_share_an_id(text, options, frame_id):
     error = tree_errors_of(text, **options)[0]
     assert error.code == 'DUPLICATE_NAME'
     assert f'"{frame_id}"' in error.message
+
+
+def test_ids_are_scoped_if_a_link_has_the_name_of_the_model():
+    tree = tf_tree_from_scene(sdf_pose_bridge.load_text(
+        model_file('<link name="m"/><link name="l"/>')))
+    assert set(tree.frame_ids) == {'m', 'm/m', 'm/l'}
+    (warning,) = tree.warnings
+    assert 'has the name of the model, "m"' in warning.message
 
 
 @pytest.mark.parametrize(('name', 'root_frame', 'code'), [

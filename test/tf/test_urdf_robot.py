@@ -58,7 +58,7 @@ def tree_of(text, **options):
 
 @pytest.mark.parametrize(('content', 'reason'), [
     ('', 'the file has no model'),
-    (MODEL.format('a') + MODEL.format('b'), 'the file has the models "a", "b"; name one'),
+    (MODEL.format('a') + MODEL.format('b'), 'the file has the models "a", "b"; choose one'),
 ])
 def test_world_without_one_model_is_refused(content, reason):
     with pytest.raises(UrdfNotMadeError, match=reason):

@@ -136,15 +136,15 @@ class ResourceFinder(NamedTuple):
         beside = [] if scheme and scheme[1].lower() in ('model', 'package') else [
             os.path.dirname(including_file) or '.']  # noqa: PTH120
         directories = [*dict.fromkeys((
-            *self.search_paths, *beside, *self.environment_paths, '.'))]
+            *beside, *self.search_paths, *self.environment_paths, '.'))]
         packages = ''
         if scheme and scheme[1].lower() == 'package':
             package = uri[scheme.end():].lstrip('/').partition('/')[0]
             is_known = next(self._package_shares(package), None) is not None
             packages = f'the package "{package}" has no such file, and it is ' if is_known else (
                 f'no package "{package}" is installed, and it is ')
-        return (f'{packages or "it is "}not in {quoted_names(directories, _MOST_SHOWN)}; the '
-                'variable GZ_SIM_RESOURCE_PATH and the resource paths add directories')
+        return (f'{packages or "it is "}not in {quoted_names(directories, _MOST_SHOWN)}; -I, '
+                'the parameter resource_paths and GZ_SIM_RESOURCE_PATH add directories')
 
     def _candidates(self, uri: str, including_file: str) -> Iterator[str]:
         scheme = _SCHEME.match(uri)

@@ -187,7 +187,7 @@ def test_reason_for_a_missing_fuel_model_says_how_to_fetch_it():
 
 @pytest.mark.parametrize(('uri', 'reason'), [
     ('model://box', 'it is not in "mine", "there", "."'),
-    ('box', 'it is not in "mine", "cells", "there", "."'),
+    ('box', 'it is not in "cells", "mine", "there", "."'),
     ('package://arm/box', 'no package "arm" is installed, and it is not in "mine", '),
 ])
 def test_reason_for_a_missing_model_names_what_was_searched(uri, reason):
