@@ -5,19 +5,15 @@
 import io
 import os
 import re
-import signal
-import threading
 
 import mesh_texts
 import numpy as np
 import pytest
-from slow_file import SlowFile
 
 pytest.importorskip('trimesh', reason='needs trimesh')
 pytest.importorskip('collada', reason='needs pycollada')
 from sdf_pose_bridge.cli.viewer import meshes
 from sdf_pose_bridge.cli.viewer.meshes import mesh_from_file, MeshReader
-from sdf_pose_bridge.limited_process import LimitedProcess
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 from sdf_pose_bridge.sdformat.shapes import Shape
@@ -261,28 +257,6 @@ def test_mesh_that_cannot_be_read(named):
 def test_small_file_that_needs_much_memory(named):
     assert 'memory' in named('a.gltf', mesh_texts.gltf(
         mesh_texts.IN_FILE, count=10**9, with_view=False)).reason
-    assert not named('b.stl', mesh_texts.STL.format(y=1)).reason
-
-
-def test_mesh_that_takes_too_long(named, reader, monkeypatch):
-    # To start the process takes longer than to look how long it takes.
-    monkeypatch.setattr(reader, '_process', LimitedProcess(meshes.ALLOWANCE._replace(wall_s=0.0)))
-    assert named('a.stl', mesh_texts.STL.format(y=1)).reason == (
-        'it needs more than 0 s to be read')
-
-
-def test_process_that_ends_while_it_reads(named, reader, tmp_path):
-    pid = reader._process.call(os.getpid)
-    file = SlowFile(tmp_path / 'a.stl')
-
-    def kill():
-        with file.opened():
-            os.kill(pid, signal.SIGKILL)
-
-    thread = threading.Thread(target=kill)
-    thread.start()
-    assert named('a.stl').reason == 'the process that reads files has ended by signal 9'
-    thread.join()
     assert not named('b.stl', mesh_texts.STL.format(y=1)).reason
 
 
