@@ -91,7 +91,7 @@ class SharedBridge:
             for name, value in zip(names, values, strict=True)}
 
     def on(self, file):
-        """Publish a file of two frames, with nothing set and logged before."""
+        """Publish a file, with nothing set and logged before."""
         self._parameters['sdf_file'] = Parameter('sdf_file', value=str(file)).to_parameter_msg()
         # A file that has just been written is read a second time.
         while time.time_ns() - file.stat().st_ctime_ns < 30_000_000:
@@ -100,7 +100,7 @@ class SharedBridge:
         answer = self._listener.call(
             SetParametersAtomically, f'{BRIDGE}/set_parameters_atomically', request)
         assert answer.result.successful, answer.result.reason
-        line = self._process.wait_for_line(f'publishing 2 frames of {file}')
+        line = self._process.wait_for_line(f' of {file} with ')
         del self._process.lines[:self._process.lines.index(line)]
         return self._process
 

@@ -107,12 +107,10 @@ def start_shared_listener(shared_ros_domain):
 
 
 @pytest.fixture
-def joints(ros_domain):
-    """Publishes joint states from another process; ``joints.send(positions)``."""
-    from joint_publisher import JointPublisher
-    publisher = JointPublisher()
-    yield publisher
-    publisher.end()
+def joints(tf):
+    """Publishes joint states; ``joints.send(positions)``."""
+    from listener import JointPublisher
+    return JointPublisher(tf.listener)
 
 
 @pytest.fixture

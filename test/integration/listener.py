@@ -10,6 +10,7 @@ import rclpy
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, qos_profile_parameters, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
 LOST_S = 2.0
@@ -116,3 +117,34 @@ class TfListener:
             lambda: frame in self.last and self.last[frame].header.stamp.sec == sec,
             lambda: f'{frame} at {sec}, last were {self.last}')
         return self.last[frame].transform
+
+
+class JointPublisher:
+    """Publishes joint states, beside a listener."""
+
+    def __init__(self, listener):
+        self._listener = listener
+        self._publishers = {}
+        self._sec = 1000
+
+    def send(self, positions, *, sec=None, nanosec=0, names=None, topic='joint_states'):
+        """
+        Publish one message when there is a subscription.
+
+        :param positions: by the names of joints.
+        :param sec: the stamp; the last one and 1 if there is none.
+        :param nanosec: the nanoseconds of the stamp.
+        :param names: other names than those of the positions.
+        :param topic: the name of the topic.
+        :return: the stamp.
+        """
+        self._sec = self._sec + 1 if sec is None else sec
+        if topic not in self._publishers:
+            self._publishers[topic] = self._listener.node.create_publisher(JointState, topic, 10)
+        self._listener.wait(
+            self._publishers[topic].get_subscription_count, lambda: f'a subscription to {topic}')
+        message = JointState(
+            name=names or list(positions), position=list(map(float, positions.values())))
+        message.header.stamp.sec, message.header.stamp.nanosec = self._sec, nanosec
+        self._publishers[topic].publish(message)
+        return self._sec

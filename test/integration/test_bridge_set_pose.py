@@ -10,7 +10,7 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from changes import BRIDGE, listen_to_tf, set_parameters, wait_for_x
 from geometry_msgs.msg import PoseStamped
-from joint_publisher import JointPublisher
+from listener import JointPublisher
 
 from sdf_pose_bridge import load
 from sdf_pose_bridge_interfaces.srv import LookupPose, SetPose
@@ -48,19 +48,17 @@ def test_measured_poses_go_into_the_files(
     client, observer = start_listener(), start_listener()
     listen_to_tf(observer)
     wait_for_x(observer, 5.0, 'fixture')
-    joints = JointPublisher()
-    try:
-        def tool_y():
-            # The first messages are lost, until the bridge has discovered the publisher.
-            joints.send({'turn': pi / 2})
-            request = LookupPose.Request(frame='arm/tool')
-            return client.call(
-                LookupPose, f'{BRIDGE}/lookup_pose', request).pose.pose.position.y
+    joints = JointPublisher(observer)
 
-        client.wait(lambda: abs(tool_y() - 1.0) < 1e-9, lambda: 'the tool at y = 1')
-        answer = ask(client, 'fixture', 0.5, 'arm/tool')
-    finally:
-        joints.end()
+    def tool_y():
+        # The first messages are lost, until the bridge has discovered the publisher.
+        joints.send({'turn': pi / 2})
+        request = LookupPose.Request(frame='arm/tool')
+        return client.call(
+            LookupPose, f'{BRIDGE}/lookup_pose', request).pose.pose.position.y
+
+    client.wait(lambda: abs(tool_y() - 1.0) < 1e-9, lambda: 'the tool at y = 1')
+    answer = ask(client, 'fixture', 0.5, 'arm/tool')
     assert (answer.success, answer.message) == (True, '')
     assert (answer.file, answer.line) == (str(path), 5)
     assert path.read_text(encoding='utf-8') == ARM.replace(

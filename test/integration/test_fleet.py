@@ -37,15 +37,6 @@ def write_file(tmp_path):
     return path
 
 
-@pytest.fixture(name='start')
-def make_start(start_bridge, file):
-    def start(*parameters):
-        arguments = [f'sdf_file:={file}', 'use_joint_states:=true', *parameters]
-        return start_bridge('--ros-args', *(
-            word for each in arguments for word in ('-p', each))).wait_until_started()
-    return start
-
-
 def joint_topics(tf):
     """Return the topics of joint states that the bridge follows."""
     try:
@@ -83,8 +74,9 @@ def check_poses(tf, **robots):
         assert tf.last[f'{robot}/hand'].transform.translation.z == lift
 
 
-def test_each_robot_follows_its_own_topic_also_after_a_reload(start, file, joints, tf):
-    start('publish_frequency:=20.0')
+@pytest.mark.usefixtures('bridge')
+def test_each_robot_follows_its_own_topic_also_after_a_reload(file, joints, tf):
+    set_parameters(tf.listener, use_joint_states=True, publish_frequency=20.0)
     wait_for_topics(
         tf, '/joint_states', '/r1/joint_states', '/r2/joint_states', '/r3/joint_states')
     for number in (1, 2, 3):
@@ -101,8 +93,9 @@ def test_each_robot_follows_its_own_topic_also_after_a_reload(start, file, joint
         tf, r1=(10, 0.6, 3.0), r3=(30, 0.3, 1.5), r4=(40, 0.4, 2.0), r5=(50, 0.5, 2.5))
 
 
-def test_both_topics_of_a_robot_move_it(start, joints, tf):
-    start()
+@pytest.mark.usefixtures('bridge')
+def test_both_topics_of_a_robot_move_it(joints, tf):
+    set_parameters(tf.listener, use_joint_states=True)
     move(joints, tf, 'r1/joint_states', 'r1', 0.1, 0.5)
     stamps = {joints.send({'r1/turn': 0.75})}
     tf.listener.wait(
@@ -113,8 +106,11 @@ def test_both_topics_of_a_robot_move_it(start, joints, tf):
     check_poses(tf, r1=(10, 0.25, 0.5))
 
 
-def test_topics_of_gazebo_can_be_followed_and_changed(start, joints, tf):
-    start("joint_states_topics:=['/world/{world}/model/{model}/joint_state']", 'model:=r2')
+@pytest.mark.usefixtures('bridge')
+def test_topics_of_gazebo_can_be_followed_and_changed(joints, tf):
+    set_parameters(
+        tf.listener, use_joint_states=True, model='r2',
+        joint_states_topics=['/world/{world}/model/{model}/joint_state'])
     wait_for_topics(tf, '/world/shop/model/r2/joint_state')
     move(joints, tf, '/world/shop/model/r2/joint_state', 'r2', 0.5, 0.25)
     check_poses(tf, r2=(20, 0.5, 0.25))

@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""A bridge that follows joint states: publisher, bridge and listener are three processes."""
+"""A bridge that follows joint states, beside a process that publishes them and listens."""
 
 from math import isclose, nan, pi
 import signal
@@ -13,7 +13,6 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from bridge_process import LoggedProcess
 from changes import BRIDGE, listen_to_tf, pose_of, reload, replace, set_parameters, Waiting
 from geometry_msgs.msg import PoseStamped, TransformStamped
-from joint_publisher import JointPublisher
 from listener import latched
 from slow_file import SlowFile
 from std_srvs.srv import Trigger
@@ -62,40 +61,43 @@ def write_file(tmp_path):
     return path
 
 
-@pytest.fixture(name='start')
-def make_start(start_bridge, joints, tf):
-    """Starts a bridge, and returns when the publisher of joints and the listener are connected."""
-    def start(file, *parameters, first=('turn', 'lift')):
-        arguments = [f'sdf_file:={file}', 'use_joint_states:=true', *parameters]
-        bridge = start_bridge('--ros-args', *(
-            word for each in arguments for word in ('-p', each))).wait_until_started()
+@pytest.fixture(name='follow')
+def make_follow(bridge, joints, tf):
+    """Lets the bridge follow joints, and returns when it hears their publisher."""
+    def follow(**parameters):
+        set_parameters(tf.listener, use_joint_states=True, **parameters)
         stamps = set()
 
         def is_connected():
             # The first messages are lost, until the bridge has discovered the publisher.
-            stamps.add(joints.send(dict.fromkeys(first, 0.0)))
+            stamps.add(joints.send({'turn': 0.0, 'lift': 0.0}))
             return 'upper' in tf.last and tf.last['upper'].header.stamp.sec in stamps
 
         tf.listener.wait(is_connected, lambda: 'the first message')
         return bridge
-    return start
+    return follow
 
 
-def test_before_the_first_message_all_joints_can_be_at_zero(start_bridge, file, tf):
-    start_bridge(
-        '--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true', '-p',
-        'unreported_joints:=zero')
+@pytest.mark.usefixtures('bridge')
+def test_before_the_first_message_all_joints_can_be_at_zero(file, tf):
+    poses = listen_to_poses(tf, 'tool')
+    set_parameters(tf.listener, use_joint_states=True, unreported_joints='zero')
     tf.listener.wait(lambda: tf.last.keys() >= MOVED, lambda: 'all moving frames')
     assert tf.last['slide'].transform.translation.z == 1.0
     listen_to_tf(tf.listener)
     tf.listener.wait(lambda: tf.listener.tf_messages, lambda: '/tf_static')
     fixed = {each.child_frame_id for each in tf.listener.tf_messages[0].transforms}
     assert fixed == {'arm', 'tool'}, 'and nothing for base, whose parent is odometry'
+    replace(file, ARM.format(tool=2))
+    tf.listener.wait(lambda: poses and poses['tool'].pose.position.x == 2.0, lambda: poses)
 
 
 def test_joints_that_no_message_has_named_are_nowhere_until_their_driver_is_up(
-        start, file, joints, tf):
-    bridge = start(file, 'anchor_models:=all', first=['turn'])
+        start_bridge, file, joints, tf):
+    bridge = start_bridge(
+        '--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true', '-p',
+        'anchor_models:=all')
+    tf.listener.wait(lambda: joints.send({'turn': 0.0}) and tf.last, lambda: 'the first message')
     poses = listen_to_poses(tf, 'base', 'upper', 'slide', 'tool', 'finger')
     transforms = {}
     tf.listener.node.create_subscription(
@@ -120,14 +122,17 @@ def test_joints_that_no_message_has_named_are_nowhere_until_their_driver_is_up(
     assert (pose_of(tf, 'tool').z, poses['tool'].pose.position.z) == (2.25, 2.25)
 
 
-def test_a_reload_keeps_what_was_reported(start, file, joints, tf):
-    start(file, 'watch:=false')
+def test_a_reload_keeps_what_was_reported(follow, file, joints, tf):
+    follow(watch=False)
     tf.wait_for('slide', joints.send({'lift': 0.25}))
     tf.last.clear()
     replace(file, ARM.format(tool=2))
     assert reload(tf.listener).success
     tf.listener.wait(lambda: tf.last.keys() == MOVED, lambda: tf.last)
     assert (pose_of(tf, 'tool').x, pose_of(tf, 'tool').z) == (2.0, 2.25)
+    replace(file, '<sdf')
+    assert not reload(tf.listener).success
+    assert tf.wait_for('slide', joints.send({'lift': 0.5})).translation.z == 1.5
 
 
 def test_joints_that_do_not_follow_say_once_which_parameter_moves_them(start_bridge, file, tf):
@@ -140,58 +145,41 @@ def test_joints_that_do_not_follow_say_once_which_parameter_moves_them(start_bri
     assert '2 joints that can move, for example "turn"' in lines[0]
 
 
-def test_frames_follow_a_message(start, file, joints, tf):
-    start(file)
+def test_frames_follow_a_message(follow, joints, tf):
+    follow()
     sec = joints.send({'turn': pi / 2, 'lift': 0.25})
     assert isclose(tf.wait_for('upper', sec).rotation.z, 0.5 ** 0.5)
     assert tf.wait_for('slide', sec).translation.z == 1.25
     assert tf.wait_for('finger', sec).translation.x == 0.5
     tool = pose_of(tf, 'arm::tool')
     assert (round(tool.x, 9), round(tool.y, 9), tool.z) == (0.0, 1.0, 2.25)
-
-
-def test_a_message_moves_the_joints_that_it_names(start, file, joints, tf):
-    start(file)
-    first = joints.send({'turn': 1.0, 'lift': 0.25})
-    tf.wait_for('slide', first)
-    second = joints.send({'arm::turn': 0.0})
-    assert tf.wait_for('upper', second).rotation.z == 0.0
-    assert tf.last['slide'].header.stamp.sec == first
+    # Time goes back, and the message does not name all joints.
+    assert tf.wait_for('upper', joints.send({'arm::turn': 0.0}, sec=3)).rotation.z == 0.0
+    assert tf.last['slide'].header.stamp.sec == sec
     assert pose_of(tf, 'slide').z == 2.25
 
 
-@pytest.mark.parametrize(('sec', 'nanosec'), [(-1, 0), (1, 10**9), (1, 2**32 - 1)])
-def test_a_message_with_a_stamp_that_is_no_time_is_reported_and_changes_nothing(
-    start, file, joints, tf, sec, nanosec,
-):
-    bridge = start(file)
-    joints.send({'lift': 0.25}, sec=sec, nanosec=nanosec)
-    bridge.wait_for_line(f'has the stamp sec={sec} nanosec={nanosec}; it is ignored')
-    stamp = joints.send({'turn': 0.0}, sec=1000)
-    tf.wait_for('upper', stamp)
+@pytest.mark.parametrize(('positions', 'sec', 'line'), [
+    ({'lift': 0.25}, -1, 'has the stamp sec=-1 nanosec=0; it is ignored'),
+    ({'lift': nan}, 1, 'not finite'),
+    ({'turns': 1.0}, 1, '"turns", not the name of one moving joint; did you mean "turn"?'),
+])
+def test_a_wrong_message_is_reported_and_the_next_one_taken(
+        start_bridge, file, joints, tf, positions, sec, line):
+    bridge = start_bridge(
+        '--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true', '-p',
+        'unreported_joints:=zero')
+    tf.listener.wait(lambda: tf.last, lambda: 'moving frames')
+    tf.listener.wait(
+        lambda: joints.send(positions, sec=sec) and any(line in each for each in bridge.lines),
+        lambda: bridge.lines)
     assert pose_of(tf, 'slide').z == 2.0
+    assert tf.wait_for('slide', joints.send({'lift': 0.5}, sec=1000)).translation.z == 1.5
     assert not [line for line in bridge.lines if 'internal error' in line]
 
 
-@pytest.mark.parametrize(('positions', 'names', 'line'), [
-    ({'turn': nan}, None, 'not finite'),
-    ({'turn': 1e12}, None, 'beyond 1e+09'),
-    ({'turn': 1.0}, ['turn', 'lift'], 'has 2 names and 1 positions'),
-    ({'turns': 1.0}, None, '"turns", not the name of one moving joint; did you mean "turn"?'),
-])
-def test_a_wrong_message_is_reported_and_the_next_one_taken(
-    start, file, joints, tf, positions, names, line,
-):
-    bridge = start(file)
-    joints.send(positions, names=names)
-    bridge.wait_for_line(line)
-    sec = joints.send({'lift': 0.5})
-    assert tf.wait_for('slide', sec).translation.z == 1.5
-
-
-@pytest.mark.parametrize('rate', ['0.0', '10.0'])
-def test_a_flood_of_messages_does_not_keep_callers_waiting(start, file, tf, rate):
-    bridge = start(file, f'publish_frequency:={rate}')
+def test_a_flood_of_messages_does_not_keep_callers_waiting(follow, tf):
+    bridge = follow()
     flooding = LoggedProcess([sys.executable, '-c', FLOODING])
     try:
         bridge.wait_for_line('not the name of one moving joint')
@@ -202,14 +190,8 @@ def test_a_flood_of_messages_does_not_keep_callers_waiting(start, file, tf, rate
         flooding.end()
 
 
-def test_time_that_goes_back_is_followed(start, file, joints, tf):
-    start(file)
-    tf.wait_for('slide', joints.send({'lift': 0.5}, sec=500))
-    assert tf.wait_for('slide', joints.send({'lift': 0.1}, sec=3)).translation.z == 1.1
-
-
-def test_later_listeners_get_the_last_positions(start, file, joints, tf):
-    start(file)
+def test_later_listeners_get_the_last_positions(follow, joints, tf):
+    follow()
     early = []
     tf.listener.node.create_subscription(
         PoseStamped, f'{BRIDGE}/poses/slide', early.append, latched(1))
@@ -251,17 +233,8 @@ def wait_for_z(tf, poses, pose_frame, **expected):
     tf.listener.wait(lambda: heights() == expected, heights)
 
 
-def test_poses_are_given_in_a_frame_that_moves(start, file, joints, tf):
-    start(file, 'pose_frame:=slide')
-    poses = listen_to_poses(tf, 'base', 'slide', 'tool')
-    wait_for_z(tf, poses, 'slide', base=-2.0, slide=0.0, tool=0.0)
-    assert poses['tool'].pose.position.x == 1.0
-    tf.wait_for('slide', joints.send({'turn': 0.0, 'lift': 0.25}))
-    wait_for_z(tf, poses, 'slide', base=-2.25, slide=0.0, tool=0.0)
-
-
-def test_the_frame_of_poses_can_be_set_while_joints_move(start, file, joints, tf):
-    start(file)
+def test_the_frame_of_poses_can_be_set_while_joints_move(follow, joints, tf):
+    follow()
     poses = listen_to_poses(tf, 'base', 'tool')
     tf.wait_for('slide', joints.send({'turn': 0.0, 'lift': 0.25}))
     wait_for_z(tf, poses, 'world', base=0.0, tool=2.25)
@@ -275,18 +248,8 @@ def test_the_frame_of_poses_can_be_set_while_joints_move(start, file, joints, tf
     wait_for_z(tf, poses, 'upper', base=-1.0, tool=1.5)
 
 
-def test_topics_follow_a_reload_before_any_message(start_bridge, file, tf):
-    start_bridge(
-        '--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true', '-p',
-        'unreported_joints:=zero')
-    poses = listen_to_poses(tf, 'tool')
-    tf.listener.wait(lambda: poses, lambda: 'a pose')
-    replace(file, ARM.format(tool=2))
-    tf.listener.wait(lambda: poses['tool'].pose.position.x == 2.0, lambda: poses)
-
-
-def test_listeners_get_poses_while_joints_move(start, file, joints, tf):
-    start(file)
+def test_listeners_get_poses_while_joints_move(follow, joints, tf):
+    follow()
     listeners = {name: [] for name in ('transforms', 'poses/tool')}
     tf.listener.node.create_subscription(
         TransformStamped, f'{BRIDGE}/transforms', listeners['transforms'].append, latched(100))
@@ -304,9 +267,9 @@ def test_listeners_get_poses_while_joints_move(start, file, joints, tf):
     tf.listener.wait(are_followed, lambda: listeners)
 
 
-def test_joints_move_while_the_file_is_read_again(start, tmp_path, joints, tf):
-    slow = SlowFile(tmp_path / 'slow.sdf', ARM.format(tool=1))
-    start(slow.path, 'watch:=false')
+def test_joints_move_while_the_file_is_read_again(follow, file, joints, tf):
+    follow(watch=False)
+    slow = SlowFile(file, ARM.format(tool=1))
     tf.wait_for('slide', joints.send({'lift': 0.1}))
     client = tf.listener.node.create_client(Trigger, f'{BRIDGE}/reload')
     tf.listener.wait(client.service_is_ready, lambda: 'reload')
@@ -323,51 +286,8 @@ def test_joints_move_while_the_file_is_read_again(start, tmp_path, joints, tf):
     assert tf.wait_for('slide', joints.send({'lift': 0.5})).translation.z == 1.5
 
 
-def test_a_broken_file_leaves_the_joints_moving(start, file, joints, tf):
-    start(file, 'watch:=false')
-    tf.wait_for('slide', joints.send({'lift': 0.1}))
-    replace(file, '<sdf')
-    assert not reload(tf.listener).success
-    assert tf.wait_for('slide', joints.send({'lift': 0.5})).translation.z == 1.5
-
-
-def test_tf_is_published_at_most_at_the_publish_frequency(start, file, joints, tf):
-    start(file, 'publish_frequency:=2.0')
-    tf.wait_for('slide', joints.send({'lift': 0.1}))
-    before = tf.count
-    for number in range(50):
-        last = joints.send({'lift': number / 100})
-    assert tf.wait_for('slide', last).translation.z == 1.49
-    assert tf.count < before + 25
-
-
-def test_publishing_again_is_no_highest_rate_of_tf(start, file, joints, tf):
-    start(file, 'publish_rate:=0.1')
-    for number in range(3):
-        assert tf.wait_for('slide', joints.send({'lift': number / 10}))
-
-
-def test_no_message_of_a_period_is_lost(start, file, joints, tf):
-    start(file, 'publish_frequency:=2.0')
-    tf.wait_for('slide', joints.send({'lift': 0.1}))
-    first = joints.send({'lift': 0.25})
-    for number in range(20):
-        last = joints.send({'turn': number / 100})
-    assert tf.wait_for('upper', last).rotation.z != 0.0
-    assert tf.wait_for('slide', first).translation.z == 1.25
-
-
-def test_lookups_do_not_wait_for_the_next_period(start, file, joints, tf):
-    start(file)
-    result, = set_parameters(tf.listener, publish_frequency=0.01)
-    assert result.successful, result.reason
-    tf.listener.wait(
-        lambda: joints.send({'lift': 0.25}) and pose_of(tf, 'slide').z == 2.25,
-        lambda: 'the position')
-
-
-def test_the_rate_can_be_set_while_joints_move(start, file, joints, tf):
-    start(file)
+def test_the_rate_can_be_set_while_joints_move(follow, joints, tf):
+    follow(publish_rate=0.1)
     tf.wait_for('slide', joints.send({'lift': 0.1}))
     for rate in (20.0, 0.0):
         result, = set_parameters(tf.listener, publish_frequency=rate)
@@ -379,8 +299,8 @@ def test_the_rate_can_be_set_while_joints_move(start, file, joints, tf):
             lambda: tf.last)
 
 
-def test_following_can_be_switched_off_and_on(start, file, joints, tf):
-    start(file)
+def test_following_can_be_switched_off_and_on(follow, joints, tf):
+    follow()
     tf.wait_for('slide', joints.send({'lift': 0.1}))
     listen_to_tf(tf.listener)
     result, = set_parameters(tf.listener, use_joint_states=False)
@@ -396,24 +316,17 @@ def test_following_can_be_switched_off_and_on(start, file, joints, tf):
     assert tf.wait_for('slide', joints.send({'lift': 0.7})).translation.z == 1.7
 
 
-def test_new_unknown_names_in_each_message_keep_nobody_waiting(
-        start_bridge, start_listener, tmp_path):
-    joints = ''.join(
+def test_new_unknown_names_in_each_message_keep_nobody_waiting(bridge, joints, tf, tmp_path):
+    text = ''.join(
         f'<link name="l{i}"/><joint name="{LONG_NAME}{i}" type="revolute"><parent>base</parent>'
         f'<child>l{i}</child><axis><xyz>0 0 1</xyz></axis></joint>' for i in range(10_000))
-    path = tmp_path / 'arm.sdf'
+    path = tmp_path / 'large.sdf'
     path.write_text(
-        f'<sdf version="1.10"><model name="m"><link name="base"/>{joints}</model></sdf>')
-    bridge = start_bridge(
-        '--ros-args', '-p', f'sdf_file:={path}', '-p', 'use_joint_states:=true',
-        '-p', 'pose_topics:=[""]').wait_until_started()
-    listener, publisher = start_listener(), JointPublisher()
-    waiting = Waiting(listener, bridge.pid)
-    try:
-        for number in range(12):
-            for row in range(5):
-                publisher.send({f'{LONG_NAME}x{number}_{row}_{i}': 0.0 for i in range(2500)})
-            waiting.check()
-    finally:
-        publisher.end()
+        f'<sdf version="1.10"><model name="m"><link name="base"/>{text}</model></sdf>')
+    set_parameters(tf.listener, use_joint_states=True, sdf_file=str(path), pose_topics=[''])
+    waiting = Waiting(tf.listener, bridge.pid)
+    for number in range(12):
+        for row in range(5):
+            joints.send({f'{LONG_NAME}x{number}_{row}_{i}': 0.0 for i in range(2500)})
+        waiting.check()
     bridge.wait_for_line('not the name of one moving joint')

@@ -7,7 +7,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from changes import set_parameters
-from listener import latched
+from listener import JointPublisher, latched
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 import urdf_texts as urdf
@@ -48,6 +48,11 @@ def start_program(start_robot_state_publisher):
 @pytest.fixture
 def listener(start_listener):
     return start_listener()
+
+
+@pytest.fixture
+def joints(listener):
+    return JointPublisher(listener)
 
 
 @pytest.fixture(name='tf')
