@@ -3,7 +3,7 @@
 """
 Errors and warnings about SDFormat files.
 
-All errors derive from :class:`SdfError`, with one class for each cause. Codes are those of
+All errors derive from :class:`SdfError`, with one class for each cause. The codes are from
 libsdformat (``sdf::ErrorCode``).
 """
 
@@ -93,7 +93,7 @@ class SdfError(Exception):
 
 class LoadError(SdfError):
     """
-    A file that is not valid. Code, message and place are those of the first error.
+    A file that is not valid. Code, message and place describe the first error.
 
     :param errors: one or more errors, in file order.
     :param warnings: the warnings, in file order.

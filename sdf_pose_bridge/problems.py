@@ -34,7 +34,7 @@ class Problems:
 
     :param paths: the files that are read, in the order of reading; it may grow.
     :param includes: the place of the include that first led to each included file; it may grow.
-    :param parent: the problems of the whole load, if these are those of a part.
+    :param parent: the problems of the whole load, if these are the problems of a part.
     """
 
     def __init__(
@@ -80,7 +80,7 @@ class Problems:
                     is_for_gazebo=problem.is_for_gazebo)
 
     def extend_parent(self) -> None:
-        """Add these errors and warnings to those of the whole load."""
+        """Add these errors and warnings to the problems of the whole load."""
         assert self._parent is not None
         self._parent.extend([*self._errors.values(), *self._warnings.values()])
         self._parent.count_more(self._errors.more, self._warnings.more)
@@ -105,7 +105,7 @@ class Problems:
         """
         Return an index of names for hints; hints with the same key share it.
 
-        Names are left out if those of all indices of the load would be too long together.
+        Names are left out if the names in all indices of the load would be too long together.
         """
         if self._parent is not None:
             return self._parent.name_index(key, names)

@@ -141,7 +141,7 @@ def numbers_from_text(text: str, source: Format, length_unit: Unit) -> list[floa
     Read the numbers of a pose or a rotation.
 
     :param source: the format of the numbers.
-    :param length_unit: the unit of lengths, if it is not that of the format.
+    :param length_unit: the unit of lengths, if it is not the unit of the format.
     :return: the numbers in the units of the format.
     :raises PoseFormatError: if they are not numbers, or not as many as in the format.
     """

@@ -129,7 +129,7 @@ def _edges(scene: Scene, chosen: Container[int]) -> dict[tuple[int, int], list[s
 
 
 def _nodes(scene: Scene, shown: Sequence[int]) -> Iterator[str]:
-    """Write the nodes; a box contains those of a model and of its nested models."""
+    """Write the nodes; a box contains the nodes of a model and of its nested models."""
     joint_types = {joint.element: joint.type for joint in scene.joints}
     boxes: list[int] = []
     for element in shown:

@@ -61,7 +61,7 @@ def add_loading_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '-I', dest='resource_paths', metavar='DIR', type=_directory_from_text, action='append',
         default=[],
-        help='a directory to search for included models, before those of GZ_SIM_RESOURCE_PATH '
+        help='a directory to search for included models, before GZ_SIM_RESOURCE_PATH '
              'and SDF_PATH; may be given more than once')
     parser.add_argument(
         '--skip-missing', action='store_true',
@@ -73,7 +73,7 @@ def scene_from_file(
     texts: Mapping[str, bytes] | None = None,
 ) -> Scene:
     """
-    Load a file, or a pipe such as that of the shell's ``<(command)``.
+    Load a file, or a pipe such as the shell's ``<(command)``.
 
     :param path: path of the file; ``-`` for the standard input, beside which includes are searched
         in the working directory.
@@ -196,7 +196,7 @@ def add_naming_argument(parser: argparse.ArgumentParser) -> None:
         '--frame-names', choices=[names.value for names in FrameNames],
         default=FrameNames.AUTO.value,
         help='scoped: frame ids with the names of all models around an element; relative: '
-             'without that of the top-level model; auto: relative for a model file')
+             'without the top-level model; auto: relative for a model file')
 
 
 def tf_options_from_arguments(options: argparse.Namespace) -> TfOptions:

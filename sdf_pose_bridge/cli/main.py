@@ -32,7 +32,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     Run a command.
 
-    :param arguments: the arguments after the name of the program; by default those of the process.
+    :param arguments: the arguments after the name of the program; by default from ``sys.argv``.
     :return: exit code: 0 for success, 1 if a file or a value is wrong, 2 if the arguments are, 130
         after Ctrl-C.
     """

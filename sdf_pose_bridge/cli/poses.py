@@ -62,8 +62,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         '--joint', metavar='NAME=VALUE', type=_position_from_text, action='append', default=[],
         dest='positions',
-        help='put a joint there, in radians or metres; all others stay at zero. May be repeated. '
-             'Names are those of joint_states: elbow, arm/elbow, wrist_axis2, ball_roll')
+        help='position of a joint, in radians or metres; all others stay at zero. May be '
+             'repeated. Names are as in joint_states: elbow, arm/elbow, wrist_axis2, ball_roll')
     add_kinds_argument(parser, 'print only')
     add_unit_arguments(parser, DEGREES)
     parser.set_defaults(run=run)

@@ -107,7 +107,7 @@ class Unit(NamedTuple):
 
     name: str
     factor: float
-    """A metre or a radian in this unit."""
+    """Number of these units in a metre or a radian."""
     digits: int
 
 
@@ -258,7 +258,7 @@ def kind_labels_of(scene: Scene, tree: TfTree) -> list[str]:
     """
     Return the kind of each frame in words.
 
-    :return: the labels of their kinds; ``optical frame`` for those of cameras.
+    :return: the labels of their kinds; ``optical frame`` for optical frames of cameras.
     """
     return [
         'optical frame' if element < 0 else Kind(scene.kinds[element]).label

@@ -51,8 +51,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument('numbers', metavar='NUMBER', nargs='+', help='the pose')
     parser.add_argument(
         '--by', metavar='PART', default='',
-        help='the pose is that of a frame that moves with FRAME, such as a touched nest of a '
-             'fixture: its name, also without that of FRAME')
+        help='the pose of another frame was measured, which moves with FRAME, such as a nest of a '
+             'fixture: the name of that frame, also without the name of FRAME')
     parser.add_argument(
         '--relative-to', metavar='OTHER', default='',
         help='the frame in which the pose was measured; by default the world, or the implicit '

@@ -166,7 +166,7 @@ def _rows_of_frames(
 ) -> tuple[list[_Row], tuple[SdfWarning, ...]]:
     tree = tf_tree_from_scene(scene, tf_options_from_arguments(options))
     root = _Row(tree.root_frame, tree.root_frame, 'root', -1, None)
-    # The root frame is row 0, so the index of a row is that of its frame plus one.
+    # The root frame is row 0, so the index of a row is the index of its frame plus one.
     return [root, *(
         _Row(frame_id, frame_id, kind, -1, None) if parent == NO_PARENT
         else _Row(frame_id, frame_id, kind, parent + 1, Pose(*pose))

@@ -40,7 +40,7 @@ _PORT = 8080
 _PERIOD_S, _SETTLING_S = 0.05, 0.03
 
 _BROWSERS = ('chromium', 'chromium-browser', 'google-chrome', 'chrome')
-# WebGL in software if there is no graphics card; no requests except those of the page.
+# WebGL in software if there is no graphics card; no requests except from the page.
 _BROWSER_OPTIONS = (
     '--headless', '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
     '--enable-unsafe-swiftshader', '--no-first-run', '--disable-background-networking',

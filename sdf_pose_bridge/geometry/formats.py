@@ -9,7 +9,7 @@ format converts to every other:
 - poses: x, y, z in metres and the canonical quaternion x, y, z, w; shape (n, 7),
 - rotations: the same quaternion alone; shape (n, 4).
 
-All poses are those of a child in its parent.
+All poses are poses of a child in its parent.
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@
 """
 Compose and invert poses, one or many.
 
-A pose is that of a child frame in a parent frame: x y z of the child's origin in metres and the
-unit quaternion x y z w of its axes, both expressed in the parent. Poses chain as
+A pose places a child frame in a parent frame: x y z of the child's origin in metres and the unit
+quaternion x y z w of its axes, both expressed in the parent. Poses chain as
 ``pose of C in A = product(pose of B in A, pose of C in B)``.
 
 The formulas for one pose are elementwise, so they also take poses whose components are arrays;
@@ -97,7 +97,7 @@ def canonical_relative_pose(reference: Pose, pose: Pose) -> Pose:
 
     :param reference: pose of frame B in frame A.
     :param pose: pose of frame C in frame A.
-    :return: pose of frame C in frame B; its quaternion is canonical as that of
+    :return: pose of frame C in frame B; its quaternion is canonical, as from
         :func:`~sdf_pose_bridge.geometry.rotations.canonical_quaternion`, and no zero is negative.
     """
     x, y, z, qx, qy, qz, qw = relative_pose(reference, pose)

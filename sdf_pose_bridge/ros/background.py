@@ -110,7 +110,7 @@ class PollingThread:
     """
     A thread that has the executor of a node run a callback whenever a condition is true.
 
-    A timer of the node would wake its executor for each evaluation, which takes ten times as much
+    A timer of the node would wake its executor for each evaluation, which takes much more
     processor time.
 
     :param node: a node with an executor.

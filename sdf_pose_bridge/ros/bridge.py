@@ -36,7 +36,7 @@ def main(args: Sequence[str] | None = None, program: str = 'bridge') -> int:
     """
     Run the node until a signal ends it.
 
-    :param args: the command line with the program's name first; that of the process if None.
+    :param args: the command line with the program's name first; by default ``sys.argv``.
     :param program: the name of the executable.
     :return: exit code: 0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
@@ -45,7 +45,7 @@ def main(args: Sequence[str] | None = None, program: str = 'bridge') -> int:
         signal.signal(number, lambda _number, _frame: os._exit(0))
     # The installed executable has blocked them in its first line.
     signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT, signal.SIGTERM])
-    # Garbage collection would take a tenth of the start, and there is no garbage.
+    # Garbage collection would delay the start, and there is no garbage.
     gc.disable()
     # Threads of numpy for large matrices, which the node does not have, would spin at first.
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')

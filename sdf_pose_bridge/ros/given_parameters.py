@@ -32,7 +32,7 @@ def settings_from_node(
     """
     Declare all parameters on a node with their given values, and convert these.
 
-    :param defaults: defaults of parameters, where they differ from those of their declarations.
+    :param defaults: defaults of parameters, where they differ from the declared defaults.
     :param file: the file to publish, unless parameters name a file or a text.
     :raises SettingsError: if a value has the wrong type or is not allowed.
     """
@@ -109,7 +109,7 @@ def warnings_about_unknown_parameters(
     Find parameters that were given when the node was started, but that it does not have.
 
     :param known_elsewhere: names of parameters of other nodes, which cause no warning.
-    :param only_misspelt: whether to leave out names that are not similar to that of a parameter.
+    :param only_misspelt: whether to leave out names that resemble no name of a parameter.
     """
     hints = {
         name: hint_from_names(name, DECLARATIONS) for name in _given_parameters(node)

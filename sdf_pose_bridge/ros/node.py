@@ -100,7 +100,7 @@ class SdfPoseBridge:
             node, self._changes,
             lambda: self._settings.watch and self._follower.is_due(), self._check_files)
         self._report_success()
-        # Imported here because it takes 6 ms, and everything else is more urgent.
+        # Imported here because it is slow to import, and everything else is more urgent.
         from sdf_pose_bridge.ros.visuals import VisualPublisher
         # With the quality of service that it has in robot_state_publisher.
         self._robot_description = TextPublisher(node, 'robot_description')

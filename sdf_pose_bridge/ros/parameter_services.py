@@ -105,8 +105,8 @@ def _parameters_from_messages(
     """
     Return the parameters of a call.
 
-    :return: the parameters, without read-only ones that keep their values, such as those of a dump
-        that "ros2 param load" sets.
+    :return: the parameters, without read-only ones that keep their values, such as in a dump that
+        "ros2 param load" sets.
     :raises ValueError: if there is no such parameter, or no such type, or if there are too many
         parameters or values.
     """

@@ -98,7 +98,7 @@ def _switch(
 
 
 def _choice(default: Choice, description: str) -> Declaration[Choice]:
-    """Declare a parameter whose values are those of an enumeration."""
+    """Declare a parameter with the values of an enumeration."""
     known = [choice.value for choice in type(default)]
     rule = f'one of {", ".join(known)}'
 
@@ -142,7 +142,7 @@ class Settings:
     )
     robot_description = Declaration(
         '',
-        'The text to publish, of SDFormat or URDF, instead of that of sdf_file. Relative includes '
+        'The text to publish, of SDFormat or URDF, instead of sdf_file. Relative includes '
         'are searched in resource_paths.',
         'the text of a file; either this or sdf_file is required',
         str,
@@ -178,7 +178,7 @@ class Settings:
     anchor_models = Declaration(
         AnchorModels.AUTO.value,
         'The top-level models that get a transform from root_frame; odometry or localization can '
-        'publish those of the others. "auto" is "static" for a model file or URDF, and "all" for '
+        'publish the others. "auto" is "static" for a model file or URDF, and "all" for '
         'a world.',
         'one of auto, all, static, none, or glob patterns of the names of models, separated by '
         'commas, such as table*,fence; static may be one of them',
@@ -193,7 +193,7 @@ class Settings:
     frame_names = _choice(
         FrameNames.AUTO,
         'Names of models in frame ids: "scoped" keeps the names of all models (robot/arm/tool), '
-        '"relative" leaves out that of the top-level model (arm/tool), "auto" is relative for a '
+        '"relative" leaves out the top-level model (arm/tool), "auto" is relative for a '
         'model file in which no frame has the name of the model, else scoped.',
     )
     frame_separator = Declaration(
@@ -205,8 +205,8 @@ class Settings:
     )
     frame_prefix = Declaration(
         '',
-        'Precedes every frame id except that of root_frame, without a separator; also that of the '
-        'link "world" of a URDF.',
+        'Precedes every frame id except root_frame, without a separator; also the link "world" of '
+        'a URDF.',
         'at most 255 characters; a leading slash is left out, as by tf2',
         prefix_setting,
     )
@@ -260,7 +260,7 @@ class Settings:
     )
     resource_paths = Declaration(
         [],
-        'Directories searched for model:// and relative URIs before those of '
+        'Directories searched for model:// and relative URIs, before '
         'GZ_SIM_RESOURCE_PATH and SDF_PATH.',
         'paths of directories, at most 1000; empty ones are ignored',
         directories_setting,

@@ -108,9 +108,9 @@ def _exit_code_from_node(node: Node, program: Program, file: str = '') -> int:
         return 1
     frames = PublishedFrames(Publishers(node), loaded.tree, loaded.joint_positions, {})
     frames.publish_tf()
-    # Imported here because listeners would wait for /tf_static 5 ms longer.
+    # Imported here because it is slow to import, and listeners wait for /tf_static.
     from sdf_pose_bridge.ros.node import start_bridge
-    # Modules and the first scene are not garbage. To search them would stop all threads for 20 ms.
+    # Modules and the first scene are not garbage. Searching them would stop all threads.
     gc.freeze()
     gc.enable()
     executor = SingleThreadedExecutor()

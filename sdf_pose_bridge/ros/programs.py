@@ -16,7 +16,7 @@ class Program(NamedTuple):
 
     node_name: str
     defaults: Mapping[str, Value]
-    """The defaults of parameters that differ from those of their declarations."""
+    """The defaults of parameters that differ from the declared defaults."""
     usage: str
     takes_file: bool = False
     """Whether the command line may name a file, before the arguments of ROS."""
@@ -49,8 +49,8 @@ Publish the frames of a robot in URDF or SDFormat, as the package robot_state_pu
 
 usage: ros2 run sdf_pose_bridge robot_state_publisher [robot.urdf] [--ros-args -p name:=value ...]
 
-The text is that of the parameter robot_description, or else the file is robot.urdf or that of the
-parameter sdf_file. "ros2 param describe /robot_state_publisher <name>" explains each parameter of
+The text is the parameter robot_description. Without it, the file is robot.urdf or the parameter
+sdf_file. "ros2 param describe /robot_state_publisher <name>" explains each parameter of
 the running node.""", takes_file=True, known_elsewhere=('use_tf_static',))
 
 PROGRAMS = {'bridge': BRIDGE, 'robot_state_publisher': ROBOT_STATE_PUBLISHER}

@@ -78,7 +78,7 @@ class PublishedFrames:
         """
         Make the messages of fixed frames, which takes long for many frames.
 
-        :param with_tf: whether to make that of ``/tf_static`` too.
+        :param with_tf: whether to make the message of ``/tf_static`` too.
         """
         if with_tf:
             self._tf_static_message  # noqa: B018 - to look at it makes it

@@ -138,7 +138,7 @@ class TextPublisher:
     """
 
     def __init__(self, node: Node, name: str) -> None:
-        # Imported here because it takes 5 ms, and transforms are published before texts.
+        # Imported here because it is slow to import, and transforms are published before texts.
         from std_msgs.msg import String
         self._node = node
         self._topic = Topic(name, String)

@@ -82,7 +82,7 @@ class JointStateTopics(NamedTuple):
 
     models: dict[str, str]
     """The top-level model whose joints are on each topic, by the name of the topic before it is
-    remapped; empty where they can be those of all models."""
+    remapped; empty if the joints of all models can be."""
     warnings: tuple[str, ...] = ()
     """A sentence about each topic that differs from the patterns."""
 
@@ -164,8 +164,8 @@ def joint_state_topics_from_patterns(
     """
     Name the topics of joint states.
 
-    :param patterns: names of topics, in which ``{model}`` and ``{world}`` stand for names. They
-        are those of a world, so patterns with them name no topic if there is none.
+    :param patterns: names of topics, in which ``{model}`` and ``{world}`` stand for names in a
+        world. Without a world, patterns with them name no topic.
     :param world: the name of the world; empty for a model file.
     :param models: its top-level models with moving joints.
     :param full_name: returns the full name of a topic, after it is remapped.

@@ -62,7 +62,7 @@ def load(
 
     :param path: an SDFormat or URDF file.
     :param resource_paths: directories in which included models are searched first; then come
-        those of the environment variables ``GZ_SIM_RESOURCE_PATH`` and ``SDF_PATH``.
+        the environment variables ``GZ_SIM_RESOURCE_PATH`` and ``SDF_PATH``.
     :param on_missing_include: ``error``, or ``skip`` to leave out includes that are not found.
     :param limits: limits of the load, against hostile files.
     :param shapes: whether to also read the shapes of visuals and collisions, masses and moments of

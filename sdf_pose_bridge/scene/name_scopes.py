@@ -35,7 +35,7 @@ class NameScopes:
 
     A scope is the index of the model, world or root in which a reference is written.
 
-    :param problems: those of the load, which limit the number of hints.
+    :param problems: the problems of the load, which limit the number of hints.
 
     ``names[i]`` is the absolute name of element i, such as ``robot::arm::hand``, without the name
     of the world. ``roots[i]`` is the index of its world or implicit root; each of these is a name

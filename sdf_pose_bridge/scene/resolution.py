@@ -52,7 +52,7 @@ def scene_from_graph(
     count = len(elements.names)
     is_kept = np.ones(count, dtype=bool)
     is_kept[list(graph.unresolved)] = False
-    # The last entry is that of index -1.
+    # The last entry is for index -1.
     new_index = np.append(np.where(is_kept, np.cumsum(is_kept) - 1, NO_ELEMENT), NO_ELEMENT)
     new_index_of: list[int] = new_index.tolist()
 
@@ -196,7 +196,7 @@ def poses_in_references(elements: Elements, graph: FrameGraph) -> PoseArray:
     """
     Return the pose of each element in the frame that it is relative to.
 
-    The pose of a placement frame is replaced by that of its model frame. With the reference R, the
+    The pose of a placement frame is replaced by its model frame's. With the reference R, the
     placement frame P and the model frame M, ``X_RM = X_RP inverse(X_MP)``. Inner models, which
     come last, are solved first.
     """

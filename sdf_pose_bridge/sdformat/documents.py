@@ -86,7 +86,7 @@ def document_from_file(
         root, root_link = sdf_from_urdf(root, sources, is_included=is_included)
         if not is_included:
             urdf_root = root_link
-            # All links and joints are converted; further problems are those of <gazebo> elements.
+            # All links and joints are converted; further problems come from <gazebo> elements.
             sources.problems.are_for_gazebo = True
         sources.add_tree(path, root, file.lines)
     place = Place(path, sources.line(root))

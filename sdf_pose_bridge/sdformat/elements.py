@@ -127,7 +127,7 @@ class Elements:
         """
         Return the place of an element, or of a part of it.
 
-        :param line: line of the part; 0 for that of the element.
+        :param line: line of the part; 0 for the line of the element.
         :param part: path of the part in the element, such as ``pose``.
         :return: file, line and path.
         """

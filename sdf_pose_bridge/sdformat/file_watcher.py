@@ -82,9 +82,9 @@ def _signatures(paths: Iterable[str]) -> dict[str, Signature]:
 
 def _signature(path: str) -> Signature:
     try:
-        status = os.stat(path)  # noqa: PTH116 - a third of the time of Path.stat
+        status = os.stat(path)  # noqa: PTH116 - faster than Path.stat
     except (OSError, ValueError):
         return None
-    # Nobody can set the last time, so it also shows changed files whose old time was restored.
+    # ctime cannot be set, so it also shows changed files whose old time was restored.
     return (
         status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)

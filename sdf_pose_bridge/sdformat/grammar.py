@@ -7,7 +7,7 @@ Elements with a pose are members of :class:`Kind`, all others are in
 :mod:`~sdf_pose_bridge.sdformat.specification`. The content of an element is a list of items,
 separated by blanks:
 
-* ``tag``: a child element; its definition is that of ``parent/tag`` or ``tag``, or it is a string.
+* ``tag``: a child element; its definition is ``parent/tag`` or ``tag``, or it is a string.
 * ``tag:type`` or ``tag:type[min,max]``: a child element with a value. The type is one of
   :class:`ValueType`, or of :data:`~sdf_pose_bridge.sdformat.specification.CHOICES`.
 * ``tag=name``: a child element that is defined under another name.
@@ -50,7 +50,7 @@ class ValueType(enum.Enum):
     COLOR = 'color', 'a color of three or four numbers from 0 to 1', 4
     POSE = 'pose', 'a pose', 6
     FRAME = 'frame', 'a frame that can be named', 0
-    """The name of a frame; any but that of the implicit root."""
+    """The name of a frame, except the name of the implicit root."""
     CHOICE = 'choice', 'one of a few texts', 0
 
     def __init__(self, label: str, description: str, count: int) -> None:

@@ -26,7 +26,7 @@ from sdf_pose_bridge.sdformat.values import boolean_from_text, number_of_child
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of, child_elements, first_child, XmlElement
 
 DEFAULT_DENSITY_KG_M3 = 1000.0
-"""Default density of a collision, that of water."""
+"""Default density of a collision: water."""
 
 MOMENTS = ('ixx', 'iyy', 'izz', 'ixy', 'ixz', 'iyz')
 """The tags of the moments of an :class:`Inertial`, in their order."""
@@ -77,7 +77,7 @@ class CollisionMass(NamedTuple):
     center_z_m: float
     """The z of the center of mass in the frame of the collision; its x and y are 0."""
     moments_kg_m2: tuple[float, ...]
-    """Moments about axes through the center of mass, parallel to those of the collision."""
+    """Moments about axes through the center of mass, parallel to the axes of the collision."""
 
 
 class AutomaticInertial(NamedTuple):
@@ -122,7 +122,7 @@ def moved_moments(matrices: Floats, masses: Floats, offsets: Floats) -> Floats:
     :param matrices: shape (n, 3, 3), the moments of each body about its own center of mass.
     :param masses: shape (n,), in kg.
     :param offsets: shape (n, 3), the center of each body from the other point, in the same axes.
-    :return: shape (n, 3, 3). The sum for one point is that of bodies that are one.
+    :return: shape (n, 3, 3). The sum for one point is as for one body.
     """
     squares = (offsets ** 2).sum(axis=1)[:, np.newaxis, np.newaxis] * np.eye(3)
     products = offsets[:, :, np.newaxis] * offsets[:, np.newaxis]
@@ -170,7 +170,7 @@ def warn_of_inertial(
 
 
 def _inertial_from_values(xml: XmlElement) -> Inertial:
-    """Read an inertial; values that libsdformat cannot read are those of an empty one."""
+    """Read an inertial; values that libsdformat cannot read are as in an empty one."""
     inertia = first_child(xml, 'inertia')
     mass_kg = number_of_child(xml, 'mass', 1.0)
     if inertia is None:
@@ -201,7 +201,7 @@ def _automatic_inertial(inertial: XmlElement, sources: Sources) -> AutomaticIner
                    'of a mesh is not computed')
             sources.warning(collision, msg)
             return None
-        # An empty density means the default of the element, and not that of the inertial.
+        # An empty density means the default of the element, not the density of the inertial.
         has_density = first_child(collision, 'density') is not None
         density = number_of_child(collision, 'density', DEFAULT_DENSITY_KG_M3)
         solid = None if shape is None else shape.solid

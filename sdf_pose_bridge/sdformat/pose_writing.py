@@ -166,7 +166,7 @@ class PoseText:
         return self._with_content(element, new)
 
     def _step(self, element: int) -> bytes:
-        """Return the indentation of an element beyond that of its parent; if none, two spaces."""
+        """Return the indentation of an element relative to its parent; if none, two spaces."""
         parent = self._elements[element].getparent()
         assert parent is not None
         own, outer = (

@@ -208,7 +208,7 @@ def _doubts(
 
 def _numbers_from_texts(texts: Sequence[str], count: int) -> NDArray[np.float64] | None:
     """
-    Read the numbers of many texts at once, which takes a tenth of the time.
+    Read the numbers of many texts at once, which is faster.
 
     :param count: the number of values of each text.
     :return: shape (n, count); None if a text is not a list of plain numbers.

@@ -3,7 +3,7 @@
 """
 The types of shapes, in one table.
 
-Sources: the classes of shapes of libsdformat 14, and for masses those of gz-math 7.
+Sources: the classes of shapes of libsdformat 14, and for masses the classes of gz-math 7.
 """
 
 from __future__ import annotations

@@ -41,12 +41,12 @@ class Origin(NamedTuple):
     """
     The place of an element, as far as it does not follow from its tree.
 
-    The place of an included element is that of its pose. Its content keeps its own places, and its
-    version is that of its own file.
+    The place of an included element is the place of its pose. Its content keeps its own places and
+    the version of its own file.
     """
 
     file: str | None = None
-    """Its file; None for that of its parent."""
+    """Its file; None for the file of its parent."""
     line: int = 0
     """Its line; 0 for the line that it was parsed in."""
     include: Place | None = None
@@ -104,7 +104,7 @@ class Sources:
         self._places: dict[XmlElement, Place] | None = None
 
     def with_own_problems(self) -> Sources:
-        """Return the same sources with separate problems, to be added to those of the load."""
+        """Return the same sources with separate problems, which are added to the load later."""
         part = copy.copy(self)
         part.problems = Problems(self.paths, parent=self.problems)
         return part
@@ -133,7 +133,7 @@ class Sources:
         """
         Add a warning about an element to the problems.
 
-        The parameters are those of :meth:`Problems.warning`.
+        See :meth:`Problems.warning` for the parameters.
         """
         self.problems.warning(message, self.place(xml), code, is_for_gazebo=is_for_gazebo)
 

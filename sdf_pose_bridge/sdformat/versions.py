@@ -158,7 +158,7 @@ def _move_elements(root: XmlElement, version: Version) -> None:
                 element.tag = new_tag
                 parent.append(element)
     if version < Version(1, 6):
-        # Its values become those of the noise of each axis.
+        # The noise of each axis gets its values.
         for path in _MODELS:
             for noise in root.xpath(f'{path}/link/sensor/imu/noise[1]'):
                 noise.getparent().remove(noise)

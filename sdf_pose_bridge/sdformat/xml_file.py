@@ -45,7 +45,7 @@ _FAULTS = {
     'AttValue: " or \' expected': 'the value of an attribute is not in quotation marks',
     'Attribute (.+) redefined': r'the attribute \1 is given twice',
 }
-"""Plain messages, by regular expressions for those of libxml2."""
+"""Plain messages, by regular expressions for the messages of libxml2."""
 
 _IGNORED_ERRORS = frozenset({
     'NS_ERR_ATTRIBUTE_REDEFINED', 'NS_ERR_COLON', 'NS_ERR_EMPTY', 'NS_ERR_QNAME',

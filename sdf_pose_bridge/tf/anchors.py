@@ -22,7 +22,7 @@ class AnchorModels(enum.Enum):
     """The top-level models that get a transform from the root frame, by a word."""
 
     AUTO = 'auto'
-    """All models of a world; those of a model file, or of URDF, like ``STATIC``."""
+    """All models of a world; for a model file or URDF, like ``STATIC``."""
     ALL = 'all'
     STATIC = 'static'
     """Static models, and models that a joint connects to the world."""

@@ -106,7 +106,7 @@ def with_ids_of_sensors(
 
     :param elements: the published elements.
     :param frame_ids: the frame id of each, made of its name.
-    :return: the elements and frame ids without those of sensors whose id is that of another kind
+    :return: the elements and frame ids without sensors whose id belongs to another kind
         of element, or of a sensor in the same place; and the frame id of each published sensor.
     """
     sensor_ids = {

@@ -15,7 +15,7 @@ from sdf_pose_bridge.tf.parents import NO_PARENT
 
 
 class Frame(NamedTuple):
-    """A frame that is added to those of the elements."""
+    """A frame that is added to the frames of the elements."""
 
     frame_id: str
     owner: int

@@ -85,7 +85,7 @@ class JointMotion:
                 dofs += reversed(path) if is_reversed else path
                 signs += [-1.0 if is_reversed else 1.0] * len(path)
         self.dofs = tuple(dofs)
-        """All degrees of freedom; those of one joint are adjacent."""
+        """All degrees of freedom; the ones of a joint are adjacent."""
         bodies = list(ranges)
         last_of_bodies = np.full(len(scene.kinds), NO_DOF, np.int32)
         last_of_bodies[bodies] = [each[-1] for each in ranges.values()]

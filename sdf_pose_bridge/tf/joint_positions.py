@@ -53,7 +53,7 @@ class UnreportedJoints(enum.Enum):
 
 
 class Follower(NamedTuple):
-    """A degree of freedom whose position follows from that of another one."""
+    """A degree of freedom whose position follows from the position of another one."""
 
     dof: int
     leader: int

@@ -108,7 +108,7 @@ def loaded_scene_from_request(
     warnings_of_urdf: tuple[SdfWarning, ...] = ()
     if is_made_urdf and scene.urdf_root is None:
         description, warnings_of_urdf = _urdf(scene, request)
-    # Those of the tree may be those of URDF too.
+    # The tree and the URDF may have the same warnings.
     found = dict.fromkeys((*warnings, *warnings_of_urdf, *scene.warnings, *tree.warnings))
     return LoadedScene(
         request=request,

@@ -30,7 +30,7 @@ class PoseLookup:
     Looks up poses in a scene and its TF tree.
 
     Names are absolute names of SDF (``robot::arm::tool``) of any kind of element, or frame ids
-    (``robot/arm/tool``), including those of optical frames. A name that is both is treated as a
+    (``robot/arm/tool``), including optical frames. A name that is both is treated as a
     name of SDF.
 
     :param positions: the current positions of the joints; not copied. None for the positions in

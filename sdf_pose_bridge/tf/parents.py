@@ -159,7 +159,7 @@ def _parents_of_free_bodies(scene: Scene, connected: Container[int]) -> dict[int
     """
     Choose the parents of links, and of models without links, that have no parent along joints.
 
-    It is the canonical link of their model; for a canonical link, that of the next outer model; in
+    It is the canonical link of their model; for a canonical link, the next outer one; in
     URDF the root.
     """
     parents, canonical_links = scene.parents.tolist(), scene.canonical_links.tolist()

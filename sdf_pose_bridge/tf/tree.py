@@ -94,7 +94,7 @@ class TfTree:
     """The element of the scene that each frame belongs to; -1 for an optical frame and for one
     at a joint."""
     nearest_frames: Indices
-    """The frame of each element of the scene, or that of the nearest element above it in TF that
+    """The frame of each element of the scene, or of the nearest element above it in TF that
     has one; or :data:`ROOT_IS_PARENT`, or :data:`NO_PARENT`."""
     moving: MovingFrames | None
     """The frames that joints move; None if joints do not follow ``joint_states``."""

@@ -56,7 +56,7 @@ class UrdfJoint(NamedTuple):
     parent: str
     """The name of its parent link."""
     origin: Pose
-    """Its pose in its parent link, also that of its child link at zero."""
+    """Its pose in its parent link, also the pose of its child link at zero."""
     axis: JointAxis | None = None
     """Its axis with limits and dynamics; None for a fixed joint."""
     mimic: UrdfMimic | None = None

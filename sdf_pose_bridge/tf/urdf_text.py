@@ -66,7 +66,7 @@ def urdf_from_scene(
     """
     Write a model as URDF, whose links are the frames of the model in TF.
 
-    At every position of the joints, the pose of each link equals that of its frame in TF.
+    At every position of the joints, the pose of each link equals the pose of its frame in TF.
 
     :param scene: the scene, loaded with ``shapes=True``.
     :param model: scoped name of the model; may be empty if there is only one.

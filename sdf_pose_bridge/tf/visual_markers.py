@@ -133,7 +133,7 @@ def markers_from_text(
 
     :param text: the text of the loaded scene.
     :param path: its path.
-    :param fingerprint: that of the loaded scene.
+    :param fingerprint: the fingerprint of the loaded scene.
     :return: the markers, and warnings about visuals that cannot be shown; None if a file that it
         includes has changed, so that it is not valid or has other elements or poses.
     """

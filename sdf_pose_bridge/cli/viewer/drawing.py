@@ -61,9 +61,9 @@ class Drawing:
     """
     The nodes that show a scene, until they are removed.
 
-    :param nodes: the nodes of the page. :param name: the name of their parent node; it must differ
-        from that of the previous drawing, as a browser mixes up nodes that are removed and added
-        again at once.
+    :param nodes: the nodes of the page.
+    :param name: the name of their parent node. It must differ from the previous one, as a browser
+        mixes up nodes that are removed and added again at once.
     :param meshes: reads the meshes.
     :param shown: the scene.
     :param posed: the same at the positions of its joints.

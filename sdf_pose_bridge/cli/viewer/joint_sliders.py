@@ -56,7 +56,7 @@ class JointSliders:
     :param positions: the positions of joints, in radians or metres; other names are ignored, and
         joints without a position start at zero, or at the nearest limit.
     :param units: the units of the sliders.
-    :param events: those of the page.
+    :param events: the events of the page.
     """
 
     def __init__(

@@ -74,7 +74,7 @@ class Mesh(NamedTuple):
 
     parts: tuple[MeshPart, ...] = ()
     reason: str = ''
-    """The reason why the surfaces are replaced; empty if they are those of the file."""
+    """The reason why the surfaces are replaced; empty if they come from the file."""
 
 
 class _KeptMesh(NamedTuple):
@@ -244,7 +244,7 @@ def _names_of_parts(
         names = node_names.get(geometry_id, ())
         name = names[len(names) * before[geometry_id] // counts[geometry_id]] if names else ''
         before[geometry_id] += 1
-        # It puts the name of the material behind that of an object.
+        # It appends the name of the material to the name of an object.
         material = getattr(scene.geometry[scene.graph[node][1]].visual, 'material', None)
         yield name or node.removesuffix(f'_{getattr(material, "name", None)}')
 
@@ -252,7 +252,7 @@ def _names_of_parts(
 def _parts(
     scene: trimesh.Scene, names: Sequence[str], submesh: str, *, is_centered: bool,
 ) -> tuple[MeshPart, ...]:
-    """Find the surfaces of a mesh, or those of its parts that have this name."""
+    """Find the surfaces of a mesh, or of its parts with this name."""
     surfaces = []
     for node, part_name in zip(scene.graph.nodes_geometry, names, strict=True):
         matrix, name = scene.graph[node]

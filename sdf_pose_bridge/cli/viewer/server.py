@@ -32,7 +32,7 @@ from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
 _ADDRESS = '127.0.0.1'
 _NAMES = (_ADDRESS, 'localhost')
 _PANEL_WIDTH, _LEAST_WIDTH = 360, 720
-"""The width of the panel, and that of a window in which it is open at first, in pixels."""
+"""The width of the panel, and of a window in which it is open at first, in pixels."""
 _NOT_KNOWN = (
     f'viser {viser.__version__} does not work as the releases that this is tested with '
     f'({LIBRARIES[0]})')

@@ -76,7 +76,7 @@ def surfaces_from_scene(
                 sizes_m=(1.0,) * 3 if shape.type == 'box' and shape.has_extent else shape.sizes_m)
             file = scene.place(element).file if shape.type == 'mesh' else ''
             kind = Kind(scene.kinds[element])
-            # As in Gazebo, a material in the file replaces those of the mesh.
+            # As in Gazebo, a material in the file replaces the materials of the mesh.
             has_texture = kind == Kind.VISUAL and shape.rgba is None and shape.opacity == 1.0
             copies.setdefault((kind, form, file, has_texture), []).append(element)
     surfaces: list[Surface] = []

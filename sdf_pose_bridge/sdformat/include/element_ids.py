@@ -3,9 +3,9 @@
 """
 Find the elements of an included model by the ``element_id`` of parameters.
 
-An ``element_id`` joins names by ``::``, from the included model inwards. The search is that of
-libsdformat (``ParamPassing::getElementById``) with its limits: among siblings it selects the one
-whose name is the longest beginning of the id, and continues only inside this one.
+An ``element_id`` joins names by ``::``, from the included model inwards. The search works
+as in libsdformat (``ParamPassing::getElementById``), with its limits: among siblings it selects
+the one whose name is the longest prefix of the id, and continues only inside this one.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def hint_for_id(top: XmlElement, element_id: str, tag: str, problems: Problems) 
     """
     Return the end of a message about an id that was not found.
 
-    :param problems: those of the load, which limit the comparisons.
+    :param problems: the problems of the load, which limit the comparisons.
     :return: a likely reason, or the nearest id; else an empty string.
     """
     if len(element_id) > _LONGEST_ID_COMPARED:

@@ -362,7 +362,7 @@ class IncludeExpansion:
 
 
 def _name_from_uri(uri: str) -> str:
-    """Return the likely name of a model that was not found: that of its directory."""
+    """Return the likely name of a model that was not found: the name of its directory."""
     steps = [part for part in uri.split('/') if part]
     if len(steps) > 1 and steps[-1].endswith(('.sdf', '.world', '.urdf')):
         steps.pop()

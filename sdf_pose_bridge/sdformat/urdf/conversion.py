@@ -168,7 +168,7 @@ class _Conversion:
         return self._bases[link.name].link is not link
 
     def _lump_inertial(self, link: Link) -> None:
-        """Add the mass of a lumped link to that of its parent."""
+        """Add the mass of a lumped link to the mass of its parent."""
         inertial = self._inertials[link.name]
         if inertial is None or not self._is_lumped(link):
             return
@@ -198,7 +198,7 @@ class _Conversion:
         return left_out
 
     def _warn_of_inertials(self) -> None:
-        """Warn of the inertials that Gazebo refuses; those of included robots are read later."""
+        """Warn of inertials that Gazebo rejects; included robots are read later."""
         for link in self._links:
             inertial = self._inertials[link.name]
             if inertial is not None and inertial.mass > 0.0 and not (
@@ -316,7 +316,7 @@ class _Conversion:
         xyz = values.get('axis', {'xyz': [1.0, 0.0, 0.0]}).get('xyz', [0.0, 0.0, 0.0])
         limit = values.get('limit', {})
         if joint.type == 'fixed':
-            # Its axis is that of SDFormat, as URDF gives it none.
+            # It has the axis of SDFormat, as URDF gives it none.
             xyz, values, limit = [0.0, 0.0, 1.0], {}, {'lower': [0.0], 'upper': [0.0]}
         elif 'limit' in values:
             ends = sorted((*limit.pop('lower', [0.0]), *limit.pop('upper', [0.0])))

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Add the mass of the child link of a fixed joint to that of the parent link.
+Add the mass of the child link of a fixed joint to the mass of the parent link.
 
 Source: ``ReduceInertialToParent`` of libsdformat's ``parser_urdf.cc``.
 """

@@ -5,7 +5,7 @@ Read the robot of a URDF file: links, joints and the content of ``<gazebo>`` ele
 
 Values that poses do not need are not read.
 
-Files are accepted as by the parser of libsdformat, that of urdfdom: a joint with a fault is an
+Files are accepted as by urdfdom, the parser of libsdformat: a joint with a fault is an
 error, but in a link the parser stops at the fault and keeps the part that it has read.
 """
 
@@ -87,7 +87,7 @@ class Link(NamedTuple):
 
 
 class Joint(NamedTuple):
-    """A joint; its frame is that of its child link."""
+    """A joint; its frame is the frame of its child link."""
 
     xml: XmlElement
     name: str
