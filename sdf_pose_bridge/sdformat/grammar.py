@@ -143,6 +143,9 @@ _ITEM = re.compile(
 _KINDS = {kind.label: kind for kind in Kind}
 _UNREAD = frozenset({'model_state', 'population', 'road', 'state'})
 """Elements that libsdformat does not load."""
+_CHECKED_WITH_FRAMES = frozenset({'include', 'material', 'shader', 'submesh'})
+"""Elements without a frame of which libsdformat checks more than values when it loads frames."""
+
 
 _VALUE_TYPES = {each.label: each for each in ValueType} | dict.fromkeys(CHOICES, ValueType.CHOICE)
 
@@ -187,15 +190,18 @@ class Definition:
     :param has_frames: whether kinds of elements are frames here. They are not in elements that
         libsdformat checks but does not load, such as a state.
     :param is_required: whether the value may not be blank.
+    :param is_checked: whether the values in the element are checked already, as those of an
+        included file. Child elements of which nothing else is read are left out then.
     :raises ValueError: if the content is not in the notation of this module.
     """
 
     def __init__(
         self, identifier: str, content: str, *, has_frames: bool = False,
-        is_required: bool = False,
+        is_required: bool = False, is_checked: bool = False,
     ) -> None:
         self.identifier = identifier
         self.is_required = is_required
+        self.is_checked = is_checked
         self.kind = _KINDS.get(identifier) if has_frames else None
         """The kind of the element; None for an element that is no frame."""
         self.has_frames = has_frames
@@ -212,7 +218,7 @@ class Definition:
         self.is_scope = self.kind in (Kind.WORLD, Kind.MODEL)
         self.takes_any_number = (
             self.value_type is ValueType.NUMBER and self.minimum == -math.inf)
-        self.takes_any_children = any(item['name'] == '*' for item in items)
+        self.takes_any_children = is_checked or any(item['name'] == '*' for item in items)
         """Whether the element may contain undefined elements."""
         self.attributes: Mapping[str, Attribute] = {
             item['name']: Attribute(
@@ -220,14 +226,15 @@ class Definition:
                 CHOICES.get(item['type']) if has_frames else None)
             for item in items if item['mark'] == '@'}
         """The attributes by name."""
-        self.has_required_attributes = any(
-            attribute.is_required for attribute in self.attributes.values())
         self.checked_attributes = [
             (name, attribute) for name, attribute in self.attributes.items()
             if (attribute.is_required or attribute.value_type is not ValueType.STRING)
-            and (name != 'name' or self.kind is None)]
+            and (name != 'name' or self.kind is None)
+            and (attribute.choice is not None or not is_checked)]
         """The attributes that are required or have another type than string, without names of
         frames."""
+        self.has_required_attributes = any(
+            attribute.is_required for _, attribute in self.checked_attributes)
         self._child_items = [
             item for item in items if item['name'] not in ('', '*') and not item['mark']]
         self.required_children = {item['name'] for item in self._child_items if item['required']}
@@ -240,8 +247,14 @@ class Definition:
             item['name']: self._child(item) for item in self._child_items}
         for kind in Kind:
             if self.identifier in kind.parents:
-                children[kind.label] = definition_of(kind.label, has_frames=self.has_frames)
-        return children
+                children[kind.label] = definition_of(
+                    kind.label, has_frames=self.has_frames, is_checked=self.is_checked)
+        if not self.is_checked:
+            return children
+        return {
+            tag: child for tag, child in children.items()
+            if child.kind is not None or child.identifier in _CHECKED_WITH_FRAMES
+            or (child.is_pose and self.kind is not None) or (child.is_checked and child.children)}
 
     def _child(self, item: Mapping[str, str]) -> Definition:
         tag, is_required = item['name'], item['required'] == '!'
@@ -249,15 +262,17 @@ class Definition:
             return Definition(tag, item['value'], is_required=is_required)
         for identifier in (item['identifier'], f'{self.identifier}/{tag}', tag):
             if identifier in ELEMENTS or (identifier and item['identifier']):
+                is_read = identifier not in _UNREAD
                 return definition_of(
-                    identifier, is_required=is_required,
-                    has_frames=self.has_frames and identifier not in _UNREAD)
+                    identifier, is_required=is_required, has_frames=self.has_frames and is_read,
+                    is_checked=self.is_checked and is_read)
         return Definition(tag, ':string', is_required=is_required)
 
 
 @cache
 def definition_of(
     identifier: str, *, has_frames: bool = False, is_required: bool = False,
+    is_checked: bool = False,
 ) -> Definition:
     """
     Return the definition of an element.
@@ -265,9 +280,11 @@ def definition_of(
     :param identifier: label of a kind, or a key of :data:`ELEMENTS`.
     :param has_frames: as for :class:`Definition`.
     :param is_required: as for :class:`Definition`.
+    :param is_checked: as for :class:`Definition`.
     """
     return Definition(
-        identifier, _CONTENTS[identifier], has_frames=has_frames, is_required=is_required)
+        identifier, _CONTENTS[identifier], has_frames=has_frames, is_required=is_required,
+        is_checked=is_checked)
 
 
 _CONTENTS = {**ELEMENTS, **{kind.label: kind.content for kind in Kind}}

@@ -28,6 +28,7 @@ from sdf_pose_bridge.sdformat.values import (
     DECIMAL,
     is_representable,
     LONGEST_PLAIN,
+    plain_numbers_from_text,
 )
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of, WHITE_SPACE, XmlElement
 
@@ -157,6 +158,9 @@ def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> list[float]:
     """
     layout = pose_format.layout
     count = len(layout.split())
+    plain_numbers = plain_numbers_from_text(text)
+    if len(plain_numbers) == count and not pose_format.is_quaternion:
+        return list(plain_numbers)
     words = _words(text) or _IDENTITY_TEXTS[count].split()
     plain_words = [word.removesuffix(',') for word in words]
     shown = _shown(text)

@@ -98,9 +98,17 @@ def elements_from_tree(root: XmlElement, sources: Sources, *, shapes: bool = Fal
     return _Reader(sources, shapes=shapes).elements(root)
 
 
-def check_element(xml: XmlElement, definition: Definition, sources: Sources) -> None:
-    """Check the attributes and values of an element that is no part of the tree."""
-    _Reader(sources).read(xml, definition)
+def is_valid_element(xml: XmlElement, definition: Definition, sources: Sources) -> bool:
+    """
+    Check the attributes and values in an element that is not read with the tree, or before it.
+
+    :param sources: takes errors and warnings.
+    :return: whether there are no errors.
+    """
+    part = sources.with_own_problems()
+    _Reader(part).read(xml, definition)
+    part.problems.extend_parent()
+    return not part.problems.errors
 
 
 def _check_scoped_names(root: XmlElement, sources: Sources) -> None:
@@ -214,9 +222,9 @@ class _Reader:
                 self._sources.error(ElementInvalidError, xml, f'{_described_value(xml)} {fault}')
             elif doubt:
                 self._sources.warning(xml, f'{_described_value(xml)} {doubt}')
-        elif definition.identifier == 'include':
+        elif definition.identifier == 'include' and outer is not None:
             missing = self._sources.origin(xml).missing
-            if outer is not None and missing is not None:
+            if missing is not None:
                 missing_includes = outer.table.details['missing_includes']
                 missing_includes.setdefault(outer.element, {}).update([missing])
         else:
@@ -226,7 +234,11 @@ class _Reader:
                 if definition.identifier in checks:
                     checks[definition.identifier](xml, self._sources)
             elif outer is not None:
-                inner = self._added(xml, definition, definition.kind, outer)
+                kind = definition.kind
+                if self._sources.origin(xml).is_checked:
+                    definition = definition_of(
+                        definition.identifier, has_frames=True, is_checked=True)
+                inner = self._added(xml, definition, kind, outer)
                 if inner is None:
                     definition = definition_of(definition.identifier)
             if depth > self._deepest:
@@ -235,7 +247,8 @@ class _Reader:
             for child in xml:
                 child_definition = definitions.get(child.tag)
                 if child_definition is None:
-                    self._undefined.report_element(child, definition)
+                    if not definition.takes_any_children:
+                        self._undefined.report_element(child, definition)
                     continue
                 self.read(child, child_definition, inner, depth + 1)
                 if child_definition.value_type is not None and len(child):

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 import copy
 from itertools import takewhile
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from lxml import etree
@@ -55,6 +56,10 @@ class Origin(NamedTuple):
     """Whether its name is in the file that includes it."""
     pose: Place | None = None
     """The place of its pose, if this is not in its own file."""
+    is_checked: bool = False
+    """Whether the values in it were checked before it was copied to its place."""
+    next_attributes: Mapping[str, str] = MappingProxyType({})
+    """Attributes of a pose that are for its next text only, as libsdformat has read this one."""
     placement_frame: str = ''
     """For the frame that replaces a merged model's frame: the frame that the include places."""
     missing: tuple[str, str] | None = None

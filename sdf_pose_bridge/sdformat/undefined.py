@@ -46,24 +46,17 @@ class UndefinedReporter:
         self._sources = sources
         self._nearest: dict[tuple[str, str, str], str] = {}
 
-    def report_content(self, xml: XmlElement, definition: Definition) -> None:
-        """Warn of the undefined attributes and child elements of an element."""
-        self.report_attributes(xml, definition)
-        for child in xml:
-            if child.tag not in definition.children:
-                self.report_element(child, definition)
-
     def report_element(self, xml: XmlElement, parent: Definition) -> None:
         """
         Warn of an element.
 
         :param xml: a child element, or a comment, that the definition of its parent does not know.
-        :param parent: the definition of its parent element.
+        :param parent: the definition of its parent element, which may not take any children.
         """
         tag = written_tag(xml)
         parent_xml = xml.getparent()
-        if (not isinstance(xml.tag, str) or ':' in tag or parent.takes_any_children
-                or parent_xml is None or self._is_only_counted()):
+        if (not isinstance(xml.tag, str) or ':' in tag or parent_xml is None
+                or self._is_only_counted()):
             return
         if tag == 'include':
             # An <include> elsewhere was replaced, or is reported already.

@@ -202,15 +202,19 @@ def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
 
 
 def _plain_numbers(text: str, value_type: ValueType) -> Sequence[float]:
-    """Return the numbers of a text of plain numbers; none for any other text."""
-    if (value_type not in _FLOATING_TYPES or len(text) >= LONGEST_PLAIN
-            or _NOT_IN_DECIMALS.search(text)):
+    """Return the numbers of a value that is plain numbers; none for any other text."""
+    numbers = plain_numbers_from_text(text) if value_type in _FLOATING_TYPES else ()
+    return numbers if numbers and _is_of_type(text, numbers, value_type) else ()
+
+
+def plain_numbers_from_text(text: str) -> Sequence[float]:
+    """Return the numbers of a text of short decimals without exponents; none for other texts."""
+    if len(text) >= LONGEST_PLAIN or _NOT_IN_DECIMALS.search(text):
         return ()
     try:
-        numbers = [float(word) for word in text.split()]
+        return [float(word) for word in text.split()]
     except ValueError:
         return ()
-    return numbers if _is_of_type(text, numbers, value_type) else ()
 
 
 def number_from_word(word: str) -> Sequence[float]:

@@ -123,6 +123,15 @@ def test_definition_has_required_children():
     assert definition_of('axis').required_children == {'xyz', 'limit'}
 
 
+def test_element_with_checked_values_has_only_children_that_frames_depend_on():
+    definition = definition_of('visual', has_frames=True, is_checked=True)
+    assert set(definition.children) == {'pose', 'geometry', 'material'}
+    assert set(definition.children['geometry'].children) == {'mesh'}
+    assert definition.checked_attributes == []
+    joint = definition_of('joint', has_frames=True, is_checked=True)
+    assert [name for name, _ in joint.checked_attributes] == ['type']
+
+
 def test_element_of_a_state_is_no_frame():
     assert definition_of('model_state').children['frame'].kind is None
 

@@ -17,7 +17,6 @@ from pathlib import Path
 from lxml import etree
 
 from sdf_pose_bridge.errors import (
-    AttributeInvalidError,
     AttributeMissingError,
     ElementIncorrectTypeError,
     ElementInvalidError,
@@ -41,9 +40,8 @@ from sdf_pose_bridge.sdformat.include.uris import (
     ModelFile,
     ResourceFinder,
 )
-from sdf_pose_bridge.sdformat.reader import check_element
+from sdf_pose_bridge.sdformat.reader import is_valid_element
 from sdf_pose_bridge.sdformat.sources import Sources
-from sdf_pose_bridge.sdformat.undefined import UndefinedReporter
 from sdf_pose_bridge.sdformat.values import boolean_from_text
 from sdf_pose_bridge.sdformat.xml_tree import (
     child_elements,
@@ -88,7 +86,6 @@ class IncludeExpansion:
         self._model_files: dict[str, ModelFile | str] = {}
         self._missing: set[str] = set()
         self._merged_models: dict[tuple[XmlElement, str, bytes], ModelByItself | None] = {}
-        self._undefined = UndefinedReporter(sources)
         self._definitions: dict[XmlElement, Definition | None] = {}
         """The definitions of the elements around includes."""
 
@@ -139,14 +136,13 @@ class IncludeExpansion:
         self._sources.set_origin(include, missing=(name, uri))
 
     def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
-        is_merge = self._is_merge(include)
-        self._undefined.report_content(include, definition_of('include'))
-        for plugin in child_elements(include, 'plugin'):
-            check_element(plugin, definition_of('plugin'), self._sources)
-        uri = self._uri(include)
-        if not uri:
+        if first_child(include, 'uri') is None:
+            msg = 'the include has no <uri>, so it includes nothing'
+            self._sources.error(AttributeMissingError, include, msg)
             return
-        place = self._sources.place(include)
+        if not is_valid_element(include, definition_of('include'), self._sources):
+            return
+        place, uri = self._sources.place(include), child_value(include, 'uri')
         found = self._included_file(place, uri, files)
         if isinstance(found, str):
             self._report_missing(place, uri, found)
@@ -154,29 +150,24 @@ class IncludeExpansion:
         if found is None:
             return
         chosen = self._top(include, found)
-        if chosen is None or is_merge is None:
+        if chosen is None:
             return
         top = self._sources.copy_of(chosen, include)
-        self._sources.set_origin(top, include=place)
-        self._override(include, top)
-        for added in apply_params(include, top, self._sources):
-            self._expand_in(added, files)
-        if is_merge:
+        self._sources.set_origin(top, include=place, is_checked=True)
+        part = self._sources.with_own_problems()
+        _override(include, top, part)
+        added = apply_params(include, top, part)
+        part.problems.extend_parent()
+        if part.problems.errors:
+            return
+        for each in added:
+            self._expand_in(each, files)
+        if boolean_from_text(include.get('merge', 'false')):
             self._merge(include, top, chosen)
         else:
             self._insert(include, top)
 
     # The file of an include
-
-    def _uri(self, include: XmlElement) -> str:
-        element = first_child(include, 'uri')
-        uri = '' if element is None else value_of(element)
-        if element is None:
-            msg = 'the include has no <uri>, so it includes nothing'
-            self._sources.error(AttributeMissingError, include, msg)
-        elif not uri:
-            self._sources.error(ElementInvalidError, element, 'the <uri> of the include is empty')
-        return uri
 
     def _included_file(
         self, place: Place, uri: str, files: tuple[str, ...],
@@ -224,6 +215,8 @@ class IncludeExpansion:
         except SdfError as error:
             self._sources.problems.extend(error.errors)
             return None
+        # Its copies are not checked again, except what includes change in them.
+        is_valid_element(document.root, definition_of('sdf'), self._sources)
         if next(document.root.iter('include'), None) is not None:
             self._sources.composed_trees.add(document.root)
             self._expand_in(document.root, files)
@@ -265,76 +258,7 @@ class IncludeExpansion:
             self._sources.error(ElementMissingError, include, msg)
         return None
 
-    # The parts that an include overrides
-
-    def _override(self, include: XmlElement, top: XmlElement) -> None:
-        """Write the name, the pose and other children of an include into its element."""
-        name = self._override_value(include, 'name')
-        if name:
-            top.set('name', name)
-            self._sources.set_origin(top, is_named_by_include=True)
-        self._check_static(include, top)
-        if top.tag == 'model':
-            self._override_element(include, top, 'static')
-            placement = self._placement_frame(include)
-            if placement:
-                top.set('placement_frame', placement)
-        if self._override_element(include, top, 'pose'):
-            sources = self._sources
-            sources.set_origin(top, pose=Place(sources.path(include), sources.line(include)))
-
-    def _check_static(self, include: XmlElement, top: XmlElement) -> None:
-        static = first_child(include, 'static')
-        if static is None:
-            return
-        value = value_of(static)
-        # The value that a model gets is checked in the model.
-        if boolean_from_text(value) is None and (top.tag != 'model' or not value):
-            msg = f'"{value}" is not a boolean (true, false, 1 or 0)'
-            self._sources.error(ElementInvalidError, static, msg)
-
-    def _override_value(self, include: XmlElement, tag: str) -> str:
-        element = first_child(include, tag)
-        value = '' if element is None else value_of(element)
-        if element is not None and not value:
-            self._sources.error(ElementInvalidError, element, f'<{tag}> of the include is empty')
-        return value
-
-    def _override_element(self, include: XmlElement, top: XmlElement, tag: str) -> bool:
-        new = first_child(include, tag)
-        if new is None:
-            return False
-        old = first_child(top, tag)
-        replacement = copy_of(new)
-        if old is None:
-            top.insert(0, replacement)
-        else:
-            top.replace(old, replacement)
-        self._sources.set_source(replacement, new)
-        return True
-
-    def _placement_frame(self, include: XmlElement) -> str:
-        placement = self._override_value(include, 'placement_frame')
-        if placement and first_child(include, 'pose') is None:
-            msg = (f'<placement_frame> "{placement}" needs a <pose> in the same include, which '
-                   'says where that frame is')
-            self._sources.error(PlacementFrameError, include, msg)
-        elif placement == ROOT_FRAME:
-            msg = f'"{placement}" is reserved; it cannot be a placement frame'
-            self._sources.error(ReservedNameError, include, msg)
-        else:
-            return placement
-        return ''
-
     # The place of the included element
-
-    def _is_merge(self, include: XmlElement) -> bool | None:
-        written = include.get('merge', 'false')
-        value = boolean_from_text(written)
-        if value is None:
-            msg = f'merge="{written}" is not a boolean (true, false, 1 or 0)'
-            self._sources.error(AttributeInvalidError, include, msg)
-        return value
 
     def _merge(self, include: XmlElement, top: XmlElement, chosen: XmlElement) -> None:
         """Merge a copy of a model; includes with the same text share the check by itself."""
@@ -367,3 +291,55 @@ def _name_from_uri(uri: str) -> str:
     if len(steps) > 1 and steps[-1].endswith(('.sdf', '.world', '.urdf')):
         steps.pop()
     return steps[-1] if steps else ''
+
+
+# The parts that an include overrides
+
+def _override(include: XmlElement, top: XmlElement, sources: Sources) -> None:
+    """Write the name, the pose and other children of an include into its element."""
+    name = _override_value(include, 'name', sources)
+    if name:
+        top.set('name', name)
+        sources.set_origin(top, is_named_by_include=True)
+    if top.tag == 'model':
+        if _override_value(include, 'static', sources):
+            _override_element(include, top, 'static', sources)
+        placement = _placement_frame(include, sources)
+        if placement:
+            top.set('placement_frame', placement)
+    if first_child(include, 'pose') is not None:
+        _override_element(include, top, 'pose', sources)
+        sources.set_origin(top, pose=Place(sources.path(include), sources.line(include)))
+
+
+def _override_value(include: XmlElement, tag: str, sources: Sources) -> str:
+    element = first_child(include, tag)
+    value = '' if element is None else value_of(element)
+    if element is not None and not value:
+        sources.error(ElementInvalidError, element, f'<{tag}> of the include is empty')
+    return value
+
+
+def _override_element(
+    include: XmlElement, top: XmlElement, tag: str, sources: Sources,
+) -> None:
+    new, old = first_child(include, tag), first_child(top, tag)
+    assert new is not None
+    replacement = copy_of(new)
+    if old is None:
+        top.insert(0, replacement)
+    else:
+        top.replace(old, replacement)
+    sources.set_source(replacement, new)
+
+
+def _placement_frame(include: XmlElement, sources: Sources) -> str:
+    placement = _override_value(include, 'placement_frame', sources)
+    if placement and first_child(include, 'pose') is None:
+        msg = (f'<placement_frame> "{placement}" needs a <pose> in the same include, which '
+               'says where that frame is')
+        sources.error(PlacementFrameError, include, msg)
+    elif placement == ROOT_FRAME:
+        msg = f'"{placement}" is reserved; it cannot be a placement frame'
+        sources.error(ReservedNameError, include, msg)
+    return placement

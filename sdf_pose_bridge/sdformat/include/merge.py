@@ -128,7 +128,7 @@ def _move_children(include: XmlElement, model: XmlElement, proxy: str, sources: 
             continue
         _warn_of_model_frame_in(child, sources)
         _replace_model_frame(child, proxy)
-        sources.set_origin(child, file=sources.path(child))
+        sources.set_origin(child, file=sources.path(child), is_checked=True)
         include.addprevious(child)
 
 

@@ -21,7 +21,7 @@ from sdf_pose_bridge.errors import (
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, STANDALONE_ELEMENTS
 from sdf_pose_bridge.sdformat.include.element_ids import element_by_id, hint_for_id
-from sdf_pose_bridge.sdformat.reader import check_element
+from sdf_pose_bridge.sdformat.reader import is_valid_element
 from sdf_pose_bridge.sdformat.sources import PARAMS_TAG, Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
     child_elements,
@@ -141,6 +141,7 @@ class _Changer:
                     attribute not in definition.attributes and ':' not in attribute):
                 del element.attrib[attribute]
         self._sources.set_source(element, xml)
+        is_valid_element(element, definition, self._sources)
         self.added.append(element)
         return element
 
@@ -150,94 +151,97 @@ class _Changer:
             msg = f'<{written_tag(xml)}> is to replace {_start_tag(target)}, so it needs a name'
             self._sources.error(AttributeMissingError, xml, msg)
         elif parent is not None:
-            self._check_before_change(target)
             parent.replace(target, self._new_element(xml))
 
     def _remove(self, xml: XmlElement, target: XmlElement) -> None:
-        if _is_empty(xml):
-            self._take_out(target)
-            return
+        parent = target.getparent()
+        if _is_empty(xml) and parent is not None:
+            parent.remove(target)
         for child in child_elements(xml):
             found = self._child(target, child)
             if found is not None:
-                self._take_out(found)
+                target.remove(found)
 
-    def _modify(self, xml: XmlElement, target: XmlElement) -> None:
+    def _modify(
+        self, xml: XmlElement, target: XmlElement, *, is_read_before: bool = False,
+    ) -> None:
+        """
+        Change an element, and the children that a parameter has.
+
+        :param is_read_before: whether a new text is read before the new attributes.
+        """
         text = text_of(xml)
         has_text = bool(text.strip())
-        # A new text is read with its attributes; an old text is not read again.
-        self._change_attributes(xml, target, is_read_before=not has_text)
+        self._change(
+            xml, target, text if has_text and self._holds_value(target) else None,
+            is_read_before=is_read_before or not has_text)
         if not has_text:
             for child in child_elements(xml):
                 self._modify_child(child, target)
-        elif self._holds_value(target):
-            self._set_text(text, xml, target)
 
     def _modify_child(self, xml: XmlElement, target: XmlElement) -> None:
         found = self._child(target, xml, takes_first=True)
         if found is None:
             return
-        text = text_of(xml)
-        if text.strip():
-            if self._holds_value(found):
-                self._set_text(text, xml, found)
-            # Unlike in _modify, the text of a pose has been read by now.
-            self._change_attributes(xml, found, is_read_before=True)
-        elif not _is_empty(xml):
-            self._modify(xml, found)
+        if not _is_empty(xml):
+            self._modify(xml, found, is_read_before=True)
         elif self._holds_value(found):
             is_end = written_tag(target) == 'joint' and found.tag in ('parent', 'child')
             definition = self._definition(found)
             if definition is not None and definition.is_required and not is_end:
                 # Without the element, its default applies.
-                self._take_out(found)
+                target.remove(found)
                 return
-            self._set_text(_DEFAULT_JOINT_END if is_end else '', xml, found)
-            self._change_attributes(xml, found, is_read_before=False)
+            self._change(
+                xml, found, _DEFAULT_JOINT_END if is_end else '', is_read_before=False)
         else:
             msg = f'<{written_tag(xml)}> holds nothing, so it changes nothing'
             self._sources.warning(xml, msg)
 
-    def _take_out(self, target: XmlElement) -> None:
-        self._check_before_change(target)
-        parent = target.getparent()
-        if parent is not None:
-            parent.remove(target)
-
-    def _check_before_change(self, target: XmlElement) -> None:
-        """Check removed elements and changes, as libsdformat reads them before the next one."""
-        if definition := self._definition(target):
-            check_element(target, definition, self._sources)
-
-    def _set_text(self, text: str, xml: XmlElement, target: XmlElement) -> None:
-        target[:] = []
-        target.text = text
-        self._set_source(target, xml)
-
-    def _change_attributes(
-        self, xml: XmlElement, target: XmlElement, *, is_read_before: bool,
+    def _change(
+        self, xml: XmlElement, target: XmlElement, text: str | None, *, is_read_before: bool,
     ) -> None:
-        tag = written_tag(target)
+        """
+        Change the attributes of an element to those of a parameter.
+
+        :param text: its new text; None to keep the old one.
+        :param is_read_before: whether its text is read before its attributes change. Then those
+            of the format of a pose are for the next text.
+        """
+        is_changed = text is not None
+        if is_changed:
+            target.attrib.update(dict(self._sources.origin(target).next_attributes))
+            target[:] = []
+            target.text = text
         definition = self._definition(target)
-        is_changed = False
-        for attribute, value in xml.attrib.items():
-            if attribute in _OWN_ATTRIBUTES or ':' in attribute:
-                continue
-            if attribute not in target.attrib and (
-                    definition is None or attribute not in definition.attributes):
-                msg = f'SDFormat defines no attribute {attribute} of <{tag}>'
+        attributes = {
+            name: str(value) for name, value in xml.attrib.items()
+            if name not in _OWN_ATTRIBUTES and ':' not in name}
+        for name, value in attributes.items():
+            if name not in target.attrib and (
+                    definition is None or name not in definition.attributes):
+                msg = f'SDFormat defines no attribute {name} of <{written_tag(target)}>'
                 self._sources.error(AttributeInvalidError, xml, msg)
-            elif (tag == 'pose' and attribute in _POSE_FORMAT_ATTRIBUTES and is_read_before
+            elif (is_read_before and name in _POSE_FORMAT_ATTRIBUTES and target.tag == 'pose'
                     and text_of(target).strip()):
-                if target.get(attribute) != value:
-                    msg = (f'{attribute}="{value}" has no effect: libsdformat has read the '
-                           'numbers of this pose before')
-                    self._sources.warning(xml, msg)
+                self._keep_for_next_text(name, value, xml, target)
             else:
-                target.set(attribute, str(value))
+                target.set(name, value)
                 is_changed = True
         if is_changed:
             self._set_source(target, xml)
+            if definition is not None:
+                is_valid_element(target, definition, self._sources)
+
+    def _keep_for_next_text(
+        self, name: str, value: str, xml: XmlElement, target: XmlElement,
+    ) -> None:
+        if target.get(name) != value:
+            msg = (f'{name}="{value}" has no effect: libsdformat has read the numbers of this '
+                   'pose before')
+            self._sources.warning(xml, msg)
+        kept = self._sources.origin(target).next_attributes
+        self._sources.set_origin(target, next_attributes={**kept, name: value})
 
     def _set_source(self, target: XmlElement, xml: XmlElement) -> None:
         """Move the place of an element, and of ancestors up to that with the id, to the params."""

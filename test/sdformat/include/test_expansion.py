@@ -178,7 +178,7 @@ def test_error_in_a_file_that_is_included_twice_is_reported_once(errors_in):
     (error,) = errors_in(
         ''.join(include('bad.sdf', f'<name>{name}</name>') for name in 'ab'),
         bad=model_file('<link name="l"><pose>1 2</pose></link>'))
-    assert error.element == '/sdf/world[@name="w"]/model[@name="a"]/link[@name="l"]/pose'
+    assert error.element == '/sdf/model[@name="m"]/link[@name="l"]/pose'
 
 
 def test_different_errors_in_one_line_of_an_included_file_are_reported(errors_in):
@@ -352,6 +352,30 @@ def test_include_in_an_included_file_is_replaced(scene_of):
     middle = model_file(include(content='<pose>1 0 0 0 0 0</pose>'))
     scene = scene_of(include('middle.sdf', '<pose>0 0 5 0 0 0</pose>'), middle=middle)
     assert_at(scene, 'm::leaf::body', (1, 1, 5))
+
+
+@pytest.mark.parametrize(('attributes', 'text'), [
+    ('', model_file(f'<pose>1 2</pose>{LINK}')),
+    ('', model_file(f'<pose rotation_format="none"/>{LINK}')),
+    ('', model_file(f'<static>maybe</static>{LINK}')),
+    ('', model_file(f'<pose/><pose>1 x</pose>{LINK}')),
+    ('', '<sdf version="1.9"><light name="m" type="point"><pose>1 2</pose></light></sdf>'),
+    ('', model_file(LINK).replace('</sdf>', '<world name="w"><gravity>x</gravity></world></sdf>')),
+    ('merge="true"', model_file('<pose>1 2</pose><frame name="f"/><static>true</static>')),
+])
+def test_value_that_an_include_overrides_is_checked(errors_in, tmp_path, attributes, text):
+    overrides = '<pose>1 2 3 0 0 0</pose><static>true</static>'
+    (error,) = errors_in(include('bad.sdf', overrides, attributes), bad=text)
+    assert (error.code, error.file) == ('ELEMENT_INVALID', str(tmp_path / 'bad.sdf'))
+
+
+@pytest.mark.parametrize('text', [
+    model_file(LINK).replace('name="m"', 'name="__m__"'),
+    model_file(LINK).replace('name="m"', 'name="m" placement_frame="none"'),
+])
+def test_name_or_reference_that_an_include_overrides_is_not_checked(scene_of, text):
+    overrides = '<name>n</name><pose/><placement_frame>l</placement_frame>'
+    assert names_of(scene_of(include('m.sdf', overrides), m=text)) == ['n', 'n::l']
 
 
 # What an include overrides

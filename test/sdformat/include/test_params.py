@@ -281,7 +281,7 @@ def test_changed_numbers_are_in_the_unit_that_is_given_with_them(load):
 
 
 @pytest.mark.parametrize('tag', [
-    'box_shape', 'forcetorque', 'heightmap_shape', 'image_shape', 'sphere_shape', 'gui', 'state'])
+    'box_shape', 'forcetorque', 'heightmap_shape', 'image_shape', 'sphere_shape', 'gui'])
 def test_element_that_is_defined_for_itself_can_be_added(load, tag):
     load(f'<{tag} element_id="base" name="x" action="add"/>')
 
@@ -312,6 +312,51 @@ def test_hint_among_long_ids_takes_little_memory(write, tmp_path):
 
 
 # Every change is read before the next one
+
+def modified(pose, element_id='base'):
+    return f'<link element_id="{element_id}" action="modify">{pose}</link>'
+
+
+def with_params(tmp_path, pose, params, outer=''):
+    """Include a link with parameters, and then the result with others; return the file."""
+    write_files(
+        tmp_path, inner=model_file(f'<link name="base">{pose}</link>').replace('"m"', '"inner"'),
+        middle=model_file('<link name="k"/><include><uri>inner.sdf</uri><experimental:params>'
+                          f'{params}</experimental:params></include>').replace('"m"', '"middle"'),
+        outer=model_file('<link name="j"/><include><uri>middle.sdf</uri><experimental:params>'
+                         f'{outer}</experimental:params></include>'))
+    return tmp_path / 'outer.sdf'
+
+
+@pytest.mark.parametrize(('pose', 'params'), [
+    ('<pose>1 x</pose>', modified('<pose>1 0 0 0 0 0</pose>')),
+    ('<pose>1 x</pose>', '<link element_id="base"><pose action="replace"/></link>'),
+    ('<pose/>', modified('<pose>1 x</pose>') + modified('<pose>1 0 0 0 0 0</pose>')),
+    ('<pose/>', modified('<pose rotation_format="quat_xyzw">0 0 0 0 0 0 1</pose>')
+     + modified('<pose>0 0 0 0 0 0 1</pose>')),
+    ('<pose/>', modified('<pose rotation_format="quat_xyzw">0 0 0 0 0 0</pose>')
+     + modified('<pose>0 0 0 0 0 0</pose>')),
+    ('<pose/>', '<state element_id="base" name="s" action="add"/>'),
+])
+def test_value_that_a_later_parameter_changes_is_checked(tmp_path, pose, params):
+    (error,) = errors_of_file(with_params(tmp_path, pose, params))
+    assert error.code in ('ELEMENT_INVALID', 'ATTRIBUTE_MISSING')
+
+
+@pytest.mark.parametrize(('pose', 'params'), [
+    ('<pose/>', modified('<pose degrees="true">0 0 0 0 0 90</pose>')),
+    ('<pose>1 0 0 0 0 0</pose>',
+     '<link element_id="base"><pose action="modify" degrees="true"/></link>'),
+    ('<pose rotation_format="quat_xyzw">0 0 0 0 0 0 1</pose>',
+     modified('<pose rotation_format="euler_rpy" degrees="true">0 0 0 0 0 0 1</pose>')),
+])
+@pytest.mark.parametrize('is_outer', [False, True])
+def test_format_of_a_pose_is_that_of_its_next_text(tmp_path, pose, params, is_outer):
+    text = '<pose>1 0 0 0 0 180</pose>'
+    path = with_params(tmp_path, pose, params, modified(text, 'inner::base')) if is_outer else (
+        with_params(tmp_path, pose, params + modified(text)))
+    assert_at(sdf_pose_bridge.load(path), 'm::middle::inner::base', (1, 0, 0, 0, 0, 1, 0))
+
 
 def test_wrong_pose_that_a_later_parameter_replaces_is_refused(tmp_path):
     write_files(
