@@ -38,7 +38,7 @@ help:
 	@echo 'make bench          benchmarks; ARGS="..." hands arguments to them'
 	@echo 'make differential   random scenes against libsdformat; ARGS="--scenes 100" for fewer'
 	@echo 'make fuzz           hostile files by atheris; MINUTES=60 for longer, findings in fuzz_findings'
-	@echo 'make growth         time and memory of hostile files; ARGS="--pairs" for them in pairs'
+	@echo 'make growth         how time and memory of hostile files grow; ARGS="--around includes" in these'
 	@echo 'make soak           the node under load for MINUTES=30: nothing lost, nothing growing'
 	@echo 'make licenses       licences of everything that is installed for this, as in docs/licenses.md'
 	@echo 'make audit          known vulnerabilities of it, by pip-audit; needs the network'

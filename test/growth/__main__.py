@@ -1,21 +1,18 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Print how loads grow with n, 2 n and 4 n, where a file of 4 n has 1 MB with all that it includes.
+Print how the time and the memory of a load grow with n, 2 n and 4 n, for each family of files.
 
-A row ends with what is wrong: more than 2 s of processor time, more than 300 MB, a thread that has
-to wait for more than 0.2 s, time or memory that grows faster than in proportion, or a process that
-ends. ``--pairs`` measures all contents in all others instead: each pair at 250 kB, and then the
-worst of them as rows of the table.
+A file of 4 n has the given size, with all that it includes. A row has the exponent of the growth
+from n to 4 n: 1 is growth in proportion to n, 2 is growth with its square. Families in which each
+of n includes copies n elements have 2 until the limit of copied elements ends the load.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
 from functools import partial
-from itertools import combinations, pairwise
 import math
 import os
 from pathlib import Path
@@ -25,41 +22,23 @@ import sys
 import tempfile
 from typing import NamedTuple
 
-from growth.families import (
-    changed_contents,
-    CONTENTS,
-    FAMILIES,
-    Files,
-    included_contents,
-    Link,
-    merged_contents,
-    model,
-)
+from growth.families import AROUND, FILES, Files, Link, PARTS
 
-WIDTH = 56
+WIDTH = 40
 """Of the column of names."""
 
-MOST_BYTES = 1_000_000
-BYTES_OF_PAIR = 250_000
-LONGEST_S = 2.0
-MOST_MEMORY = 300_000_000
-LONGEST_WAIT_S = 0.2
-LONGEST_RUN_S = 20
-LARGEST_GROWTH = 3.0
-"""How many times as much 2 n may take as n; less than this is noise on a busy machine."""
-SHORTEST_S = 0.3
-"""Growth of shorter times than this is not judged."""
-ROWS_OF_PAIRS = 40
-"""How many pairs are measured again at 1 MB."""
+LONGEST_S = 30
+"""A process that needs more processor time is ended."""
+
+SHORTEST_S, SMALLEST_BYTES = 0.2, 20_000_000
+"""The growth to less than this is noise."""
 
 
 class Load(NamedTuple):
     """One load, as it was measured."""
 
     seconds: float
-    memory: int
-    added_memory: int
-    longest_wait_s: float
+    memory: float
     outcome: str
 
 
@@ -73,17 +52,16 @@ def measured(files: Files) -> Load:
                 file.symlink_to(text.target)
             else:
                 file.write_bytes(text.encode(errors='surrogateescape'))
-        limit = (LONGEST_RUN_S, LONGEST_RUN_S)
         process = subprocess.run(
             [sys.executable, '-m', 'growth.measurement', str(Path(folder, 'scene.sdf'))],
             check=False, capture_output=True, text=True,
             env={**os.environ, 'GZ_FUEL_CACHE_PATH': str(Path(folder, 'fuel'))},
-            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, limit))
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (LONGEST_S, LONGEST_S)))
     if process.returncode:
         reason = process.stderr.strip().rpartition('\n')[2] or f'exit code {process.returncode}'
-        return Load(LONGEST_RUN_S, 0, 0, 0.0, f'ENDED: {reason[:80]}')
-    seconds, memory, added, wait, outcome = process.stdout.strip().split(' ', 4)
-    return Load(float(seconds), int(memory), int(added), float(wait), outcome)
+        return Load(LONGEST_S, math.nan, f'ENDED: {reason[:80]}')
+    seconds, memory, outcome = process.stdout.strip().split(' ', 2)
+    return Load(float(seconds), float(memory), outcome)
 
 
 def size_of(files: Files) -> int:
@@ -94,109 +72,59 @@ def size_of(files: Files) -> int:
 
 
 def largest_n(family: Callable[[int], Files], most_bytes: int) -> int:
-    """Return for which n the files of a family have about so many bytes."""
+    """Return for which n, to an eighth, the files of a family have about so many bytes."""
     n = 4
     while n < 50_000 and size_of(family(2 * n)) <= most_bytes:
         n *= 2
-    step = n // 2
-    while step >= max(n // 16, 1):
-        if size_of(family(n + step)) <= most_bytes:
-            n += step
-        step //= 2
-    return n
+    return max((n + i * n // 8 for i in range(8) if size_of(family(n + i * n // 8)) <= most_bytes),
+               default=n)
 
 
-def faults(loads: list[Load]) -> Iterator[str]:
-    """Say what is wrong with loads of n, 2 n and 4 n; or with one load."""
-    last = loads[-1]
-    if last.outcome.startswith('ENDED'):
-        yield last.outcome
-        return
-    if last.seconds > LONGEST_S:
-        yield f'{last.seconds:.1f} s'
-    if last.memory > MOST_MEMORY:
-        yield f'{last.memory / 1e6:.0f} MB'
-    if last.longest_wait_s > LONGEST_WAIT_S:
-        yield f'waits {last.longest_wait_s:.2f} s'
-    for half, whole in pairwise(loads):
-        if whole.seconds > SHORTEST_S and whole.seconds > LARGEST_GROWTH * half.seconds:
-            yield f'time times {whole.seconds / half.seconds:.1f}'
+def exponent(first: float, last: float, smallest: float) -> str:
+    """Return the exponent of the growth from n to 4 n."""
+    is_noise = last < smallest or first <= 0.0
+    return '' if is_noise else f'{math.log(last / first, 4.0):.1f}'
 
 
-def row(name: str, family: Callable[[int], Files]) -> tuple[str, bool]:
-    """Measure a family; return a row of the table, and whether all is well."""
-    n = max(largest_n(family, MOST_BYTES) // 4, 1)
+def row(name: str, family: Callable[[int], Files], most_bytes: int) -> str:
+    """Measure a family; return a row of the table."""
+    n = max(largest_n(family, most_bytes) // 4, 1)
     loads = [measured(family(count)) for count in (n, 2 * n, 4 * n)]
-    found = ', '.join(faults(loads))
+    first, _, last = loads
     seconds = ' '.join(f'{load.seconds:6.2f}' for load in loads)
-    memory = ' '.join(f'{load.added_memory / 1e6:5.0f}' for load in loads)
-    last = loads[-1]
-    return (f'{name:{WIDTH}} {4 * n:7} {size_of(family(4 * n)) / 1e3:6.0f} {seconds}  {memory} '
-            f'{last.longest_wait_s:5.2f}  {last.outcome[:46]:46} {found}'), not found
+    memory = ' '.join(f'{load.memory / 1e6:5.0f}' for load in loads)
+    return (f'{name:{WIDTH}} {4 * n:7} {size_of(family(4 * n)) / 1e3:6.0f} {seconds} '
+            f'{exponent(first.seconds, last.seconds, SHORTEST_S):>4}  {memory} '
+            f'{exponent(first.memory, last.memory, SMALLEST_BYTES):>4}  {last.outcome[:60]}')
 
 
-def pair(first: str, second: str, n: int) -> Files:
-    """Return a model that holds two contents."""
-    return {'scene.sdf': model(CONTENTS[first](n) + CONTENTS[second](n))}
-
-
-def all_families() -> dict[str, Callable[[int], Files]]:
-    """Return all families by name: contents alone and in includes, and whole files."""
-    families: dict[str, Callable[[int], Files]] = {
-        name: (lambda n, make=make: {'scene.sdf': model(make(n))})  # type: ignore[misc]
-        for name, make in CONTENTS.items()}
-    return families | FAMILIES
-
-
-def all_pairs() -> dict[str, Callable[[int], Files]]:
-    """Return contents beside each other, and in includes, in merges and under parameters."""
-    pairs: dict[str, Callable[[int], Files]] = {
-        f'{first} + {second}': partial(pair, first, second)
-        for first, second in combinations(CONTENTS, 2)}
-    for label, make in (('included', included_contents), ('merged', merged_contents),
-                        ('changed', changed_contents)):
-        pairs.update({f'{label} {name}': partial(make, name) for name in CONTENTS})
-    return pairs
-
-
-def share_of_promise(load: Load) -> float:
-    """Return how much of what a load may take it has taken."""
-    if load.outcome.startswith('ENDED'):
-        return math.inf
-    return max(load.seconds / LONGEST_S, load.memory / MOST_MEMORY,
-               load.longest_wait_s / LONGEST_WAIT_S)
-
-
-def worst_pairs(pairs: dict[str, Callable[[int], Files]], executor: ThreadPoolExecutor) -> (
-        dict[str, Callable[[int], Files]]):
-    """Measure pairs; return the worst, in this order."""
-    loads = dict(zip(pairs, executor.map(
-        lambda make: measured(make(largest_n(make, BYTES_OF_PAIR))), pairs.values()),
-        strict=True))
-    worst = sorted(loads, key=lambda name: -share_of_promise(loads[name]))[:ROWS_OF_PAIRS]
-    return {name: pairs[name] for name in worst}
+def file_around(around: str, name: str, n: int) -> Files:
+    """Return a content of a model, and what is around it."""
+    return AROUND[around](PARTS[name](n), n)
 
 
 def main() -> int:
-    """Print a table; return 1 if anything in it is wrong."""
+    """Print the table; return 1 if a process was ended."""
     parser = argparse.ArgumentParser(prog='growth', description=__doc__)
     parser.add_argument(
         '--only', default='', metavar='TEXT', help='families with this in the name')
-    parser.add_argument('--pairs', action='store_true', help='measure pairs')
-    parser.add_argument('--workers', type=int, default=os.cpu_count() or 1)
+    parser.add_argument(
+        '--around', choices=AROUND, help='only contents of models, and what is around them')
+    parser.add_argument('--kilobytes', type=int, default=1000, help='size of the files of 4 n')
     options = parser.parse_args()
-    families = all_pairs() if options.pairs else all_families()
-    chosen = {name: make for name, make in families.items() if options.only in name}
-    is_well = True
-    with ThreadPoolExecutor(options.workers) as executor:
-        if options.pairs:
-            chosen = worst_pairs(chosen, executor)
-        print(f'{"family":{WIDTH}} {"4 n":>7} {"kB":>6} {"s of n, 2 n, 4 n":>20}  '
-              f'{"MB more":>17} {"wait":>5}  outcome of 4 n')
-        for text, is_row_well in executor.map(lambda item: row(*item), chosen.items()):
+    families: dict[str, Callable[[int], Files]] = {
+        name: partial(file_around, options.around or 'model', name) for name in PARTS}
+    if options.around is None:
+        families |= FILES
+    print(f'{"family":{WIDTH}} {"4 n":>7} {"kB":>6} {"s of n, 2 n, 4 n":>20} {"exp.":>4}  '
+          f'{"MB more":>17} {"exp.":>4}  outcome of 4 n')
+    has_ended = False
+    for name, family in families.items():
+        if options.only in name:
+            text = row(name, family, 1000 * options.kilobytes)
+            has_ended |= 'ENDED' in text
             print(text, flush=True)
-            is_well &= is_row_well
-    return 0 if is_well else 1
+    return int(has_ended)
 
 
 if __name__ == '__main__':
