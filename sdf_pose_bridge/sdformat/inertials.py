@@ -50,16 +50,10 @@ class Inertial(NamedTuple):
     @property
     def is_valid(self) -> bool:
         """Whether libsdformat accepts it, as a body can have it (``MassMatrix3::IsValid``)."""
-        ixx, iyy, izz, ixy, ixz, iyz = self.moments_kg_m2
-        # This recognises most valid matrices in a microsecond. The half trace minus a moment is an
-        # integral of squares, as each moment is.
-        half = 0.5 * (ixx + iyy + izz)
-        if self.mass_kg >= 0.0 and _is_positive(ixx, iyy, izz, ixy, ixz, iyz) and _is_positive(
-                half - ixx, half - iyy, half - izz, -ixy, -ixz, -iyz):
-            return True
         if not all(map(math.isfinite, self.moments_kg_m2)):
             return False
-        tolerance = _TOLERANCE * abs(half)
+        ixx, iyy, izz, ixy, ixz, iyz = self.moments_kg_m2
+        tolerance = _TOLERANCE * abs(0.5 * (ixx + iyy + izz))
         smallest, middle, largest = (
             np.linalg.eigvalsh(matrix_from_moments(self.moments_kg_m2)).tolist()
             if ixy or ixz or iyz else sorted((ixx, iyy, izz)))
@@ -87,13 +81,6 @@ class AutomaticInertial(NamedTuple):
     """The masses of the collisions of its link, in file order."""
     mass_kg: float | None
     """Their total mass, if the file has it."""
-
-
-def _is_positive(
-    xx: float, yy: float, zz: float, xy: float, xz: float, yz: float,
-) -> bool:
-    """Return whether all eigenvalues of a symmetric matrix are positive (Sylvester)."""
-    return xx > 0.0 and xx * yy - xy * xy > 0.0 and _determinant(xx, yy, zz, xy, xz, yz) > 0.0
 
 
 def _determinant(
