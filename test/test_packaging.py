@@ -200,6 +200,17 @@ def test_package_xml_and_the_index_entry_are_installed():
         'share/ament_index/resource_index/packages/sdf_pose_bridge')
 
 
+def test_license_is_the_whole_apache_license():
+    text = (ROOT / 'LICENSE').read_text()
+    assert 'Version 2.0, January 2004' in text
+    assert 'END OF TERMS AND CONDITIONS' in text
+
+
+def test_example_packages_are_ignored_where_they_are():
+    assert {path.name for path in (ROOT / 'examples/cpp_client').glob('*_IGNORE')} == {
+        'AMENT_IGNORE', 'COLCON_IGNORE'}
+
+
 def test_tests_are_collected_where_modules_are_missing():
     missing = [
         'catkin_pkg', 'collada', 'hypothesis', 'mpmath', 'rclpy', 'scipy', 'setuptools', 'trimesh',

@@ -112,6 +112,21 @@ def test_compiler_that_cannot_compile_is_refused_with_its_reason(checkout, tools
     assert_refused_with(result, 'cannot find crt1.o')
 
 
+def test_python_that_does_not_exist_is_refused(checkout):
+    assert_refused_with(make_underlay(checkout, PYTHON='python3.99'), "'python3.99'", 'no such')
+
+
+def test_machine_without_python_is_refused(checkout, tools):
+    assert_refused_with(make_underlay(checkout, PATH=str(tools)), 'no Python 3', 'python3-venv')
+
+
+@needs_x86
+@needs_python_of_jazzy
+def test_compiler_that_does_not_exist_is_refused_with_its_name(checkout):
+    result = make_underlay(checkout, PYTHON=str(PYTHON), CXX='c++-99')
+    assert_refused_with(result, "CXX names 'c++-99'")
+
+
 @needs_python_of_jazzy
 def test_checkout_in_a_path_with_a_space_is_refused(checkout):
     moved = checkout.rename(checkout.with_name('check out'))

@@ -178,14 +178,6 @@ def test_long_cycle_is_cut_in_the_message():
     assert len(only_error(model_file(A + frames)).message) < 400
 
 
-def test_long_chain_is_no_cycle():
-    length = 3000
-    frames = ''.join(
-        posed('frame', f'f{i}', '1 0 0 0 0 0', f'f{i + 1}') for i in range(length))
-    scene = load_text(model_file(A + frames + posed('frame', f'f{length}', '1 0 0 0 0 0')))
-    assert_at(scene, 'm::f0', (length + 1, 0, 0))
-
-
 def test_message_explains_the_default_reference_of_a_joint():
     error = only_error(model_file(A + posed('link', 'b', '', 'j') + fixed_joint('j', 'a', 'b')))
     assert 'the default reference of a joint is its child' in error.message
@@ -199,15 +191,6 @@ def test_message_explains_the_default_reference_of_a_joint():
 ])
 def test_model_without_a_link_is_refused(text):
     assert codes_of(text) == ['MODEL_WITHOUT_LINK']
-
-
-def test_static_model_without_a_link():
-    scene = load_text(world_file(
-        '<model name="m"><static>true</static><pose>1 0 0 0 0 0</pose>'
-        + posed('frame', 'f', '0 1 0 0 0 0') + '</model>'))
-    assert_at(scene, 'm::f', (1, 1, 0))
-    assert name_at(scene, scene.bodies, 'm::f') == 'm'
-    assert name_at(scene, scene.canonical_links, 'm') is None
 
 
 @pytest.mark.parametrize('name', ['zzz', 'm', 'n::zzz', 'world'])
@@ -261,56 +244,6 @@ def test_canonical_link_moves_nothing(canonical):
 
 
 # Default references
-
-@pytest.mark.parametrize(('frame', 'position'), [
-    (posed('frame', 'f', '1 0 0 0 0 0'), (1, 0, 0)),
-    ('<frame name="f" attached_to="b"><pose>1 0 0 0 0 0</pose></frame>', (1, 1, 0)),
-    ('<frame name="f" attached_to="b"><pose relative_to="a">1 0 0 0 0 0</pose></frame>',
-     (1, 0, 0)),
-    ('<frame name="f" attached_to="j"><pose>1 0 0 0 0 0</pose></frame>', (1, 2, 0)),
-    ('<frame name="f" attached_to="n"><pose>1 0 0 0 0 0</pose></frame>', (1, 0, 1)),
-    ('<frame name="f" attached_to=""><pose relative_to="">1 0 0 0 0 0</pose></frame>', (1, 0, 0)),
-    ('<frame name="f" attached_to="n::k"/>', (0, 0, 1)),
-    ('<frame name="f" attached_to="b"/>', (1, 0, 0)),
-])
-def test_reference_of_a_frame(frame, position):
-    scene = load_text(model_file(
-        A + B + NESTED + fixed_joint('j', 'a', 'b', '<pose>1 0 0 0 0 0</pose>') + frame))
-    assert_at(scene, 'm::f', position)
-
-
-@pytest.mark.parametrize(('joint', 'position'), [
-    (fixed_joint('j', 'a', 'b', '<pose>1 0 0 0 0 0</pose>'), (1, 1, 0)),
-    (fixed_joint('j', 'b', 'a', '<pose>1 0 0 0 0 0</pose>'), (1, 0, 0)),
-    (fixed_joint('j', 'a', 'f', '<pose>1 0 0 0 0 0</pose>'), (1, 1, 5)),
-    (fixed_joint('j', 'a', 'b', '<pose relative_to="a">1 0 0 0 0 0</pose>'), (1, 0, 0)),
-    (fixed_joint('j', 'a', 'b', '<pose relative_to="__model__">1 0 0 0 0 0</pose>'), (1, 0, 0)),
-    (fixed_joint('j', 'world', 'b'), (1, 0, 0)),
-    (fixed_joint('j', 'a', 'n'), (0, 0, 1)),
-])
-def test_reference_of_a_joint(joint, position):
-    frame = '<frame name="f" attached_to="b"><pose>0 0 5 0 0 0</pose></frame>'
-    assert_at(load_text(model_file(A + B + NESTED + frame + joint)), 'm::j', position)
-
-
-def test_reference_of_a_sensor_of_a_joint():
-    scene = load_text(model_file(A + B + fixed_joint(
-        'j', 'a', 'b', '<pose>1 0 0 0 0 0</pose>' + posed('sensor', 's', '1 0 0 0 0 0')
-        + posed('sensor', 't', '1 0 0 0 0 0', 'a'))))
-    assert_at(scene, 'm::j::s', (1, 2, 0))
-    assert_at(scene, 'm::j::t', (1, 0, 0))
-
-
-def test_reference_of_a_child_of_a_link_is_in_the_scope_of_the_model():
-    scene = load_text(model_file(
-        A + '<link name="b"><pose>1 0 0 0 0 0</pose>' + posed('visual', 'v', '1 0 0 0 0 0')
-        + posed('visual', 'u', '1 0 0 0 0 0', '__model__') + posed('light', 'i', '', 'a')
-        + posed('sensor', 's', '1 0 0 0 0 0', 'n::k') + '</link>' + NESTED))
-    assert_at(scene, 'm::b::v', (2, 0, 0))
-    assert_at(scene, 'm::b::u', (1, 0, 0))
-    assert_at(scene, 'm::b::i', (0, 0, 0))
-    assert_at(scene, 'm::b::s', (1, 0, 1))
-
 
 def test_reference_of_an_inertial_is_the_link():
     scene = load_text(model_file(

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which frames references name: siblings and downwards, never upwards."""
 
-
 import pytest
 from sdf_texts import (
     element,

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Poses in the root: chains of references, and placement frames."""
 
-from matrices import assert_same_pose, matrix_from_degrees
 import numpy as np
 import pytest
 from sdf_texts import assert_at, fixed_joint, model_file, posed, world_file
@@ -16,21 +15,6 @@ def degrees(values):
 
 def step(i, j):
     return (0.5, -0.25 * j, 1.0, 20 * i, -35 + j, 50)
-
-
-@pytest.mark.parametrize('breadth', [1, 10, 40])
-def test_chains_of_references(breadth):
-    depth = 12
-    frames = ''.join(
-        f'<frame name="f{i}_{j}" attached_to="{"l" if i == 0 else f"f{i - 1}_{j}"}">'
-        f'{degrees(step(i, j))}</frame>'
-        for j in range(breadth) for i in range(depth))
-    scene = load_text(model_file('<link name="l"/>' + frames))
-    for j in range(breadth):
-        matrix = np.eye(4)
-        for i in range(depth):
-            matrix = matrix @ matrix_from_degrees(*step(i, j))
-            assert_same_pose(scene.pose(f'm::f{i}_{j}'), matrix)
 
 
 def test_quaternions_have_unit_length_at_the_end_of_long_chains():
@@ -72,35 +56,6 @@ def test_pose_of_a_model_is_that_of_its_placement_frame(frame):
 def test_placement_frame_can_be_the_model_frame(frame):
     scene = load_text(model_file(PLACED, attributes=f'placement_frame="{frame}"'))
     assert_at(scene, 'm', (1, 2, 3))
-
-
-@pytest.mark.parametrize('frame', ['l', 'j', 'n::b'])
-def test_placement_frame_moves_the_model_as_a_whole(frame):
-    plain = load_text(model_file(PLACED))
-    placed = load_text(model_file(PLACED, attributes=f'placement_frame="{frame}"'))
-    for name in plain.names[2:]:
-        np.testing.assert_allclose(
-            placed.pose(name, 'm'), plain.pose(name, 'm'), rtol=0.0, atol=1e-12)
-
-
-def test_placement_frame_in_a_model_with_a_placement_frame():
-    scene = load_text(world_file(
-        posed('frame', 'r', '0 0 10 0 0 1.5707963267948966')
-        + '<model name="m" placement_frame="n::b"><pose relative_to="r">1 0 0 0 0 0</pose>'
-        + posed('link', 'l', '0 0 1 0 0 0')
-        + '<model name="n" placement_frame="b"><pose relative_to="l">5 0 0 0 0 0</pose>'
-        + posed('link', 'b', '0 1 0 0 0 0.3') + '</model></model>'))
-    assert_same_pose(scene.pose('m::n::b'), matrix_from_degrees(0, 1, 10, 0, 0, 90))
-    np.testing.assert_allclose(scene.pose('m::n::b', 'm::l'), (5, 0, 0, 0, 0, 0, 1), atol=1e-12)
-
-
-def test_poses_can_be_relative_to_a_placed_model():
-    scene = load_text(world_file(
-        '<model name="m" placement_frame="l"><pose>1 0 0 0 0 0</pose>'
-        + posed('link', 'l', '0 0 1 0 0 0') + '</model>'
-        + posed('frame', 'f', '0 1 0 0 0 0', 'm')))
-    assert_at(scene, 'm', (1, 0, -1))
-    assert_at(scene, 'f', (1, 1, -1))
 
 
 def test_placement_frame_of_a_static_model():

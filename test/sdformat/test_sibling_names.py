@@ -209,11 +209,3 @@ def test_frame_of_a_world_is_renamed_in_old_files():
     scene = load_text(world_file(
         '<model name="a"><link name="l"/></model><frame name="a"/>', version='1.6'))
     assert names_of(scene) == ['a', 'a::l', 'a_frame']
-
-
-def test_references_name_the_earlier_element_in_old_files():
-    scene = load_text(model_file(
-        posed('link', 'l', '1 0 0 0 0 0') + posed('frame', 'l', '0 1 0 0 0 0')
-        + posed('frame', 'f', '0 0 1 0 0 0', 'l'), version='1.6'))
-    assert_at(scene, 'm::f', (1, 0, 1))
-    assert_at(scene, 'm::l_frame', (0, 1, 0))

@@ -153,14 +153,6 @@ def test_element_that_its_include_does_not_place_stands_in_its_file(tmp_path):
     assert place_of(load(tmp_path / 'main.sdf'), 'a') == (str(tmp_path / 'leaf.sdf'), 1)
 
 
-def test_error_in_an_included_file_has_that_file(tmp_path):
-    write_files(
-        tmp_path, leaf=model_file('<link name="l"><pose relative_to="x"/></link>'),
-        main=world_file('<include><uri>leaf.sdf</uri></include>'))
-    (error,) = errors_of_file(tmp_path / 'main.sdf')
-    assert (error.code, error.file) == ('POSE_RELATIVE_TO_INVALID', str(tmp_path / 'leaf.sdf'))
-
-
 def test_name_of_an_include_stands_in_the_including_file(tmp_path):
     write_files(
         tmp_path, leaf=model_file(LINK),

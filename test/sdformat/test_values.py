@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values that no pose depends on, but that libsdformat refuses."""
 
-
 import math
 
 import pytest

@@ -74,12 +74,6 @@ def test_unknown_frame_of_an_old_pose_is_an_error(version):
     assert codes_of(text) == ['POSE_RELATIVE_TO_INVALID']
 
 
-@pytest.mark.parametrize('version', ['1.4', '1.5', '1.6'])
-def test_frame_of_an_old_pose_replaces_its_reference(version):
-    text = model_file(TWO_POSED_LINKS.format('frame="a" relative_to="x"'), version=version)
-    assert load_text(text).pose('m::b').x == 2.0
-
-
 def test_frame_of_a_newer_pose_is_ignored_with_a_warning():
     scene = load_text(model_file(TWO_POSED_LINKS.format('frame="a"'), version='1.7'))
     assert scene.pose('m::b').x == 1.0
@@ -204,11 +198,6 @@ def test_references_in_a_nested_model_that_is_moved_stay():
 
 def test_names_with_the_separator_are_refused_in_newer_files():
     assert set(codes_of(world(NESTED, '1.8'))) == {'RESERVED_NAME'}
-
-
-def test_elements_with_scoped_names_move_into_a_nested_model():
-    scene = load_text(world('<link name="base"/>' + NESTED))
-    assert scene.names == ('world', 'm', 'm::base', 'm::n', 'm::n::a', 'm::n::b')
 
 
 def test_pose_of_a_nested_model_is_that_of_its_model_frame():

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Poses of elements at positions of joints, against matrix exponentials."""
 
-
 from joint_trees import link_matrices, model_text, pose_text, POSES, POSITIONS, random_joints
 from matrices import assert_same_pose, matrix_from_degrees, matrix_from_pose
 import numpy as np
@@ -41,34 +40,6 @@ def two_links(joint_type, content='', joint_pose=''):
         '<link name="a"/><link name="b"><pose>1 0 0 0 0 0</pose></link>'
         f'<joint name="j" type="{joint_type}">{joint_pose}<parent>a</parent><child>b</child>'
         f'{content}</joint>', version='1.11')
-
-
-@pytest.mark.parametrize(('joint_type', 'content', 'positions', 'pose'), [
-    ('revolute', '', {'j': 90.0}, (1, 0, 0, 0, 0, 90)),
-    ('continuous', '<axis><xyz>0 -2 0</xyz></axis>', {'j': 90.0}, (1, 0, 0, 0, -90, 0)),
-    ('gearbox', '<axis><xyz>1 0 0</xyz></axis>', {'j': 90.0}, (1, 0, 0, 90, 0, 0)),
-    ('universal', '<axis><xyz>0 0 1</xyz></axis><axis2><xyz>1 0 0</xyz></axis2>',
-     {'j': 90.0, 'j_axis2': 90.0}, (1, 0, 0, 90, 0, 90)),
-    ('ball', '', {'j_roll': 90.0, 'j_pitch': 0.0, 'j_yaw': 90.0}, (1, 0, 0, 90, 0, 90)),
-])
-def test_types_of_joints_that_rotate(joint_type, content, positions, pose):
-    radians = {name: np.radians(value) for name, value in positions.items()}
-    poses = poses_at(two_links(joint_type, content), radians)
-    assert_same_pose(poses['m::b'], matrix_from_degrees(*pose))
-
-
-@pytest.mark.parametrize(('joint_type', 'content', 'pose'), [
-    ('prismatic', '<axis><xyz>0 3 0</xyz></axis>', (1, 2, 0)),
-    ('screw', '<screw_thread_pitch>0.5</screw_thread_pitch>', (1, 0, 0.25, 0, 0, 180)),
-    ('screw', '<screw_thread_pitch>0.5</screw_thread_pitch><thread_pitch>9</thread_pitch>',
-     (1, 0, 0.25, 0, 0, 180)),
-    ('screw', f'<thread_pitch>{4.0 * np.pi}</thread_pitch>', (1, 0, -0.25, 0, 0, 180)),
-    ('screw', '', (1, 0, 0.5, 0, 0, 180)),
-])
-def test_types_of_joints_that_slide(joint_type, content, pose):
-    position = 2.0 if joint_type == 'prismatic' else np.pi
-    poses = poses_at(two_links(joint_type, content), {'j': position})
-    assert_same_pose(poses['m::b'], matrix_from_degrees(*pose))
 
 
 def test_a_fixed_joint_has_no_degree_of_freedom():
@@ -128,12 +99,3 @@ def test_random_trees_move_as_products_of_matrix_exponentials(data, count):
     expected = link_matrices(link_poses, joints, positions)
     for number, matrix in enumerate(expected):
         assert_same_pose(poses[f'm::l{number}'], matrix, name=f'l{number}')
-
-
-@given(st.data(), st.integers(2, 7))
-def test_joints_at_zero_leave_every_pose_as_it_is(data, count):
-    joints = data.draw(random_joints(count))
-    scene, motion = motion_of(model_text([data.draw(POSES) for _ in range(count)], joints))
-    elements = np.arange(len(scene.names), dtype=np.int32)
-    moved = motion.moved_poses(scene.poses, elements, np.zeros(len(motion.dofs)))
-    np.testing.assert_allclose(moved, scene.poses, rtol=0.0, atol=1e-14)

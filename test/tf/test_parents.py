@@ -116,14 +116,6 @@ def test_the_parent_of_a_link_is_on_the_other_side_of_a_joint():
     assert (parents['m::c'], parents['m::b'], parents['m::a']) == ('m::b', 'm::a', '__root__')
 
 
-def test_joints_are_followed_in_both_directions_from_the_canonical_link():
-    parents = parents_of(model_file(
-        LINKS + '<link name="d"/>' + joints(('a', 'b'), ('b', 'c'), ('c', 'd')),
-        attributes='canonical_link="c"'))
-    assert {name[-1]: parents[f'm::{name}'] for name in 'abcd'} == {
-        'a': 'm::b', 'b': 'm::c', 'c': '__root__', 'd': 'm::c'}
-
-
 def test_the_parent_of_a_link_without_a_joint_is_the_canonical_link():
     parents = parents_of(model_file(LINKS, attributes='canonical_link="b"'))
     assert (parents['m::a'], parents['m::b'], parents['m::c']) == ('m::b', '__root__', 'm::b')
@@ -204,14 +196,6 @@ def test_a_joint_to_a_frame_of_the_world():
     parents = parents_of(world_file(
         model('m', LINKS) + '<frame name="f"/>' + joints(('f', 'm::b'))))
     assert parents['m::b'] == 'world'
-
-
-def test_joined_models_form_one_tree():
-    parents = parents_of(world_file(
-        model('p', LINKS) + model('q', LINKS) + joints(('p::c', 'q::b'))))
-    assert parents['q::b'] == 'p::c'
-    assert parents['q'] == 'q::a'
-    assert parents['p::a'] == 'world'
 
 
 def test_a_chain_of_models_starts_at_the_one_that_is_joined_to_the_world():

@@ -197,21 +197,10 @@ def test_types_of_joints(joint_type, content, types):
     assert {name: each.type for name, each in joints.items()} == types
 
 
-def test_joint_is_where_its_link_is():
-    joints = joints_of(model_file(TWO_LINKS + joint('revolute', axis())))
-    assert joints['j'][2:4] == ('a', (1, 0, 0, 0, 0, 0, 1))
-
-
 def test_link_away_from_its_joint_is_fixed_to_a_link_at_the_joint():
     joints = joints_of(model_file(TWO_LINKS + joint('revolute', axis(), pose='0 2 0 0 0 0')))
     assert joints['j'][2:4] == ('a', (1, 2, 0, 0, 0, 0, 1))
     assert joints['b_fixed'][1:4] == ('fixed', 'j_frame', (0, -2, 0, 0, 0, 0, 1))
-
-
-def test_joint_from_child_to_parent_turns_the_other_way():
-    text = model_file(
-        TWO_LINKS + joint('revolute', axis(xyz='0 1 0'), parent='b', child='a'))
-    assert joints_of(text)['j'].axis.xyz == (0, -1, 0)
 
 
 def test_thread_follows_what_turns():

@@ -16,7 +16,7 @@ from sdf_texts import (
     write_files,
 )
 
-from sdf_pose_bridge import Limits, load
+from sdf_pose_bridge import load
 
 LEAF = """<sdf version="1.9"><model name="leaf"><pose>0 0 1 0 0 0</pose>
 <link name="body"><pose>0 1 0 0 0 0</pose></link></model></sdf>"""
@@ -137,20 +137,6 @@ def test_directory_without_a_manifest_is_named_in_the_message(errors_in, tmp_pat
     assert 'the directory has no model.config' in error.message
 
 
-def test_manifest_is_read_once(tmp_path):
-    manifest = '<model><sdf version="1.99">new.sdf</sdf><sdf version="1.9">leaf.sdf</sdf></model>'
-    (tmp_path / 'box').mkdir()
-    (tmp_path / 'box' / 'model.config').write_text(manifest + ' ' * 10_000)
-    (tmp_path / 'box' / 'leaf.sdf').write_text(LEAF)
-    uris = ('box', 'box/', './box', 'box/../box')
-    write_files(tmp_path, world=world_file(''.join(
-        include(uri, f'<name>m{number}</name>') for number, uri in enumerate(uris))))
-    scene = load(tmp_path / 'world.sdf', limits=Limits(bytes_read=20_000))
-    assert len(scene.names) == 1 + 2 * len(uris)
-    (warning,) = scene.warnings
-    assert 'version 1.99 of the model is newer' in warning.message
-
-
 def test_missing_file_is_named_in_the_message(errors_in):
     (error,) = errors_in(include('model://nothing'))
     assert '"model://nothing" cannot be included' in error.message
@@ -194,12 +180,6 @@ def test_cycle_of_files_is_refused(tmp_path):
     (error,) = errors_of_file(tmp_path / 'a.sdf')
     assert error.code == 'URI_LOOKUP'
     assert 'includes itself: a.sdf -> b.sdf -> c.sdf -> a.sdf' in error.message
-
-
-def test_file_that_includes_itself_is_refused(tmp_path):
-    write_files(tmp_path, a=model_file(LINK + include('a.sdf')))
-    (error,) = errors_of_file(tmp_path / 'a.sdf')
-    assert 'includes itself: a.sdf -> a.sdf' in error.message
 
 
 def test_cycle_through_a_link_of_the_file_system_is_refused(tmp_path):

@@ -171,27 +171,6 @@ def test_content_moves_to_the_place_of_the_include(scene_of):
         'm', 'm::base', 'm::a', f'm::{PROXY}', 'm::upper', 'm::f', 'm::b']
 
 
-def test_merged_elements_stand_where_the_model_frame_was(scene_of):
-    scene = scene_of(in_model(include()))
-    assert_at(scene, f'm::{PROXY}', (0, 0, 1))
-    assert_at(scene, 'm::upper', (1, 0, 1))
-    assert_at(scene, 'm::f', (0, 1, 1))
-
-
-def test_pose_of_the_include_places_the_merged_elements(scene_of):
-    pose = '<pose relative_to="base">0 0 5 0 0 1.5707963267948966</pose>'
-    scene = scene_of(in_model(include(pose)))
-    assert_at(scene, 'm::upper', (0, 1, 15))
-    assert_at(scene, 'm::f', (-1, 0, 15))
-
-
-def test_placement_frame_of_the_include_places_the_merged_elements(scene_of):
-    content = '<pose>5 0 0 0 0 0</pose><placement_frame>upper</placement_frame>'
-    scene = scene_of(in_model(include(content)))
-    assert_at(scene, 'm::upper', (5, 0, 0))
-    assert_at(scene, f'm::{PROXY}', (4, 0, 0))
-
-
 @pytest.mark.parametrize('frame', ['upper', 'f', 'n::k', '__model__'])
 def test_placement_frame_of_the_file_places_the_merged_elements(scene_of, frame):
     text = arm(
@@ -286,19 +265,6 @@ def test_other_content_of_the_merged_model_is_dropped(scene_of):
     assert not scene_of(in_model(include()), arm=text).static_models
 
 
-def test_models_frames_and_joints_are_merged_into_a_world(scene_of):
-    text = arm(
-        '<pose>0 0 1 0 0 0</pose>'
-        '<model name="a"><pose>1 0 0 0 0 0</pose><link name="l"/></model>'
-        '<model name="b"><link name="l"/></model>' + posed('frame', 'f', '0 1 0 0 0 0')
-        + fixed_joint('j', 'a', 'b'))
-    scene = scene_of(in_world(include()), arm=text)
-    assert names_of(scene) == [PROXY, 'a', 'a::l', 'b', 'b::l', 'f', 'j']
-    assert_at(scene, 'a::l', (1, 0, 1))
-    assert_at(scene, 'f', (0, 1, 1))
-    assert_at(scene, 'j', (0, 0, 1))
-
-
 def test_merged_model_can_merge_another(scene_of):
     middle = in_model(include('<pose>0 0 100 0 0 0</pose>'))
     scene = scene_of(
@@ -308,12 +274,6 @@ def test_merged_model_can_merge_another(scene_of):
     assert_at(scene, 'm::base', (1000, 0, 10))
     assert_at(scene, 'm::table', (0, 0, 10))
     assert {'m::_merged__arm__model__', 'm::_merged__m__model__'} < set(scene.names)
-
-
-def test_file_that_is_merged_and_included_has_independent_copies(scene_of):
-    scene = scene_of(in_model(include() + '<include><uri>arm.sdf</uri></include>'))
-    assert_at(scene, 'm::upper', (1, 0, 1))
-    assert_at(scene, 'm::arm::upper', (1, 0, 1))
 
 
 # References to the model frame

@@ -164,15 +164,6 @@ def test_directory_of_the_cache_that_cannot_be_listed_has_nothing(folder, tmp_pa
                  GZ_FUEL_CACHE_PATH=str(cache)) is None
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason='root may list every directory')
-def test_directory_of_the_cache_that_may_not_be_listed_has_nothing(tmp_path):
-    box = tmp_path / 'cache/server/me/models/box'
-    box.mkdir(parents=True)
-    box.chmod(0)
-    assert found('https://server/1.0/me/models/box', tmp_path,
-                 GZ_FUEL_CACHE_PATH=str(tmp_path / 'cache')) is None
-
-
 def test_file_of_a_fuel_model_is_found_in_the_cache(tmp_path):
     box = write(tmp_path / 'cache/fuel.gazebosim.org/open/models/box', '3/meshes/box.sdf')
     uri = 'https://fuel.gazebosim.org/1.0/Open/models/Box/3/files/meshes/box.sdf'
