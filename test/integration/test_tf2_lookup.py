@@ -6,10 +6,10 @@ Frames of a running bridge, looked up with the listener and the buffer that ROS 
 tf2 composes the transforms; what it finds is compared with the poses that the core resolves.
 """
 
+import itertools
 from pathlib import Path
 
 from matrices import assert_same_pose, matrix_from_pose
-import numpy as np
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -21,6 +21,7 @@ from tf2_ros import Buffer, TransformListener
 
 import sdf_pose_bridge
 from sdf_pose_bridge.tf.anchors import AnchorModels
+from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
@@ -35,39 +36,6 @@ FILE = """\
   </world>
 </sdf>
 """
-OPTICAL = np.array([[0.0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
-"""Pose in its camera (x forward) of a frame by REP 103 (z forward, x right, y down)."""
-
-
-class Expected:
-    """Poses of the frames of a file as the core resolves them, by frame id."""
-
-    def __init__(self, path):
-        self._scene = sdf_pose_bridge.load(path)
-        tree = tf_tree_from_scene(self._scene, TfOptions(anchor_models=AnchorModels.ALL))
-        self.root_frame = tree.root_frame
-        parents = dict(zip(tree.frame_ids, tree.parent_ids, strict=True))
-        names = {
-            frame_id: self._scene.names[element]
-            for frame_id, element in zip(tree.frame_ids, tree.elements.tolist(), strict=True)
-            if element >= 0}
-        # An optical frame is no element of the file; its parent is its camera.
-        self._names_and_rotations = {tree.root_frame: ('', np.eye(4))} | {
-            frame_id: (names[frame_id], np.eye(4)) if frame_id in names
-            else (names[parents[frame_id]], OPTICAL)
-            for frame_id in tree.frame_ids}
-        self.frame_ids = list(self._names_and_rotations)
-
-    def pose(self, frame_id, relative_to):
-        name, rotation = self._names_and_rotations[frame_id]
-        reference, reference_rotation = self._names_and_rotations[relative_to]
-        if name:
-            pose = matrix_from_pose(self._scene.pose(name, relative_to=reference))
-        elif reference:
-            pose = np.linalg.inv(matrix_from_pose(self._scene.pose(reference)))
-        else:
-            pose = np.eye(4)
-        return np.linalg.inv(reference_rotation) @ pose @ rotation
 
 
 @pytest.fixture
@@ -106,7 +74,10 @@ def wait_for_frames(buffer, listener, frame_ids, root_frame):
 def test_every_frame_can_be_looked_up_from_every_other(
         start_bridge, start_buffer, name, comes_late):
     path = EXAMPLES / name
-    expected = Expected(path)
+    scene = sdf_pose_bridge.load(path)
+    tree = tf_tree_from_scene(scene, TfOptions(anchor_models=AnchorModels.ALL))
+    expected = PoseLookup(scene, tree)
+    frame_ids = [tree.root_frame, *tree.frame_ids]
     if not comes_late:
         buffer, listener = start_buffer()
     bridge = start_bridge(
@@ -114,12 +85,12 @@ def test_every_frame_can_be_looked_up_from_every_other(
     if comes_late:
         bridge.wait_until_started()
         buffer, listener = start_buffer()
-    wait_for_frames(buffer, listener, expected.frame_ids, expected.root_frame)
-    for frame_id in expected.frame_ids:
-        for reference in expected.frame_ids:
-            assert_same_pose(
-                found_pose(buffer, frame_id, reference), expected.pose(frame_id, reference),
-                name=f'{frame_id} in {reference}')
+    wait_for_frames(buffer, listener, frame_ids, tree.root_frame)
+    for frame_id, reference in itertools.product(frame_ids, repeat=2):
+        assert_same_pose(
+            found_pose(buffer, frame_id, reference),
+            matrix_from_pose(expected.pose(frame_id, reference).pose),
+            name=f'{frame_id} in {reference}')
 
 
 def test_a_frame_that_moved_has_moved_for_a_listener_that_was_there(
