@@ -168,7 +168,7 @@ def test_a_change_without_memory_is_read_once_there_is_some(start, file, listene
     _, hard = resource.prlimit(reading, resource.RLIMIT_AS)
     resource.prlimit(reading, resource.RLIMIT_AS, (address_space(reading) + 12_000_000, hard))
     replace(file, world(2, extra=''.join(
-        f'<model name="m{i}"><link name="l"/></model>' for i in range(40_000))))
+        f'<model name="m{i}"><link name="l"/></model>' for i in range(60_000))))
     bridge.wait_for_line('there is not enough memory to read the file')
     # The next process has no such limit.
     wait_for_x(listener, 2.0)
@@ -181,7 +181,7 @@ def test_without_memory_for_what_was_read_the_bridge_goes_on_or_ends(start, file
     limit = address_space(bridge.pid) + 12_000_000
     resource.prlimit(bridge.pid, resource.RLIMIT_AS, (limit, hard))
     replace(file, world(2, extra=''.join(
-        f'<model name="m{i}"><link name="l"/></model>' for i in range(20_000))))
+        f'<model name="m{i}"><link name="l"/></model>' for i in range(60_000))))
     try:
         bridge.wait_for_line('there is not enough memory to read the file')
     except AssertionError:
