@@ -139,7 +139,7 @@ class TableRow(NamedTuple):
 
 
 def branches_of_tree() -> Sequence[str]:
-    """Return the branches to one of several children and to the last, and what is below them."""
+    """Return the branches to one of several children and to the last, and the lines below them."""
     try:
         ''.join(_BRANCHES).encode(sys.stdout.encoding or 'ascii')
     except UnicodeEncodeError:

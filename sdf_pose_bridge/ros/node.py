@@ -13,11 +13,9 @@ from typing import TYPE_CHECKING
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock, ClockType
-from rclpy.logging import LoggingSeverity
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.task import Future
-from rclpy.timer import Timer
 from std_srvs.srv import Trigger
 
 from sdf_pose_bridge.errors import SdfError
@@ -36,15 +34,11 @@ from sdf_pose_bridge.ros.log_lines import (
 )
 from sdf_pose_bridge.ros.parameter_services import add_setting_services
 from sdf_pose_bridge.ros.parameters import Settings, SettingsError
-from sdf_pose_bridge.ros.published_frames import PublishedFrames
-from sdf_pose_bridge.ros.publishers import TextPublisher
+from sdf_pose_bridge.ros.published_frames import frames_from_scene, PublishedFrames
+from sdf_pose_bridge.ros.publishers import NANOSECONDS, TextPublisher
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.ros.services import add_services, SERVICE_QOS, set_pose
-from sdf_pose_bridge.ros.topic_names import (
-    joint_state_topics_from_patterns,
-    pose_topics_from_patterns,
-    PoseTopics,
-)
+from sdf_pose_bridge.ros.topic_names import joint_state_topics_from_patterns
 from sdf_pose_bridge.sdformat.include.uris import AddressError
 from sdf_pose_bridge.tf.loaded_scene import files_behind_error, LoadedScene
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -79,12 +73,13 @@ class SdfPoseBridge:
         # Held while publishing on all topics. A timer that is always due would block the callbacks
         # of its group, so it has a separate group.
         self._publishing = CoroutineLock(node)
-        self._again_group = MutuallyExclusiveCallbackGroup()
         # Simulated time may stand still.
-        self._steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
-        self._joint_states: JointStates | None = None
-        self._again_timer: Timer | None = None
+        steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
+        self._again_timer = node.create_timer(
+            1.0, self._publish_again, callback_group=MutuallyExclusiveCallbackGroup(),
+            clock=steady_clock, autostart=False)
         self._publish_again_at(settings.publish_rate)
+        self._joint_states: JointStates | None = None
         self._follow_joints()
         add_services(node, self._current_lookup)
         node.create_service(
@@ -95,7 +90,7 @@ class SdfPoseBridge:
                 SetPose, '~/set_pose', self._answer_to_set_pose, qos_profile=SERVICE_QOS,
                 callback_group=self._changes)
         add_setting_services(node, self._changes, self._set_parameters)
-        node.create_timer(PERIOD_S, self._diagnostics.publish, clock=self._steady_clock)
+        node.create_timer(PERIOD_S, self._diagnostics.publish, clock=steady_clock)
         PollingThread(
             node, self._changes,
             lambda: self._settings.watch and self._follower.is_due(), self._check_files)
@@ -116,7 +111,7 @@ class SdfPoseBridge:
 
     async def _show(self, loaded: LoadedScene) -> None:
         """Publish a scene on the topics of the settings."""
-        frames = await _frames_of_scene(self._node, loaded, self._settings, self._frames)
+        frames = await frames_from_scene(self._node, loaded, self._settings, self._frames)
         async with self._publishing:
             # Joints have moved while messages were made.
             frames.take_over(self._frames)
@@ -283,13 +278,10 @@ class SdfPoseBridge:
     # Publishing again
 
     def _publish_again_at(self, rate: float) -> None:
-        if self._again_timer is not None:
-            self._node.destroy_timer(self._again_timer)
-            self._again_timer = None
+        self._again_timer.cancel()
         if rate:
-            self._again_timer = self._node.create_timer(
-                1.0 / rate, self._publish_again, callback_group=self._again_group,
-                clock=self._steady_clock)
+            self._again_timer.timer_period_ns = round(NANOSECONDS / rate)
+            self._again_timer.reset()
 
     async def _publish_again(self) -> None:
         if self._publishing.is_held:
@@ -299,9 +291,8 @@ class SdfPoseBridge:
             await self._frames.publish_fixed_again()
         seconds = time.perf_counter() - begin
         if seconds * self._settings.publish_rate > 1.0:
-            if self._again_timer is not None:
-                # Missed periods are left out.
-                self._again_timer.reset()
+            # Missed periods are left out.
+            self._again_timer.reset()
             self._logger.warning(
                 f'publish_rate {self._settings.publish_rate} Hz is not reached: to publish '
                 f'everything takes {1e3 * seconds:.0f} ms', throttle_duration_sec=60.0)
@@ -316,30 +307,6 @@ async def start_bridge(
     :param node: the node, with declared parameters and an executor.
     :param frames: the frames of the scene, which are published on ``/tf_static``.
     """
-    frames = await _frames_of_scene(node, loaded, settings, frames)
+    frames = await frames_from_scene(node, loaded, settings, frames)
     await frames.publish_topics()
     SdfPoseBridge(node, frames, settings, loaded)
-
-
-async def _frames_of_scene(
-    node: Node, loaded: LoadedScene, settings: Settings, before: PublishedFrames,
-) -> PublishedFrames:
-    """Return the frames of a scene with their topics; nothing is published."""
-    name = node.get_fully_qualified_name()
-
-    def prepared_topics() -> PoseTopics:
-        # The first search for a name makes the index of all names.
-        loaded.scene.has('')
-        return pose_topics_from_patterns(loaded.tree.frame_ids, settings.pose_topics, name)
-
-    topics: PoseTopics = await run_in_thread(node, prepared_topics)
-    if topics.warning:
-        node.get_logger().warning(topics.warning)
-    if node.get_logger().is_enabled_for(LoggingSeverity.DEBUG):
-        for frame_id, name in topics.names.items():
-            node.get_logger().debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
-    frames = PublishedFrames(
-        before.publishers, loaded.tree, loaded.joint_positions, topics.names, before,
-        has_transforms=settings.publish_transforms)
-    await run_in_thread(node, lambda: frames.lay_out(with_tf=before.tree is not loaded.tree))
-    return frames

@@ -16,15 +16,21 @@ from itertools import compress
 from geometry_msgs.msg import PoseStamped, TransformStamped
 import numpy as np
 from numpy.typing import NDArray
+from rclpy.logging import LoggingSeverity
+from rclpy.node import Node
 from rclpy.publisher import Publisher
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import PoseArray
+from sdf_pose_bridge.ros.background import run_in_thread
 from sdf_pose_bridge.ros.cdr import stamped_messages, StampedMessages, tf_message
+from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.publishers import NANOSECONDS, Publishers, Stamp, Topic
+from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns, PoseTopics
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import JointPositions, NEVER
+from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 from sdf_pose_bridge.tf.moving_frames import MovingFrames
 from sdf_pose_bridge.tf.tree import TfTree
 
@@ -34,6 +40,34 @@ TF = Topic('/tf', TFMessage, depth=100, is_latched=False, is_overridable=True)
 
 _MOST_MESSAGES = 100
 """How many messages for ``/tf`` are kept, to be sent again with other poses."""
+
+
+async def frames_from_scene(
+    node: Node, loaded: LoadedScene, settings: Settings, before: PublishedFrames,
+) -> PublishedFrames:
+    """
+    Make the messages and choose the topics of the frames of a scene; nothing is published.
+
+    :param before: the frames that these ones replace.
+    """
+    name = node.get_fully_qualified_name()
+
+    def prepared_topics() -> PoseTopics:
+        # The first search for a name makes the index of all names.
+        loaded.scene.has('')
+        return pose_topics_from_patterns(loaded.tree.frame_ids, settings.pose_topics, name)
+
+    topics: PoseTopics = await run_in_thread(node, prepared_topics)
+    if topics.warning:
+        node.get_logger().warning(topics.warning)
+    if node.get_logger().is_enabled_for(LoggingSeverity.DEBUG):
+        for frame_id, name in topics.names.items():
+            node.get_logger().debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
+    frames = PublishedFrames(
+        before.publishers, loaded.tree, loaded.joint_positions, topics.names, before,
+        has_transforms=settings.publish_transforms)
+    await run_in_thread(node, lambda: frames.lay_out(with_tf=before.tree is not loaded.tree))
+    return frames
 
 
 class PublishedFrames:
