@@ -9,6 +9,7 @@ Source: ``FrameSemantics.cc`` of libsdformat. The graph that results has no cycl
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -112,7 +113,7 @@ class _Builder:
             and (checked := checks.checked(ends)) is not None]
         self._set_references(references)
         placements = self._placements()
-        self._add_dependents(references, attachments, joints, placements)
+        self._add_dependents(references, attachments, joints_of_bodies, placements)
         return FrameGraph(
             self._scopes.names, self._scopes.roots, references, placements, attachments, bodies,
             self._canonical_links(canonical, bodies), joints_of_bodies,
@@ -121,13 +122,18 @@ class _Builder:
     # Attachment
 
     def _joint_ends(self) -> dict[int, JointEnds]:
+        joints = self._elements.joints
+        for joint, details in joints.items() if self._elements.missing_includes else ():
+            for axis in filter(None, details.axes):
+                for name in filter(None, (axis.expressed_in.name, axis.leader.name)):
+                    self._frame_of_joint(joint, name)
         return {
             joint: JointEnds(
-                joint, self._joint_end(joint, details.parent.name, is_parent=True),
-                self._joint_end(joint, details.child.name, is_parent=False))
-            for joint, details in self._elements.joints.items()}
+                joint, self._frame_of_joint(joint, details.parent.name, is_parent=True),
+                self._frame_of_joint(joint, details.child.name))
+            for joint, details in joints.items()}
 
-    def _joint_end(self, joint: int, name: str, *, is_parent: bool) -> int:
+    def _frame_of_joint(self, joint: int, name: str, *, is_parent: bool = False) -> int:
         scope = self._scope_of[joint]
         if is_parent and name == WORLD_FRAME:
             return self._scopes.roots[joint]
@@ -273,19 +279,19 @@ class _Builder:
         self._problems.error(error_class(f'{attribute}="{name}" {reason}', place))
 
     def _add_dependents(
-        self, references: Indices, attachments: Indices, joints: Mapping[int, JointEnds],
+        self, references: Indices, attachments: Indices, joints: Sequence[JointEnds],
         placements: Mapping[int, int],
     ) -> None:
         """Add the elements that depend on an unresolved one, and report their number."""
         if not self._unresolved:
             return
         columns = self._elements.parents.tolist(), references.tolist(), attachments.tolist()
+        needed_by_joints = {
+            ends.joint: {ends.parent, *chain.from_iterable(ends.axes)} for ends in joints}
         dependents: dict[int, list[int]] = {}
         for index, pointers in enumerate(zip(*columns, strict=True)):
-            needed = {*pointers, placements.get(index, NO_ELEMENT)}
-            if index in joints:
-                needed.add(joints[index].parent)
-            for other in needed:
+            placement = placements.get(index, NO_ELEMENT)
+            for other in {*pointers, placement, *needed_by_joints.get(index, ())}:
                 dependents.setdefault(other, []).append(index)
         found = list(self._unresolved)
         for other in found:

@@ -107,8 +107,8 @@ class Elements:
     includes: Mapping[int, Place] = field(default_factory=dict)
     """The place of the ``<include>`` of each included element."""
     missing_includes: Mapping[int, Mapping[str, str]] = field(default_factory=dict)
-    """Names and URIs of the missing models of elements with includes that were not found. An empty
-    name is that of a merge, which could have elements of any name."""
+    """Of elements with includes that were not found: URIs by the names of the missing models. An
+    empty name is for any unknown name, as of an include without a name, or of a merge."""
     _known_paths: dict[int, str] = field(default_factory=dict, init=False, repr=False)
     """Paths of some elements, which :meth:`place` has made."""
 

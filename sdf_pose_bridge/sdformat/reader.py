@@ -223,10 +223,9 @@ class _Reader:
             elif doubt:
                 self._sources.warning(xml, f'{_described_value(xml)} {doubt}')
         elif definition.identifier == 'include' and outer is not None:
-            missing = self._sources.origin(xml).missing
-            if missing is not None:
-                missing_includes = outer.table.details['missing_includes']
-                missing_includes.setdefault(outer.element, {}).update([missing])
+            missing_includes = outer.table.details['missing_includes']
+            missing_includes.setdefault(outer.element, {}).update(
+                self._sources.origin(xml).missing)
         else:
             inner = None
             if definition.kind is None:

@@ -62,9 +62,9 @@ class Origin(NamedTuple):
     """Attributes of a pose that are for its next text only, as libsdformat has read this one."""
     placement_frame: str = ''
     """For the frame that replaces a merged model's frame: the frame that the include places."""
-    missing: tuple[str, str] | None = None
-    """For an include that was not replaced: the name of the missing model, empty if any unknown
-    name may come from it, and the URI."""
+    missing: Mapping[str, str] = MappingProxyType({})
+    """For an include that was not replaced: its URI by the likely name of the missing model, and
+    by an empty name if any unknown name may come from it."""
 
 
 _PARSED = Origin()

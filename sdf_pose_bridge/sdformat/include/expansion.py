@@ -125,15 +125,11 @@ class IncludeExpansion:
         return known[xml]
 
     def _mark_missing(self, include: XmlElement) -> None:
-        """Record the name and the URI of an include that is not replaced."""
+        """Record the URI of an include that is not replaced, by the names that it may have."""
         uri, name = child_value(include, 'uri') or 'no URI', child_value(include, 'name')
-        if boolean_from_text(include.get('merge', 'false')) is not False:
-            # The merged elements have other names.
-            name = ''
-        elif not name and not self._sources.problems.errors:
-            # The include is an error already, so a guess of the name is good enough.
-            name = _name_from_uri(uri)
-        self._sources.set_origin(include, missing=(name, uri))
+        is_merge = boolean_from_text(include.get('merge', 'false')) is not False
+        names = [name] if name and not is_merge else ['', _name_from_uri(uri)]
+        self._sources.set_origin(include, missing=dict.fromkeys(names, uri))
 
     def _expand_include(self, include: XmlElement, files: tuple[str, ...]) -> None:
         if first_child(include, 'uri') is None:

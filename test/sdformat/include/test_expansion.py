@@ -259,6 +259,21 @@ def test_missing_include_is_skipped_with_what_refers_to_it(write):
         scene.warnings[1].message)
 
 
+@pytest.mark.parametrize(('parent', 'axis'), [
+    ('robot::l', '<xyz>0 0 1</xyz>'), ('a', '<xyz expressed_in="robot">0 0 1</xyz>'),
+    ('a', '<xyz expressed_in="f">0 0 1</xyz>'), ('a', '<xyz>0 0 1</xyz><mimic joint="robot::j"/>'),
+])
+@pytest.mark.parametrize('name', ['<name>robot</name>', ''])
+def test_joint_that_refers_to_a_missing_include_is_left_out(write, name, parent, axis):
+    scene = load(
+        write(f'<model name="m">{TWO_LINKS}{include("model://unnamed", name)}'
+              '<frame name="f" attached_to="robot"/><joint name="j" type="revolute">'
+              f'<parent>{parent}</parent><child>b</child><axis>{axis}</axis></joint></model>'),
+        on_missing_include='skip')
+    assert scene.joints == ()
+    assert 'what refers to it is left out too: "m::f", "m::j"' in scene.warnings[-1].message
+
+
 @pytest.mark.parametrize('frame', ['near', 'robot::l'])
 def test_model_that_a_frame_of_a_missing_include_places_is_left_out(write, frame):
     scene = load(
