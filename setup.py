@@ -6,6 +6,7 @@ import configparser
 import os
 from pathlib import Path
 import re
+import shutil
 import sys
 from typing import Any
 import xml.etree.ElementTree as ET
@@ -31,6 +32,9 @@ ROS_EXECUTABLES = [
 # In the PATH, where `bridge` is a program of iproute2.
 COMMANDS = [COMMAND_LINE, 'sdf_pose_bridge = sdf_pose_bridge.ros.bridge:main']
 MAKES_A_WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
+if MAKES_A_WHEEL:
+    # Modules that were deleted since an older build would be installed too.
+    shutil.rmtree(ROOT / 'build/lib', ignore_errors=True)
 BLOCK_SIGNALS = (
     'import signal',
     'signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM])')

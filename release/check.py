@@ -203,15 +203,14 @@ class Release:
 
     def is_installed(self) -> str:
         """Install the wheel, and the sdist, for each Python, and start the programs."""
-        results = []
-        for version in self._pythons:
-            if not python_of(version):
-                results.append(f'{version} is not on this machine')
-                continue
+        here = [version for version in self._pythons if python_of(version)]
+        for version in here:
             for path in self._distributions:
                 self._try_programs(self._environment(version, path))
-            results.append(version)
-        return f'wheel and sdist with Python {", ".join(results)}'
+        missing = sorted(set(self._pythons) - set(here))
+        return f'wheel and sdist with Python {", ".join(here)}' + (
+            f'\nNOT TESTED, because this machine does not have it: Python {", ".join(missing)}'
+            if missing else '')
 
     def _environment(self, version: str, *what: object) -> Path:
         """Install something into a new environment, and return the folder of its programs."""

@@ -16,6 +16,7 @@ from sdf_pose_bridge_interfaces.srv import ConvertRotation
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / 'README.md').read_text(encoding='utf-8')
+ROS_INTERFACE = (ROOT / 'docs/ros_interface.md').read_text(encoding='utf-8')
 COMMAND_LINE = (ROOT / 'docs/command_line.md').read_text(encoding='utf-8')
 BROKEN = """\
 <sdf version="1.10">
@@ -75,7 +76,8 @@ def test_the_demonstration():
 
 
 def test_the_first_line_of_the_node(bridge):
-    shown = shown_after('$ ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=src/')[0]
+    shown = shown_after(
+        '$ ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=src/', ROS_INTERFACE)[0]
     same = re.compile(r'publishing .* frames|with .* transforms, root frame "world"')
     assert same.findall(shown) == same.findall(bridge.lines[0])
 
@@ -85,7 +87,8 @@ def test_a_pose(listener):
     listener.listen_to_poses([topic])
     listener.wait_for_keys(listener.poses, [topic])
     pose = listener.poses[topic].pose
-    shown = [line.split(': ') for line in shown_after(f'$ ros2 topic echo --once {topic}')
+    shown = [line.split(': ') for line in shown_after(
+        f'$ ros2 topic echo --once {topic}', ROS_INTERFACE)
              if re.match(r' +[xyzw]: ', line)]
     assert [name.strip() for name, _ in shown] == list('xyzxyzw')
     # The last digits depend on the mathematical functions of the machine.
@@ -99,7 +102,7 @@ def test_a_service(listener):
     request.rpy.z = 1.5708
     response = listener.call(
         ConvertRotation, '/sdf_pose_bridge/convert_rotation', request)
-    shown = shown_after('$ ros2 service call /sdf_pose_bridge/convert_rotation')
+    shown = shown_after('$ ros2 service call /sdf_pose_bridge/convert_rotation', ROS_INTERFACE)
     assert f'requester: making request: {request!r}' in shown
     assert repr(response) in shown
 
@@ -114,10 +117,21 @@ def test_errors(start_bridge, tmp_path, monkeypatch, capsys):
     assert bridge.wait_for_end() == 1
     assert bridge.lines[0].endswith(f'/{line}')
     (fatal, _) = shown_after(
-        '$ ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=broken.sdf')[:2]
+        '$ ros2 run sdf_pose_bridge bridge --ros-args -p sdf_file:=broken.sdf', ROS_INTERFACE)[:2]
     assert fatal.startswith('[FATAL]')
     assert fatal.endswith(f': /home/me/ws/{line}')
-    assert shown_after('$ ros2 param set')[0].endswith(f': /home/me/ws/{line}')
+    assert shown_after(
+        '$ ros2 param set /sdf_pose_bridge sdf_file', ROS_INTERFACE)[0].endswith(
+            f': /home/me/ws/{line}')
+
+
+def test_the_first_file(tmp_path, monkeypatch, capsys):
+    sdf = README[README.index('    <sdf '):README.index('    </sdf>')] + '    </sdf>\n'
+    (tmp_path / 'cell.sdf').write_text(sdf)
+    monkeypatch.chdir(tmp_path)
+    assert main(['tree', 'cell.sdf']) == 0
+    printed = capsys.readouterr().out.splitlines()
+    assert shown_after('$ sdf_pose tree cell.sdf')[:len(printed)] == printed
 
 
 def test_warnings(tmp_path, monkeypatch, capsys):
