@@ -11,7 +11,6 @@ from benchmarks.harness import (
     Medians,
     PerSecond,
     result_of,
-    table,
     TimesAsFast,
     Took,
     Unavailable,
@@ -96,17 +95,6 @@ def test_goals_judge_the_medians(goal, ours, theirs, reached, ratio):
     medians = Medians(ours, theirs)
     assert goal.is_reached(medians) is reached
     assert goal.ratio(medians) == ratio
-
-
-def test_the_table_has_a_line_for_each_result_under_its_columns():
-    @benchmark('nothing', counterpart='nothing else', goal=TimesAsFast())
-    def nothing():
-        yield lambda: None, lambda: None
-
-    header, rule, line = table([result_of(nothing)]).splitlines()
-    assert header.split() == ['what', 'ours', 'counterpart', 'ratio', 'goal', 'reached']
-    assert set(rule) == {'-', ' '}
-    assert line.startswith('nothing  ')
 
 
 def test_what_a_function_has_measured_itself_counts():

