@@ -450,13 +450,6 @@ def test_all_errors_of_an_included_robot_are_reported(tmp_path):
     assert [error.line for error in errors_of_file(path)] == [2, 3]
 
 
-def test_lines_beyond_those_that_libxml2_counts(tmp_path):
-    bad_pose = SENSOR.format('\n<pose>x</pose>')
-    path = write(tmp_path, '\n' * 70_000 + link('a') + gazebo(bad_pose, 'a') + '\n' + link('b')
-                 + '\n' + joint('j', 'a', 'b', 'continuous', '<axis/>'))
-    assert [error.line for error in errors_of_file(path)] == [70_002, 70_004]
-
-
 # Moments of inertia, which an included robot has, and which nobody needs of others
 
 def moments_in(model):
