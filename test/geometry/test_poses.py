@@ -26,7 +26,6 @@ from sdf_pose_bridge.geometry.poses import (
 NUMBERS = st.floats(-100.0, 100.0, allow_subnormal=False)
 QUATERNIONS = st.tuples(*[st.floats(-1.0, 1.0)] * 4).filter(
     lambda q: sum(value * value for value in q) > 1e-4)
-ROW_COUNTS = st.integers(0, 12)
 
 
 def unit(quaternion):

@@ -16,7 +16,6 @@ from rotation_sets import (
     largest_angle,
     MAX_ANGLE,
     random_quaternions,
-    random_rpy,
     RPY_SETS,
 )
 from sizes import size
@@ -108,16 +107,6 @@ def test_half_turns_about_all_axes_survive_every_representation(missing):
     for quat in quats[::7]:
         one = rotations.rpy_from_matrix(rotations.matrix_from_quaternion(tuple(quat)))
         assert exact_angle(quat, exact_quaternion(one)) <= MAX_ANGLE
-
-
-@needs_long_double
-def test_very_many_rotations_survive_a_round_trip():
-    rpy = random_rpy(size(100_000, 1_000_000))
-    quats = rotations.quaternion_from_rpy(rpy)
-    expected = extended_quaternions(rpy)
-    assert largest_angle(expected, quats) <= MAX_ANGLE
-    again = extended_quaternions(rotations.rpy_from_quaternion(quats))
-    assert largest_angle(expected, again) <= MAX_ANGLE
 
 
 @needs_long_double
