@@ -36,12 +36,8 @@ Answer: TypeAlias = Callable[[Any, Any], Any]
 SERVICE_QOS = qos_profile_parameters
 """Keeps 1000 requests; the default keeps ten, so that requests of more callers would be lost."""
 
-
 MOST_NUMBERS = 1_000_000
 """Largest number of values in a call of ``~/convert_poses``."""
-
-_FEW_NUMBERS = 10_000
-"""This many are converted at once, in a fraction of a millisecond."""
 
 
 def add_services(node: Node, lookup: Callable[[], PoseLookup]) -> None:
@@ -51,7 +47,7 @@ def add_services(node: Node, lookup: Callable[[], PoseLookup]) -> None:
     :param lookup: returns the current look-up of poses.
     """
     logger, clock, group = node.get_logger(), node.get_clock(), ReentrantCallbackGroup()
-    # Longer requests are answered in a thread, one after the other.
+    # Requests that may take long are answered in a thread, one after the other.
     turn = CoroutineLock(node)
 
     async def answered(answer: Answer, request: Any, response: Any, *, is_quick: bool) -> Any:
@@ -73,9 +69,7 @@ def add_services(node: Node, lookup: Callable[[], PoseLookup]) -> None:
     async def convert_poses(
         request: ConvertPoses.Request, response: ConvertPoses.Response,
     ) -> Any:
-        return await answered(
-            answer_to_convert_poses, request, response,
-            is_quick=len(request.values) <= _FEW_NUMBERS or len(request.values) > MOST_NUMBERS)
+        return await answered(answer_to_convert_poses, request, response, is_quick=False)
 
     async def lookup_pose(request: LookupPose.Request, response: LookupPose.Response) -> Any:
         current = lookup()
