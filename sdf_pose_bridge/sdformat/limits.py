@@ -23,7 +23,8 @@ class Limits(NamedTuple):
     elements: int = 10_000_000
     """XML elements in all files together."""
     copied_elements: int = 400_000
-    """XML elements that includes and their parameters copy, beyond those in the files."""
+    """XML elements that includes and their parameters copy, beyond those in the files; a merged
+    model counts twice, as it is also checked by itself."""
     include_depth: int = 64
     """Depth of includes."""
     depth: int = 300

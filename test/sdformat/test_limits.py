@@ -53,6 +53,17 @@ def test_errors_in_a_long_name_take_no_long_time_and_are_short(tmp_path):
     assert len(errors_of_file(tmp_path / 'many.sdf')) == MOST_PROBLEMS + 1
 
 
+@pytest.mark.parametrize(('name', 'is_checked_again'), [('', False), ('<name>n#</name>', True)])
+def test_each_check_of_a_merged_model_counts(tmp_path, name, is_checked_again):
+    include = f'<include merge="true"><uri>leaf.sdf</uri>{name}</include>'
+    merges = ''.join(
+        f'<model name="m{i}">{include.replace("#", str(i))}</model>' for i in range(9))
+    write_files(tmp_path, leaf=model_file(LINK), main=world_file(merges))
+    # Each model has two elements, and a check of it reads the <sdf> around it too.
+    with pytest.raises(SdfError) if is_checked_again else contextlib.nullcontext():
+        load(tmp_path / 'main.sdf', limits=Limits(copied_elements=2 * 9 + 2 + 1))
+
+
 def test_three_hundred_robots_of_a_thousand_elements_are_read(tmp_path):
     robots = ''.join(
         f'<include><name>r{number}</name><uri>robot.sdf</uri></include>' for number in range(300))

@@ -263,6 +263,8 @@ class IncludeExpansion:
 
         def model_by_itself(root: XmlElement) -> ModelByItself | None:
             if key not in self._merged_models:
+                # Its elements are read twice.
+                self._sources.count_copy(root, include)
                 self._merged_models[key] = self._model_by_itself(root)
             return self._merged_models[key]
 
