@@ -204,11 +204,18 @@ def poses_in_references(elements: Elements, graph: FrameGraph) -> PoseArray:
     if not models:
         return elements.poses
     edges: PoseArray = elements.poses.copy()
+    # Frames on the way to models that are solved, with these models and the poses in them.
+    known: dict[int, tuple[int, Pose]] = {}
     for model in models:
         frame = graph.placements[model]
-        in_model = Pose()
+        steps = []
         while frame != model:
-            in_model = pose_product(Pose(*edges[frame].tolist()), in_model)
-            frame = int(graph.references[frame])
+            steps.append(frame)
+            frame = known[frame][0] if frame in known else int(graph.references[frame])
+        in_model = Pose()
+        for frame in reversed(steps):
+            pose = known[frame][1] if frame in known else Pose(*edges[frame].tolist())
+            in_model = pose_product(in_model, pose)
+            known[frame] = model, in_model
         edges[model] = pose_product(Pose(*edges[model].tolist()), pose_inverse(in_model))
     return edges
