@@ -5,7 +5,7 @@
 import math
 import re
 
-from matrices import assert_same_pose, matrix_from_degrees, matrix_from_pose, matrix_from_rpy
+from matrices import assert_same_pose, matrix_from_degrees, matrix_from_rpy
 import numpy as np
 import pytest
 
@@ -153,12 +153,6 @@ def test_roll_comes_first_and_about_fixed_axes():
 def test_only_angles_are_in_degrees():
     pose = pose_from_text('10 20 30 10 90 30', RPY_DEGREES)
     assert_same_pose(pose, matrix_from_degrees(10, 20, 30, 10, 90, 30), 1e-15)
-
-
-@given(st.tuples(*[NUMBERS] * 6))
-def test_any_roll_pitch_yaw(values):
-    matrix = matrix_from_pose(rpy(' '.join(map(repr, values))))
-    np.testing.assert_allclose(matrix, matrix_from_rpy(*values), atol=1e-12)
 
 
 # Many texts

@@ -364,17 +364,6 @@ def test_options_do_not_change_the_scene():
 
 # Whatever the scene
 
-@pytest.mark.parametrize('anchor', AnchorModels)
-@pytest.mark.parametrize('path', EXAMPLES, ids=lambda path: path.stem)
-def test_the_examples_are_trees(path, anchor):
-    scene = sdf_pose_bridge.load(path)
-    kinds = ALL_KINDS - {Kind.SENSOR}
-    tree = tf_tree_from_scene(scene, TfOptions(
-        kinds=kinds, anchor_models=anchor, frame_names=FrameNames.SCOPED))
-    assert_is_tree(tree)
-    assert_has_poses_of(tree, scene, scoped_ids(scene, kinds))
-
-
 @pytest.mark.parametrize('path', EXAMPLES, ids=lambda path: path.stem)
 def test_the_examples_need_no_options(path):
     assert_is_tree(tf_tree_from_scene(sdf_pose_bridge.load(path)))

@@ -84,29 +84,6 @@ def test_boxes_of_any_size_share_a_surface(drawn):
     assert surface.scales.tolist() == [[1, 1, 1], [2, 1, 1]]
 
 
-@pytest.mark.parametrize(('shape', 'half'), [
-    ('<box><size>1 2 3</size></box>', (0.5, 1, 1.5)),
-    ('<sphere><radius>2</radius></sphere>', (2, 2, 2)),
-    ('<cylinder><radius>1</radius><length>4</length></cylinder>', (1, 1, 2)),
-    ('<cone><radius>1</radius><length>4</length></cone>', (1, 1, 2)),
-    ('<capsule><radius>2</radius><length>4</length></capsule>', (2, 2, 4)),
-    ('<capsule><radius>2</radius><length>0</length></capsule>', (2, 2, 2)),
-    ('<ellipsoid><radii>1 2 3</radii></ellipsoid>', (1, 2, 3)),
-    ('<plane><size>2 1000</size></plane>', (1, 2, 0)),
-])
-def test_size_of_a_shape(drawn, shape, half):
-    scene, surfaces, _ = drawn(geometry(shape))
-    (box,) = boxes_of_surfaces(scene, surfaces)
-    assert box == pytest.approx(np.array([-np.array(half), half]), rel=0.01)
-
-
-def test_color_of_the_material(drawn):
-    material = ('<material><diffuse>1 0 0 0.5</diffuse></material><transparency>0.5</transparency>'
-                + geometry('<box/>'))
-    _, (surface,), _ = drawn(material)
-    assert surface.rgba.tolist() == [[1, 0, 0, 0.25]]
-
-
 def test_transparency_without_a_material(drawn):
     _, (surface,), _ = drawn('<transparency>0.5</transparency>' + geometry('<box/>'))
     assert surface.rgba[0, 3] == 0.5
