@@ -23,11 +23,14 @@ def test_pose_is_written_in_units():
 COMMANDS = ('check', 'poses', 'tree', 'graph', 'view', 'urdf', 'convert', 'diff', 'set')
 
 
-@pytest.mark.parametrize('columns', [80, 100, 120])
-@pytest.mark.parametrize('arguments', [
+TABLES = [
     ('tree', '{cell}'), ('tree', '--scope', '{cell}'), ('poses', '{cell}', '--radians'),
-    ('poses', '--mm', '{cell}'), ('diff', '{moved}', '{cell}'),
-    *((command, '--help') for command in COMMANDS)])
+    ('poses', '--mm', '{cell}'), ('diff', '{moved}', '{cell}')]
+HELP = [(command, '--help') for command in COMMANDS]
+
+
+@pytest.mark.parametrize(('columns', 'arguments'), [
+    *((80, arguments) for arguments in (*TABLES, *HELP)), (120, TABLES[0]), (120, HELP[0])])
 def test_lines_are_as_long_as_those_of_the_terminal(on_terminal, files, columns, arguments):
     cell = Path(__file__).resolve().parents[2] / 'examples/work_cell.sdf'
     moved = files / 'moved.sdf'
