@@ -36,7 +36,7 @@ from sdf_pose_bridge.ros.log_lines import lines_from_error, lines_from_warnings
 from sdf_pose_bridge.ros.middleware import use_profile
 from sdf_pose_bridge.ros.parameter_services import restrict_parameter_services
 from sdf_pose_bridge.ros.parameters import SettingsError
-from sdf_pose_bridge.ros.programs import Program, PROGRAMS
+from sdf_pose_bridge.ros.programs import Program, PROGRAMS, ROBOT_STATE_PUBLISHER
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.sdformat.include.uris import AddressError
@@ -116,6 +116,9 @@ def _exit_code_from_node(node: Node, program: Program, file: str = '') -> int:
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     start = executor.create_task(start_bridge, node, frames, settings, loaded)
+    if program is ROBOT_STATE_PUBLISHER:
+        # Scripts wait for this line of the package robot_state_publisher.
+        start.add_done_callback(lambda _: node.get_logger().info('Robot initialized'))
     _spin_until_signal(executor, node, start)
     executor.shutdown()
     return 0

@@ -138,7 +138,9 @@ def test_the_stamps_of_messages_can_be_ignored(start, listener, joints, tmp_path
 
 
 def test_sdformat_has_links_frames_and_sensors_and_its_joints_move(start, listener, joints, tf):
-    start('--ros-args', '-p', f'robot_description:={ARM}', '-p', 'frame_prefix:=left/')
+    node = start(
+        '--ros-args', '-p', f'robot_description:={ARM}', '-p', 'frame_prefix:=/left/')
+    node.wait_for_line('Robot initialized')
     listener.wait(lambda: joints.send({'turn': 0.5}) and tf['/tf'], lambda: 'the first message')
     listener.wait(lambda: tf['/tf_static'], lambda: 'the fixed frames')
     assert parents_in(tf['/tf']) == {'left/upper': 'left/base'}
