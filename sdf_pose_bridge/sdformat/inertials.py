@@ -170,6 +170,9 @@ def _inertial_from_values(xml: XmlElement) -> Inertial:
 def _automatic_inertial(inertial: XmlElement, sources: Sources) -> AutomaticInertial | None:
     """Return the masses for an automatic inertial; None if not each mass is known."""
     link = inertial.getparent()
+    outer = None if link is None else link.getparent()
+    if outer is not None and outer.tag == 'actor':
+        return None  # libsdformat computes none in an actor
     collisions = [] if link is None else list(child_elements(link, 'collision'))
     if not collisions:
         msg = 'the inertial is automatic, but its link has no <collision>'

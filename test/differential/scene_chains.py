@@ -22,6 +22,13 @@ STEMS = ('arm', 'base', 'cup', 'disk', 'elbow', 'fork', 'grip', 'hub')
 """Names, none of which begins with another one; libsdformat compares beginnings."""
 ACTIONS = ('add', 'modify', 'replace', 'remove')
 VERSIONS = ('1.8', '1.9', '1.10', '1.11')
+ODD_CHILDREN: tuple[tuple[str, str, dict[str, str]], ...] = (
+    ('pose', '1 x', {}), ('pose', '1 2 3 0 0 0', {}), ('pose', '1 2 3', {}),
+    ('pose', '0 0 0 0 0 0 1', {'rotation_format': 'quat_xyzw', 'degrees': 'true'}),
+    ('pose', '0 0 0 0 0 90', {'degrees': 'true'}), ('pose', '0 0 0 0 0 0', {'degrees': 'maybe'}),
+    ('pose', '0 0 0 0 0 0 1', {'rotation_format': 'quat_xyzw'}),
+    ('static', 'maybe', {}), ('static', 'false', {}), ('gravity', '2', {}))
+"""Elements that an include may override, some of them with wrong values."""
 OLD_VERSIONS = ('1.5', '1.6', '1.7')
 
 
@@ -66,6 +73,19 @@ def parameters(dice: Random) -> dict[str, Element]:
         include = ElementTree.SubElement(top, 'include', merge)
         _fill_include(dice, include, 'level_9.sdf', known, [])
     files['scene.sdf'] = _sdf(dice, top)
+    return files
+
+
+def odd_overrides(dice: Random) -> dict[str, Element]:
+    """Included files with odd values, which includes and parameters may override."""
+    files = parameters(dice)
+    for path in sorted(files.keys() - {'scene.sdf'}):
+        scopes = [each for each in files[path].iter() if each.tag in ('model', 'link', 'frame')]
+        scope = dice.choice([scopes[0], *scopes])
+        tag, text, attributes = dice.choice(ODD_CHILDREN)
+        child = Element(tag, attributes)
+        child.text = text
+        scope.insert(0 if dice.random() < 0.7 else len(scope), child)
     return files
 
 
@@ -202,7 +222,7 @@ def mutated(dice: Random) -> dict[str, Element]:
 
 
 FAMILIES: tuple[Callable[[Random], dict[str, Element]], ...] = (
-    parameters, parameters, includes_anywhere, deep_models, old_names, cycles, mutated)
+    parameters, odd_overrides, includes_anywhere, deep_models, old_names, cycles, mutated)
 
 
 # Parts

@@ -152,6 +152,11 @@ def test_link_without_collisions_is_refused():
     assert codes_of(link_with(AUTO)) == ['ELEMENT_MISSING']
 
 
+def test_automatic_inertial_in_an_actor_needs_no_collisions():
+    actor = f'<actor name="a"><script/><link name="l">{AUTO}</link></actor>'
+    load_text(f'<sdf version="1.9">{actor}</sdf>')
+
+
 def test_mesh_leaves_the_pose_as_written_with_a_warning():
     scene = load_text(link_with(
         '<inertial auto="true"><pose>3 0 0 0 0 0</pose></inertial>'
