@@ -106,7 +106,7 @@ def is_valid_element(xml: XmlElement, definition: Definition, sources: Sources) 
     :return: whether there are no errors.
     """
     part = sources.with_own_problems()
-    _Reader(part).read(xml, definition)
+    _Reader(part).check(xml, definition)
     part.problems.extend_parent()
     return not part.problems.errors
 
@@ -130,17 +130,16 @@ def _check_scoped_names(root: XmlElement, sources: Sources) -> None:
         sources.error_in_name(ReservedNameError, xml, msg)
 
 
-class _Outer(NamedTuple):
-    """The element around others, a row of a table."""
+class _Scope(NamedTuple):
+    """The model, world or root whose names references use, or an actor."""
 
     table: ElementsBuilder
+    """Takes the elements in it."""
     names: SiblingNames
     path: str
-    """Its file."""
+    """The file of the parent element, which a merged element may not share with its scope."""
     element: int = NO_ELEMENT
-    """Its index in the table; -1 for the file itself."""
-    scope: int = NO_ELEMENT
-    """The model, world or root whose names references use."""
+    """Its index in the table; -1 for the file itself, and for a part of an actor."""
 
 
 class _Reader:
@@ -170,24 +169,23 @@ class _Reader:
     def elements(self, root: XmlElement) -> Elements:
         """Read worlds, and the one model, light or actor that may stand beside them."""
         definition = definition_of('sdf', has_frames=True)
-        outer = _Outer(
-            self._table, SiblingNames(self._table, self._sources), self._sources.path(root))
+        scope = self._new_scope(self._table, self._sources.path(root))
         first = ''
         for child in root:
             child_definition = definition.children.get(child.tag)
             if child_definition is None:
                 self._undefined.report_element(child, definition)
             elif child_definition.kind is Kind.WORLD:
-                self.read(child, child_definition, outer)
+                self.read(child, child_definition, scope)
             elif first:
                 self._check_attributes(child, child_definition)
                 self._report_second_top(child, first)
             else:
                 first = described(child)
                 index = self._table.add(
-                    Kind.ROOT, ROOT_FRAME, NO_ELEMENT, NO_ELEMENT, self._file_indices[outer.path],
+                    Kind.ROOT, ROOT_FRAME, NO_ELEMENT, NO_ELEMENT, self._file_indices[scope.path],
                     self._sources.line(child))
-                self.read(child, child_definition, outer._replace(element=index, scope=index))
+                self.read(child, child_definition, scope._replace(element=index), index)
         if not self._table.names:
             self._sources.warning(root, 'the file has no world, model, light or actor')
         self._parts_of_actors.elements(self._sources.problems)
@@ -202,43 +200,49 @@ class _Reader:
                    'model, light or actor may')
             self._sources.error_in_name(ElementIncorrectTypeError, xml, msg)
 
+    def _new_scope(self, table: ElementsBuilder, path: str) -> _Scope:
+        return _Scope(table, SiblingNames(table, self._sources), path)
+
     # The walk
 
+    def check(self, xml: XmlElement, definition: Definition) -> None:
+        """Check the values of an element that is no part of the tree, with its content."""
+        self.read(xml, definition, self._new_scope(self._table, ''))
+
     def read(
-        self, xml: XmlElement, definition: Definition, outer: _Outer | None = None, depth: int = 1,
+        self, xml: XmlElement, definition: Definition, scope: _Scope, parent: int = NO_ELEMENT,
+        depth: int = 1,
     ) -> None:
         """
         Read an element and its content.
 
-        :param outer: its parent element; None if this has no frame.
+        :param parent: index of its parent element; -1 if this has no frame.
         """
         if definition.has_required_attributes or xml.keys():
             self._check_attributes(xml, definition)
         if definition.is_pose:
-            self._read_pose(xml, definition, outer)
+            self._read_pose(xml, definition, scope, parent)
         elif definition.value_type is not None:
             fault, doubt = judged_value(text_of(xml), definition)
             if fault:
                 self._sources.error(ElementInvalidError, xml, f'{_described_value(xml)} {fault}')
             elif doubt:
                 self._sources.warning(xml, f'{_described_value(xml)} {doubt}')
-        elif definition.identifier == 'include' and outer is not None:
-            missing_includes = outer.table.details['missing_includes']
-            missing_includes.setdefault(outer.element, {}).update(
-                self._sources.origin(xml).missing)
+        elif definition.identifier == 'include' and parent != NO_ELEMENT:
+            missing_includes = scope.table.details['missing_includes']
+            missing_includes.setdefault(parent, {}).update(self._sources.origin(xml).missing)
         else:
-            inner = None
-            if definition.kind is None:
+            kind, element = definition.kind, NO_ELEMENT
+            if kind is None:
                 checks = _CHECKS if definition.has_frames else _CHECKS_OF_UNREAD
                 if definition.identifier in checks:
                     checks[definition.identifier](xml, self._sources)
-            elif outer is not None:
-                kind = definition.kind
+            else:
                 if self._sources.origin(xml).is_checked:
                     definition = definition_of(
                         definition.identifier, has_frames=True, is_checked=True)
-                inner = self._added(xml, definition, kind, outer)
-                if inner is None:
+                element, scope = self._added(xml, definition, kind, scope, parent)
+                if element == NO_ELEMENT:
                     definition = definition_of(definition.identifier)
             if depth > self._deepest:
                 self._sources.check_depth(depth, xml)
@@ -249,28 +253,32 @@ class _Reader:
                     if not definition.takes_any_children:
                         self._undefined.report_element(child, definition)
                     continue
-                self.read(child, child_definition, inner, depth + 1)
+                self.read(child, child_definition, scope, element, depth + 1)
                 if child_definition.value_type is not None and len(child):
                     for grandchild in child:
                         self._undefined.report_element(grandchild, child_definition)
 
     def _added(
-        self, xml: XmlElement, definition: Definition, kind: Kind, outer: _Outer,
-    ) -> _Outer | None:
-        """Add an element to the table, unless its name has an error; return it."""
-        table, names, path, parent, scope = outer
-        if parent >= 0 and table.kinds[parent] == Kind.ACTOR:
+        self, xml: XmlElement, definition: Definition, kind: Kind, scope: _Scope, parent: int,
+    ) -> tuple[int, _Scope]:
+        """
+        Add an element to the table, unless its name has an error.
+
+        :return: its index, or -1; and the scope of its content.
+        """
+        if parent >= 0 and scope.table.kinds[parent] == Kind.ACTOR:
             # Nothing can refer to the links and joints of actors, so their names may repeat.
-            table, parent, scope = self._parts_of_actors, NO_ELEMENT, NO_ELEMENT
-            names = SiblingNames(table, self._sources)
+            scope, parent = self._new_scope(self._parts_of_actors, scope.path), NO_ELEMENT
+        table, names, path, scope_element = scope
         has_name = 'name' in definition.attributes
         name = names.add(kind, xml, parent, path) if has_name else kind.label
         if name is None:
-            return None
+            return NO_ELEMENT, scope
         origin = self._sources.origin(xml)
-        path = path if origin.file is None else origin.file
+        if origin.file is not None:
+            path = origin.file
         index = table.add(
-            kind, name, parent, scope,
+            kind, name, parent, scope_element,
             self._file_indices[path if origin.pose is None else origin.pose.file],
             self._sources.line(xml))
         if origin.include is not None:
@@ -280,7 +288,9 @@ class _Reader:
             details = details_from_element(xml)
             if details is not None:
                 table.details[field][index] = details
-        return _Outer(table, names, path, index, index if definition.is_scope else scope)
+        if definition.is_scope or path != scope.path:
+            scope = _Scope(table, names, path, index if definition.is_scope else scope_element)
+        return index, scope
 
     # Attributes and poses
 
@@ -310,19 +320,20 @@ class _Reader:
                     self._sources.error(error, xml, msg + hint)
 
     def _read_pose(
-        self, xml: XmlElement, definition: Definition, outer: _Outer | None,
+        self, xml: XmlElement, definition: Definition, scope: _Scope, parent: int,
     ) -> None:
         """Keep the pose of an element, or check another pose."""
-        posed = None if outer is None or outer.table.has_pose[outer.element] else outer
-        if posed is not None and xml.keys():
-            self._read_relative_to(xml, definition, posed)
+        table = scope.table
+        is_first = parent != NO_ELEMENT and not table.has_pose[parent]
+        if is_first and xml.keys():
+            self._read_relative_to(xml, definition, table, parent)
         try:
             text, pose_format = text_of(xml), pose_format_of(xml)
         except PoseTextError as error:
             self._sources.error(ElementInvalidError, xml, str(error))
             text, pose_format = '', PoseFormat()
-        if posed is not None:
-            posed.table.set_pose(posed.element, text, pose_format, self._sources.line(xml))
+        if is_first:
+            table.set_pose(parent, text, pose_format, self._sources.line(xml))
             return
         if definition.is_required and not text_of(xml):
             msg = f'<{written_tag(xml)}> is empty; it must have a value'
@@ -331,11 +342,12 @@ class _Reader:
             pose_numbers_from_text(text, pose_format)
         except PoseTextError as error:
             self._sources.error(ElementInvalidError, xml, str(error))
-        if outer is not None:
+        if parent != NO_ELEMENT:
             self._sources.warning(xml, 'a second <pose> is ignored; the first one counts')
 
-    def _read_relative_to(self, xml: XmlElement, definition: Definition, outer: _Outer) -> None:
-        table, index = outer.table, outer.element
+    def _read_relative_to(
+        self, xml: XmlElement, definition: Definition, table: ElementsBuilder, index: int,
+    ) -> None:
         relative_to = frame_of_attribute(xml, 'relative_to')
         if not relative_to or 'relative_to' not in definition.attributes:
             return
