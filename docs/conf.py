@@ -22,7 +22,7 @@ sys.path.insert(0, str(ROOT))
 LANGUAGES = {
     'xml': re.compile('<'), 'console': re.compile(r'\$ '), 'python': re.compile('(import|from) '),
     'bash': re.compile(r'(ros2|sdf_pose|pip|python3|make|gz|eval|FASTDDS_\w+=)\b')}
-"""What the first line of a block without a language begins with."""
+"""The beginning of the first line of a block without a language."""
 
 project = 'sdf_pose_bridge'
 author = copyright = 'The sdf_pose_bridge authors'
@@ -65,6 +65,6 @@ def _link_to_repository(app: Sphinx, _page: str, source: list[str]) -> None:
 
 
 def setup(app: Sphinx) -> None:
-    """Add what is done to pages."""
+    """Register the changes to pages."""
     app.connect('source-read', _link_to_repository)
     app.connect('doctree-read', _highlight)

@@ -67,7 +67,7 @@ def poses_along_chains(
     :param edges: the pose of each element in the one that it is relative to.
     :param references: the element that each is relative to; -1 at the end of a chain.
     :param indices: the elements to resolve. All references of these are among them.
-    :return: a copy of the poses; those of these elements are in the frames at the ends of their
+    :return: a copy of the poses; these elements' are in the frames at the ends of their
         chains.
     """
     resolved: PoseArray = edges.copy()

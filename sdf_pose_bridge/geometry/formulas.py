@@ -322,5 +322,6 @@ def _corrected(
 
 
 def _check(xp: Any, is_valid: Component) -> None:
+    """Raise InvalidRotationError unless all of these are true."""
     if not xp.all(is_valid):
         raise InvalidRotationError(is_valid)

@@ -46,7 +46,7 @@ class FrameGraph(NamedTuple):
     """The frame that each pose is relative to; -1 for roots and unresolved elements."""
     placements: Mapping[int, int]
     """The frames that poses place, where these are not the elements themselves: models, and the
-    frames that replace those of merged models."""
+    frames that replace merged models."""
     attachments: Indices
     """The frame that each frame is attached to; -1 for links, static models and roots."""
     bodies: Indices

@@ -115,7 +115,7 @@ def load_text(
 
     :param text: the text of a file; bytes in the encoding that they declare.
     :param name: its name in errors; relative includes are searched beside it. The other arguments
-        are those of :func:`load`.
+        are as in :func:`load`.
     :raises SdfError: as for :func:`load`.
     """
     return load(

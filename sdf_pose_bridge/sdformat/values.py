@@ -87,7 +87,7 @@ def judged_value(text: str, definition: Definition) -> tuple[str, str]:
     :param text: the value. If the element is not required, the default replaces a blank one.
     :param definition: the definition of the element, which is not a pose.
     :return: the rule that it breaks, empty if it is valid; and the numbers that were read, empty
-        if they are those of the text. Each is a part of a sentence behind the value.
+        if they agree with the text. Each is a part of a sentence behind the value.
     """
     value_type = definition.value_type
     if value_type is None or (
