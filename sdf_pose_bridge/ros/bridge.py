@@ -10,20 +10,19 @@ import os
 import signal
 import sys
 
-BUILD_COMMAND = 'colcon build --base-paths src src/<repo>/sdf_pose_bridge_interfaces'
-"""Builds both packages in a workspace; plain ``colcon build`` finds only one of them there."""
+LINK_COMMAND = 'ln -s sdf_pose_bridge/sdf_pose_bridge_interfaces .'
+"""Shows colcon the second package, in the folder ``src`` of a workspace."""
 
 MISSING_INTERFACES = (
-    'sdf_pose_bridge_interfaces is not built or not in this environment; in the workspace type '
-    f'"{BUILD_COMMAND}" (<repo> is the folder of the repository) and then '
-    '". install/setup.bash"')
+    'sdf_pose_bridge_interfaces is not built or not in this environment; in the folder src of the '
+    f'workspace type "{LINK_COMMAND}" if this link is missing, and in the workspace '
+    '"colcon build" and ". install/setup.bash"')
 """Message if the interfaces are missing."""
 
 MISSING_MODULE = (
     'the Python module {module} is missing; the node needs a shell with ROS 2, as after '
     '". /opt/ros/jazzy/setup.bash", and the packages that "rosdep install --from-paths src '
-    'src/<repo>/sdf_pose_bridge_interfaces --ignore-src" installs (<repo> is the folder of the '
-    'repository)')
+    '--ignore-src" installs')
 """Message if another module is missing that the node imports."""
 
 

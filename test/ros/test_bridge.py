@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from sdf_pose_bridge.ros.bridge import BUILD_COMMAND, sentence_from_import_error
+from sdf_pose_bridge.ros.bridge import LINK_COMMAND, sentence_from_import_error
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -28,7 +28,7 @@ def test_without_the_interfaces_it_says_what_to_type():
     pytest.importorskip('rclpy', reason='needs ROS 2')
     result = run_bridge_without('sdf_pose_bridge_interfaces')
     assert result.returncode == 1
-    assert BUILD_COMMAND in result.stderr
+    assert LINK_COMMAND in result.stderr
     assert len(result.stderr.splitlines()) == 1
 
 
@@ -42,7 +42,7 @@ def test_without_ros_it_names_the_missing_module(module):
 
 @pytest.mark.parametrize(('error', 'sentence'), [
     (ModuleNotFoundError('No module named x', name='sdf_pose_bridge_interfaces.srv'),
-     BUILD_COMMAND),
+     LINK_COMMAND),
     (ModuleNotFoundError('No module named x', name='tf2_msgs.msg'),
      'the Python module tf2_msgs is missing'),
     (ModuleNotFoundError('No module named x', name='lxml'), 'rosdep install'),
@@ -56,13 +56,12 @@ def test_a_failed_import_is_one_sentence(error, sentence):
 
 
 def test_the_readme_says_the_same_words():
-    assert BUILD_COMMAND in (ROOT / 'README.md').read_text(encoding='utf-8')
+    assert LINK_COMMAND in (ROOT / 'README.md').read_text(encoding='utf-8')
 
 
 # Each of these takes milliseconds to import, or what imports it does.
 WAITS_FOR_THE_FIRST_MESSAGE = (
     'sdf_pose_bridge.ros.node', 'sdf_pose_bridge.ros.services', 'sdf_pose_bridge.ros.diagnostics',
-    'sdf_pose_bridge.ros.topic_names',
     'diagnostic_msgs', 'std_srvs', 'hashlib', 'importlib.metadata', 'numpy.ma')
 
 
