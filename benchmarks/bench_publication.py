@@ -167,7 +167,7 @@ def first_tf_static() -> Iterator[tuple[Function, Function | None]]:
     with node() as ros:
         bench = Bench(ros)
         yield (
-            lambda: bench.frames(tf_tree_from_scene(bench.scene)).publish_tf(),
+            lambda: bench.frames(tf_tree_from_scene(bench.scene)).publish_tf_static(),
             lambda: bench.send_objects(transforms_of_scene(bench.scene)))
 
 
@@ -178,7 +178,7 @@ def first_tf_static_and_objects_alone() -> Iterator[tuple[Function, Function | N
     with node() as ros:
         bench = Bench(ros)
         yield (
-            lambda: bench.frames(tf_tree_from_scene(bench.scene)).publish_tf(),
+            lambda: bench.frames(tf_tree_from_scene(bench.scene)).publish_tf_static(),
             bench.send_objects_of_tree)
 
 
@@ -189,7 +189,7 @@ def tf_static_from_tree() -> Iterator[tuple[Function, Function | None]]:
     with node() as ros:
         bench = Bench(ros)
         yield (
-            lambda: bench.frames(bench.tree).publish_tf(), bench.send_objects_of_tree)
+            lambda: bench.frames(bench.tree).publish_tf_static(), bench.send_objects_of_tree)
 
 
 @benchmark(
@@ -202,7 +202,7 @@ def tf_static_again() -> Iterator[tuple[Function, Function | None]]:
 
         def publish_again() -> None:
             frames.stamp = bench.publishers.now()
-            frames.publish_tf()
+            frames.publish_tf_static()
         yield publish_again, bench.send_objects_of_tree
 
 

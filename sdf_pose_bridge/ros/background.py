@@ -49,7 +49,7 @@ def run_in_thread(node: Node, function: Callable[[], object]) -> Future:
             # Without a result, callbacks that wait for it would be blocked forever.
             os._exit(1)
         # The executor resumes coroutines only when it wakes up.
-        _wake(executor)
+        wake(executor)
 
     try:
         threading.Thread(target=run, name='background', daemon=True).start()
@@ -59,7 +59,7 @@ def run_in_thread(node: Node, function: Callable[[], object]) -> Future:
     return future
 
 
-def _wake(executor: Executor | None) -> None:
+def wake(executor: Executor | None) -> None:
     """Wake up the executor of a node, unless it has been shut down."""
     if executor is not None:
         with contextlib.suppress(InvalidHandle):
@@ -103,7 +103,7 @@ class CoroutineLock:
         released, self._released = self._released, None
         released.set_result(None)
         # Some releases of rclpy do not wake up by themselves to resume waiting coroutines.
-        _wake(self._node.executor)
+        wake(self._node.executor)
 
 
 class PollingThread:

@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 import struct
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,16 +26,32 @@ from sdf_pose_bridge.geometry.poses import PoseArray
 
 Offset = TypeVar('Offset', int, NDArray[np.int64])
 
+Stamps: TypeAlias = NDArray[np.int64] | tuple[int, int]
+"""Shape (n, 2), seconds and nanoseconds from 0 to 999,999,999 of each record; shape (2,) if they
+are the same for all."""
+
 # Sizes in bytes.
 _LENGTH = 4
 _STAMP = 8
 _NUMBERS = 7 * 8
 _BYTES_AT_A_TIME = 100_000
-_HEADER = 8
-"""Bytes before the fields of a message: four bytes of padding, then the four fixed ones."""
 
-_ORDERS = {b'\0\0': '>', b'\0\1': '<'}
-"""The order of bytes in plain CDR, by the first two bytes."""
+_BEGIN = b'\0\1\0\0'
+"""The first bytes of a message."""
+
+class _Formats(NamedTuple):
+    """Formats with an order of bytes."""
+
+    stamp_and_length: struct.Struct
+    length: struct.Struct
+    number: np.dtype[np.float64]
+
+
+_FORMATS = {
+    begin: _Formats(
+        struct.Struct(f'{order}iII'), struct.Struct(f'{order}I'), np.dtype(f'{order}f8'))
+    for begin, order in ((b'\0\0', '>'), (b'\0\1', '<'))}
+"""Those of plain CDR, by the first two bytes of a message."""
 
 MOST_BYTES = 1_000_000
 """Largest size of a message that is read; other callbacks wait meanwhile."""
@@ -44,130 +60,127 @@ _START = 4
 """Offset of the fields in a message, from which alignment is counted."""
 
 
-class StampedMessages(NamedTuple):
-    """Serialized messages in one buffer."""
+class StampedRecords:
+    """
+    Serialized records of a stamp, frame ids and seven numbers, of which messages consist.
 
-    buffer: NDArray[np.uint8]
-    """The buffer, with room for the stamps and poses; its size is a multiple of 8."""
-    stamps: NDArray[np.int64]
-    """Indices of the two integers of each stamp, in a buffer of integers; shape (n, 2)."""
-    numbers: NDArray[np.int64]
-    """Indices of the seven numbers behind each stamp, in a buffer of numbers; shape (n, 7)."""
-    bounds: Sequence[tuple[int, int]]
-    """Offsets of the first byte of each message and of the byte behind its last one."""
+    :param ids: for transforms the parent frame of each, and the child frame of each; for poses
+        only the frame that each is given in.
+    :param poses: shape (n, 7), the numbers of each record, in metres, quaternion x y z w.
+    :raises ValueError: if a frame id contains a zero character.
+    """
 
-    def with_stamp(self, sec: int, nanosec: int) -> list[bytes]:
-        """
-        Return the messages with a stamp.
+    def __init__(self, ids: Sequence[Sequence[str]], poses: PoseArray) -> None:
+        # Offsets in a record at first, one for each record. Each begins and ends at a multiple
+        # of eight.
+        offsets = np.full(len(poses), _STAMP)
+        strings = []
+        for column in ids:
+            data = np.frombuffer('\0'.join([*column, '']).encode(), np.uint8)
+            lengths = np.diff(np.flatnonzero(data == 0), prepend=-1)
+            if len(lengths) != len(column):
+                msg = 'a frame id contains a zero character, which no message can carry'
+                raise ValueError(msg)
+            offsets = _aligned(offsets, 4)
+            strings.append((data, lengths, offsets))
+            offsets = offsets + _LENGTH + lengths
+        self._sizes_before_numbers = offsets
+        sizes = _aligned(offsets, 8) + _NUMBERS
+        self._bounds = np.append(0, np.cumsum(sizes))
+        begins, ends = self._bounds[:-1], self._bounds[1:]
+        self._buffer = np.zeros(self._bounds[-1], np.uint8)
+        for data, lengths, places in strings:
+            self._write_strings(data, lengths, begins + places)
+        # Indices in the buffer as one of integers, and as one of numbers.
+        self._stamps = begins[:, np.newaxis] // 4 + np.arange(2)
+        self._numbers = (ends - _NUMBERS)[:, np.newaxis] // 8 + np.arange(7)
+        self.set_poses(poses)
+        # The rows of the last message, the indices of their stamps, and the parts of the message.
+        self._rows: NDArray[np.intp] | None = None
+        self._stamps_of_rows = self._stamps
+        self._parts_of_rows: list[bytes | memoryview] = []
 
-        :param nanosec: nanoseconds of the stamp, from 0 to 999,999,999.
-        """
-        return self.with_stamps(np.array([sec, nanosec]))
-
-    def with_stamps(self, stamps: NDArray[np.int64]) -> list[bytes]:
-        """
-        Return the messages with a stamp for each pose or transform.
-
-        :param stamps: shape (n, 2), seconds and nanoseconds from 0 to 999,999,999; shape (2,) if
-            all are the same.
-        """
-        self.buffer.view('<i4')[self.stamps] = stamps
-        data = self.buffer.tobytes()
-        return [data[begin:end] for begin, end in self.bounds]
+    def __len__(self) -> int:
+        return len(self._stamps)
 
     def set_poses(self, poses: PoseArray) -> None:
         """
-        Replace the poses or transforms in the messages.
+        Replace the poses or transforms.
 
-        :param poses: shape (n, 7), in the order of the messages, in metres, quaternion x y z w.
+        :param poses: shape (n, 7), in metres, quaternion x y z w.
         """
-        self.buffer.view('<f8')[self.numbers] = poses
+        self._buffer.view('<f8')[self._numbers] = poses
 
+    def set_stamps(self, stamps: Stamps) -> None:
+        """Replace the stamps."""
+        self._buffer.view('<i4')[self._stamps] = stamps
 
-def tf_message(ids: Sequence[Sequence[str]], transforms: PoseArray) -> StampedMessages:
-    """
-    Serialize one tf2_msgs/TFMessage.
+    def messages(self) -> list[bytes]:
+        """Return a geometry_msgs/TransformStamped or PoseStamped for each record."""
+        data = self._buffer.tobytes()
+        return [_BEGIN + data[begin:end] for begin, end in pairwise(self._bounds.tolist())]
 
-    :param ids: the parent frame of each transform, and the child frame of each.
-    :param transforms: shape (n, 7): pose of each child in its parent, in metres, quaternion
-        x y z w.
-    :raises ValueError: if a frame id contains a zero character.
-    """
-    # The length of the sequence is before the first transform.
-    room = np.zeros(len(transforms), np.int64)
-    room[:1] = _LENGTH
-    buffer, stamps, numbers, ends = _records(ids, transforms, room, _HEADER)
-    buffer.view('<i4')[_HEADER // 4] = len(transforms)
-    buffer[_HEADER - 3] = 1
-    end = int(ends[-1]) if len(transforms) else _HEADER + _LENGTH
-    return StampedMessages(buffer, stamps, numbers, [(_HEADER - 4, end)])
+    def tf_message(self) -> bytes:
+        """Return one tf2_msgs/TFMessage of all records, which are transforms."""
+        return b''.join(self._parts_of_message(np.arange(len(self))))
 
+    def tf_message_of_rows(self, rows: NDArray[np.intp], stamps: Stamps) -> bytes:
+        """
+        Return one tf2_msgs/TFMessage of some records.
 
-def stamped_messages(ids: Sequence[Sequence[str]], poses: PoseArray) -> StampedMessages:
-    """
-    Serialize a geometry_msgs/TransformStamped or PoseStamped for each pose.
+        :param rows: their indices, in ascending order. This is quicker if the array is that of
+            the last call.
+        :param stamps: the stamps that they get.
+        """
+        if rows is not self._rows:
+            self._rows, self._stamps_of_rows = rows, self._stamps[rows]
+            self._parts_of_rows = self._parts_of_message(rows)
+        self._buffer.view('<i4')[self._stamps_of_rows] = stamps
+        return b''.join(self._parts_of_rows)
 
-    Both are a stamp, frame ids and seven numbers.
+    def _parts_of_message(self, rows: NDArray[np.intp]) -> list[bytes | memoryview]:
+        """Return the parts of a tf2_msgs/TFMessage; most of them are views of the buffer."""
+        parts: list[bytes | memoryview] = [_BEGIN, struct.pack('<I', len(rows))]
+        if len(rows):
+            # Behind the length of the sequence, the first record is not at a multiple of eight,
+            # so that another number of bytes aligns its numbers.
+            data, bounds = self._buffer.data, self._bounds
+            begin, end = bounds[rows[0]:rows[0] + 2].tolist()
+            size = int(self._sizes_before_numbers[rows[0]])
+            parts += [
+                data[begin:begin + size], bytes(-(_LENGTH + size) % 8), data[end - _NUMBERS:end]]
+            runs = np.split(rows[1:], np.flatnonzero(np.diff(rows[1:]) != 1) + 1)
+            parts += [data[bounds[run[0]]:bounds[run[-1] + 1]] for run in runs if len(run)]
+        return parts
 
-    :param ids: for TransformStamped the parent frame of each transform, and the child frame of
-        each; for PoseStamped only the frame that each pose is given in.
-    :param poses: shape (n, 7), in metres, quaternion x y z w.
-    :raises ValueError: if a frame id contains a zero character.
-    """
-    buffer, stamps, numbers, ends = _records(ids, poses, np.full(len(poses), _HEADER), 0)
-    begins = 4 * stamps[:, 0] - 4
-    buffer[begins + 1] = 1
-    return StampedMessages(
-        buffer, stamps, numbers, list(zip(begins.tolist(), ends.tolist(), strict=True)))
+    def _write_strings(
+        self, data: NDArray[np.uint8], lengths: NDArray[np.int64], places: NDArray[np.int64],
+    ) -> None:
+        """
+        Write a string into each record.
 
-
-def _records(
-    columns: Sequence[Sequence[str]], poses: PoseArray, room: NDArray[np.int64], start: int,
-) -> tuple[NDArray[np.uint8], NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """
-    Write records of a stamp, strings and seven numbers, one after the other.
-
-    :param columns: sequences of as many strings as there are records.
-    :param poses: the seven numbers of each record.
-    :param room: number of free bytes at the beginning of each record.
-    :param start: offset of the first record in the buffer, a multiple of 8. All others follow at
-        multiples of 8, since each one ends with the numbers.
-    :return: a buffer with the records, with zero stamps; the indices of the stamp and of the
-        numbers of each record, as in :class:`StampedMessages`; and the offset behind its last
-        byte.
-    """
-    # Offsets in a record at first, one for each record.
-    offsets = room + _STAMP
-    strings = []
-    for column in columns:
-        data = np.frombuffer('\0'.join([*column, '']).encode(), np.uint8)
-        lengths = np.diff(np.flatnonzero(data == 0), prepend=-1)
-        if len(lengths) != len(column):
-            msg = 'a frame id contains a zero character, which no message can carry'
-            raise ValueError(msg)
-        offsets = _aligned(offsets, 4)
-        strings.append((data, lengths, offsets))
-        offsets = offsets + _LENGTH + lengths
-    offsets = _aligned(offsets, 8)
-    sizes = offsets + _NUMBERS
-    ends = start + np.cumsum(sizes)
-    begins = ends - sizes
-    buffer = np.zeros(start + int(sizes.sum()) + 8, np.uint8)
-    for data, lengths, place in strings:
-        buffer.view('<i4')[(begins + place) // 4] = lengths
+        :param data: the bytes of all strings, with their zeros.
+        :param lengths: the length of each.
+        :param places: the offset of each in the buffer.
+        """
+        self._buffer.view('<i4')[places // 4] = lengths
         bounds = np.append(0, np.cumsum(lengths))
         # Each byte moves as far as the first one of its string.
-        moves = begins + place + _LENGTH - bounds[:-1]
+        moves = places + _LENGTH - bounds[:-1]
         # The indices of all bytes at once would take many times the memory of the strings.
         parts = np.searchsorted(bounds[:-1], np.arange(0, len(data), _BYTES_AT_A_TIME))
         for first, last in pairwise([*parts.tolist(), len(lengths)]):
             begin, end = bounds[[first, last]].tolist()
             targets = np.arange(begin, end) + np.repeat(moves[first:last], lengths[first:last])
-            buffer[targets] = data[begin:end]
-    stamps = (begins + room)[:, np.newaxis] // 4 + np.arange(2)
-    numbers = (begins + offsets)[:, np.newaxis] // 8 + np.arange(7)
-    buffer.view('<f8')[numbers] = poses
-    return buffer, stamps, numbers, ends
+            self._buffer[targets] = data[begin:end]
+
+
+class SerializedNames(NamedTuple):
+    """The names in a JointState."""
+
+    names: tuple[str, ...]
+    data: bytes
+    """Bytes of alignment between the names may differ from message to message."""
 
 
 class JointStateBytes(NamedTuple):
@@ -175,51 +188,49 @@ class JointStateBytes(NamedTuple):
 
     stamp: tuple[int, int]
     """Seconds and nanoseconds."""
-    names: tuple[str, ...]
+    names: SerializedNames
     positions: NDArray[np.float64]
-    serialized_names: bytes
-    """Bytes of alignment between the names may differ from message to message."""
 
 
-def joint_state_from_bytes(data: bytes, before: JointStateBytes | None = None) -> JointStateBytes:
+def joint_state_from_bytes(data: bytes, known: SerializedNames | None = None) -> JointStateBytes:
     """
     Read a message.
 
     :param data: the serialized message.
-    :param before: an earlier message; equal names are not read again.
+    :param known: names of an earlier message; they are not read again if they are the same.
     :raises ValueError: if it is not a whole message in plain CDR, or if it is too large.
     """
     if len(data) > MOST_BYTES:
         msg = f'it has {len(data)} bytes, more than {MOST_BYTES}'
         raise ValueError(msg)
-    order = _ORDERS.get(data[:2])
-    if order is None:
+    formats = _FORMATS.get(data[:2])
+    if formats is None:
         msg = f'it begins with 0x{data[:2].hex()}, which is not plain CDR'
         raise ValueError(msg)
     try:
-        sec, nanosec, length = struct.unpack_from(f'{order}iII', data, _START)
+        sec, nanosec, length = formats.stamp_and_length.unpack_from(data, _START)
         begin = _aligned(_START + 12 + length, 4)
-        (name_count,) = struct.unpack_from(f'{order}I', data, begin)
-        if before is not None and data.startswith(before.serialized_names, begin):
-            names, end = before.names, begin + len(before.serialized_names)
+        (name_count,) = formats.length.unpack_from(data, begin)
+        if known is not None and data.startswith(known.data, begin):
+            names, end = known, begin + len(known.data)
         else:
             end = begin + 4
             read = []
             for _ in range(name_count):
                 place = _aligned(end, 4)
-                (length,) = struct.unpack_from(f'{order}I', data, place)
+                (length,) = formats.length.unpack_from(data, place)
                 end = place + 4 + length
                 # The length counts a zero at the end.
                 read.append(data[place + 4:end - 1].decode(errors='replace'))
-            names = tuple(read)
-        (count,) = struct.unpack_from(f'{order}I', data, _aligned(end, 4))
+            names = SerializedNames(tuple(read), data[begin:end])
+        (count,) = formats.length.unpack_from(data, _aligned(end, 4))
         # Numbers are aligned to eight bytes, counted from the beginning of the fields.
         numbers = _aligned(_aligned(end, 4) + 4 - _START, 8) + _START
-        positions = np.frombuffer(data, f'{order}f8', count, numbers)
+        positions = np.frombuffer(data, formats.number, count, numbers)
     except (struct.error, ValueError) as error:
         msg = f'it ends too early: {error}'
         raise ValueError(msg) from error
-    return JointStateBytes((sec, nanosec), names, positions, data[begin:end])
+    return JointStateBytes((sec, nanosec), names, positions)
 
 
 def _aligned(offset: Offset, size: int) -> Offset:

@@ -104,13 +104,13 @@ def status_from_scene(
         'warnings': str(len(warnings)),
         'first warning': str(warnings[0]) if warnings else '',
         'last error': '\n'.join(failure),
-        'joints not reported': str(len(unreported.names)),
-        'first joint not reported': unreported.names[0] if unreported.names else '',
+        'joints not reported': str(unreported.number),
+        'first joint not reported': unreported.first,
     }
     if failure:
         level = DiagnosticStatus.ERROR
         text = f'the last load failed, the scene before it is published: {failure[0]}'
-    elif unreported.names:
+    elif unreported.number:
         level = DiagnosticStatus.WARN
         text = line_about_unreported_joints(unreported)
     elif warnings:

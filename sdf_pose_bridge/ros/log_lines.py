@@ -28,9 +28,11 @@ MOST_LINES = 20
 class MissingJoints(NamedTuple):
     """Joints that no message has named."""
 
-    names: tuple[str, ...] = ()
-    topics: tuple[str, ...] = ()
-    """The full names of the topics on which messages can name the first one."""
+    number: int = 0
+    first: str = ''
+    """The name of the first one."""
+    topics: Sequence[str] = ()
+    """The full names of the topics on which messages can name it."""
 
 
 def lines_from_error(error: Exception) -> list[str]:
@@ -142,11 +144,10 @@ def line_about_gazebo(count: int) -> str:
 
 def line_about_unreported_joints(joints: MissingJoints) -> str:
     """Return a line with the number of joints without reported positions, at least one."""
-    names = joints.names
-    have = 'has' if len(names) == 1 else 'have'
+    have = 'has' if joints.number == 1 else 'have'
     return (
-        f'{count_in_words(len(names), "joint")} {have} not been reported yet, for example '
-        f'{names_in_line(names[:1])}; frames that a joint moves have no transforms until a '
+        f'{count_in_words(joints.number, "joint")} {have} not been reported yet, for example '
+        f'{names_in_line([joints.first])}; frames that a joint moves have no transforms until a '
         f'message on {" or ".join(joints.topics) or "a topic"} names the joint')
 
 

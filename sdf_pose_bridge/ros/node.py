@@ -38,7 +38,10 @@ from sdf_pose_bridge.ros.published_frames import frames_from_scene, PublishedFra
 from sdf_pose_bridge.ros.publishers import NANOSECONDS, TextPublisher
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.ros.services import add_services, SERVICE_QOS, set_pose
-from sdf_pose_bridge.ros.topic_names import joint_state_topics_from_patterns
+from sdf_pose_bridge.ros.topic_names import (
+    joint_state_topics_from_patterns,
+    sentence_about_too_many_topics,
+)
 from sdf_pose_bridge.sdformat.include.uris import AddressError
 from sdf_pose_bridge.tf.loaded_scene import files_behind_error, LoadedScene
 from sdf_pose_bridge.tf.lookup import PoseLookup
@@ -113,13 +116,15 @@ class SdfPoseBridge:
         """Publish a scene on the topics of the settings."""
         frames = await frames_from_scene(self._node, loaded, self._settings, self._frames)
         async with self._publishing:
-            # Joints have moved while messages were made.
-            frames.take_over(self._frames)
             before, self._loaded, self._frames = self._loaded, loaded, frames
             self._follow_joints()
+            # From then on, nothing publishes the frames before.
+            await self._process_messages()
             if loaded is not before:
-                frames.publish_tf()
+                frames.publish_tf_static()
             await frames.publish_topics()
+            if self._joint_states is not None:
+                self._joint_states.publish_topics()
         if loaded is not before:
             lines = await run_in_thread(
                 self._node, lambda: lines_about_lost_frames(before.tree, loaded.tree))
@@ -133,27 +138,32 @@ class SdfPoseBridge:
     def _follow_joints(self) -> None:
         """Subscribe to joint states if moving frames follow them."""
         settings, moving, current = self._settings, self._frames.moving, self._joint_states
-        rule = settings.publish_frequency, settings.ignore_timestamp
-        if current is not None and (not moving or current.rule != rule):
-            current.destroy()
-            current = self._joint_states = None
         if moving is None:
+            if current is not None:
+                current.end()
+                self._joint_states = None
             return
         topics = joint_state_topics_from_patterns(
             settings.joint_states_topics, self._loaded.tree.world, moving.positions.models,
             self._node.resolve_topic_name)
+        # Imported here because it takes 8 ms, and joints do not move by default.
+        from sdf_pose_bridge.ros.joint_state_thread import Rule
+        from sdf_pose_bridge.ros.joint_states import JointStates
+        rule = Rule(settings.publish_frequency, settings.ignore_timestamp)
         if current is not None:
-            current.replace(moving, topics)
+            current.follow(moving, topics, rule)
         else:
-            # Imported here because it takes 8 ms, and joints do not move by default.
-            from sdf_pose_bridge.ros.joint_states import JointStates
             self._joint_states = JointStates(self._node, moving, topics, rule)
 
-    def _current_lookup(self) -> PoseLookup:
+    async def _current_lookup(self) -> PoseLookup:
         """Return the current look-up of poses, with the positions of all messages so far."""
-        if self._joint_states is not None:
-            self._joint_states.take_waiting()
+        await self._process_messages()
         return self._loaded.lookup
+
+    async def _process_messages(self) -> None:
+        """Wait until the messages of joint states so far are processed."""
+        if self._joint_states is not None:
+            await self._joint_states.catch_up()
 
     def _unreported_joints(self) -> MissingJoints:
         return MissingJoints() if self._joint_states is None else self._joint_states.unreported
@@ -222,8 +232,7 @@ class SdfPoseBridge:
         self, request: SetPose.Request, response: SetPose.Response,
     ) -> SetPose.Response:
         """Write a measured pose, and respond when it is published."""
-        if self._joint_states is not None:
-            self._joint_states.take_waiting()
+        await self._process_messages()
         loaded = self._loaded
         try:
             answer: SetPose.Response = await run_in_thread(
@@ -254,6 +263,8 @@ class SdfPoseBridge:
                     parameter.name in ('sdf_file', 'robot_description')
                     for parameter in parameters):
                 loaded = await self._load(settings)
+            if settings.joint_states_topics != self._settings.joint_states_topics:
+                _check_number_of_topics(settings, loaded)
             result = self._node.set_parameters_atomically(parameters)
             if result.successful:
                 await self._apply(settings, loaded)
@@ -310,3 +321,10 @@ async def start_bridge(
     frames = await frames_from_scene(node, loaded, settings, frames)
     await frames.publish_topics()
     SdfPoseBridge(node, frames, settings, loaded)
+
+
+def _check_number_of_topics(settings: Settings, loaded: LoadedScene) -> None:
+    models = () if loaded.joint_positions is None else loaded.joint_positions.models
+    sentence = sentence_about_too_many_topics(settings.joint_states_topics, models)
+    if sentence:
+        raise SettingsError([sentence])

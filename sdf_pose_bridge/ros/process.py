@@ -107,7 +107,7 @@ def _exit_code_from_node(node: Node, program: Program, file: str = '') -> int:
             node.get_logger().fatal(line)
         return 1
     frames = PublishedFrames(Publishers(node), loaded.tree, loaded.joint_positions, {})
-    frames.publish_tf()
+    frames.publish_tf_static()
     # Imported here because it is slow to import, and listeners wait for /tf_static.
     from sdf_pose_bridge.ros.node import start_bridge
     # Modules and the first scene are not garbage. Searching them would stop all threads.

@@ -4,27 +4,28 @@
 The frames of a TF tree on their topics.
 
 These are ``/tf_static``, ``/tf``, ``~/transforms`` and ``~/poses/...``. Fixed frames are published
-once, moving frames repeatedly.
+once, moving frames repeatedly, by the thread that follows joint states.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property, lru_cache
+import contextlib
+from functools import cached_property
 from itertools import compress
 
 from geometry_msgs.msg import PoseStamped, TransformStamped
 import numpy as np
 from numpy.typing import NDArray
+from rclpy.exceptions import InvalidHandle
 from rclpy.logging import LoggingSeverity
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.geometry.poses import PoseArray
 from sdf_pose_bridge.ros.background import run_in_thread
-from sdf_pose_bridge.ros.cdr import stamped_messages, StampedMessages, tf_message
+from sdf_pose_bridge.ros.cdr import StampedRecords, Stamps
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.publishers import NANOSECONDS, Publishers, Stamp, Topic
 from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns, PoseTopics
@@ -37,9 +38,6 @@ from sdf_pose_bridge.tf.tree import TfTree
 TF_STATIC = Topic('/tf_static', TFMessage, is_overridable=True)
 TF = Topic('/tf', TFMessage, depth=100, is_latched=False, is_overridable=True)
 """With the quality of service that it has in tf2_ros."""
-
-_MOST_MESSAGES = 100
-"""How many messages for ``/tf`` are kept, to be sent again with other poses."""
 
 
 async def frames_from_scene(
@@ -82,8 +80,7 @@ class PublishedFrames:
     :param positions: the positions of its joints; None if joints move nothing.
     :param pose_topics: the names of the topics of poses, by frame id.
     :param has_transforms: whether to publish on ``~/transforms``.
-    :param before: the frames that these ones replace. Joints with the same names keep their
-        positions; the stamp stays if the tree does.
+    :param before: the frames that these ones replace; the stamp stays if the tree does.
     """
 
     def __init__(
@@ -105,8 +102,7 @@ class PublishedFrames:
         """The moving frames; None if joints move nothing."""
         if tree.moving is not None and positions is not None:
             self.moving = PublishedMovingFrames(
-                publishers, tree, tree.moving, positions, self._pose_topics,
-                before.moving if before else None)
+                publishers, tree, tree.moving, positions, self._pose_topics)
 
     def lay_out(self, *, with_tf: bool) -> None:
         """
@@ -114,24 +110,18 @@ class PublishedFrames:
 
         :param with_tf: whether to make the message of ``/tf_static`` too.
         """
-        if with_tf:
-            self._tf_static_message  # noqa: B018 - to look at it makes it
-        self._fixed_transforms  # noqa: B018
+        if with_tf or self._transforms_topics:
+            self._fixed_transforms  # noqa: B018 - to look at it makes it
         self._fixed_poses  # noqa: B018
 
-    def take_over(self, before: PublishedFrames) -> None:
-        """Take the positions of joints from the frames that these ones replace."""
-        if self.moving is not None and before.moving is not None:
-            self.moving.take_over(before.moving)
-
-    def publish_tf(self) -> None:
-        """Publish all fixed frames on ``/tf_static``, and all moving ones on ``/tf``."""
-        self._publish_tf_static()
-        if self.moving is not None:
-            self.moving.publish_all()
+    def publish_tf_static(self) -> None:
+        """Publish all fixed frames on ``/tf_static``."""
+        records = self._fixed_transforms
+        records.set_stamps(self.stamp)
+        self._tf_static.publish(records.tf_message())
 
     async def publish_topics(self) -> None:
-        """Publish all frames on all other topics; fixed ones with the stamp of ``/tf_static``."""
+        """Publish all fixed frames on all other topics, and make those of moving frames."""
         topics = [TF_STATIC, *self._transforms_topics, *self._pose_topics.values()]
         if self.moving is not None:
             topics.append(TF)
@@ -140,116 +130,185 @@ class PublishedFrames:
         # All publishers of poses may take a second.
         for topic in self._transforms_topics:
             self.publishers.opened(topic)
-        await self._send(self._fixed_transforms)
+        await self._send_transforms()
         await self.publishers.replace(dict.fromkeys(topics))
-        await self._send(self._fixed_poses)
-        if self.moving is not None:
-            self.moving.publish_topics(only_listeners=False)
+        await self._send(*self._fixed_poses)
 
     async def publish_fixed_again(self) -> None:
         """Publish all fixed frames on all topics with a new stamp."""
         self.stamp = self.publishers.now()
-        self._publish_tf_static()
-        await self._send(self._fixed_transforms)
-        await self._send(self._fixed_poses)
+        self.publish_tf_static()
+        await self._send_transforms()
+        await self._send(*self._fixed_poses)
 
-    def _publish_tf_static(self) -> None:
-        (message,) = self._tf_static_message.with_stamp(*self.stamp)
-        self._tf_static.publish(message)
+    async def _send_transforms(self) -> None:
+        for topic in self._transforms_topics:
+            records = self._fixed_transforms
+            await self._send([topic] * len(records), records)
 
-    async def _send(self, content: tuple[Sequence[Topic], StampedMessages]) -> None:
-        topics, messages = content
-        await self.publishers.send(topics, messages.with_stamp(*self.stamp))
-
-    @cached_property
-    def _tf_static_message(self) -> StampedMessages:
-        return tf_message(*_transforms(self.tree, self.tree.fixed_indices))
+    async def _send(self, topics: Sequence[Topic], records: StampedRecords) -> None:
+        records.set_stamps(self.stamp)
+        await self.publishers.send(topics, records.messages())
 
     @cached_property
-    def _fixed_transforms(self) -> tuple[Sequence[Topic], StampedMessages]:
-        indices = self.tree.fixed_indices if self._transforms_topics else np.array([], np.intp)
-        messages = stamped_messages(*_transforms(self.tree, indices))
-        return self._transforms_topics * len(indices), messages
+    def _fixed_transforms(self) -> StampedRecords:
+        return _records_of_transforms(self.tree, self.tree.fixed_indices)
 
     @cached_property
-    def _fixed_poses(self) -> tuple[Sequence[Topic], StampedMessages]:
+    def _fixed_poses(self) -> tuple[Sequence[Topic], StampedRecords]:
         tree = self.tree
         moving = set() if tree.moving is None else set(tree.moving.posed_indices.tolist())
         posed = [
             (index, self._pose_topics[frame_id]) for index, frame_id in enumerate(tree.frame_ids)
             if frame_id in self._pose_topics and index not in moving]
         poses = tree.poses_in_pose_frame[[index for index, _ in posed]]
-        return [topic for _, topic in posed], stamped_messages(
+        return [topic for _, topic in posed], StampedRecords(
             [[tree.pose_frame] * len(posed)], poses)
 
 
 class PublishedMovingFrames:
     """
-    The moving frames of a tree on their topics.
+    The moving frames of a tree on their topics. One thread publishes them.
 
+    A transform goes to ``/tf`` with a stamp that is newer than its last one, as TF rejects others.
+
+    :param positions: the positions of the joints; the caller sets them.
     :param pose_topics: the topics of poses, by frame id.
-    :param before: the moving frames that these ones replace. Joints with the same names keep their
-        positions.
     """
 
     def __init__(
         self, publishers: Publishers, tree: TfTree, moving: MovingFrames,
         positions: JointPositions, pose_topics: Mapping[str, Topic],
-        before: PublishedMovingFrames | None,
     ) -> None:
         self._publishers = publishers
-        self._tree = tree
         self.frames = moving
         self.positions = positions
-        """The positions of the joints; the caller sets them."""
-        if before is not None:
-            self.take_over(before)
+        # The last stamp of each moving transform, the newest of these, and which have to be
+        # published.
+        self._stamps_ns = np.full(len(moving.indices), NEVER)
+        self._newest_ns = NEVER
+        self._is_waiting = np.zeros(len(moving.indices), np.bool_)
         self._tf = publishers.opened(TF)
-        self._tf_message = lru_cache(_MOST_MESSAGES)(self._new_tf_message)
         self.transforms_topic = _transforms_topic(len(moving.indices), 'moving')
-        self._transform_messages = stamped_messages(*_transforms(tree, moving.indices))
+        self._transforms = _records_of_transforms(tree, moving.indices)
         topics = [pose_topics.get(tree.frame_ids[index]) for index in moving.posed_indices]
         self._posed_rows = [row for row, topic in enumerate(topics) if topic is not None]
         self._posed_topics = [topic for topic in topics if topic is not None]
-        self._pose_messages = stamped_messages(
+        self._poses = StampedRecords(
             [[tree.pose_frame] * len(self._posed_rows)],
             tree.poses_in_pose_frame[moving.posed_indices[self._posed_rows]])
-
-    def take_over(self, before: PublishedMovingFrames) -> None:
-        """Continue with the positions of joints with the same names."""
-        if before.positions is not self.positions:
-            self.positions.take_over(before.positions)
 
     @property
     def has_transform(self) -> NDArray[np.bool_]:
         """Which of the moving transforms follow from known positions."""
-        return self.frames.has_transform(self.positions.is_known)
+        return ~self.frames.depends_on(~self.positions.is_known)
+
+    def stamp(
+        self, rows: NDArray[np.intp], stamp_ns: int, *, ignore_stamps: bool = False,
+    ) -> NDArray[np.intp]:
+        """
+        Give moving transforms a stamp, before they are published or wait for it.
+
+        :param rows: their indices.
+        :param stamp_ns: the stamp in nanoseconds.
+        :param ignore_stamps: whether it need not be newer.
+        :return: those for which it is newer.
+        """
+        if stamp_ns <= self._newest_ns and not ignore_stamps:
+            rows = rows[self._stamps_ns[rows] < stamp_ns]
+        self._stamps_ns[rows] = stamp_ns
+        self._newest_ns = max(self._newest_ns, stamp_ns)
+        return rows
+
+    def wait(self, rows: NDArray[np.intp]) -> None:
+        """Have moving transforms wait for :meth:`publish_waiting`."""
+        self._is_waiting[rows] = True
+
+    def forget_stamps(self) -> None:
+        """Accept any stamp next, after time has jumped back."""
+        self._stamps_ns[:] = self._newest_ns = NEVER
+        self._is_waiting[:] = False
+        self.positions.forget_stamps()
+
+    def publish_waiting(self) -> bool:
+        """Publish the moving transforms that wait; return whether there are any."""
+        rows = np.flatnonzero(self._is_waiting)
+        if len(rows):
+            self.publish_tf(rows, self._stamps_ns[rows])
+        return len(rows) > 0
+
+    def publish_all(self) -> bool:
+        """
+        Publish all moving frames with known positions on ``/tf``.
+
+        :return: whether no message has given one of them a stamp; then they have the time of the
+            node.
+        """
+        rows = np.flatnonzero(self.has_transform)
+        last_ns = self.positions.stamps_ns[self.frames.last_dofs[rows]]
+        is_stamped = last_ns != NEVER
+        # TF would reject other transforms with the same stamps.
+        self._stamps_ns[rows[is_stamped]] = last_ns[is_stamped] + 1
+        self._newest_ns = int(self._stamps_ns.max(initial=NEVER))
+        if len(rows):
+            self.publish_tf(rows, np.where(is_stamped, last_ns + 1, self._publishers.now_ns()))
+        return len(rows) > 0 and not is_stamped.any()
 
     def publish_tf(self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64] | int) -> None:
         """
         Publish one message on ``/tf``.
 
-        :param rows: indices of the moving transforms in it.
+        :param rows: indices of the moving transforms in it, in ascending order.
         :param stamps_ns: the stamp of each of these, in nanoseconds; or one for all.
         """
-        message = self._tf_message(rows.tobytes())
-        message.set_poses(self.frames.transforms(self.positions.values)[rows])
-        (data,) = (
-            message.with_stamp(*divmod(stamps_ns, NANOSECONDS)) if isinstance(stamps_ns, int)
-            else message.with_stamps(_stamps_from_ns(stamps_ns)))
-        self._tf.publish(data)
+        self._is_waiting[rows] = False
+        self._transforms.set_poses(self.frames.transforms(self.positions.values))
+        self._tf.publish(
+            self._transforms.tf_message_of_rows(rows, _stamps_from_ns(stamps_ns)))
 
-    def _new_tf_message(self, rows: bytes) -> StampedMessages:
-        indices = self.frames.indices[np.frombuffer(rows, np.intp)]
-        return tf_message(*_transforms(self._tree, indices))
+    def publish_topics(self, *, only_listeners: bool) -> None:
+        """
+        Publish all moving frames with known positions on ``~/transforms`` and ``~/poses/...``.
 
-    def publish_all(self) -> None:
-        """Publish all moving frames with known positions on ``/tf``, with the time of the node."""
-        rows = np.flatnonzero(self.has_transform)
-        if len(rows):
-            self.publish_tf(rows, self._publishers.now_ns())
+        :param only_listeners: whether to leave out topics without subscribers.
+        """
+        # The executor destroys topics of frames that are no longer published.
+        with contextlib.suppress(InvalidHandle):
+            self._publish_transforms(only_listeners=only_listeners)
+            self._publish_poses(only_listeners=only_listeners)
 
-    def _stamps(self, dofs: Indices, dof_of_reference: int = NO_DOF) -> NDArray[np.int64]:
+    def _publish_transforms(self, *, only_listeners: bool) -> None:
+        publisher = self._wanted_publisher(self.transforms_topic, only_listeners=only_listeners)
+        if publisher is None:
+            return
+        self._transforms.set_poses(self.frames.transforms(self.positions.values))
+        self._transforms.set_stamps(self._stamps(self.frames.last_dofs))
+        for message in compress(self._transforms.messages(), self.has_transform):
+            publisher.publish(message)
+
+    def _publish_poses(self, *, only_listeners: bool) -> None:
+        publishers = [
+            self._wanted_publisher(topic, only_listeners=only_listeners)
+            for topic in self._posed_topics]
+        if not any(publishers):
+            return
+        frames, rows = self.frames, self._posed_rows
+        self._poses.set_poses(frames.poses(self.positions.values)[rows])
+        self._poses.set_stamps(
+            self._stamps(frames.posed_last_dofs[rows], frames.last_dof_of_pose_frame))
+        has_pose = frames.has_pose(self.positions.is_known)[rows]
+        for publisher, message, is_known in zip(
+                publishers, self._poses.messages(), has_pose, strict=True):
+            if publisher is not None and is_known:
+                publisher.publish(message)
+
+    def _wanted_publisher(self, topic: Topic, *, only_listeners: bool) -> Publisher | None:
+        publisher = self._publishers.existing(topic)
+        if publisher is None or (only_listeners and not publisher.get_subscription_count()):
+            return None
+        return publisher
+
+    def _stamps(self, dofs: Indices, dof_of_reference: int = NO_DOF) -> Stamps:
         """
         Return the stamps of poses, as messages take them.
 
@@ -261,48 +320,19 @@ class PublishedMovingFrames:
         newest = np.maximum(known[dofs], known[dof_of_reference])
         return _stamps_from_ns(np.where(newest == NEVER, self._publishers.now_ns(), newest))
 
-    def publish_topics(self, *, only_listeners: bool) -> None:
-        """
-        Publish all moving frames with known positions on ``~/transforms`` and ``~/poses/...``.
 
-        :param only_listeners: whether to leave out topics without subscribers.
-        """
-        def wanted_publisher(topic: Topic) -> Publisher | None:
-            publisher = self._publishers.existing(topic)
-            if publisher is None or (only_listeners and not publisher.get_subscription_count()):
-                return None
-            return publisher
-
-        publisher = wanted_publisher(self.transforms_topic)
-        if publisher is not None:
-            self._transform_messages.set_poses(self.frames.transforms(self.positions.values))
-            stamps = self._stamps(self.frames.last_dofs)
-            for message in compress(
-                    self._transform_messages.with_stamps(stamps), self.has_transform):
-                publisher.publish(message)
-        publishers = list(map(wanted_publisher, self._posed_topics))
-        if any(publishers):
-            self._pose_messages.set_poses(
-                self.frames.poses(self.positions.values)[self._posed_rows])
-            has_pose = self.frames.has_pose(self.positions.is_known)[self._posed_rows]
-            stamps = self._stamps(
-                self.frames.posed_last_dofs[self._posed_rows], self.frames.last_dof_of_pose_frame)
-            for publisher, message, is_known in zip(
-                    publishers, self._pose_messages.with_stamps(stamps), has_pose, strict=True):
-                if publisher is not None and is_known:
-                    publisher.publish(message)
+def _stamps_from_ns(stamps_ns: NDArray[np.int64] | int) -> Stamps:
+    """Return seconds and nanoseconds."""
+    if isinstance(stamps_ns, int):
+        return divmod(stamps_ns, NANOSECONDS)
+    stamps = np.empty((len(stamps_ns), 2), np.int64)
+    np.divmod(stamps_ns, NANOSECONDS, stamps[:, 0], stamps[:, 1])
+    return stamps
 
 
-def _stamps_from_ns(stamps_ns: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return seconds and nanoseconds, in a last dimension of two."""
-    return np.stack(np.divmod(stamps_ns, NANOSECONDS), axis=-1)
-
-
-def _transforms(
-    tree: TfTree, indices: NDArray[np.intp],
-) -> tuple[Sequence[Sequence[str]], PoseArray]:
-    """Return the parents and children of transforms, and the transforms."""
-    return tree.ids_of_transforms(indices), tree.transforms[indices]
+def _records_of_transforms(tree: TfTree, indices: NDArray[np.intp]) -> StampedRecords:
+    """Return transforms with the ids of their parents and children."""
+    return StampedRecords(tree.ids_of_transforms(indices), tree.transforms[indices])
 
 
 def _transforms_topic(count: int, part: str) -> Topic:

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import array
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 import traceback
 from typing import Any, TypeAlias
 
@@ -40,7 +40,7 @@ MOST_NUMBERS = 1_000_000
 """Largest number of values in a call of ``~/convert_poses``."""
 
 
-def add_services(node: Node, lookup: Callable[[], PoseLookup]) -> None:
+def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> None:
     """
     Offer ``~/convert_rotation``, ``~/convert_poses`` and ``~/lookup_pose``.
 
@@ -72,7 +72,7 @@ def add_services(node: Node, lookup: Callable[[], PoseLookup]) -> None:
         return await answered(answer_to_convert_poses, request, response, is_quick=False)
 
     async def lookup_pose(request: LookupPose.Request, response: LookupPose.Response) -> Any:
-        current = lookup()
+        current = await lookup()
         reference = request.relative_to
         # Finding the nearest name takes long if there are many.
         return await answered(

@@ -171,10 +171,9 @@ def joint_state_topics_from_patterns(
     :param full_name: returns the full name of a topic, after it is remapped.
     """
     warnings = []
-    if len(models) > MOST_BY_DEFAULT and any(MODEL_FIELD in pattern for pattern in patterns):
-        warnings.append(
-            f'no topics of joint states for single models: {len(models)} models with moving '
-            f'joints are more than {MOST_BY_DEFAULT}; publish some of them by another node')
+    sentence = sentence_about_too_many_topics(patterns, models)
+    if sentence:
+        warnings.append(f'no topics of joint states for single models: {sentence}')
         models = ()
     names = []
     for pattern in dict.fromkeys(patterns):
@@ -212,6 +211,20 @@ def joint_state_topics_from_patterns(
             'joint_states_topics names no topic, because there is no world with a model that has '
             'moving joints; joint_states names one for all joints')
     return JointStateTopics(topics, tuple(warnings))
+
+
+def sentence_about_too_many_topics(patterns: Sequence[str], models: Sequence[str]) -> str:
+    """
+    Return a sentence if there would be too many topics of joint states, else an empty one.
+
+    :param patterns: as for :func:`joint_state_topics_from_patterns`.
+    :param models: likewise.
+    """
+    count = sum(len(models) if MODEL_FIELD in each else 1 for each in dict.fromkeys(patterns))
+    return '' if count <= MOST_BY_DEFAULT else (
+        f'joint_states_topics names {count} topics with {len(models)} models that have moving '
+        f'joints, and at most {MOST_BY_DEFAULT} are allowed; publish some of the models by '
+        'another node')
 
 
 def _level_from_text(text: str) -> str:

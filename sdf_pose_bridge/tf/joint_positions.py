@@ -69,13 +69,22 @@ class Selection(NamedTuple):
     """The degree of freedom of each of these entries."""
     followers: tuple[Follower, ...]
     """Other degrees of freedom that follow these; each after its leader."""
-    unknown: tuple[str, ...]
-    """Unknown and ambiguous names."""
+    beside: NDArray[np.intp]
+    """All degrees of freedom in the same top-level models."""
 
     @property
-    def changed(self) -> set[int]:
+    def changed(self) -> list[int]:
         """All degrees of freedom that get a position."""
-        return {*self.dofs.tolist(), *(follower.dof for follower in self.followers)}
+        return [*self.dofs.tolist(), *(follower.dof for follower in self.followers)]
+
+
+class UnreportedDofs(NamedTuple):
+    """Degrees of freedom without a known position."""
+
+    joint_count: int
+    """The number of their joints."""
+    first: int
+    """The first of them."""
 
 
 class JointPositions:
@@ -93,14 +102,16 @@ class JointPositions:
         unreported: UnreportedJoints = UnreportedJoints.NONE,
     ) -> None:
         self.values = np.zeros(len(dofs))
-        """The position of each degree of freedom, in radians or metres."""
+        """The position of each degree of freedom, in radians or metres. A change is another array,
+        so that another thread has all values of one time."""
         self.is_reported = np.zeros(len(dofs), np.bool_)
         """Whether each has a reported position, or follows from one that has."""
+        self.unreported_count = len(dofs)
+        """Number of those that have none."""
         self.stamps_ns = np.full(len(dofs), NEVER)
-        """The stamp of the last message about the top-level model of each."""
-        # The topic of each position, and the time of sending.
-        self._topics = np.zeros(len(dofs), np.intp)
-        self._sent_ns = np.full(len(dofs), NEVER)
+        """The newest stamp of a message about the top-level model of each."""
+        self._stamps_of_values_ns = np.full(len(dofs), NEVER)
+        self._newest_stamp_ns = NEVER
         self._unreported = unreported
         self.dofs = tuple(dofs)
         joints = np.array([each.joint.element for each in dofs], np.int32)
@@ -113,6 +124,10 @@ class JointPositions:
         self._indices = _indices_from_names(
             self.names, scene, dofs, self._top_level_elements.tolist(), model)
         self._followers = _followers(dofs)
+        # Followers have the position of their leader.
+        self._is_free = np.ones(len(dofs), np.bool_)
+        self._is_free[[each.dof for found in self._followers.values() for each in found]] = False
+        self._joints = joints
         self._slides = frozenset(
             name + SLIDE_SUFFIX for name, each in zip(self.names, dofs, strict=True)
             if each.rad_per_unit and each.m_per_unit)
@@ -129,15 +144,12 @@ class JointPositions:
             return self.is_reported
         return np.ones(len(self.dofs), np.bool_)
 
-    @property
-    def missing(self) -> tuple[str, ...]:
-        """A name for each joint without a known position that follows from no other one."""
-        followers = {each.dof for found in self._followers.values() for each in found}
-        names: dict[int, str] = {}
-        for dof in np.flatnonzero(~self.is_known).tolist():
-            if dof not in followers:
-                names.setdefault(self.dofs[dof].joint.element, self.names[dof])
-        return tuple(names.values())
+    def unreported(self) -> UnreportedDofs | None:
+        """Find the free degrees of freedom without a known position; None if there are none."""
+        dofs = np.flatnonzero(self._is_free & ~self.is_known)
+        if not len(dofs):
+            return None
+        return UnreportedDofs(len(np.unique(self._joints[dofs])), int(dofs[0]))
 
     def selection(self, names: Sequence[str], model: str = '') -> Selection:
         """
@@ -156,15 +168,19 @@ class JointPositions:
                     reached[follower.dof] = None
                     followers.append(follower)
                     waiting.append(follower.dof)
+        top_level = self._top_level_elements[list(reached)]
         return Selection(
             np.array(rows, np.intp), np.array(dofs, np.intp), tuple(followers),
-            tuple(name for name in names
-                  if name not in indices and name not in self._slides))
+            np.flatnonzero(np.isin(self._top_level_elements, top_level)))
 
-    def dofs_beside(self, dofs: Iterable[int]) -> NDArray[np.intp]:
-        """Return all degrees of freedom in the top-level models of some."""
-        return np.flatnonzero(
-            np.isin(self._top_level_elements, self._top_level_elements[list(dofs)]))
+    def unknown(self, names: Iterable[str], model: str = '') -> list[str]:
+        """
+        Find names that are unknown or ambiguous.
+
+        :param model: as for :meth:`selection`.
+        """
+        indices = self._indices[model]
+        return [name for name in names if name not in indices and name not in self._slides]
 
     def hint(self, name: str, model: str = '') -> str:
         """
@@ -175,35 +191,17 @@ class JointPositions:
         """
         return hint_from_names(name, self._indices[model])
 
-    def take_newer(
-        self, selection: Selection, topic: int, sent_ns: int,
-    ) -> NDArray[np.bool_] | None:
-        """
-        Decide which positions of a message count, and take note of their sender.
-
-        :param selection: the degrees of freedom of the message.
-        :param topic: a number that distinguishes topics.
-        :param sent_ns: the time of sending.
-        :return: for each of :attr:`Selection.rows` whether no other topic has given a position
-            that was sent later; None if all count. Messages on one topic count in the order in
-            which they come.
-        """
-        dofs = selection.dofs
-        is_older = self._sent_ns[dofs] > sent_ns
-        is_newer = None
-        if is_older.any():
-            is_newer = ~is_older | (self._topics[dofs] == topic)
-            dofs = dofs[is_newer]
-        self._topics[dofs] = topic
-        self._sent_ns[dofs] = sent_ns
-        return is_newer
-
-    def update(self, selection: Selection, values: NDArray[np.float64]) -> list[str]:
+    def update(
+        self, selection: Selection, values: NDArray[np.float64], stamp_ns: int = 0,
+        *, ignore_stamps: bool = False,
+    ) -> list[str]:
         """
         Set positions.
 
         :param selection: the degrees of freedom of the values.
         :param values: a value for each name that was looked up, in radians or metres.
+        :param stamp_ns: their time. A position of a later time stays.
+        :param ignore_stamps: whether no position stays.
         :return: the names whose values are not finite or too large; their positions stay.
         """
         dofs, new = selection.dofs, values[selection.rows]
@@ -214,14 +212,36 @@ class JointPositions:
             is_valid = sizes <= LARGEST_POSITION
             invalid = [self.names[dof] for dof in dofs[~is_valid].tolist()]
             dofs, new = dofs[is_valid], new[is_valid]
-        self.values[dofs] = new
-        self.is_reported[dofs] = True
+        stamps_ns, newest_of_models_ns = self._stamps_of_values_ns, stamp_ns
+        if stamp_ns < self._newest_stamp_ns:
+            newest_of_models_ns = np.maximum(self.stamps_ns[selection.beside], stamp_ns)
+            if not ignore_stamps:
+                is_newer = stamps_ns[dofs] <= stamp_ns
+                dofs, new = dofs[is_newer], new[is_newer]
+        self.stamps_ns[selection.beside] = newest_of_models_ns
+        self._newest_stamp_ns = max(self._newest_stamp_ns, stamp_ns)
+        changed = self.values.copy()
+        changed[dofs] = new
+        stamps_ns[dofs] = stamp_ns
+        if self.unreported_count:
+            self.is_reported[dofs] = True
+        found = set(dofs.tolist()) if selection.followers else set()
         for dof, leader, mimic in selection.followers:
-            value = mimic.multiplier * (self.values[leader] - mimic.reference) + mimic.offset
-            if self.is_reported[leader] and abs(value) <= LARGEST_POSITION:
-                self.values[dof] = value
+            value = mimic.multiplier * (changed[leader] - mimic.reference) + mimic.offset
+            if leader in found and abs(value) <= LARGEST_POSITION:
+                changed[dof] = value
+                stamps_ns[dof] = stamp_ns
                 self.is_reported[dof] = True
+                found.add(dof)
+        self.values = changed
+        if self.unreported_count:
+            self.unreported_count = int(np.count_nonzero(~self.is_reported))
         return invalid
+
+    def forget_stamps(self) -> None:
+        """Accept any time next, after time has jumped back."""
+        self.stamps_ns[:] = self._stamps_of_values_ns[:] = NEVER
+        self._newest_stamp_ns = NEVER
 
     def take_over(self, before: JointPositions) -> None:
         """
@@ -230,11 +250,16 @@ class JointPositions:
         :param before: the positions in the scene that is replaced.
         """
         rows = {name: row for row, name in enumerate(before.names)}
-        for dof, name in enumerate(self.names):
-            if name in rows:
-                self.values[dof] = before.values[rows[name]]
-                self.is_reported[dof] = before.is_reported[rows[name]]
-                self.stamps_ns[dof] = before.stamps_ns[rows[name]]
+        pairs = [(dof, rows[name]) for dof, name in enumerate(self.names) if name in rows]
+        here, there = np.reshape(np.array(pairs, np.intp), (-1, 2)).T
+        values = self.values.copy()
+        values[here] = before.values[there]
+        self.values = values
+        self.is_reported[here] = before.is_reported[there]
+        self.unreported_count = int(np.count_nonzero(~self.is_reported))
+        self.stamps_ns[here] = before.stamps_ns[there]
+        self._stamps_of_values_ns[here] = before._stamps_of_values_ns[there]
+        self._newest_stamp_ns = before._newest_stamp_ns
 
 
 def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
@@ -253,7 +278,7 @@ def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
     state = JointPositions(scene, motion.dofs)
     selection = state.selection(list(positions))
     invalid = state.update(selection, np.array(list(positions.values()), float))
-    for name in selection.unknown:
+    for name in state.unknown(positions):
         known = (f'the moving joints are {quoted_names(state.names, _MOST_NAMES_SHOWN)}'
                  if state.names else 'the file has no moving joint')
         msg = f'"{name}" is not the name of one moving joint{state.hint(name)}; {known}'

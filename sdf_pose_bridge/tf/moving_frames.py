@@ -4,8 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -58,7 +56,7 @@ class MovingFrames:
         self.last_dof_of_pose_frame = NO_DOF if pose_frame < 0 else int(last[pose_frame])
         self._pose_frame = pose_frame
         self._poses, self._elements = poses, elements
-        self._crossed = [
+        crossed = [
             _dofs_between(motion.previous, *ends) for ends in zip(
                 last_of_parents[self.indices].tolist(), last[self.indices].tolist(), strict=True)]
         identities = np.tile(Pose(), (len(self.indices), 1))
@@ -68,10 +66,10 @@ class MovingFrames:
         after = poses[self.indices]
         # The first part has all frames, the second those that cross two degrees of freedom, ...
         self._parts = []
-        for number in range(max(map(len, self._crossed), default=0)):
-            rows = [row for row, dofs in enumerate(self._crossed) if len(dofs) > number]
-            dofs = np.array([self._crossed[row][number] for row in rows])
-            is_last = np.array([[len(self._crossed[row]) == number + 1] for row in rows])
+        for number in range(max(map(len, crossed), default=0)):
+            rows = np.flatnonzero([len(dofs) > number for dofs in crossed])
+            dofs = np.array([crossed[row][number] for row in rows])
+            is_last = np.array([[len(crossed[row]) == number + 1] for row in rows])
             self._parts.append((rows, dofs, motion.screw_motions(
                 identities[rows] if number else before,
                 dofs, np.where(is_last, after[rows], identities[rows]))))
@@ -108,16 +106,16 @@ class MovingFrames:
         reference = self.pose_of_frame(self._pose_frame, positions)
         return canonical_relative_poses(np.array(reference), poses)
 
-    def has_transform(self, is_known: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    def depends_on(self, is_chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """
-        Return which of :meth:`transforms` follow from known positions.
+        Return which of :meth:`transforms` depend on some degrees of freedom.
 
-        :param is_known: whether the position of each degree of freedom is known.
+        :param is_chosen: whether each degree of freedom is one of these.
         :return: shape (m,).
         """
-        found = np.ones(len(self.indices), np.bool_)
+        found = np.zeros(len(self.indices), np.bool_)
         for rows, dofs, _ in self._parts:
-            found[rows] &= is_known[dofs]
+            found[rows] |= is_chosen[dofs]
         return found
 
     def has_pose(self, is_known: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -179,11 +177,6 @@ class MovingFrames:
         (moved,) = self._motion.moved_poses(
             np.array([pose]), np.array([element], np.int32), positions)
         return Pose(*moved.tolist())
-
-    def rows_moved_by(self, dofs: Sequence[int]) -> NDArray[np.intp]:
-        """Return the rows of :meth:`transforms` that depend on some degrees of freedom."""
-        chosen = set(dofs)
-        return np.flatnonzero([not chosen.isdisjoint(each) for each in self._crossed])
 
 
 def _dofs_between(previous: Indices, begin: int, end: int) -> list[int]:

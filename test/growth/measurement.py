@@ -12,7 +12,7 @@ import sys
 import time
 
 from sdf_pose_bridge import load, SdfError
-from sdf_pose_bridge.ros.cdr import tf_message
+from sdf_pose_bridge.ros.cdr import StampedRecords
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import FrameNames, tf_tree_from_scene, TfOptions
@@ -26,7 +26,7 @@ def outcome_of_load(path: str) -> str:
         if tree.moving is not None:
             JointPositions(scene, tree.moving.dofs, FrameNames.AUTO, '')
         fixed = tree.fixed_indices
-        tf_message(tree.ids_of_transforms(fixed), tree.transforms[fixed])
+        StampedRecords(tree.ids_of_transforms(fixed), tree.transforms[fixed]).tf_message()
         PoseLookup(scene, tree)
     except SdfError as error:
         return ' '.join(dict.fromkeys(each.code for each in error.errors))

@@ -152,3 +152,12 @@ def test_topics_that_become_one_are_reported_and_lose_nothing(start_bridge, file
 
     tf.listener.wait(have_moved, lambda: tf.last)
     move(joints, tf, 'r3/joint_states', 'r3', 0.5, 0.5)
+
+
+@pytest.mark.usefixtures('file', 'bridge')
+def test_a_setting_that_names_too_many_topics_is_rejected_with_their_number(tf):
+    set_parameters(tf.listener, use_joint_states=True)
+    patterns = [f'{{model}}/j{number}' for number in range(400)]
+    result, = set_parameters(tf.listener, joint_states_topics=patterns)
+    assert not result.successful
+    assert result.reason.startswith('joint_states_topics names 1200 topics with 3 models')

@@ -74,10 +74,10 @@ def test_what_can_wait_for_the_first_message_is_not_imported_before():
         'imported_by_numpy = set(sys.modules)\n'
         'import sdf_pose_bridge.ros.process\n'
         'from sdf_pose_bridge import load\n'
-        'from sdf_pose_bridge.ros.cdr import tf_message\n'
+        'from sdf_pose_bridge.ros.cdr import StampedRecords\n'
         'from sdf_pose_bridge.tf.tree import tf_tree_from_scene\n'
         'tree = tf_tree_from_scene(load("examples/work_cell.sdf"))\n'
-        'tf_message([tree.parent_ids, tree.frame_ids], tree.transforms).with_stamp(1, 2)\n'
+        'StampedRecords([tree.parent_ids, tree.frame_ids], tree.transforms).tf_message()\n'
         'imported = set(sys.modules) - imported_by_numpy\n'
         f'print([name for name in {WAITS_FOR_THE_FIRST_MESSAGE} if name in imported])')
     result = subprocess.run(

@@ -13,6 +13,7 @@ from sdf_pose_bridge.ros.given_parameters import settings_from_node
 from sdf_pose_bridge.ros.log_lines import MissingJoints
 from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
 
+NOTHING_MISSING = MissingJoints()
 LOADED_AT_NS = 1767323045_678900000
 GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
 LIGHT = '<light name="i" type="point"><pose relative_to="x"/></light>'
@@ -20,14 +21,13 @@ LIGHT = '<light name="i" type="point"><pose relative_to="x"/></light>'
 
 @pytest.fixture
 def status_of(make_node, tmp_path):
-    def status(text, *failure, unreported=()):
+    def status(text, *failure, unreported=NOTHING_MISSING):
         path = tmp_path / 'cell.sdf'
         path.write_text(text, encoding='utf-8')
         node = make_node('bridge', '-p', f'sdf_file:={path}', '-p', 'root_frame:=map')
         loaded = loaded_scene_from_request(settings_from_node(node).load_request)
         return status_from_scene(
-            loaded._replace(read_since_ns=LOADED_AT_NS), failure,
-            MissingJoints(tuple(unreported)), 'left/bridge')
+            loaded._replace(read_since_ns=LOADED_AT_NS), failure, unreported, 'left/bridge')
     return status
 
 
@@ -50,7 +50,7 @@ def test_warnings_of_what_is_served_are_counted(status_of, count, words):
 
 
 def test_joints_that_nobody_reports_are_a_warning(status_of):
-    status = status_of(GOOD, unreported=('arm/elbow', 'arm/wrist'))
+    status = status_of(GOOD, unreported=MissingJoints(2, 'arm/elbow'))
     assert status.level == DiagnosticStatus.WARN
     assert status.message.startswith(
         '2 joints have not been reported yet, for example "arm/elbow";')

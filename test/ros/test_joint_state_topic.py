@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""What messages on one topic of several change: which positions, with which stamp."""
+"""What is read of messages on one topic of several."""
 
 import time
 
@@ -9,12 +9,13 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from builtin_interfaces.msg import Time
-from rclpy.serialization import deserialize_message, serialize_message
+from rclpy.serialization import serialize_message
 from sdf_texts import joint, world_file
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 
 from sdf_pose_bridge import load_text
+from sdf_pose_bridge.ros.joint_names import Meanings
 from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
@@ -29,99 +30,58 @@ ROBOT = f"""<model name="{{}}"><link name="base"/><link name="upper"/><link name
 </model>"""
 
 
-@pytest.fixture
-def frames(make_node):
-    """Return the moving frames of a world with the robots ``a`` and ``b``."""
-    tree = tf_tree_from_scene(
-        scene := load_text(world_file(ROBOT.format('a') + ROBOT.format('b'))),
-        TfOptions(use_joint_states=True))
+@pytest.fixture(name='read')
+def make_read(make_node):
+    """Reads a message on the topic of the robot ``a`` of two; ``read(data)``."""
+    node = make_node('bridge')
+    scene = load_text(world_file(ROBOT.format('a') + ROBOT.format('b')))
+    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
     positions = JointPositions(scene, tree.moving.dofs)
-    return PublishedFrames(Publishers(make_node('bridge')), tree, positions, {}).moving
+    meanings = Meanings(PublishedFrames(Publishers(node), tree, positions, {}).moving)
+    topic = JointStateTopic(node, 'a/j', 'a')
 
-
-@pytest.fixture(name='topics')
-def joint_state_topics(frames):
-    """Return the topics of all joints and of each robot, by the names of the robots."""
-    return {
-        model: JointStateTopic(
-            frames._publishers._node, f'{model}joint_states', model, number, waits=False,
-            receive=None)
-        for number, model in enumerate(['', 'a', 'b'])}
-
-
-@pytest.fixture(name='update')
-def make_update(frames, topics):
-    """Has a message taken; ``update(model, sent_ns, **positions)`` returns what it changes."""
-    def update(model, sent_ns, **positions):
-        message = JointState(
-            header=Header(stamp=Time(sec=sent_ns)), name=[*positions],
-            position=[*positions.values()])
-        change = topics[model].update(frames, serialize_message(message), sent_ns)
-        if change is None:
+    def read(data):
+        message = topic.read(data, meanings, positions)
+        if message is None:
             return None
-        rows = frames.frames.indices[change.rows]
-        return {frames._tree.frame_ids[row] for row in rows}, change.stamp_ns // 10**9
-    return update
+        names = [positions.names[dof] for dof in message.meaning.selection.dofs]
+        return names, message.positions.tolist(), message.stamp_ns
+    return read
 
 
-def values_of(frames):
-    return dict(zip(frames.positions.names, frames.positions.values.tolist(), strict=True))
+def joint_state(sec=5, nanosec=0, **positions):
+    return serialize_message(JointState(
+        header=Header(stamp=Time(sec=sec, nanosec=nanosec)), name=list(positions),
+        position=list(positions.values())))
 
 
-def test_names_on_the_topic_of_a_model_are_of_its_joints(update, frames):
-    assert update('a', 5, turn=0.5) == ({'a/upper'}, 5)
-    assert update('b', 6, turn=0.25, grip=0.75) == ({'b/upper', 'b/finger'}, 6)
-    assert values_of(frames) == {'a/turn': 0.5, 'a/grip': 0.0, 'b/turn': 0.25, 'b/grip': 0.75}
+@pytest.mark.parametrize(('data', 'line'), [
+    (b'', 'not plain CDR'),
+    (joint_state(turn=0.5)[:30], 'it ends too early'),
+    (joint_state(sec=-1, turn=0.5), 'it has the stamp sec=-1 nanosec=0, and sec must not be'),
+    (joint_state(nanosec=10**9, turn=0.5), 'it has the stamp sec=5 nanosec=1000000000, and sec'),
+], ids=['empty', 'short', 'sec', 'nanosec'])
+def test_a_message_that_cannot_be_used_is_reported(read, capfd, data, line):
+    assert read(data) is None
+    assert read(data) is None
+    log = capfd.readouterr().err
+    assert log.count(f'a message on /a/j is ignored: {line}' if line[0] == 'i' else line) == 1
 
 
-def test_a_name_of_another_model_is_reported_with_the_model(update, capfd):
-    assert update('a', 5, **{'b/turn': 0.5, 'turn': 0.0}) == ({'a/upper'}, 5)
+def test_names_are_those_of_the_joints_of_the_model(read):
+    assert read(joint_state(turn=0.5, grip=0.25)) == (
+        ['a/turn', 'a/grip'], [0.5, 0.25], 5 * 10**9)
+
+
+def test_a_name_of_another_model_is_reported_with_the_model(read, capfd):
+    assert read(joint_state(**{'b/turn': 0.5, 'turn': 0.0}))[0] == ['a/turn']
     deadline, log = time.monotonic() + 20.0, ''
     while 'has "b/turn", not the name of one moving joint in model "a"' not in log:
         assert time.monotonic() < deadline, log
         log += capfd.readouterr().err
 
 
-def test_each_model_has_its_own_stamp(update, frames):
-    update('a', 5, turn=0.5)
-    update('b', 6, turn=0.5)
-    update('a', 7, grip=0.5)
-    seconds = (frames.positions.stamps_ns // 10**9).tolist()
-    assert dict(zip(frames.positions.names, seconds, strict=True)) == {
-        'a/turn': 7, 'a/grip': 7, 'b/turn': 6, 'b/grip': 6}
-
-
-def test_of_two_topics_that_name_a_joint_the_newer_message_counts(update, frames):
-    assert update('a', 5, turn=0.5) == ({'a/upper'}, 5)
-    assert update('', 4, **{'a/turn': 0.25, 'a/grip': 0.25}) == ({'a/finger'}, 4)
-    assert update('', 4, **{'a/turn': 0.25}) is None
-    assert values_of(frames)['a/turn'] == 0.5
-    assert update('', 6, **{'a/turn': 0.75, 'a/grip': 0.75}) == ({'a/upper', 'a/finger'}, 6)
-    assert values_of(frames)['a/turn'] == 0.75
-
-
-def test_frames_are_found_again_when_more_joints_are_reported(update, frames):
-    assert update('a', 5, turn=float('nan'), grip=0.5) == ({'a/finger'}, 5)
-    assert update('a', 6, turn=0.5, grip=0.5) == ({'a/upper', 'a/finger'}, 6)
-
-
-def test_other_names_in_each_message_are_not_kept(update, topics):
-    for number in range(100):
-        update('a', number + 1, **{f'x{number}': 0.0})
-    assert len(topics['a']._plans) <= 20
-
-
-def test_messages_wait_in_a_subscription_that_is_closed(topics, make_node, make_executor):
-    topic, received = topics['a'], []
-    topic._take = lambda data, info: received.append((data, info['source_timestamp']))
-    topic.is_open = False
-    executor = make_executor(topic._node)
-    publisher = make_node('joints').create_publisher(JointState, topic.name, 10)
-    deadline = time.monotonic() + 20.0
-    while not topic.take_one():
-        assert time.monotonic() < deadline
-        publisher.publish(JointState(name=['turn'], position=[0.5]))
-        executor.spin_once(timeout_sec=0.05)
-    ((data, sent_ns),) = received
-    assert deserialize_message(data, JointState).name == ['turn']
-    assert 0 < sent_ns <= time.time_ns()
+def test_the_same_names_are_looked_up_once_whatever_aligns_them(read):
+    data = joint_state(turn=0.5, grip=0.25)
+    begin = data.index(b'turn\0') + 5
+    assert read(data) == read(data[:begin] + b'abc' + data[begin + 3:]) == read(data)

@@ -2,11 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What messages of joint states put on ``/tf``: which frames, with which stamp, and how often."""
 
-from itertools import count
 import math
 import time
 
-import numpy as np
 import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
@@ -15,14 +13,14 @@ from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from rclpy.serialization import serialize_message
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.ros.joint_states import JointStates, SUBSCRIPTIONS_AT_ONCE, TOPICS_PERIOD_S
+from sdf_pose_bridge.ros.joint_state_thread import Rule, TOPICS_PERIOD_S
+from sdf_pose_bridge.ros.joint_states import JointStates, SUBSCRIPTIONS_AT_ONCE
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.topic_names import JointStateTopics
@@ -38,17 +36,17 @@ ARM = """<sdf version="1.11"><model name="arm">
 <joint name="grip" type="prismatic"><parent>base</parent><child>finger</child>
   <axis><xyz>1 0 0</xyz></axis></joint>
 </model></sdf>"""
-JOINTS = ('turn', 'lift', 'grip')
 TOPICS = JointStateTopics({'joint_states': ''})
+TWO_ARMS = '<sdf version="1.11"><world name="w">{}{}</world></sdf>'.format(*(
+    ARM.partition('">')[2].replace('</sdf>', '').replace('"arm"', f'"{name}"') for name in 'ab'))
+TWO_TOPICS = JointStateTopics({'a/j': 'a', 'b/j': 'b'})
+EACH = Rule(0.0, False)
 LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+FIRST = 1000
+"""Seconds of the first stamp of a test, after those of messages to connect."""
+
 NOW = 10**9
 """Seconds of a time that the clock has passed."""
-
-
-def joint_state(sec, positions):
-    return JointState(
-        header=Header(stamp=Time(sec=sec)), name=list(positions),
-        position=list(positions.values()))
 
 
 def frames_by_stamp(message):
@@ -59,506 +57,399 @@ def frames_by_stamp(message):
     return sorted(frames.items())
 
 
-def topic_of(states, name='joint_states'):
-    (topic,) = (each for key, each in states._topics.items() if key[0] == name)
-    return topic
+class Following:
+    """A node that follows joint states, and one that sends them and listens to ``/tf``."""
 
+    def __init__(self, node, listener, executor):
+        self.node, self.listener, self._executor = node, listener, executor
+        self._publishers = Publishers(node)
+        self._senders = {}
+        self.states = self.frames = None
+        self.found = []
+        """What each message on ``/tf`` has, as :func:`frames_by_stamp` returns it."""
+        listener.create_subscription(
+            TFMessage, '/tf', lambda message: self.found.append(frames_by_stamp(message)), 1000)
 
-def update(states, data, name='joint_states'):
-    """Have a serialized message taken, as an executor does."""
-    states._receive(topic_of(states, name), data, {'source_timestamp': 0})
+    def start(self, text=ARM, unreported=UnreportedJoints.NONE, topics=TOPICS, rule=EACH):
+        self.frames = self.frames_of(text, unreported)
+        self.states = JointStates(self.node, self.frames, topics, rule)
 
-
-@pytest.fixture(name='moving_frames')
-def make_moving_frames(make_node):
-    """Makes frames that move; ``moving_frames(text)`` returns the node and the frames."""
-    node = make_node('bridge')
-    publishers = Publishers(node)
-
-    def moving_frames(text, unreported=UnreportedJoints.ZERO):
+    def frames_of(self, text, unreported=UnreportedJoints.NONE):
         scene = load_text(text)
         tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
         positions = JointPositions(scene, tree.moving.dofs, unreported=unreported)
-        frames = PublishedFrames(publishers, tree, positions, {})
-        publishers.opened(frames.moving.transforms_topic)
-        return node, frames.moving
+        frames = PublishedFrames(self._publishers, tree, positions, {}).moving
+        self._publishers.opened(frames.transforms_topic)
+        return frames
 
-    return moving_frames
+    def connect(self, topic='/joint_states'):
+        """Send positions of the joint ``turn`` until they are published."""
+        self._senders[topic] = self.listener.create_publisher(JointState, topic, 1000)
+        sec = 0
+        while not any(1 <= each <= sec for each in self.secs()):
+            sec += 1
+            self.send(sec, {'turn': 0.0}, topic)
+            self.spin(0.05)
+        self.wait(lambda: sec in self.secs())
+        self.found.clear()
 
+    def send(self, sec, positions, topic='/joint_states'):
+        self._senders[topic].publish(JointState(
+            header=Header(stamp=Time(sec=sec)), name=list(positions),
+            position=list(positions.values())))
 
-@pytest.fixture(name='states')
-def joint_states(moving_frames):
-    return JointStates(*moving_frames(ARM), TOPICS, (0.0, False))
+    def secs(self):
+        """Return the seconds of all stamps on ``/tf``."""
+        return [sec for message in self.found for sec, _ in message]
 
+    def published(self, *messages):
+        """Send messages, the last of which is published, and return what they put on ``/tf``."""
+        for message in messages:
+            self.send(*message)
+        self.wait(lambda: messages[-1][0] in self.secs())
+        return [each for message in self.found for each in message if each[0] < NOW]
 
-@pytest.fixture
-def listener(make_node):
-    return make_node('listener')
-
-
-@pytest.fixture(name='wait_until')
-def make_wait_until(listener, states, make_executor):
-    """Runs both nodes until a condition is true; ``wait_until(condition, collection)``."""
-    executor = make_executor(listener, states._node)
-
-    def wait_until(condition, collection):
+    def wait(self, condition):
+        """Run callbacks until a condition is true."""
         deadline = time.monotonic() + 20.0
         while not condition():
-            assert time.monotonic() < deadline, collection
-            executor.spin_once(timeout_sec=0.1)
+            assert time.monotonic() < deadline, self.found
+            self._executor.spin_once(timeout_sec=0.01)
 
-    return wait_until
-
-
-@pytest.fixture(name='published')
-def make_published(listener, wait_until, states):
-    """
-    Returns what messages put on ``/tf``; ``published(*messages)``.
-
-    The last message must be published. The result has the stamp and the frames of each.
-    """
-    found = []
-
-    def add(message):
-        found.extend(frames_by_stamp(message))
-
-    listener.create_subscription(TFMessage, '/tf', add, 100)
-    wait_until(lambda: found, found)  # what is published before the first message
-
-    def published(*messages):
-        for message in messages:
-            update(states, serialize_message(message))
-        wait_until(lambda: found[-1][0] == messages[-1].header.stamp.sec, found)
-        return [each for each in found if each[0] < NOW]
-
-    return published
-
-
-def test_messages_with_another_number_of_positions_are_ignored(published, capfd):
-    wrong = joint_state(5, {'turn': 1.0})
-    wrong.name.append('lift')
-    assert [sec for sec, _ in published(wrong, wrong, joint_state(6, {'turn': 0.0}))] == [6]
-    assert capfd.readouterr().err.count('has 2 names and 1 positions') == 1, 'not at a high rate'
-
-
-@pytest.mark.parametrize('frequency', [0.0, 20.0])
-def test_publishers_that_are_best_effort_are_heard(states, frequency):
-    node = states._node
-    states.destroy()
-    JointStates(node, states._frames, TOPICS, (frequency, False))
-    subscription, = node.subscriptions
-    assert node.resolve_topic_name('joint_states') == subscription.topic_name
-    assert subscription.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
-
-
-def test_a_second_message_with_one_stamp_is_not_published(published):
-    messages = [joint_state(sec, {'turn': 0.5}) for sec in (5, 5, 6)]
-    assert [sec for sec, _ in published(*messages)] == [5, 6]
-
-
-def test_joints_that_no_message_has_named_are_published_too(published):
-    assert published(joint_state(5, {'lift': 0.5})) == [(5, {'upper', 'slide', 'finger'})]
+    def spin(self, seconds):
+        """Run callbacks for a time."""
+        ends_at = time.monotonic() + seconds
+        while time.monotonic() < ends_at:
+            self._executor.spin_once(timeout_sec=0.01)
 
 
 @pytest.fixture
-def published_when_reported(published, states, moving_frames):
-    """Does what ``published`` does, with joints that have no position before a message."""
-    published(joint_state(1, dict.fromkeys(JOINTS, 0.0)))
-    _, frames = moving_frames(ARM, UnreportedJoints.NONE)
-    states.replace(frames, TOPICS)
-
-    def published_since(*messages):
-        return [each for each in published(*messages) if each[0] > 1]
-    return published_since
+def following(make_node, make_executor):
+    node, listener = make_node('bridge'), make_node('listener')
+    found = Following(node, listener, make_executor(node, listener))
+    yield found
+    found.states.end()
 
 
-def test_a_joint_that_no_message_has_named_moves_nothing(published_when_reported):
-    assert published_when_reported(
-        joint_state(5, {'lift': 0.5}), joint_state(6, {'turn': 0.5}),
-        joint_state(7, {'lift': 0.5}),
-    ) == [(5, {'slide'}), (6, {'upper'}), (7, {'slide'})]
+@pytest.fixture
+def arm(following):
+    """Return an arm that is connected, all joints of which are known."""
+    following.start(unreported=UnreportedJoints.ZERO)
+    following.connect()
+    following.published((FIRST - 1, {'turn': 0.0, 'lift': 0.0, 'grip': 0.0}))
+    following.found.clear()
+    return following
 
 
-def test_a_value_that_is_no_position_reports_no_joint(published_when_reported):
-    assert published_when_reported(
-        joint_state(5, {'lift': math.nan, 'turn': 0.5}),
-        joint_state(6, {'lift': 1.0, 'turn': 0.5}),
-    ) == [(5, {'upper'}), (6, {'upper', 'slide'})]
-
-
-def test_joints_that_stay_unreported_are_named_once_and_then_that_none_is(
-        states, moving_frames, wait_until, capfd):
-    states.replace(moving_frames(ARM, UnreportedJoints.NONE)[1], TOPICS)
-    update(states, serialize_message(joint_state(5, {'lift': 0.5})))
-    assert states.unreported.names == ()
-    wait_until(lambda: states.unreported.names, 'two seconds')
-    assert states.unreported == (('turn', 'grip'), ('/joint_states',))
-    for sec in (6, 7):
-        update(states, serialize_message(joint_state(sec, dict.fromkeys(JOINTS, 0.0))))
-    log = capfd.readouterr().err
-    assert log.count('2 joints have not been reported yet, for example "turn"') == 1
-    assert log.count('all joints have been reported now') == 1
-
-
-def test_of_joints_that_are_known_those_that_move_are_published(published):
-    found = published(
-        joint_state(5, {'turn': 0.5}), joint_state(6, {'lift': 0.5, 'grip': 0.5}),
-        joint_state(7, {'turn': 0.25}))
-    assert found[-1] == (7, {'upper'})
-
-
-def test_a_message_without_a_stamp_gets_the_time_of_the_node(published, states):
-    published(joint_state(0, {'turn': 0.5}), joint_state(6, {'turn': 0.25}))
-    update(states, serialize_message(joint_state(0, {'turn': 0.5})))
-    assert (states._frames.positions.stamps_ns > NOW * NOW).all()
-
-
-def test_the_same_names_can_move_other_frames_later(published, states, moving_frames):
-    positions = {'turn': 0.5, 'lift': 0.5, 'grip': 0.5}
-    published(joint_state(5, positions))
-    _, frames = moving_frames(ARM.replace('type="revolute"', 'type="fixed"'))
-    states.replace(frames, TOPICS)
-    assert published(joint_state(6, positions))[-1] == (6, {'slide', 'finger'})
-
-
-def test_bytes_that_align_names_mean_nothing(published, states):
-    for sec, padding in (5, b'\0\0'), (6, b'ab'), (7, b'cd'):
-        data = serialize_message(joint_state(sec, {'slide': 0.5, 'lift': 0.5}))
-        begin = data.index(b'slide\0') + 6
-        update(states, data[:begin] + padding + data[begin + 2:])
-    assert len(topic_of(states)._plans) == 1, 'as each takes time'
-    assert published(joint_state(8, {'lift': 0.5}))[-1] == (8, {'slide', 'upper', 'finger'})
-
-
-def test_a_message_that_is_not_one_is_ignored(published, states):
-    update(states, b'')
-    update(states, serialize_message(joint_state(5, {'turn': 0.5}))[:30])
-    assert [sec for sec, _ in published(joint_state(6, {'turn': 0.5}))] == [6]
-
-
-def test_topics_have_few_of_many_messages_and_the_last_one_again_at_rest(
-        listener, wait_until, states):
-    stamps = []
-    listener.create_subscription(
-        TransformStamped, '/bridge/transforms',
-        lambda each: each.child_frame_id == 'upper' and stamps.append(each.header.stamp.sec),
-        LATCHED)
-    # At rest, before the first message, they have the time of the node.
-    wait_until(lambda: stamps, stamps)
-    begin = time.monotonic()
-    for sec in range(1, 201):
-        update(states, serialize_message(joint_state(sec, {'turn': 0.5})))
-    seconds = time.monotonic() - begin
-    wait_until(lambda: stamps[-2:] == [200, 200], stamps)
-    assert stamps[1] == 1
-    assert len(stamps) <= 5 + seconds / TOPICS_PERIOD_S
-
-
-def test_after_a_message_frames_have_its_time_alone(listener, wait_until, states):
-    on_tf, on_transforms = [], []
-    listener.create_subscription(
-        TFMessage, '/tf', lambda each: on_tf.append(each.transforms[0].header.stamp.sec), 100)
-    listener.create_subscription(
-        TransformStamped, '/bridge/transforms',
-        lambda each: on_transforms.append(each.header.stamp.sec), LATCHED)
-    wait_until(lambda: on_tf, on_tf)
-    update(states, serialize_message(joint_state(5, {'turn': 0.5})))
-    # At once, and again at rest, for three frames.
-    wait_until(lambda: 5 in on_tf and on_transforms.count(5) == 6, on_transforms)
-    assert on_tf[on_tf.index(5):] == [5]
-
-
-@pytest.mark.parametrize('frequency', [0.0, 20.0])
-def test_what_was_created_for_it_is_destroyed_with_it(states, frequency):
-    node = states._node
-    states.destroy()
-    JointStates(node, states._frames, TOPICS, (frequency, False)).destroy()
-    assert [*node.timers, *node.subscriptions] == []
-
-
-@pytest.fixture(name='slow_states', params=['in the subscription', 'here'])
-def make_slow_states(request, monkeypatch, states, listener, wait_until):
-    """
-    Follows messages with a highest rate; ``slow_states(frequency)``.
-
-    Returns it, a publisher of messages, and a list that gets the stamp and the frames of each
-    message on ``/tf``. Messages wait in the subscription, or, as with a release of rclpy that has
-    no such function to take them from there, where they are followed.
-    """
-    if request.param == 'here':
-        monkeypatch.setattr(
-            'sdf_pose_bridge.ros.joint_state_topic._take_message_from_subscription',
-            lambda subscription: None)
-
+@pytest.fixture(name='slow_arm')
+def make_slow_arm(following):
+    """Makes an arm with a highest rate; ``slow_arm(frequency)``."""
     def start(frequency):
-        states.destroy()
-        slow, found = JointStates(
-            states._node, states._frames, TOPICS, (frequency, False)), []
-        publisher = listener.create_publisher(JointState, 'joint_states', 100)
-
-        def add(message):
-            found.extend(each for each in frames_by_stamp(message) if each[0] < NOW)
-
-        listener.create_subscription(TFMessage, '/tf', add, 100)
-        # The first ones are lost until both have discovered each other.
-        sent = []
-        wait_until(
-            lambda: found or publisher.publish(
-                sent.append(1) or joint_state(len(sent), dict.fromkeys(JOINTS, 0.0))), found)
-        found.clear()
-        return slow, publisher, found
+        following.start(rule=Rule(frequency, False))
+        following.connect()
+        return following
     return start
 
 
-def test_messages_wait_for_the_end_of_a_period(slow_states, wait_until):
-    _, publisher, found = slow_states(2.0)
-    for sec in range(NOW - 20, NOW):
-        publisher.publish(joint_state(sec, {'turn': 0.5}))
-    wait_until(lambda: (NOW - 1, {'upper'}) in found, found)
-    assert len(found) < 10
+def test_messages_with_another_number_of_positions_are_ignored(arm, capfd):
+    wrong = JointState(header=Header(stamp=Time(sec=FIRST)), name=['turn'], position=[])
+    for _ in range(2):
+        arm._senders['/joint_states'].publish(wrong)
+    assert arm.published((FIRST + 1, {'turn': 0.0})) == [(FIRST + 1, {'upper'})]
+    assert capfd.readouterr().err.count('has 1 names and 0 positions') == 1, 'not at a high rate'
 
 
-def test_each_waiting_message_keeps_its_stamp(slow_states, wait_until):
-    _, publisher, found = slow_states(2.0)
-    publisher.publish(joint_state(NOW - 2, {'turn': 0.5}))
-    publisher.publish(joint_state(NOW - 1, {'grip': 0.5}))
-    wait_until(lambda: (NOW - 1, {'finger'}) in found, found)
-    assert (NOW - 2, {'upper'}) in found
+def test_publishers_that_are_best_effort_are_heard(following):
+    following.start()
+    subscription, = following.node.subscriptions
+    assert subscription.topic_name == '/joint_states'
+    assert subscription.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
 
 
-def test_a_message_after_a_period_without_any_is_published_at_once(slow_states, wait_until):
-    slow, publisher, found = slow_states(50.0)
-    for sec in (NOW - 2, NOW - 1):
-        wait_until(lambda: topic_of(slow).is_open, 'the end of a period')
-        publisher.publish(joint_state(sec, {'turn': 0.5}))
-        wait_until(lambda sec=sec: found[-1:] == [(sec, {'upper'})], found)
+def test_a_transform_is_published_if_it_is_newer_than_the_last_one(arm):
+    sent = [(FIRST + after, {'turn': 0.5}) for after in (0, 1, -100, 1, 2)]
+    assert arm.published(*sent) == [
+        (FIRST, {'upper'}), (FIRST + 1, {'upper'}), (FIRST + 2, {'upper'})]
 
 
-def test_positions_can_be_taken_before_the_end_of_a_period(slow_states, wait_until):
-    slow, publisher, found = slow_states(0.001)
-    publisher.publish(joint_state(NOW - 1, {'turn': 0.5}))
-    positions = slow._frames.positions
+def test_each_transform_has_its_own_last_stamp(arm):
+    assert arm.published(
+        (FIRST + 5, {'turn': 0.5}), (FIRST + 4, {'turn': 0.25, 'lift': 0.25}),
+        (FIRST + 6, {'turn': 0.5}),
+    ) == [(FIRST + 5, {'upper'}), (FIRST + 4, {'slide'}), (FIRST + 6, {'upper'})]
+
+
+def test_each_message_can_be_published_whatever_its_stamp_is(following):
+    following.start(rule=Rule(20.0, True))
+    following.connect()
+    sent = [(FIRST + after, {'turn': 0.5}) for after in (0, 0, -100, 2)]
+    assert [sec - FIRST for sec, _ in following.published(*sent)] == [0, 0, -100, 2]
+
+
+def test_after_simulated_time_has_jumped_back_older_stamps_are_published(following):
+    following.node.set_parameters([Parameter('use_sim_time', value=True)])
+    clock = following.listener.create_publisher(Clock, '/clock', 1)
+
+    def set_time(sec):
+        def is_set():
+            clock.publish(Clock(clock=Time(sec=sec)))
+            return following.node.get_clock().now().nanoseconds == sec * NOW
+        following.wait(is_set)
+
+    set_time(5000)
+    following.start()
+    following.connect()
+    following.published((FIRST + 4, {'turn': 0.5}))
+    set_time(FIRST)
+    following.found.clear()
+    # The first one was sent before that, and waited.
+    assert following.published((FIRST + 5, {'turn': 0.5}), (FIRST - 1, {'turn': 0.25})) == [
+        (FIRST - 1, {'upper'})]
+
+
+def test_joints_at_zero_are_published_with_each_message(following):
+    following.start(unreported=UnreportedJoints.ZERO)
+    following.connect()
+    assert following.published((FIRST, {'lift': 0.5})) == [(FIRST, {'slide', 'finger'})]
+
+
+def test_a_joint_that_no_message_has_named_moves_nothing(following):
+    following.start()
+    following.connect()
+    assert following.published(
+        (FIRST, {'lift': math.nan, 'turn': 0.5}), (FIRST + 1, {'lift': 0.5}),
+        (FIRST + 2, {'lift': 0.5, 'turn': 0.5}),
+    ) == [(FIRST, {'upper'}), (FIRST + 1, {'slide'}), (FIRST + 2, {'upper', 'slide'})]
+
+
+def test_joints_that_stay_unreported_are_counted_once_and_then_that_none_is(following, capfd):
+    following.start()
+    following.connect()
+    following.wait(lambda: following.states.unreported.number)
+    assert following.states.unreported == (2, 'grip', ['/joint_states'])
+    following.published((FIRST, {'lift': 0.0, 'grip': 0.0}), (FIRST + 1, {'turn': 0.0}))
+    assert following.states.unreported.number == 0
+    log = capfd.readouterr().err
+    assert log.count('2 joints have not been reported yet, for example "grip"') == 1
+    assert log.count('all joints have been reported now') == 1
+
+
+def test_a_message_without_a_stamp_gets_the_time_of_the_node(arm):
+    arm.send(0, {'turn': 0.5})
+    arm.wait(lambda: any(sec > NOW for sec in arm.secs()))
+
+
+def test_other_frames_continue_with_the_positions_and_one_nanosecond_later(arm):
+    arm.published((FIRST, {'turn': 0.5, 'lift': 0.5, 'grip': 0.5}))
+    frames = arm.frames_of(ARM.replace('type="revolute"', 'type="fixed"'))
+    arm.found.clear()
+    arm.states.follow(frames, TOPICS, EACH)
+    assert dict(zip(frames.positions.names, frames.positions.values, strict=True)) == {
+        'lift': 0.5, 'grip': 0.5}
+    arm.wait(lambda: arm.found)
+    assert arm.published((FIRST + 1, {'turn': 0.5, 'lift': 0.5})) == [
+        (FIRST, {'slide', 'finger'}), (FIRST + 1, {'slide'})]
+
+
+def test_bytes_that_are_no_message_are_ignored(arm):
+    arm._senders['/joint_states'].publish(b'\0\1\0\0abc')
+    assert arm.published((FIRST, {'turn': 0.5})) == [(FIRST, {'upper'})]
+
+
+def test_topics_have_few_of_many_messages_and_the_last_one_again_at_rest(arm):
+    secs = []
+    arm.listener.create_subscription(
+        TransformStamped, '/bridge/transforms',
+        lambda each: each.child_frame_id == 'upper' and secs.append(each.header.stamp.sec),
+        LATCHED)
+    arm.wait(lambda: secs)
+    begin = time.monotonic()
+    arm.published(*((FIRST + number, {'turn': 0.5}) for number in range(200)))
+    arm.wait(lambda: secs[-2:] == [FIRST + 199] * 2)
+    assert len(secs) <= 6 + (time.monotonic() - begin) / TOPICS_PERIOD_S
+
+
+def test_what_was_created_for_it_is_destroyed_with_it(following):
+    following.start(rule=Rule(20.0, False))
+    following.states.end()
+    assert not list(following.node.subscriptions)
+    assert not following.states._thread._thread.is_alive()
+
+
+def test_it_ends_with_the_node(make_node):
+    node = make_node('bridge')
+    following = Following(node, make_node('listener'), None)
+    following.start()
+    node.destroy_node()
+    following.states._thread._wake()
+    following.states._thread._thread.join(20.0)
+    assert not following.states._thread._thread.is_alive()
+
+
+# A highest rate
+
+def test_messages_wait_for_the_end_of_a_period(slow_arm):
+    arm = slow_arm(2.0)
+    arm.published(*((FIRST + number, {'turn': 0.5}) for number in range(20)))
+    assert len(arm.found) < 10
+
+
+def test_of_a_period_the_newest_stamp_counts(slow_arm):
+    arm = slow_arm(2.0)
+    arm.published((FIRST, {'turn': 0.0}))
+    for after, position in ((1, 0.1), (4, 0.4), (3, 0.3)):
+        arm.send(FIRST + after, {'turn': position})
+    arm.send(FIRST + 2, {'grip': 0.2})
+    arm.wait(lambda: FIRST + 4 in arm.secs())
+    arm.spin(0.6)
+    assert arm.secs().count(FIRST + 4) == 1
+    assert FIRST + 3 not in arm.secs()
+    assert FIRST + 2 in arm.secs(), 'of another joint'
+    assert sorted(arm.frames.positions.values) == [0.0, 0.2, 0.4]
+
+
+def test_a_message_after_a_period_without_any_is_published_at_once(slow_arm):
+    arm = slow_arm(50.0)
+    for number in range(2):
+        arm.spin(0.1)
+        assert arm.published((FIRST + number, {'turn': 0.5}))
+
+
+def test_positions_can_be_taken_before_the_end_of_a_period(slow_arm, finish):
+    arm = slow_arm(0.001)
+    arm.send(FIRST, {'turn': 0.5})
+
+    async def catch_up():
+        await arm.states.catch_up()
 
     def is_taken():
-        slow.take_waiting()
-        return 0.5 in positions.values
+        finish(arm._executor, catch_up)
+        return 0.5 in arm.frames.positions.values
 
-    wait_until(is_taken, positions.values)
-    assert not found
-
-
-def test_simulated_time_that_has_not_begun_holds_nothing_up(slow_states, states, wait_until):
-    states._node.set_parameters([Parameter('use_sim_time', value=True)])
-    _, publisher, found = slow_states(0.001)
-    publisher.publish(joint_state(NOW - 1, {'turn': 0.5}))
-    wait_until(lambda: (NOW - 1, {'upper'}) in found, found)
+    arm.wait(is_taken)
+    assert not arm.found
 
 
-def test_a_period_is_one_of_simulated_time(slow_states, states, listener, wait_until):
-    states._node.set_parameters([Parameter('use_sim_time', value=True)])
-    clock = listener.create_publisher(Clock, '/clock', 1)
+def test_more_messages_than_a_subscription_holds_are_taken_in_a_long_period(slow_arm):
+    arm = slow_arm(1.0)
+    arm.send(FIRST, {'grip': 0.5})
+    for number in range(1, 301):
+        arm.send(FIRST + number, {'turn': 0.5})
+        arm.spin(0.002)
+    arm.wait(lambda: FIRST + 300 in arm.secs())
+    assert FIRST in arm.secs()
+
+
+def test_simulated_time_that_has_not_begun_holds_nothing_up(following):
+    following.node.set_parameters([Parameter('use_sim_time', value=True)])
+    following.start(rule=Rule(0.001, False))
+    following.connect()
+    assert following.published((FIRST, {'turn': 0.5}), (FIRST + 1, {'turn': 0.5}))
+
+
+def test_a_period_is_one_of_simulated_time(following):
+    following.node.set_parameters([Parameter('use_sim_time', value=True)])
+    clock = following.listener.create_publisher(Clock, '/clock', 1)
 
     def is_at(sec):
         clock.publish(Clock(clock=Time(sec=sec)))
-        return states._node.get_clock().now().nanoseconds == sec * NOW
+        return following.node.get_clock().now().nanoseconds == sec * NOW
 
-    wait_until(lambda: is_at(1000), 'the clock')
+    following.wait(lambda: is_at(10_000))
     # A period of 1000 seconds.
-    slow, _, _ = slow_states(0.001)
-    seconds = count(3000, 2000)
-    assert not topic_of(slow).is_open
-
-    def is_over():
-        is_at(next(seconds))
-        return topic_of(slow).is_open
-
-    wait_until(is_over, 'the end of the period')
+    following.start(rule=Rule(0.001, False))
+    following.connect()
+    following.send(FIRST, {'turn': 0.5})
+    following.spin(0.2)
+    assert not following.found
+    following.wait(lambda: is_at(12_000))
+    following.wait(lambda: FIRST in following.secs())
 
 
 # Several topics
 
-TWO_ARMS = '<sdf version="1.11"><world name="w">{}{}</world></sdf>'.format(*(
-    ARM.partition('">')[2].replace('</sdf>', '').replace('"arm"', f'"{name}"') for name in 'ab'))
-TWO_TOPICS = JointStateTopics({'a/joint_states': 'a', 'b/joint_states': 'b'})
-
-
 @pytest.fixture(name='two_arms')
-def make_two_arms(states, moving_frames, listener, wait_until):
-    """
-    Follows the topics of two arms with a highest rate; ``two_arms(frequency)``.
-
-    Returns it, publishers of messages by the names of the arms, and a list that gets what each
-    message on ``/tf`` has, as :func:`frames_by_stamp` returns it.
-    """
+def make_two_arms(following):
+    """Makes two arms, each with its topic; ``two_arms(frequency)``."""
     def start(frequency):
-        states.destroy()
-        both = JointStates(
-            *moving_frames(TWO_ARMS, UnreportedJoints.NONE), TWO_TOPICS, (frequency, False))
-        publishers = {
-            name: listener.create_publisher(JointState, f'{name}/joint_states', 1000)
-            for name in 'ab'}
-        found = []
-        listener.create_subscription(
-            TFMessage, '/tf', lambda message: found.append(frames_by_stamp(message)), 100)
-
-        sent = []
-
-        def have_arrived(secs):
-            both._end_period()
-            return {frame for each in found for sec, frames in each if sec in secs
-                    for frame in frames} >= {'a/upper', 'b/upper'}
-
-        def are_connected():
-            if have_arrived(range(NOW)):
-                return True
-            sent.append(1)
-            for publisher in publishers.values():
-                publisher.publish(joint_state(len(sent), {'turn': 0.0}))
-            return False
-
-        wait_until(are_connected, found)
-        wait_until(lambda: have_arrived([len(sent)]), found)
-
-        def are_silent():
-            both._end_period()
-            return all(
-                each.silent_periods > both._silent_periods for each in both._topics.values())
-
-        wait_until(are_silent, 'periods without messages')
-        found.clear()
-        return both, publishers, found
+        following.start(TWO_ARMS, topics=TWO_TOPICS)
+        for topic in ('/a/j', '/b/j'):
+            following.connect(topic)
+        following.states.follow(following.frames, TWO_TOPICS, Rule(frequency, False))
+        following.spin(0.1)
+        return following
     return start
 
 
-def test_what_waits_at_the_end_of_a_period_is_one_message_with_the_stamp_of_each(
-        two_arms, wait_until):
-    _, publishers, found = two_arms(2.0)
-    for sec in range(NOW - 20, NOW):
-        publishers['a'].publish(joint_state(sec, {'turn': 0.5}))
-        publishers['b'].publish(joint_state(sec - 1000, {'turn': 0.5}))
-    last = [(NOW - 1001, {'b/upper'}), (NOW - 1, {'a/upper'})]
-    wait_until(lambda: last in found, found)
-    assert len(found) < 10
+def test_what_waits_at_the_end_of_a_period_is_one_message_with_the_stamp_of_each(two_arms):
+    arms = two_arms(2.0)
+    for number in range(20):
+        arms.send(FIRST + number, {'turn': 0.5}, '/a/j')
+        arms.send(FIRST + 100 + number, {'turn': 0.5}, '/b/j')
+    last = [(FIRST + 19, {'a/upper'}), (FIRST + 119, {'b/upper'})]
+    arms.wait(lambda: last in arms.found)
+    assert len(arms.found) < 10
 
 
-def test_messages_of_one_robot_do_not_delay_those_of_another(two_arms, wait_until):
-    _, publishers, found = two_arms(0.01)
-    for robot in 'ab':
-        publishers[robot].publish(joint_state(NOW - 1, {'turn': 0.5}))
-        wait_until(lambda robot=robot: found[-1:] == [[(NOW - 1, {f'{robot}/upper'})]], found)
+def test_robots_that_start_together_share_a_message(two_arms):
+    arms = two_arms(1.0)
+    arms.send(FIRST, {'turn': 0.5}, '/a/j')
+    arms.wait(lambda: arms.found)
+    arms.send(FIRST, {'turn': 0.5}, '/b/j')
+    arms.spin(0.3)
+    assert arms.found == [[(FIRST, {'a/upper'})]]
+    arms.wait(lambda: len(arms.found) == 2)
 
 
-@pytest.fixture(name='sender')
-def make_sender(two_arms, wait_until):
-    """
-    Follows two arms, in periods that do not end by themselves; ``sender(frequency)``.
-
-    Returns what ``two_arms`` does, but for the publishers a function that sends a message of some
-    robots and waits until they are processed; ``send(sec, robots)``.
-    """
-    def start(frequency):
-        both, publishers, found = two_arms(frequency)
-        both._period_timer.timer_period_ns = 1000 * NOW
-
-        def send(sec, robots):
-            for robot in robots:
-                publishers[robot].publish(joint_state(sec, {'turn': 1.0 / sec}))
-            values = both._frames.positions.values
-
-            def are_processed():
-                both.take_waiting()
-                return np.count_nonzero(values == 1.0 / sec) == len(robots)
-
-            wait_until(are_processed, values)
-        return both, send, found
-    return start
+def test_the_first_message_of_a_robot_after_a_silence_does_not_wait(two_arms):
+    arms = two_arms(20.0)
+    began = time.monotonic()
+    number = 0
+    while time.monotonic() < began + 1.5:
+        number += 1
+        arms.send(FIRST + number, {'turn': 0.5}, '/a/j')
+        arms.spin(0.02)
+    arms.states._thread._timer.timer_period_ns = 1000 * NOW
+    arms.spin(0.1)
+    arms.send(FIRST, {'turn': 0.5}, '/b/j')
+    arms.wait(lambda: [(FIRST, {'b/upper'})] in arms.found)
 
 
-def test_robots_with_a_message_in_each_period_share_one_for_each(sender, wait_until):
-    both, send, found = sender(20.0)
-    for sec in range(10, 20):
-        send(sec, 'ab')
-        both._end_period()
-    wait_until(lambda: found[-1:] == [[(19, {'a/upper', 'b/upper'})]], found)
-    # A message at once begins a period, for each robot after the silence.
-    assert len(found) <= 10 + 2
+def test_too_many_messages_of_one_robot_leave_time_for_another(two_arms):
+    arms = two_arms(2.0)
+    take = arms.states._topics['a/j', 'a'].take
+    last = []
+
+    def take_again():
+        """Take a message again and again, as if they came faster than they are taken."""
+        last.append(take() or (last[-1] if last else None))
+        return last[-1]
+
+    arms.states._topics['a/j', 'a'].take = take_again
+    arms.send(FIRST, {'turn': 0.5}, '/a/j')
+    arms.send(FIRST, {'turn': 0.75}, '/b/j')
+    arms.wait(lambda: 0.75 in arms.frames.positions.values)
 
 
-@pytest.mark.parametrize(('frequency', 'periods', 'waits'), [
-    (20.0, 19, True), (20.0, 20, False), (0.1, 1, True), (0.1, 2, False)])
-def test_a_message_waits_if_it_is_late_but_not_after_a_silence(sender, frequency, periods, waits):
-    both, send, _ = sender(frequency)
-    for sec in (10, 11):
-        send(sec, 'ab')
-        both._end_period()
-    for sec in range(12, 12 + periods):
-        send(sec, 'a')
-        both._end_period()
-    send(100, 'b')
-    assert both._is_waiting.any() == waits
+def test_an_unreported_joint_is_named_with_the_topics_that_can_name_it(following):
+    following.start(TWO_ARMS, topics=TWO_TOPICS)
+    following.wait(lambda: following.states.unreported.number)
+    assert following.states.unreported == (6, 'a/turn', ['/a/j'])
 
 
-def test_robots_that_start_together_share_a_message(states, moving_frames):
-    states.destroy()
-    _, frames = moving_frames(TWO_ARMS, UnreportedJoints.NONE)
-    both = JointStates(states._node, frames, TWO_TOPICS, (0.01, False))
-    for robot in 'ab':
-        update(both, serialize_message(joint_state(5, {'turn': 0.5})), f'{robot}/joint_states')
-    assert both._is_waiting.sum() == 1
-
-
-def test_messages_that_are_published_at_once_do_not_put_off_the_end_of_the_period(
-        two_arms, wait_until):
-    both, publishers, found = two_arms(0.01)
-    ends_in = []
-    for robot in 'ab':
-        publishers[robot].publish(joint_state(NOW - 1, {'turn': 0.5}))
-        wait_until(lambda robot=robot: found[-1:] == [[(NOW - 1, {f'{robot}/upper'})]], found)
-        ends_in.append(both._period_timer.time_until_next_call())
-    assert ends_in[1] < ends_in[0]
-
-
-def test_too_many_messages_of_one_robot_leave_time_for_another(two_arms, wait_until):
-    both, publishers, _ = two_arms(0.001)
-
-    class Flooded:
-        """A topic whose messages come faster than they are taken."""
-
-        def take_one(self):
-            return True
-
-    both._topics = {'flooded': Flooded(), **both._topics}
-    for topic in list(both._topics.values())[1:]:
-        topic.is_open = False
-    publishers['b'].publish(joint_state(NOW, {'turn': 0.75}))
-
-    def is_taken():
-        both.take_waiting()
-        return 0.75 in both._frames.positions.values
-
-    wait_until(is_taken, both._frames.positions.values)
-    del both._topics['flooded']
-
-
-def test_an_unreported_joint_is_named_with_the_topics_that_can_name_it(two_arms, wait_until):
-    both, _, _ = two_arms(2.0)
-    wait_until(lambda: both.unreported.names, 'two seconds')
-    assert both.unreported == (('a/grip', 'a/lift', 'b/grip', 'b/lift'), ('/a/joint_states',))
-
-
-def test_topics_come_and_go_with_the_frames(states, moving_frames):
-    _, frames = moving_frames(TWO_ARMS)
+def test_topics_come_and_go_with_the_frames(following):
+    following.start(TWO_ARMS, topics=JointStateTopics({'joint_states': '', 'a/j': 'a'}))
 
     def subscribed(topics):
-        states.replace(frames, JointStateTopics(topics))
-        return sorted(each.topic_name for each in states._node.subscriptions)
+        following.states.follow(following.frames, JointStateTopics(topics), EACH)
+        return {each.topic_name: each for each in following.node.subscriptions}
 
-    assert subscribed({'joint_states': '', 'a/j': 'a'}) == ['/a/j', '/joint_states']
-    before = {id(each) for each in states._node.subscriptions}
-    assert subscribed({'joint_states': '', 'a/j': 'a', 'b/j': 'b'}) == [
-        '/a/j', '/b/j', '/joint_states']
-    assert before < {id(each) for each in states._node.subscriptions}
-    assert subscribed({'b/j': 'b'}) == ['/b/j']
+    before = subscribed({'joint_states': '', 'a/j': 'a'})
+    after = subscribed({'joint_states': '', 'a/j': 'a', 'b/j': 'b'})
+    assert after.keys() == {'/joint_states', '/a/j', '/b/j'}
+    assert after.items() > before.items()
+    assert subscribed({'b/j': 'b'}).keys() == {'/b/j'}
+    following.connect('/b/j')
 
 
 @pytest.mark.parametrize(('topics', 'line'), [
@@ -566,31 +457,27 @@ def test_topics_come_and_go_with_the_frames(states, moving_frames):
     ({'joint_states': '', 'a/j': 'a', 'b/j': 'b'},
      'following 3 topics of joint states; the first message is on /joint_states\n'),
 ])
-def test_topics_that_are_followed_have_one_line(states, moving_frames, capfd, topics, line):
-    _, frames = moving_frames(TWO_ARMS)
-    states.replace(frames, JointStateTopics(topics))
-    for name in topics:
-        update(states, serialize_message(joint_state(5, {'a/turn': 0.5})), name)
+def test_topics_that_are_followed_have_one_line(following, capfd, topics, line):
+    following.start(ARM, topics=JointStateTopics(dict.fromkeys(topics, '')))
+    following.connect()
     log = capfd.readouterr().err
     assert line in log
     assert log.count('following') == 1
 
 
-def test_many_topics_are_made_between_other_callbacks(states, moving_frames, wait_until):
-    _, frames = moving_frames(TWO_ARMS)
-    states.replace(frames, JointStateTopics({f'a_{number}': 'a' for number in range(100)}))
-    subscriptions = states._node._subscriptions
+def test_many_topics_are_made_between_other_callbacks(following):
+    following.start(
+        TWO_ARMS, topics=JointStateTopics({f'a_{number}': 'a' for number in range(100)}))
+    subscriptions = following.node._subscriptions
     assert len(subscriptions) == SUBSCRIPTIONS_AT_ONCE
-    wait_until(lambda: len(subscriptions) == 100, subscriptions)
+    following.wait(lambda: len(subscriptions) == 100)
 
 
-def test_a_topic_that_cannot_be_made_is_reported_and_the_others_are_made(
-        states, moving_frames, capfd):
-    _, frames = moving_frames(TWO_ARMS)
+def test_a_topic_that_cannot_be_made_is_reported_and_the_others_are_made(following, capfd):
     topics = JointStateTopics({'{nowhere}/j': 'a', 'b/j': 'b'}, ('a warning',))
-    for _ in range(2):
-        states.replace(frames, topics)
-    assert [each.topic_name for each in states._node.subscriptions] == ['/b/j']
+    following.start(TWO_ARMS, topics=topics)
+    following.states.follow(following.frames, topics, EACH)
+    assert [each.topic_name for each in following.node.subscriptions] == ['/b/j']
     log = capfd.readouterr().err
     assert 'no subscription to {nowhere}/j: ' in log
     assert log.count('a warning') == 1

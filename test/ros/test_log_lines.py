@@ -109,8 +109,7 @@ def test_frames_that_tf_cannot_forget_are_named():
     (1, '1 joint has not been reported yet, for example "j0";'),
     (3, '3 joints have not been reported yet, for example "j0";')])
 def test_joints_that_nobody_reports_are_counted(count, words):
-    joints = MissingJoints(tuple(f'j{row}' for row in range(count)), ('/a', '/b'))
-    line = line_about_unreported_joints(joints)
+    line = line_about_unreported_joints(MissingJoints(count, 'j0', ('/a', '/b')))
     assert line.startswith(words)
     assert line.endswith(' until a message on /a or /b names the joint')
 
@@ -143,9 +142,11 @@ def test_joints_that_stand_still_are_those_that_messages_have_to_name(content):
     scene = load_text(model_file(
         '<link name="a"/><link name="b"/><link name="c"/>' + content, version='1.11'))
     tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
-    (name,) = JointPositions(scene, tree.moving.dofs).missing
+    positions = JointPositions(scene, tree.moving.dofs)
+    count, first = positions.unreported()
+    assert count == 1
     line = line_about_joints_at_rest(scene, '', FrameNames.AUTO)
-    assert line.startswith(f'1 joint that can move, for example "{name}", stays')
+    assert line.startswith(f'1 joint that can move, for example "{positions.names[first]}", stays')
 
 
 def test_models_without_a_transform_from_the_root_are_named():

@@ -38,7 +38,7 @@ def make_publish(node, finish):
     def publish(names, topics=()):
         frames = PublishedFrames(
             publishers, tree_of_frames(*names), None, {name: f'topic_{name}' for name in topics})
-        frames.publish_tf()
+        frames.publish_tf_static()
         finish(node.executor, frames.publish_topics)
 
     return publish
@@ -104,6 +104,15 @@ def listen_to_poses(node, make_node):
     return found
 
 
+def publish_topics(node, frames):
+    """Publish all frames on their topics; the moving ones as the thread of joint states does."""
+    async def publish():
+        await frames.publish_topics()
+        frames.moving.publish_topics(only_listeners=False)
+
+    node.executor.create_task(publish)
+
+
 def wait_until(node, condition, found):
     deadline = time.monotonic() + 20.0
     while not condition():
@@ -116,7 +125,7 @@ def test_moving_frames_are_not_published_with_the_fixed_ones(node, poses):
         return sum(name == wanted for name, _ in poses)
 
     frames = frames_of_arm(Publishers(node))
-    node.executor.create_task(frames.publish_topics)
+    publish_topics(node, frames)
     wait_until(node, lambda: count('upper') and count('base'), poses)
     for _ in range(2):
         node.executor.create_task(frames.publish_fixed_again)
@@ -124,14 +133,13 @@ def test_moving_frames_are_not_published_with_the_fixed_ones(node, poses):
     assert count('upper') == 1
 
 
-def test_after_a_reload_poses_have_the_stamps_of_the_tree_and_of_the_joints(node, poses):
+def test_poses_have_the_stamps_of_the_tree_and_of_the_joints(node, poses):
     publishers = Publishers(node)
-    before = frames_of_arm(publishers)
-    before.moving.positions.stamps_ns[:] = 5_000_000_006
-    frames = frames_of_arm(publishers, before)
+    frames = frames_of_arm(publishers)
+    frames.moving.positions.stamps_ns[:] = 5_000_000_006
     # The time of the node goes on before anything is published.
-    assert before.stamp < frames.stamp < publishers.now()
-    node.executor.create_task(frames.publish_topics)
+    assert frames.stamp < publishers.now()
+    publish_topics(node, frames)
     wait_until(node, lambda: {'upper', 'base'} <= dict(poses).keys(), poses)
     stamps = {name: (stamp.sec, stamp.nanosec) for name, stamp in poses}
     assert stamps == {'base': frames.stamp, 'upper': (5, 6)}
@@ -140,21 +148,10 @@ def test_after_a_reload_poses_have_the_stamps_of_the_tree_and_of_the_joints(node
 def test_poses_in_a_frame_that_moves_have_the_stamp_of_its_joints(node, poses):
     frames = frames_of_arm(Publishers(node), pose_frame='upper')
     frames.moving.positions.stamps_ns[:] = 5_000_000_006
-    node.executor.create_task(frames.publish_topics)
+    publish_topics(node, frames)
     wait_until(node, lambda: 'base' in dict(poses), poses)
     stamp = dict(poses)['base']
     assert (stamp.sec, stamp.nanosec) == (5, 6)
-
-
-def test_joints_that_go_on_moving_before_a_reload_is_published_are_where_they_were_last(node):
-    publishers = Publishers(node)
-    before = frames_of_arm(publishers)
-    frames = frames_of_arm(publishers, before)
-    before.moving.positions.values[:] = 0.5
-    before.moving.positions.stamps_ns[:] = 5
-    frames.take_over(before)
-    assert frames.moving.positions.values.tolist() == [0.5]
-    assert frames.moving.positions.stamps_ns.tolist() == [5]
 
 
 def test_messages_that_were_laid_out_before_are_published(node, poses):
@@ -170,7 +167,7 @@ def test_what_a_joint_without_a_position_moves_is_not_published(node, poses):
     publishers, transforms = Publishers(node), []
     node.create_subscription(TransformStamped, '/bridge/transforms', transforms.append, LATCHED)
     before = frames_of_arm(publishers, unreported=UnreportedJoints.NONE)
-    node.executor.create_task(before.publish_topics)
+    publish_topics(node, before)
     wait_until(node, lambda: 'base' in dict(poses), poses)
     assert 'upper' not in dict(poses)
     before.moving.positions.is_reported[:] = True

@@ -28,7 +28,7 @@ def poses_at(text, positions):
     scene, motion = motion_of(text)
     state = JointPositions(scene, motion.dofs)
     selection = state.selection(list(positions))
-    assert not selection.unknown
+    assert not state.unknown(positions)
     state.update(selection, np.array(list(positions.values()), float))
     elements = np.arange(len(scene.names), dtype=np.int32)
     moved = motion.moved_poses(scene.poses, elements, state.values)

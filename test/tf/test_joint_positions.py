@@ -29,9 +29,9 @@ def positions_of(text, frame_names=FrameNames.AUTO, model=''):
     return JointPositions(scene, tree.moving.dofs, frame_names, model)
 
 
-def update(positions, **values):
+def update(positions, stamp_ns=0, **values):
     selection = positions.selection(list(values))
-    return positions.update(selection, np.array(list(values.values()), float))
+    return positions.update(selection, np.array(list(values.values()), float), stamp_ns)
 
 
 def values_of(positions):
@@ -49,8 +49,9 @@ def following(leader='j', axis='axis', name='k'):
 
 @pytest.mark.parametrize('name', ['', 'zz', 'm/zz', 'zz::j', 'J', 'j_axis2', '/j'])
 def test_unknown_names(name):
-    assert positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute'))).selection(
-        [name]).unknown == (name,)
+    positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
+    assert positions.unknown([name]) == [name]
+    assert not len(positions.selection([name]).dofs)
 
 
 @pytest.mark.parametrize('name', ['j', 'm/j', 'm::j'])
@@ -64,7 +65,7 @@ def test_names_of_joints_in_a_world_are_scoped():
     positions = positions_of(world_file(model('x') + model('y')))
     assert positions.names == ('x/j', 'y/j')
     assert positions.selection(['y::j', 'y/j']).dofs.tolist() == [1, 1]
-    assert positions.selection(['j']).unknown == ('j',)
+    assert positions.unknown(['j']) == ['j']
 
 
 def test_names_inside_one_model_are_not_those_of_others():
@@ -76,17 +77,17 @@ def test_names_inside_one_model_are_not_those_of_others():
     selection = positions.selection(names, 'y')
     found = [positions.names[dof] for dof in selection.dofs]
     assert found == ['y/j', 'y/j', 'y/z/k', 'y/z/k', 'y/z/k']
-    assert selection.unknown == ('x/j',)
+    assert positions.unknown(names, 'y') == ['x/j']
     assert positions.hint('jj', 'y') == '; did you mean "j"?'
 
 
 def test_a_joint_with_several_degrees_of_freedom_is_missing_once():
     positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'ball')))
-    assert len(positions.missing) == 1
-    positions.update(positions.selection(positions.missing), np.zeros(1))
-    assert len(positions.missing) == 1
+    assert positions.unreported() == (1, 0)
+    positions.update(positions.selection(positions.names[:1]), np.zeros(1))
+    assert positions.unreported() == (1, 1)
     positions.update(positions.selection(positions.names), np.zeros(3))
-    assert positions.missing == ()
+    assert positions.unreported() is None
 
 
 @pytest.mark.parametrize('text', [
@@ -107,34 +108,15 @@ def test_the_models_are_those_that_are_published():
 def test_degrees_of_freedom_beside_others_are_those_of_their_model():
     second = joint('<parent>b</parent><child>c</child>', 'k', 'revolute')
     positions = positions_of(world_file(model('x', second) + model('y')))
-    assert positions.dofs_beside([0]).tolist() == [0, 1]
-    assert positions.dofs_beside([]).tolist() == []
-
-
-# Several topics
-
-def test_a_position_of_another_topic_that_was_sent_earlier_does_not_count():
-    positions = positions_of(world_file(model('x') + model('y')))
-    both, one = positions.selection(['x/j', 'y/j']), positions.selection(['j'], 'x')
-    assert positions.take_newer(both, 1, 5) is None
-    assert positions.take_newer(one, 2, 7) is None
-    assert positions.take_newer(both, 1, 6).tolist() == [False, True]
-    assert positions.take_newer(both, 1, 7) is None
-
-
-def test_messages_of_one_topic_count_in_the_order_in_which_they_come():
-    positions = positions_of(world_file(model('x')))
-    selection = positions.selection(['j'])
-    assert positions.take_newer(selection, 1, 5) is None
-    assert positions.take_newer(selection, 1, 3).all()
-    assert positions.take_newer(selection, 2, 4) is None
+    assert positions.selection(['x/k']).beside.tolist() == [0, 1]
+    assert positions.selection([]).beside.tolist() == []
 
 
 def test_the_second_joint_that_a_screw_joint_has_in_urdf_is_not_unknown():
     text = model_file(
         '<link name="a"/><link name="b"/>'
         '<joint name="j" type="screw"><parent>a</parent><child>b</child></joint>')
-    assert positions_of(text).selection(['j', 'j_slide', 'k_slide']).unknown == ('k_slide',)
+    assert positions_of(text).unknown(['j', 'j_slide', 'k_slide']) == ['k_slide']
 
 
 def test_names_of_models_can_be_left_out_where_one_joint_is_meant():
@@ -152,7 +134,7 @@ def test_the_name_of_a_joint_itself_comes_first():
 def test_of_several_models_one_can_have_all_names():
     positions = positions_of(world_file(model('x') + model('y')), model='y')
     assert positions.selection(['j']).dofs.tolist() == [1]
-    assert positions.selection(['x/j']).unknown == ('x/j',)
+    assert positions.unknown(['x/j']) == ['x/j']
 
 
 def test_names_of_a_second_axis_and_of_a_ball_joint():
@@ -226,6 +208,43 @@ def test_joints_of_the_same_name_continue_in_another_scene():
     after.take_over(before)
     assert values_of(after) == {'i': 0.0, 'j': 2.0}
     assert after.is_reported.tolist() == [name == 'j' for name in after.names]
+
+
+# Stamps
+
+def test_an_older_position_does_not_count():
+    positions = positions_of(world_file(model('x') + model('y')))
+    update(positions, 5, **{'x/j': 0.5})
+    update(positions, 3, **{'x/j': 0.25, 'y/j': 0.25})
+    assert values_of(positions) == {'x/j': 0.5, 'y/j': 0.25}
+    assert positions.stamps_ns.tolist() == [5, 3]
+    update(positions, 5, **{'x/j': 0.75})
+    assert values_of(positions)['x/j'] == 0.75
+
+
+def test_a_follower_does_not_follow_an_older_position():
+    positions = positions_of(model_file(LINKS + joint(
+        ENDS + '<axis><xyz>0 0 1</xyz></axis>', 'j', 'revolute') + following(), version='1.11'))
+    update(positions, 5, j=2.0)
+    update(positions, 3, j=0.0)
+    assert values_of(positions) == {'j': 2.0, 'k': 4.0}
+
+
+def test_stamps_can_be_ignored_or_forgotten():
+    positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
+    update(positions, 5, j=0.5)
+    positions.update(positions.selection(['j']), np.array([0.25]), 4, ignore_stamps=True)
+    assert positions.values.tolist() == [0.25]
+    positions.forget_stamps()
+    update(positions, 1, j=0.75)
+    assert (positions.values.tolist(), positions.stamps_ns.tolist()) == ([0.75], [1])
+
+
+def test_positions_of_one_time_stay_together():
+    positions = positions_of(model_file(LINKS + joint(ENDS, 'j', 'revolute')))
+    before = positions.values
+    update(positions, j=0.5)
+    assert before.tolist() == [0.0]
 
 
 # Scenes at a configuration

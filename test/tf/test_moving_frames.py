@@ -88,13 +88,6 @@ def test_quaternions_have_the_canonical_sign():
     assert (moving.poses(positions)[:, 6] >= 0.0).all()
 
 
-def test_rows_moved_by_a_degree_of_freedom():
-    moving = moving_tree(model_file(ARM)).moving
-    assert [moving.rows_moved_by([dof]).tolist() for dof in (0, 1)] == [[0], [1]]
-    assert moving.rows_moved_by([0, 1]).tolist() == [0, 1]
-    assert not moving.rows_moved_by([]).size
-
-
 def test_frames_that_move_with_the_pose_frame_stay_in_it():
     tree = moving_tree(model_file(ARM), pose_frame='b')
     posed = [tree.frame_ids[index] for index in tree.moving.posed_indices]
@@ -114,15 +107,15 @@ def test_poses_in_the_pose_frame_are_those_that_a_lookup_finds(pose_frame):
         np.testing.assert_allclose(poses, expected, atol=1e-15)
 
 
-def test_transforms_need_the_positions_that_they_cross():
+def test_transforms_depend_on_what_they_cross():
     moving = moving_tree(
         model_file(ARM + '<frame name="f" attached_to="c"/>'),
         kinds=frozenset({Kind.FRAME, Kind.SENSOR}), anchor_models=AnchorModels.ALL).moving
     # The sensor is behind the first joint, the frame behind both.
-    for known, expected in (
-            ([False, False], [False, False]), ([True, False], [True, False]),
-            ([False, True], [False, False]), ([True, True], [True, True])):
-        assert moving.has_transform(np.array(known)).tolist() == expected
+    for chosen, expected in (
+            ([True, True], [True, True]), ([False, True], [False, True]),
+            ([True, False], [True, True]), ([False, False], [False, False])):
+        assert moving.depends_on(np.array(chosen)).tolist() == expected
 
 
 def test_joints_between_two_frames():

@@ -1,0 +1,420 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The thread that takes the messages of all topics of joint states, and publishes what they move.
+
+The transforms that a message changes are published on ``/tf`` with the stamp of the message, if it
+is newer than their last one. Frames of joints that no message has named are not published. If such
+joints are at zero, all frames are published before the first message, and then these frames with
+each message, so that TF is complete.
+
+With a highest rate, a message is published at once and begins a period, which is the same for all
+topics. Later ones wait in the subscriptions for its end. Then the newest of them are published in
+one message, and another period begins if there are any. Only the first message of a topic after a
+silence does not wait, unless all topics were silent: then many robots may start together.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Sequence
+import contextlib
+import math
+import threading
+import time
+import traceback
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from rclpy.clock import Clock, ClockType
+from rclpy.exceptions import InvalidHandle
+from rclpy.node import Node
+from rclpy.task import Future
+from rclpy.timer import Timer
+
+from sdf_pose_bridge.ros.background import wake
+from sdf_pose_bridge.ros.joint_names import Meaning, Meanings
+from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic, Message
+from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints, MissingJoints
+from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
+from sdf_pose_bridge.ros.publishers import NANOSECONDS
+from sdf_pose_bridge.ros.wait_set import WaitSet
+
+INITIAL_PERIOD_S = 0.1
+"""Period of ``/tf`` before the first message, if joints are at zero then."""
+
+GRACE_S = 2.0
+"""Seconds until joints that no message has named are reported."""
+
+TOPICS_PERIOD_S = 1.0 / 30.0
+"""Shortest period of the topics of moving frames, and longest time for which waiting messages are
+taken before others get their turn."""
+
+SILENCE_S = 1.0
+"""Seconds without a message, and two periods at least, after which a topic is silent. With fewer,
+each message of many slow robots would be published by itself."""
+
+_REST_S = 0.5
+_LONGEST_SLEEP_S = 0.1
+
+_NO_ROWS = np.array([], np.intp)
+
+
+class Rule(NamedTuple):
+    """When transforms are published on ``/tf``."""
+
+    highest_hz: float
+    """The highest rate of each; 0.0 for each message."""
+    ignores_stamps: bool
+    """Whether to publish for each message, also with a stamp that is not newer than the last."""
+
+
+class Target(NamedTuple):
+    """The frames, topics and rule that the thread follows."""
+
+    frames: PublishedMovingFrames
+    topics: Sequence[JointStateTopic]
+    topic_count: int
+    """The number of these topics, and of those that follow."""
+    rule: Rule
+
+
+class Caller(NamedTuple):
+    """One who waits until the messages that have come are processed."""
+
+    future: Future
+    due: float
+    """When it does not wait longer, if messages come too fast."""
+
+
+class JointStateThread:
+    """
+    Takes messages and publishes frames in a thread, from its construction to :meth:`end`.
+
+    :param target: the first target.
+    """
+
+    def __init__(self, node: Node, target: Target) -> None:
+        self._node = node
+        self._logger = node.get_logger()
+        self._wait_set = WaitSet(node.context)
+        # Other threads set these.
+        self._next_target = target
+        self._callers: deque[Caller] = deque()
+        self._has_to_publish_topics = False
+        self._has_to_end = False
+        # The thread alone uses everything else.
+        self._target = target
+        # The functions that are due at some monotonic time.
+        self._due: dict[Callable[[], None], float] = {}
+        self._topics_due = 0.0
+        self._now_ns = 0
+        self._has_jumped = False
+        self._has_moved = False
+        self._is_grace_over = False
+        self._has_reported_missing = False
+        self._period = 0
+        self._timer: Timer | None = None
+        self._start_frames()
+        self._start_rule()
+        # The node may be destroyed with its context only.
+        node.context.on_shutdown(self.end)
+        self._thread = threading.Thread(target=self._run, name='joint states', daemon=True)
+        self._thread.start()
+
+    # Calls of other threads
+
+    def follow(self, target: Target) -> None:
+        """Follow something else, starting at the positions that joints have."""
+        before = self._next_target.frames.positions
+        if target.frames.positions is not before:
+            # Look-ups do not wait until the thread does it again.
+            target.frames.positions.take_over(before)
+        self._next_target = target
+        self._wake()
+
+    def publish_topics(self) -> None:
+        """Publish all moving frames on ``~/transforms`` and ``~/poses/...`` soon."""
+        self._has_to_publish_topics = True
+        self._wake()
+
+    def catch_up(self) -> Future:
+        """Return a future that is done when all calls and messages so far are processed."""
+        caller = Caller(Future(), time.monotonic() + TOPICS_PERIOD_S)
+        self._callers.append(caller)
+        self._wake()
+        return caller.future
+
+    def end(self) -> None:
+        """End the thread."""
+        self._has_to_end = True
+        self._wake()
+        self._thread.join()
+
+    def _wake(self) -> None:
+        # The thread may have ended with the node.
+        with contextlib.suppress(InvalidHandle):
+            self._wait_set.wake()
+
+    # The thread
+
+    def _run(self) -> None:
+        while not self._has_to_end:
+            try:
+                self._turn()
+            except InvalidHandle:
+                # A topic has been destroyed, which follows a change of the target; or the node.
+                if self._target is self._next_target:
+                    break
+                self._follow_next_target()
+            except Exception as error:  # noqa: BLE001 - includes defects
+                self._logger.error(
+                    f'internal error in joint states: {error}\n{traceback.format_exc()}',
+                    throttle_duration_sec=60.0)
+        self._wait_set.close()
+        self._answer_callers()
+
+    def _turn(self) -> None:
+        """Wait once, and do what is due."""
+        due = 0.0 if self._callers else min(self._due.values(), default=math.inf)
+        ready = self._wait_set.wait(
+            self._subscriptions, self._timer, max(0.0, due - time.monotonic()))
+        if self._target is not self._next_target:
+            self._follow_next_target()
+            return  # the messages are ready again
+        if ready:
+            self._take_at_once([self._awaited[index] for index in ready])
+        if self._timer is not None and self._timer.is_ready():
+            self._end_period()
+        now = time.monotonic()
+        if self._callers and (not ready or now > self._callers[0].due):
+            if self._is_in_period:
+                self._take_waiting()
+            self._answer_callers()
+        if self._has_to_publish_topics:
+            self._has_to_publish_topics = False
+            self._target.frames.publish_topics(only_listeners=False)
+        for function in [each for each, due in self._due.items() if due <= now]:
+            del self._due[function]
+            function()
+
+    def _answer_callers(self) -> None:
+        while self._callers:
+            self._callers.popleft().future.set_result(None)
+        wake(self._node.executor)
+
+    def _follow_next_target(self) -> None:
+        before, self._target = self._target, self._next_target
+        if self._target.frames is not before.frames:
+            if self._target.frames.positions is not before.frames.positions:
+                self._target.frames.positions.take_over(before.frames.positions)
+            self._start_frames()
+        if self._target.rule != before.rule:
+            self._start_rule()
+        self._end_periods()
+
+    def _start_frames(self) -> None:
+        self._meanings = Meanings(self._target.frames)
+        self._has_to_publish_topics = True
+        now = time.monotonic()
+        self._due[self._publish_all] = now
+        if not self._has_reported_missing:
+            self._is_grace_over = False
+            self._due[self._end_grace] = now + GRACE_S
+
+    def _start_rule(self) -> None:
+        if self._timer is not None:
+            self._timer.destroy()
+            self._timer = None
+        rule = self._target.rule
+        if rule.highest_hz and not rule.ignores_stamps:
+            # A bag that is played faster has as many transforms in each of its seconds.
+            clock = self._node.get_clock()
+            self._timer = Timer(
+                None, None, int(NANOSECONDS / rule.highest_hz),
+                clock if clock.ros_time_is_active else Clock(clock_type=ClockType.STEADY_TIME),
+                context=self._node.context)
+        self._end_periods()
+
+    # Periods
+
+    def _begin_period(self, awaited: Sequence[JointStateTopic]) -> None:
+        """
+        Begin a period.
+
+        :param awaited: the topics whose messages do not wait for its end.
+        """
+        assert self._timer is not None
+        self._timer.reset()
+        self._is_in_period = True
+        self._period += 1
+        self._due[self._empty_subscriptions] = time.monotonic() + _LONGEST_SLEEP_S
+        self._await(awaited)
+
+    def _end_period(self) -> None:
+        """Publish what has waited; without any, publish the next message at once."""
+        assert self._timer is not None
+        self._take_waiting()
+        if self._target.frames.publish_waiting():
+            self._publish_topics_soon()
+            longest = max(2.0, SILENCE_S * self._target.rule.highest_hz)
+            self._begin_period([
+                each for each in self._target.topics if self._period - each.last_period > longest])
+        else:
+            self._end_periods()
+
+    def _end_periods(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+        self._is_in_period = False
+        self._due.pop(self._empty_subscriptions, None)
+        self._await(self._target.topics)
+
+    def _await(self, topics: Sequence[JointStateTopic]) -> None:
+        self._awaited = topics
+        self._subscriptions = [each.subscription for each in topics]
+
+    def _empty_subscriptions(self) -> None:
+        """Take messages in a long period, before there are too many."""
+        self._take_waiting()
+        self._due[self._empty_subscriptions] = time.monotonic() + _LONGEST_SLEEP_S
+
+    # Messages
+
+    def _take_at_once(self, topics: Sequence[JointStateTopic]) -> None:
+        """Take a message of each of some topics, and publish what they move."""
+        self._follow_clock()
+        moved = []
+        for topic in topics:
+            data = topic.take()
+            message = data and topic.read(data, self._meanings, self._target.frames.positions)
+            if message:
+                moved.append(self._move(topic, message))
+        if not moved:
+            return
+        for rows, stamps_ns in moved if len(moved) == 1 else _merged(moved):
+            if len(rows):
+                self._target.frames.publish_tf(rows, stamps_ns)
+        self._publish_topics_soon()
+        if self._is_in_period:
+            self._await([each for each in self._awaited if each not in topics])
+        # Simulated time that has not begun would never end a period.
+        elif self._timer is not None and self._now_ns:
+            self._begin_period([])
+
+    def _take_waiting(self) -> None:
+        """Take the messages that wait; of those with the same names the newest counts."""
+        self._follow_clock()
+        newest: dict[Meaning, tuple[JointStateTopic, Message]] = {}
+        # Messages may come faster than they are taken. Topics take turns, so that one with too
+        # many messages does not delay the others.
+        ends_at = time.monotonic() + TOPICS_PERIOD_S
+        topics: Sequence[JointStateTopic] = self._target.topics
+        while topics and time.monotonic() < ends_at:
+            others = []
+            for topic in topics:
+                data = topic.take()
+                if data is None:
+                    continue
+                others.append(topic)
+                message = topic.read(data, self._meanings, self._target.frames.positions)
+                if message is None:
+                    continue
+                known = newest.get(message.meaning)
+                if known is None or known[1].stamp_ns <= message.stamp_ns or (
+                        not message.stamp_ns):
+                    newest[message.meaning] = topic, message
+            topics = others
+        for topic, message in newest.values():
+            rows, _ = self._move(topic, message)
+            self._target.frames.wait(rows)
+
+    def _follow_clock(self) -> None:
+        """Accept any stamp after time has jumped back, for example when a bag starts again."""
+        clock = self._node.get_clock()
+        now_ns = clock.now().nanoseconds if clock.ros_time_is_active else time.time_ns()
+        self._has_jumped = now_ns < self._now_ns
+        self._now_ns = now_ns
+        if self._has_jumped:
+            self._logger.info('time has jumped back', throttle_duration_sec=10.0)
+            self._target.frames.forget_stamps()
+
+    def _move(self, topic: JointStateTopic, message: Message) -> tuple[NDArray[np.intp], int]:
+        """
+        Set the positions of a message.
+
+        :return: the moving transforms that have to be published, and their stamp in nanoseconds.
+        """
+        target, meaning = self._target, message.meaning
+        positions, ignores_stamps = target.frames.positions, target.rule.ignores_stamps
+        stamp_ns = message.stamp_ns or self._now_ns
+        if self._has_jumped and stamp_ns > self._now_ns:
+            return _NO_ROWS, stamp_ns  # it was sent before that
+        topic.last_period = self._period
+        topic.warn_about_invalid(positions.update(
+            meaning.selection, message.positions, stamp_ns, ignore_stamps=ignores_stamps))
+        if self._has_reported_missing and positions.unreported() is None:
+            self._has_reported_missing = False
+            self._logger.info('all joints have been reported now')
+        rows = self._meanings.rows(meaning)
+        if len(rows) and not self._has_moved:
+            self._has_moved = True
+            self._logger.info(
+                f'following {topic.name}' if target.topic_count == 1 else
+                f'following {target.topic_count} topics of joint states; the first message is on '
+                f'{topic.name}')
+        return target.frames.stamp(rows, stamp_ns, ignore_stamps=ignores_stamps), stamp_ns
+
+    # Publication
+
+    def _publish_all(self) -> None:
+        """Publish all frames on ``/tf``; repeatedly as long as no message has come."""
+        if self._target.frames.publish_all():
+            self._due[self._publish_all] = time.monotonic() + INITIAL_PERIOD_S
+
+    def _publish_topics_soon(self) -> None:
+        now = time.monotonic()
+        self._due[self._publish_to_listeners] = max(self._topics_due, now)
+        self._due[self._publish_at_rest] = now + _REST_S
+
+    def _publish_to_listeners(self) -> None:
+        # A late one does not delay those that follow.
+        self._topics_due = max(self._topics_due + TOPICS_PERIOD_S, time.monotonic())
+        self._target.frames.publish_topics(only_listeners=True)
+
+    def _publish_at_rest(self) -> None:
+        """Publish the last positions once more, for later listeners."""
+        self._target.frames.publish_topics(only_listeners=False)
+
+    # Joints that no message has named
+
+    @property
+    def unreported(self) -> MissingJoints:
+        """The joints that no message has named in time."""
+        target = self._next_target
+        positions = target.frames.positions
+        found = positions.unreported() if self._is_grace_over else None
+        if found is None:
+            return MissingJoints()
+        name = positions.names[found.first]
+        return MissingJoints(found.joint_count, name, [
+            topic.name for topic in target.topics if not positions.unknown([name], topic.model)])
+
+    def _end_grace(self) -> None:
+        """Report the joints that no message has named, once."""
+        self._is_grace_over = True
+        unreported = self.unreported
+        if unreported.number:
+            self._has_reported_missing = True
+            self._logger.info(line_about_unreported_joints(unreported))
+
+
+def _merged(
+    moved: Sequence[tuple[NDArray[np.intp], int]],
+) -> Sequence[tuple[NDArray[np.intp], NDArray[np.int64] | int]]:
+    """Return transforms with their stamps for one message, unless some are there twice."""
+    rows = np.concatenate([rows for rows, _ in moved])
+    stamps_ns = np.repeat([stamp_ns for _, stamp_ns in moved], [len(rows) for rows, _ in moved])
+    order = np.argsort(rows)
+    return [(rows[order], stamps_ns[order])] if np.diff(rows[order]).all() else moved

@@ -1,0 +1,114 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Wait for messages in a thread, without the executor of the node.
+
+An executor takes three times as long for a message. ``rclpy.wait_for_message`` waits in the same
+way; it is the only example of a public function, and the names that are not public here are those
+that it uses. rclpy 7 to 10 have all of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+import math
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.context import Context
+from rclpy.guard_condition import GuardCondition
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.subscription import Subscription
+from rclpy.timer import Timer
+
+from sdf_pose_bridge.ros.publishers import NANOSECONDS
+
+_FOREVER = -1
+
+
+class NoExecutor(CallbackGroup):
+    """The group of subscriptions for which no executor waits."""
+
+    def can_execute(self, _entity: object) -> bool:
+        """Return that no executor has to wait."""
+        return False
+
+    def beginning_execution(self, _entity: object) -> bool:
+        """Return that no executor may begin."""
+        return False
+
+    def ending_execution(self, _entity: object) -> None:
+        """Do nothing; it is never called."""
+
+
+class WaitSet:
+    """
+    Waits for messages; for one thread, and others can wake it.
+
+    :param context: the context of the subscriptions.
+    """
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._guard_condition = GuardCondition(None, None, context=context)
+        self._subscriptions: Sequence[Subscription] | None = None
+        self._timer: Timer | None = None
+        self._held = ExitStack()
+
+    def wake(self) -> None:
+        """End the current call of :meth:`wait`, or the next one."""
+        self._guard_condition.trigger()
+
+    def wait(
+        self, subscriptions: Sequence[Subscription], timer: Timer | None, timeout_s: float,
+    ) -> list[int]:
+        """
+        Wait for a message, a timer, or a call of :meth:`wake`.
+
+        :param subscriptions: the subscriptions, which are in the group :class:`NoExecutor`.
+        :param timer: a timer that no executor has; None for none.
+        :param timeout_s: the longest time in s; infinity for any time.
+        :return: the indices of the subscriptions that have a message.
+        :raises rclpy.exceptions.InvalidHandle: if one of them has been destroyed.
+        """
+        if subscriptions is not self._subscriptions or timer is not self._timer:
+            self._prepare(subscriptions, timer)
+        wait_set = self._wait_set
+        wait_set.clear_entities()
+        wait_set.add_guard_condition(self._guard_condition.handle)
+        if timer is not None:
+            wait_set.add_timer(timer.handle)
+        for subscription in subscriptions:
+            wait_set.add_subscription(subscription.handle)
+        wait_set.wait(_FOREVER if math.isinf(timeout_s) else int(timeout_s * NANOSECONDS))
+        ready = set(wait_set.get_ready_entities('subscription'))
+        return [
+            index for index, each in enumerate(subscriptions) if each.handle.pointer in ready
+        ] if ready else []
+
+    def close(self) -> None:
+        """Destroy it. Subscriptions that were destroyed before are released."""
+        self._held.close()
+        self._guard_condition.destroy()
+
+    def _prepare(self, subscriptions: Sequence[Subscription], timer: Timer | None) -> None:
+        self._subscriptions = None
+        self._held.close()
+        with ExitStack() as stack:
+            # What is held is not released while the middleware uses it, even if it is destroyed.
+            for handle in (
+                self._context.handle, self._guard_condition.handle,
+                *(each.handle for each in subscriptions), *([timer.handle] if timer else ()),
+            ):
+                stack.enter_context(handle)
+            self._wait_set = rclpy_implementation.WaitSet(
+                len(subscriptions), 1, int(timer is not None), 0, 0, 0, self._context.handle)
+            self._held = stack.pop_all()
+        self._subscriptions, self._timer = subscriptions, timer
+
+
+def take_message(subscription: Subscription) -> bytes | None:
+    """Take a message that a subscription for serialized messages has; None if there is none."""
+    with subscription.handle:
+        taken = subscription.handle.take_message(subscription.msg_type, True)
+    return None if taken is None else taken[0]
