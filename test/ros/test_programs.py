@@ -32,7 +32,8 @@ def test_a_parameter_that_is_given_comes_before_a_default(make_node):
 
 
 @pytest.mark.parametrize(('given', 'file'), [
-    ([], 'a.urdf'), (['-p', 'sdf_file:=b.urdf'], 'b.urdf'), (['-p', 'robot_description:=c'], '')])
+    ([], 'a.urdf'), (['-p', 'sdf_file:=b.urdf'], 'b.urdf'),
+    (['-p', 'robot_description:=<sdf/>'], '')])
 def test_a_file_on_the_command_line_comes_after_parameters(make_node, given, file):
     settings = settings_from_node(
         make_node('bridge', *given), ROBOT_STATE_PUBLISHER.defaults, 'a.urdf')
