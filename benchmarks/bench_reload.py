@@ -11,7 +11,6 @@ import os
 from pathlib import Path
 import random
 import shutil
-import signal
 import struct
 import subprocess
 import sys
@@ -36,8 +35,6 @@ POSES_OF_MODEL = 22
 LONGEST_ANSWER_S = 0.02
 LONGEST_RELOAD_S = 0.03
 LONGEST_NOTICE_S = 0.05
-LONGEST_START_S = 0.3
-"""So much longer a reload may take that starts the process that reads."""
 
 CALLER = """
 import sys
@@ -120,17 +117,6 @@ class RunningBridge:
         new.write_text(text, encoding='utf-8')
         new.replace(self.file)
 
-    def end_reading_process(self) -> None:
-        """End the process that reads files, if there is one."""
-        # A process is a child of the thread that has started it.
-        for children in Path(f'/proc/{self.process.pid}/task').glob('*/children'):
-            for child in children.read_text(encoding='ascii').split():
-                os.kill(int(child), signal.SIGKILL)
-                # It is a zombie until the node asks for it.
-                stat = Path(f'/proc/{child}/stat')
-                while stat.read_text(encoding='utf-8').rpartition(')')[2].split()[0] != 'Z':
-                    time.sleep(0.001)
-
 
 @contextlib.contextmanager
 def work_cell() -> Iterator[tuple[RunningBridge, Callable[[], bytes]]]:
@@ -169,27 +155,6 @@ def asked_reload() -> Iterator[tuple[Function, Function | None]]:
             reload()
             next_message()
         yield ours, bridge.client.caller(Empty, '/minimal/empty', Empty.Request())
-
-
-@benchmark(
-    'work cell: ~/reload that starts the process that reads, to its transforms at a listener',
-    counterpart='~/reload when it is there',
-    goal=TimesAsFast(longest_s=LONGEST_RELOAD_S + LONGEST_START_S))
-def reload_that_starts_a_process() -> Iterator[tuple[Function, Function | None]]:
-    from std_srvs.srv import Trigger
-    with work_cell() as (bridge, next_message):
-        reload = bridge.client.caller(Trigger, '/sdf_pose_bridge/reload', Trigger.Request())
-
-        def counterpart() -> Took:
-            begin = time.perf_counter()
-            assert reload().success
-            next_message()
-            return Took(time.perf_counter() - begin)
-
-        def ours() -> Took:
-            bridge.end_reading_process()
-            return counterpart()
-        yield ours, counterpart
 
 
 @benchmark(

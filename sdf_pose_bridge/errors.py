@@ -303,3 +303,7 @@ class UnknownFrameError(SdfError, LookupError):
     """A query names a frame that does not exist, or one of several with the same name."""
 
     code = 'POSE_RELATIVE_TO_INVALID'
+
+
+class AddressError(ValueError):
+    """An address does not name a file."""

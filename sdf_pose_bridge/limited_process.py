@@ -1,55 +1,43 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Call functions in a separate process with limits, which can be ended at any time.
+Call functions in processes with limits, which end with the call.
 
-A hostile file cannot exhaust the memory of the calling process. Limits of memory and processor
-time work on Linux only.
+A process that waits is forked once, before this one starts threads. For each call it forks again.
+So each call begins in a clean process in which everything is imported, and no call, however
+hostile its input, leaves anything behind. Linux only.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 import contextlib
-import fcntl
+import ctypes
+import errno
+import gc
 import os
 import pickle
 import resource
-import select
 import signal
-import sys
+import socket
+import struct
 import threading
 import time
 import traceback
-from typing import Any, BinaryIO, NamedTuple, TypeVar
+from typing import NoReturn, TypeVar
 
-KEPT_S = 60.0
-"""Time in s for which a process is kept for further calls."""
+from sdf_pose_bridge.process_limits import Allowance, limited, LimitExceededError
 
-MOST_KEPT_BYTES = 256_000_000
-"""The most memory that a process keeps between two calls."""
+WAITING_S = 50.0
+"""Elapsed time in s of a call beyond its processor time, for disks and other processes."""
 
-_PERIOD_S = 0.05
-"""Period in s at which the use of a process is compared with its limits."""
+_PR_SET_PDEATHSIG = 1
 
-_CODE = (
-    'import sys; sys.path[:] = sys.argv[2:]; '
-    'from sdf_pose_bridge.limited_process import serve; serve(int(sys.argv[1]))')
-
-_TICK_S = 1.0 / os.sysconf('SC_CLK_TCK')
-_PAGE_BYTES = os.sysconf('SC_PAGE_SIZE')
-_MEGABYTE = 1_000_000
-
-_IS_READ = b'.'
-"""Written before the answer when a call is read."""
-
-_NO_MEMORY = pickle.dumps((None, MemoryError(), ''), 5)
+_STATUS = struct.Struct('=id')
+"""A report about a call: first the id of its process, or a negative error number, and 0; then
+its exit code, and the processor time in s that it has used."""
 
 _Result = TypeVar('_Result')
-
-
-class LimitExceededError(Exception):
-    """A call exceeds its limits; the text begins with "more than"."""
 
 
 class ProcessEndedError(Exception):
@@ -61,286 +49,212 @@ class ProcessEndedError(Exception):
         """Whether the same call may succeed later, because it did not end the process itself."""
 
 
-class _CallNotReadError(ProcessEndedError):
-    """The process ended before it had read the call."""
-
-
-class Allowance(NamedTuple):
-    """The limits of a call; they grow with each megabyte that it reads."""
-
-    memory_bytes: int
-    processor_s: float
-    wall_s: float
-    """Elapsed time, including waiting for a disk."""
-    memory_bytes_per_megabyte: int = 0
-    seconds_per_megabyte: float = 0.0
-    """Added to both times."""
-    address_space_bytes: int = 0
-    """Limit of the address space, so that one huge array fails at once; 0 for no limit."""
-
-
-class _Use(NamedTuple):
-    """Resources that a process has used so far."""
-
-    memory_bytes: int
-    """Current memory."""
-    processor_s: float
-    bytes_read: int
-
-
 class LimitedProcess:
     """
-    Calls functions in another process, one after the other.
+    Calls functions in other processes, one after the other.
 
-    The process is started for the first call. It ends when it was not used for a while, when a
-    call exceeds its limits, and together with this process. All methods are thread-safe.
+    It must be made by the main thread while there is no other thread. All methods are thread-safe.
+    The other processes end with this one, also when it is killed.
 
-    :param allowance: the limits of each call.
+    :param prepare: is called once in the waiting process, to import what calls need.
     """
 
-    def __init__(self, allowance: Allowance) -> None:
-        self._allowance = allowance
+    def __init__(self, prepare: Callable[[], None]) -> None:
         self._lock = threading.Lock()
-        self._child: _Child | None = None
-        self._timer: threading.Timer | None = None
+        self._calls, calls = socket.socketpair()
+        self._calls.setblocking(False)
+        # These signals are for this process, which ends the other ones.
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM])
+        try:
+            self._pid = os.fork()
+            if self._pid == 0:
+                self._calls.close()
+                _serve(calls, prepare)
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+            calls.close()
 
-    def call(self, function: Callable[..., _Result], *arguments: object) -> _Result:
+    def call(
+        self, allowance: Allowance, function: Callable[..., _Result], *arguments: object,
+        meanwhile: Callable[[], None] | None = None,
+    ) -> _Result:
         """
-        Call a function in the process.
+        Call a function in a process of its own.
 
+        :param allowance: the limits of the process.
         :param function: a function of a module; its arguments and result can be pickled.
+        :param meanwhile: a function to call here while the other one runs.
         :return: its result.
-        :raises LimitExceededError: if it exceeds its limits.
+        :raises LimitExceededError: if it exceeds a limit, or takes ``WAITING_S`` longer than the
+            allowed processor time.
         :raises ProcessEndedError: if the process ends during the call, or cannot be started.
-        :raises MemoryError: if the system has no memory for it.
+        :raises MemoryError: if this process has no memory for the call or for its answer.
         :raises Exception: any exception of the function.
         """
-        with self._lock:
-            if self._timer is not None:
-                self._timer.cancel()
+        with self._lock, contextlib.ExitStack() as stack:
             try:
-                if self._child is None:
-                    self._child = _Child()
-                call = self._allowance, function, arguments
-                try:
-                    result, error = self._child.result_and_error(*call)
-                except _CallNotReadError:  # it was killed before
-                    self._end()
-                    self._child = _Child()
-                    result, error = self._child.result_and_error(*call)
-            except BaseException:
-                self._end()
-                raise
-            if self._child.use().memory_bytes > MOST_KEPT_BYTES:
-                self._end()
-            else:
-                self._end_later()
-        if error is not None:
-            raise error
+                # Call and answer are in memory, so no process waits for another one to read.
+                file = stack.enter_context(open(os.memfd_create('call'), 'r+b'))  # noqa: PTH123
+                status, other_end = map(stack.enter_context, socket.socketpair())
+                pickle.dump((allowance, function, arguments), file, 5)
+                file.flush()
+                if self._pid:
+                    socket.send_fds(self._calls, [b'.'], [file.fileno(), other_end.fileno()])
+                other_end.close()
+            except BrokenPipeError:
+                pass  # the waiting process has ended, as its missing status shows
+            except OSError as error:
+                msg = f'the process that reads files cannot be started: {error}'
+                raise ProcessEndedError(msg, may_pass=True) from error
+            other_end.close()
+            if meanwhile is not None:
+                meanwhile()
+            self._wait_for_end(status, allowance)
+            file.seek(0)
+            # Other threads can run after each piece.
+            result, exception, text = pickle.load(file)
+        if exception is not None:
+            raise exception from RuntimeError(f'in another process:\n{text}')
         return result  # type: ignore[no-any-return]
 
     def close(self) -> None:
-        """End the process; a further call starts another one."""
-        with self._lock:
-            self._end()
+        """End the processes; a call that is running, and further ones, fail."""
+        pid, self._pid = self._pid, 0
+        if pid:
+            os.kill(pid, signal.SIGKILL)
+            os.waitpid(pid, 0)
+            self._calls.close()
 
-    def _end(self) -> None:
-        if self._child is not None:
-            self._child.end()
-            self._child = None
+    def _wait_for_end(self, status: socket.socket, allowance: Allowance) -> None:
+        """
+        Wait until the process of a call has answered and ended.
 
-    def _end_later(self) -> None:
-        def end_if_unused() -> None:
-            with self._lock:
-                if self._timer is timer:
-                    self._end()
+        :raises LimitExceededError: as :meth:`call`.
+        :raises ProcessEndedError: as :meth:`call`.
+        """
+        begin, pid = time.monotonic(), 0
 
-        timer = self._timer = threading.Timer(KEPT_S, end_if_unused)
-        timer.daemon = True
+        def received() -> tuple[int, float]:
+            while True:
+                longest_s = allowance.processor_s + WAITING_S
+                with contextlib.suppress(OSError):  # the process has ended
+                    if pid:
+                        # It has raised its own limit if it has read much.
+                        soft, _ = resource.prlimit(pid, resource.RLIMIT_CPU)
+                        longest_s = max(longest_s, soft + WAITING_S)
+                left_s = begin + longest_s - time.monotonic()
+                if left_s <= 0.0:
+                    msg = f'more than {longest_s:.0f} s'
+                    raise LimitExceededError(msg)
+                status.settimeout(left_s)
+                with contextlib.suppress(TimeoutError):
+                    message = status.recv(_STATUS.size)
+                    if not message:
+                        self.close()
+                        msg = ('the process that starts the reading of files has ended; start '
+                               'this program again')
+                        raise ProcessEndedError(msg, may_pass=False)
+                    return _STATUS.unpack(message)
+
+        pid, _ = received()
+        if pid < 0:
+            msg = f'the process that reads files cannot be started: {os.strerror(-pid)}'
+            raise ProcessEndedError(msg, may_pass=True)
         try:
-            timer.start()
-        except RuntimeError:  # no memory for another thread
-            self._end()
+            code, processor_s = received()
+        except BaseException:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+            raise
+        if code == -signal.SIGXCPU:
+            msg = f'more than {processor_s:.0f} s of processor time'
+            raise LimitExceededError(msg)
+        if code:
+            how = f'by signal {-code}' if code < 0 else f'with exit code {code}'
+            # The kernel uses this signal when memory runs out.
+            msg = f'the process that reads files has ended {how}'
+            raise ProcessEndedError(msg, may_pass=code == -signal.SIGKILL)
 
 
-class _Child:
+def _serve(calls: socket.socket, prepare: Callable[[], None]) -> NoReturn:
+    """Fork for each call that comes, until no more can come."""
+    try:
+        _end_with_parent()
+        prepare()
+        # To search for garbage would copy the memory that the processes share.
+        gc.freeze()
+        _, most_bytes = resource.getrlimit(resource.RLIMIT_CORE)
+        resource.setrlimit(resource.RLIMIT_CORE, (0, most_bytes))
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for descriptor in (1, 2):
+            os.dup2(nowhere, descriptor)
+        while True:
+            message, descriptors, _, _ = socket.recv_fds(calls, 1, 2)
+            if not message:
+                break
+            file, status = descriptors
+            _fork_for_call(file, socket.socket(fileno=status))
+            os.close(file)
+    finally:
+        os._exit(1)
+
+
+def _fork_for_call(file: int, status: socket.socket) -> None:
     """
-    The process, which reads calls from its standard input and writes answers to its output.
+    Answer a call in another process, and report its end.
 
-    :raises ProcessEndedError: if it cannot be started.
+    :param file: a descriptor of the file with the call, which gets the answer.
     """
-
-    def __init__(self) -> None:
-        # Imported here because it takes 5 ms, and many programs call nothing.
-        import subprocess
-        ends: tuple[int, ...] = ()
-        # Ctrl-C is for this process; the other one has it blocked from its start.
-        mask = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    with status, contextlib.suppress(BrokenPipeError):  # the caller waits no longer
         try:
-            # Nothing is written to this pipe. When its last end here is closed, the process ends.
-            ends = life, self._life = os.pipe()
-            self._process = subprocess.Popen(
-                [sys.executable, '-c', _CODE, str(life), *sys.path], stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE, pass_fds=[life],
-                # Threads of numpy for large matrices would take memory.
-                env={**os.environ, 'OPENBLAS_NUM_THREADS': '1'})
-        except (OSError, MemoryError) as error:
-            for end in ends:
-                os.close(end)
-            msg = f'the process that reads files cannot be started: {error}'
-            raise ProcessEndedError(msg, may_pass=True) from error
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        os.close(life)
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
-        self._calls, self._answers = self._process.stdin, self._process.stdout
-
-    def result_and_error(
-        self, allowance: Allowance, function: Callable[..., Any], arguments: tuple[object, ...],
-    ) -> tuple[Any, Exception | None]:
-        """Return the result of a function and the exception that it raised instead."""
-        before, begin = self.use(), time.monotonic()
-        answers = select.poll()
-        answers.register(self._answers, select.POLLIN)
-
-        def wait() -> None:
-            while not answers.poll(1e3 * _PERIOD_S):
-                _check(self.use(), before, time.monotonic() - begin, allowance)
-
-        is_read = False
-        try:
-            pickle.dump((allowance.address_space_bytes, function, arguments), self._calls, 5)
-            self._calls.flush()
-            wait()
-            is_read = os.read(self._answers.fileno(), len(_IS_READ)) == _IS_READ
-            wait()
-            # Other threads can run after each piece.
-            result, error, text = pickle.load(self._answers)
-        except (EOFError, OSError, pickle.UnpicklingError) as ended:
-            raise self._reason_of_end(
-                ProcessEndedError if is_read else _CallNotReadError) from ended
-        if isinstance(error, MemoryError):
-            if allowance.address_space_bytes:
-                raise LimitExceededError(
-                    _more_than_bytes(allowance.address_space_bytes)) from error
-            raise error
-        if error is not None:
-            error.__cause__ = RuntimeError(f'in another process:\n{text}')
-        return result, error
-
-    def use(self) -> _Use:
-        """Return its use of resources; zeros if it has ended or this is unknown."""
-        folder = f'/proc/{self._process.pid}'
-        try:
-            with open(f'{folder}/statm') as file:  # noqa: PTH123 - a quarter of the time of Path
-                pages = int(file.read().split()[1])
-            with open(f'{folder}/stat') as file:  # noqa: PTH123
-                # The name of the program, in brackets, may contain any character.
-                fields = file.read().rpartition(')')[2].split()
-            with open(f'{folder}/io') as file:  # noqa: PTH123
-                bytes_read = int(file.readline().split()[1])
-        except (OSError, IndexError):
-            return _Use(0, 0.0, 0)
-        return _Use(
-            pages * _PAGE_BYTES, (int(fields[11]) + int(fields[12])) * _TICK_S, bytes_read)
-
-    def end(self) -> None:
-        self._process.kill()
-        os.close(self._life)
-        for pipe in (self._calls, self._answers):
-            with contextlib.suppress(OSError):
-                pipe.close()
-        self._wait_for_end()
-
-    def _wait_for_end(self) -> None:
-        import subprocess
-        # A process that waits for a disk cannot be ended before the disk answers.
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(1.0)
-
-    def _reason_of_end(self, kind: type[ProcessEndedError]) -> ProcessEndedError:
-        self._wait_for_end()
-        code = self._process.returncode
-        how = f'by signal {-code}' if code is not None and code < 0 else f'with exit code {code}'
-        # The kernel uses this signal when memory runs out.
-        return kind(
-            f'the process that reads files has ended {how}', may_pass=code == -signal.SIGKILL)
-
-
-def _check(use: _Use, before: _Use, seconds: float, allowance: Allowance) -> None:
-    """:raises LimitExceededError: if a call has exceeded its limits."""
-    megabytes = (use.bytes_read - before.bytes_read) / _MEGABYTE
-    most_bytes = allowance.memory_bytes + megabytes * allowance.memory_bytes_per_megabyte
-    if use.memory_bytes > most_bytes:
-        raise LimitExceededError(_more_than_bytes(most_bytes))
-    more_s = megabytes * allowance.seconds_per_megabyte
-    if use.processor_s - before.processor_s > allowance.processor_s + more_s:
-        msg = f'more than {allowance.processor_s + more_s:.3g} s of processor time'
-        raise LimitExceededError(msg)
-    if seconds > allowance.wall_s + more_s:
-        msg = f'more than {allowance.wall_s + more_s:.3g} s'
-        raise LimitExceededError(msg)
-
-
-def _more_than_bytes(count: float) -> str:
-    return f'more than {count / _MEGABYTE:.0f} MB of memory'
-
-
-def serve(life: int) -> None:
-    """
-    Answer the calls that come on standard input, until it ends.
-
-    :param life: a pipe that nobody writes to; when its other end is closed, this process ends.
-    """
-    _end_with(life)
-    calls: BinaryIO = os.fdopen(os.dup(0), 'rb')
-    answers: BinaryIO = os.fdopen(os.dup(1), 'wb')
-    # Output of libraries must not come between the answers.
-    nowhere = os.open(os.devnull, os.O_RDWR)
-    for descriptor in (0, 1, 2):
-        os.dup2(nowhere, descriptor)
-    with contextlib.suppress(OSError), open('/proc/self/oom_score_adj', 'w') as file:  # noqa: PTH123
-        # When memory runs out, this process is ended, not the one that serves others.
-        file.write('1000')
-    while True:
-        try:
-            address_space_bytes, function, arguments = pickle.load(calls)
-        except EOFError:
+            pid = os.fork()
+        except OSError as error:
+            status.sendall(_STATUS.pack(-(error.errno or errno.EAGAIN), 0.0))
             return
-        answers.write(_IS_READ)
-        answers.flush()
-        if address_space_bytes:
-            _, highest = resource.getrlimit(resource.RLIMIT_AS)
-            with contextlib.suppress(ValueError):  # the user's own limit is lower
-                resource.setrlimit(resource.RLIMIT_AS, (address_space_bytes, highest))
-        answers.write(_answer(function, arguments))
-        answers.flush()
+        if pid == 0:
+            _answer_call(file, status)
+        _, code, usage = os.wait4(pid, 0)
+        status.sendall(_STATUS.pack(
+            os.waitstatus_to_exitcode(code), usage.ru_utime + usage.ru_stime))
 
 
-def _answer(function: Callable[..., object], arguments: tuple[object, ...]) -> bytes:
+def _answer_call(descriptor: int, status: socket.socket) -> NoReturn:
+    """Read a call from a file, write the answer into it, report this, and end the process."""
+    code = 1
+    try:
+        _end_with_parent()
+        status.sendall(_STATUS.pack(os.getpid(), 0.0))
+        with contextlib.suppress(OSError), open('/proc/self/oom_score_adj', 'w') as score:  # noqa: PTH123
+            # When memory runs out, this process is ended, not the one that serves others.
+            score.write('1000')
+        with open(descriptor, 'r+b') as file:
+            file.seek(0)
+            answer = _answer(*pickle.load(file))
+            file.seek(0)
+            file.truncate()
+            file.write(answer)
+        # The end of the process takes a while, and the caller need not wait for it.
+        code = 0
+        status.sendall(_STATUS.pack(code, 0.0))
+    finally:
+        os._exit(code)
+
+
+def _answer(
+    allowance: Allowance, function: Callable[..., object], arguments: tuple[object, ...],
+) -> bytes:
     """Return the result of a function, the exception that it raised instead, and its traceback."""
     try:
-        try:
+        with limited(allowance):
             return pickle.dumps((function(*arguments), None, ''), 5)
-        except MemoryError:
-            raise
-        except Exception as error:  # noqa: BLE001 - raised by the one who called
-            text = traceback.format_exc()
-            try:
-                return pickle.dumps((None, error, text), 5)
-            except Exception:  # noqa: BLE001 - errors of libraries may hold anything
-                return pickle.dumps((None, RuntimeError(repr(error)), text), 5)
-    except MemoryError:
-        return _NO_MEMORY
+    except Exception as error:  # noqa: BLE001 - raised by the one who called
+        text = traceback.format_exc()
+        try:
+            return pickle.dumps((None, error, text), 5)
+        except Exception:  # noqa: BLE001 - errors of libraries may hold anything
+            return pickle.dumps((None, RuntimeError(repr(error)), text), 5)
 
 
-def _end_with(life: int) -> None:
-    """Have the kernel end this process with the process at the other end of a pipe."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGIO, signal.SIG_DFL)
-    signal.pthread_sigmask(signal.SIG_SETMASK, [])
-    fcntl.fcntl(life, fcntl.F_SETOWN, os.getpid())
-    fcntl.fcntl(life, fcntl.F_SETFL, fcntl.fcntl(life, fcntl.F_GETFL) | os.O_ASYNC)
-    if select.select([life], [], [], 0.0)[0]:  # it has ended before
-        sys.exit()
+def _end_with_parent() -> None:
+    """Have the kernel end this process with its parent, also while it is busy or stopped."""
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)

@@ -24,14 +24,21 @@ from sdf_pose_bridge.cli.loading import (
     add_file_arguments,
     add_frame_arguments,
     scene_from_file,
-    scene_of,
     STANDARD_INPUT,
     tf_options_from_arguments,
 )
-from sdf_pose_bridge.cli.printing import add_output_argument, CommandError, Units
+from sdf_pose_bridge.cli.printing import (
+    add_output_argument,
+    CommandError,
+    print_problems,
+    Units,
+)
 from sdf_pose_bridge.cli.set import set_pose
 from sdf_pose_bridge.cli.viewer import LIBRARIES
-from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import FileReadError, LimitError, Place, SdfError
+from sdf_pose_bridge.limited_process import LimitedProcess, ProcessEndedError
+from sdf_pose_bridge.process_limits import FOR_FILES, LimitExceededError
+from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 
@@ -78,19 +85,25 @@ def run(options: argparse.Namespace) -> int:
     :return: exit code: 0.
     :raises CommandError: if it cannot be shown or written.
     """
-    is_input = options.files[0] == STANDARD_INPUT
-    if is_input and options.edit:
+    if options.files[0] == STANDARD_INPUT and options.edit:
         msg = 'the standard input cannot be changed, as --edit would; name a file'
         raise CommandError(msg)
     viewer = _viewer()
     # Otherwise a browser that draws a picture would outlive this process.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
+    # It is made before the server starts threads.
+    with contextlib.closing(LimitedProcess(lambda: None)) as process:
+        return _shown(viewer, process, options)
+
+
+def _shown(viewer: ModuleType, process: LimitedProcess, options: argparse.Namespace) -> int:
     path, read_since_ns = options.files[0], time.time_ns()
-    scene = scene_of(path, options, shapes=True)
+    scene = _scene(process, options)
+    print_problems((), scene.warnings, sys.stderr)
     page = viewer.Page(
         viewer.ShownScene(scene, tf_options_from_arguments(options)),
         0 if options.output else options.port, Units(options.length_unit, options.angle_unit),
-        resource_finder(options.resource_paths, os.environ),
+        viewer.MeshReader(resource_finder(options.resource_paths, os.environ), process),
         partial(set_pose, options=options) if options.edit else None,
         # A page in a file has no switches.
         viewer.HIDDEN_AT_FIRST - ({'all names'} if options.output else set()))
@@ -101,8 +114,8 @@ def run(options: argparse.Namespace) -> int:
             _open(page.address, options.port)
             watcher = FileWatcher()
             # The standard input cannot be read again.
-            watcher.watch(() if is_input else scene.files, read_since_ns)
-            _follow(viewer, page, watcher, options)
+            watcher.watch(() if path == STANDARD_INPUT else scene.files, read_since_ns)
+            _follow(viewer, page, watcher, process, options)
         else:
             html = page.html(path)
             options.output.write_bytes(
@@ -164,7 +177,8 @@ def _open(address: str, port: int) -> None:
 
 
 def _follow(
-    viewer: ModuleType, page: Any, watcher: FileWatcher, options: argparse.Namespace,
+    viewer: ModuleType, page: Any, watcher: FileWatcher, process: LimitedProcess,
+    options: argparse.Namespace,
 ) -> None:
     """Show the file again whenever it or an included file changes; never returns."""
     while True:
@@ -174,11 +188,28 @@ def _follow(
             page.act(_SETTLING_S)
             read_since_ns = time.time_ns()
             try:
-                scene = scene_from_file(options.files[0], options, shapes=True)
+                scene = _scene(process, options)
                 watcher.watch(scene.files, read_since_ns)
                 page.show(viewer.ShownScene(scene, tf_options_from_arguments(options)))
             except SdfError as error:
                 page.show_errors(map(str, error.errors))
+
+
+def _scene(process: LimitedProcess, options: argparse.Namespace) -> Scene:
+    """
+    Load the file in another process.
+
+    :raises SdfError: if it is not valid, or needs too much time or memory.
+    """
+    place = Place(options.files[0])
+    try:
+        return process.call(
+            FOR_FILES, partial(scene_from_file, shapes=True), options.files[0], options)
+    except LimitExceededError as error:
+        msg = f'the file needs {error} to be read'
+        raise LimitError(msg, place) from None
+    except ProcessEndedError as error:
+        raise FileReadError(str(error), place) from None
 
 
 def _picture(page: str) -> bytes:

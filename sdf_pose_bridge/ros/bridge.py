@@ -51,8 +51,11 @@ def main(args: Sequence[str] | None = None, program: str = 'bridge') -> int:
     # Resolve functions of ROS's libraries at their first call, as programs in C++ do.
     sys.setdlopenflags(os.RTLD_LAZY)
     try:
+        from sdf_pose_bridge.ros.scene_reader import SceneReader
+        # It forks a process, so it comes before ROS, which starts threads when it is imported.
+        reader = SceneReader()
         from sdf_pose_bridge.ros.process import run
-        return run(list(sys.argv if args is None else args), program)
+        return run(list(sys.argv if args is None else args), program, reader)
     except ImportError as error:
         print(f'sdf_pose_bridge: {sentence_from_import_error(error)}', file=sys.stderr)
         return 1

@@ -18,7 +18,7 @@ from rclpy.parameter import Parameter
 from rclpy.task import Future
 from std_srvs.srv import Trigger
 
-from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import AddressError, SdfError
 from sdf_pose_bridge.ros.background import CoroutineLock, PollingThread, run_in_thread
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, PERIOD_S
 from sdf_pose_bridge.ros.file_follower import FileFollower
@@ -42,8 +42,8 @@ from sdf_pose_bridge.ros.topic_names import (
     joint_state_topics_from_patterns,
     sentence_about_too_many_topics,
 )
-from sdf_pose_bridge.sdformat.include.uris import AddressError
-from sdf_pose_bridge.tf.loaded_scene import files_behind_error, LoadedScene
+from sdf_pose_bridge.tf.loaded_scene import LoadedScene
+from sdf_pose_bridge.tf.loading import files_behind_error
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge_interfaces.srv import SetPose
 
@@ -57,17 +57,19 @@ class SdfPoseBridge:
 
     :param node: the node, with declared parameters and an executor.
     :param frames: the frames of the scene, which are published.
+    :param reader: reads files.
     """
 
     def __init__(
         self, node: Node, frames: PublishedFrames, settings: Settings, loaded: LoadedScene,
+        reader: SceneReader,
     ) -> None:
         self._node = node
         self._logger = node.get_logger()
         self._frames = frames
         self._settings = settings
         self._loaded = loaded
-        self._reader = SceneReader()
+        self._reader = reader
         self._diagnostics = Diagnostics(node, self._unreported_joints)
         self._has_told_of_joints = False
         self._follower = FileFollower(loaded)
@@ -311,16 +313,18 @@ class SdfPoseBridge:
 
 async def start_bridge(
     node: Node, frames: PublishedFrames, settings: Settings, loaded: LoadedScene,
+    reader: SceneReader,
 ) -> None:
     """
     Publish a scene on all other topics, and start the services.
 
     :param node: the node, with declared parameters and an executor.
     :param frames: the frames of the scene, which are published on ``/tf_static``.
+    :param reader: reads files.
     """
     frames = await frames_from_scene(node, loaded, settings, frames)
     await frames.publish_topics()
-    SdfPoseBridge(node, frames, settings, loaded)
+    SdfPoseBridge(node, frames, settings, loaded, reader)
 
 
 def _check_number_of_topics(settings: Settings, loaded: LoadedScene) -> None:

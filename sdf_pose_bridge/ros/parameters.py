@@ -32,7 +32,7 @@ from sdf_pose_bridge.ros.setting_rules import (
     separator_setting,
     topic_patterns_setting,
 )
-from sdf_pose_bridge.scene.loading import MissingInclude
+from sdf_pose_bridge.sdformat.limits import MissingInclude
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import UnreportedJoints

@@ -27,7 +27,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Task
 from rclpy.utilities import remove_ros_args
 
-from sdf_pose_bridge.errors import SdfError
+from sdf_pose_bridge.errors import AddressError, SdfError
 from sdf_pose_bridge.ros.given_parameters import (
     settings_from_node,
     warnings_about_unknown_parameters,
@@ -37,10 +37,9 @@ from sdf_pose_bridge.ros.middleware import use_profile
 from sdf_pose_bridge.ros.parameter_services import restrict_parameter_services
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.programs import Program, PROGRAMS, ROBOT_STATE_PUBLISHER
-from sdf_pose_bridge.ros.published_frames import PublishedFrames
+from sdf_pose_bridge.ros.published_frames import PublishedFrames, TF_STATIC
 from sdf_pose_bridge.ros.publishers import Publishers
-from sdf_pose_bridge.sdformat.include.uris import AddressError
-from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
+from sdf_pose_bridge.ros.scene_reader import SceneReader
 import sdf_pose_bridge_interfaces  # noqa: F401 - if it is missing, say so before anything else
 
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -49,12 +48,13 @@ LONGEST_STOP_S = 10.0
 """Time in s for the current work to end after a signal, before the process is ended."""
 
 
-def run(args: Sequence[str], program_name: str) -> int:
+def run(args: Sequence[str], program_name: str, reader: SceneReader) -> int:
     """
     Run the node until a signal ends it.
 
     :param args: the command line with the program's name first.
     :param program_name: a key of :data:`PROGRAMS`.
+    :param reader: reads the file.
     :return: exit code: 0 after SIGINT or SIGTERM, 1 if the node could not start.
     """
     # From now on, a signal stays pending until it is unblocked or waited for, and a second one is
@@ -84,7 +84,7 @@ def run(args: Sequence[str], program_name: str) -> int:
         return 1
     node.get_logger().debug(sentence_about_profile)
     try:
-        exit_code = _exit_code_from_node(node, program, *words)
+        exit_code = _exit_code_from_node(node, program, reader, *words)
     except KeyboardInterrupt:
         exit_code = 0
     node.destroy_node()
@@ -92,13 +92,20 @@ def run(args: Sequence[str], program_name: str) -> int:
     return exit_code
 
 
-def _exit_code_from_node(node: Node, program: Program, file: str = '') -> int:
+def _exit_code_from_node(
+    node: Node, program: Program, reader: SceneReader, file: str = '',
+) -> int:
     _log_warnings(node, warnings_about_unknown_parameters(
         node, program.known_elsewhere, only_misspelt=bool(program.known_elsewhere)))
     try:
         settings = settings_from_node(node, program.defaults, file)
-        with _interrupted_by_signals():
-            loaded = loaded_scene_from_request(settings.load_request)
+        publishers = Publishers(node)
+        with contextlib.ExitStack() as stack:
+            def meanwhile() -> None:
+                publishers.opened(TF_STATIC)
+                stack.enter_context(_interrupted_by_signals())
+
+            loaded = reader.loaded_scene(settings.load_request, meanwhile)
     except (SdfError, SettingsError, AddressError) as error:
         _log_warnings(node, [
             warning for warning in (error.warnings if isinstance(error, SdfError) else ())
@@ -106,7 +113,7 @@ def _exit_code_from_node(node: Node, program: Program, file: str = '') -> int:
         for line in lines_from_error(error):
             node.get_logger().fatal(line)
         return 1
-    frames = PublishedFrames(Publishers(node), loaded.tree, loaded.joint_positions, {})
+    frames = PublishedFrames(publishers, loaded.tree, loaded.joint_positions, {})
     frames.publish_tf_static()
     # Imported here because it is slow to import, and listeners wait for /tf_static.
     from sdf_pose_bridge.ros.node import start_bridge
@@ -115,7 +122,7 @@ def _exit_code_from_node(node: Node, program: Program, file: str = '') -> int:
     gc.enable()
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    start = executor.create_task(start_bridge, node, frames, settings, loaded)
+    start = executor.create_task(start_bridge, node, frames, settings, loaded, reader)
     if program is ROBOT_STATE_PUBLISHER:
         # Scripts wait for this line of the package robot_state_publisher.
         start.add_done_callback(lambda _: node.get_logger().info('Robot initialized'))

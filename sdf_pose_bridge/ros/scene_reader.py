@@ -1,6 +1,6 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Read files in a process with limits, for the running node."""
+"""Read files in processes with limits, for the node."""
 
 from __future__ import annotations
 
@@ -9,53 +9,57 @@ from typing import TYPE_CHECKING, TypeVar
 
 from sdf_pose_bridge.errors import FileReadError, LimitError, PassingReadError, Place, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.limited_process import (
-    Allowance,
-    LimitedProcess,
-    LimitExceededError,
-    ProcessEndedError,
-)
-from sdf_pose_bridge.tf.loaded_scene import (
-    fingerprint_of_scene,
-    loaded_scene_from_request,
-    LoadedScene,
-    LoadRequest,
-)
+from sdf_pose_bridge.limited_process import LimitedProcess, ProcessEndedError
+from sdf_pose_bridge.process_limits import FOR_FILES, LimitExceededError
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadedScene, LoadRequest
 
 if TYPE_CHECKING:
     from sdf_pose_bridge.tf.frame_setting import FrameChange
     from sdf_pose_bridge.tf.visual_markers import VisualMarker
 
-ALLOWANCE = Allowance(
-    memory_bytes=1_000_000_000, processor_s=20.0, wall_s=60.0,
-    memory_bytes_per_megabyte=200_000_000, seconds_per_megabyte=10.0)
-"""Limits for reading a file: several times the use of the largest files on slow machines."""
-
 _Result = TypeVar('_Result')
+
+
+def _prepare() -> None:
+    """Import what reads files, while the node itself imports ROS."""
+    import sdf_pose_bridge.sdformat.include.expansion
+    import sdf_pose_bridge.tf.loading  # noqa: F401
+
+
+def _loaded_scene(request: LoadRequest) -> LoadedScene:
+    from sdf_pose_bridge.tf.loading import loaded_scene_from_request
+    return loaded_scene_from_request(request)
 
 
 class SceneReader:
     """
-    Reads files in a separate process.
+    Reads files, each in a process of its own that is forked from this one.
 
-    All methods are thread-safe and wait for the process. They raise the exceptions of the
-    functions that they call there, and
+    It must be made by the main thread before ROS is imported, which starts threads. All methods
+    are thread-safe and wait for the process. They raise the exceptions of the functions that they
+    call there, and
 
     :raises LimitError: if reading the file exceeds the limits.
     :raises FileReadError: if the process ends during the call, or cannot be started.
-    :raises MemoryError: if the process has not enough memory.
+    :raises MemoryError: if there is no memory for the result.
     """
 
     def __init__(self) -> None:
-        self._process = LimitedProcess(ALLOWANCE)
+        self._process = LimitedProcess(_prepare)
 
     def close(self) -> None:
-        """End the process; another one is started when needed."""
+        """End the processes; nothing can be read any more."""
         self._process.close()
 
-    def loaded_scene(self, request: LoadRequest) -> LoadedScene:
-        """Read a file or a text, as :func:`loaded_scene_from_request` does."""
-        return self._result(request, loaded_scene_from_request, request)
+    def loaded_scene(
+        self, request: LoadRequest, meanwhile: Callable[[], None] | None = None,
+    ) -> LoadedScene:
+        """
+        Read a file or a text, as :func:`sdf_pose_bridge.tf.loading.loaded_scene_from_request`.
+
+        :param meanwhile: a function to call here while it is read.
+        """
+        return self._result(request, _loaded_scene, request, meanwhile=meanwhile)
 
     def markers(
         self, loaded: LoadedScene,
@@ -80,10 +84,11 @@ class SceneReader:
 
     def _result(
         self, request: LoadRequest, function: Callable[..., _Result], *arguments: object,
+        meanwhile: Callable[[], None] | None = None,
     ) -> _Result:
         place = Place(request.source)
         try:
-            return self._process.call(function, *arguments)
+            return self._process.call(FOR_FILES, function, *arguments, meanwhile=meanwhile)
         except LimitExceededError as error:
             msg = f'the file needs {error} to be read'
             raise LimitError(msg, place) from None

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Set
 import contextlib
-import enum
 import gc
 import os
 
@@ -20,19 +19,10 @@ from sdf_pose_bridge.sdformat.documents import Document, document_from_file
 from sdf_pose_bridge.sdformat.elements import NO_ELEMENT
 from sdf_pose_bridge.sdformat.include.merge import ModelByItself
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
-from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS, Limits
+from sdf_pose_bridge.sdformat.limits import DEFAULT_LIMITS, Limits, MissingInclude
 from sdf_pose_bridge.sdformat.reader import elements_from_tree
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
-
-
-class MissingInclude(enum.Enum):
-    """Treatment of includes that are not found."""
-
-    ERROR = 'error'
-    """The file is not valid."""
-    SKIP = 'skip'
-    """The include is left out, with a warning."""
 
 
 @contextlib.contextmanager

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Limits of a load.
+Limits of a load, and its choice of what to do about missing files.
 
 They bound the size of the tree that is read, as a few includes that double one another can produce
 any number of elements. The time and memory that a hostile file takes are bounded by the process in
@@ -10,6 +10,7 @@ which it is read.
 
 from __future__ import annotations
 
+import enum
 from typing import NamedTuple
 
 from sdf_pose_bridge.errors import LimitError, Place
@@ -32,6 +33,15 @@ class Limits(NamedTuple):
 
 
 DEFAULT_LIMITS = Limits()
+
+
+class MissingInclude(enum.Enum):
+    """Treatment of includes that are not found."""
+
+    ERROR = 'error'
+    """The file is not valid."""
+    SKIP = 'skip'
+    """The include is left out, with a warning."""
 
 
 class Usage:

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import FileReadError, PassingReadError, Place, SdfWarning
 from sdf_pose_bridge.names import shortened_message
+from sdf_pose_bridge.process_limits import raise_limits
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.xml_text import DecodedText, repaired, text_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import is_foreign, WHITE_SPACE, XmlElement
@@ -159,6 +160,7 @@ def xml_from_file(path: str, usage: Usage, text: bytes | str | None = None) -> X
         content = text.encode(errors='surrogatepass') if isinstance(text, str) else text
         usage.add('bytes_read', len(content), Place(path))
     # Counted before they are parsed, which takes many times the memory; with comments.
+    raise_limits(len(content))
     usage.add('elements', content.count(b'<') - content.count(b'</'), Place(path))
     return xml_from_bytes(content, path, encoding)
 

@@ -14,11 +14,8 @@ from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_change import FileChange
 from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.loaded_scene import (
-    fingerprint_of_scene,
-    loaded_scene_from_request,
-    LoadRequest,
-)
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest
+from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 

@@ -20,7 +20,8 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder, ResourceFinder
 from sdf_pose_bridge.sdformat.shape_types import Primitive
 from sdf_pose_bridge.sdformat.shapes import Shape
-from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest, scene_from_text
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest
+from sdf_pose_bridge.tf.loading import scene_from_text
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import elements_in_model, tf_tree_from_scene, TfTree
 

@@ -28,6 +28,7 @@ from changes import (
     Waiting,
     world,
 )
+from command_line import executable_of_workspace
 from diagnostic_msgs.msg import DiagnosticStatus
 from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
@@ -133,25 +134,27 @@ def test_a_config_map_that_is_replaced_is_noticed(listener, tmp_path):
     wait_for_x(listener, 2.0)
 
 
-def reading_process(bridge, listener):
-    """Return the id of the process that reads files for a bridge."""
-    assert reload(listener).success
+def waiting_process(bridge):
+    """Return the id of the process of a bridge that forks for each load."""
     (pid,) = bridge.children()
     return pid
 
 
-@pytest.mark.parametrize('without', ['a process', 'descriptors in it'])
-def test_a_change_without_descriptors_is_read_once_there_are_some(start, file, listener, without):
+def busy_process(bridge):
+    """Return the id of the process of a bridge that reads a file."""
+    waiting = waiting_process(bridge)
+    (pid,) = Path(f'/proc/{waiting}/task/{waiting}/children').read_text(encoding='ascii').split()
+    return int(pid)
+
+
+def test_a_change_without_descriptors_is_read_once_there_are_some(start, file, listener):
     bridge = start(file)
-    reading = reading_process(bridge, listener)
-    limited, limit = (bridge.pid, 4) if without == 'a process' else (reading, 1)
-    soft, hard = resource.prlimit(limited, resource.RLIMIT_NOFILE)
-    resource.prlimit(limited, resource.RLIMIT_NOFILE, (limit, hard))
-    if without == 'a process':
-        os.kill(reading, signal.SIGKILL)
+    assert reload(listener).success
+    soft, hard = resource.prlimit(bridge.pid, resource.RLIMIT_NOFILE)
+    resource.prlimit(bridge.pid, resource.RLIMIT_NOFILE, (4, hard))
     replace(file, world(2))
     bridge.wait_for_line('Too many open files')
-    resource.prlimit(limited, resource.RLIMIT_NOFILE, (soft, hard))
+    resource.prlimit(bridge.pid, resource.RLIMIT_NOFILE, (soft, hard))
     wait_for_x(listener, 2.0)
     assert not [line for line in bridge.lines if 'internal error' in line]
 
@@ -162,21 +165,9 @@ def address_space(pid):
     return 1024 * int(status.partition('VmSize:')[2].split()[0])
 
 
-def test_a_change_without_memory_is_read_once_there_is_some(start, file, listener):
-    bridge = start(file)
-    reading = reading_process(bridge, listener)
-    _, hard = resource.prlimit(reading, resource.RLIMIT_AS)
-    resource.prlimit(reading, resource.RLIMIT_AS, (address_space(reading) + 12_000_000, hard))
-    replace(file, world(2, extra=''.join(
-        f'<model name="m{i}"><link name="l"/></model>' for i in range(60_000))))
-    bridge.wait_for_line('there is not enough memory to read the file')
-    # The next process has no such limit.
-    wait_for_x(listener, 2.0)
-
-
 def test_without_memory_for_what_was_read_the_bridge_goes_on_or_ends(start, file, listener):
     bridge = start(file)
-    reading_process(bridge, listener)
+    assert reload(listener).success
     _, hard = resource.prlimit(bridge.pid, resource.RLIMIT_AS)
     limit = address_space(bridge.pid) + 12_000_000
     resource.prlimit(bridge.pid, resource.RLIMIT_AS, (limit, hard))
@@ -200,31 +191,52 @@ def test_without_memory_for_what_was_read_the_bridge_goes_on_or_ends(start, file
 def test_a_reading_process_that_is_killed_is_an_error_and_replaced(start, tmp_path, listener):
     slow = SlowFile(tmp_path / 'slow.sdf', world(1))
     bridge = start(slow.path)
-    reading = reading_process(bridge, listener)
     slow.hold()
     os.utime(slow.path)
     with slow.opened():
-        os.kill(reading, signal.SIGKILL)
+        os.kill(busy_process(bridge), signal.SIGKILL)
         bridge.wait_for_line('the process that reads files has ended by signal 9')
         slow.write(world(2))
     wait_for_x(listener, 2.0)
 
 
+@pytest.mark.parametrize('is_reading', [False, True])
+def test_without_the_waiting_process_the_frames_stay_and_one_line_says_what_to_do(
+        start, tmp_path, listener, start_listener, is_reading):
+    slow = SlowFile(tmp_path / 'slow.sdf', world(1))
+    bridge = start(slow.path)
+    waiting = waiting_process(bridge)
+    if is_reading:
+        slow.hold()
+    else:
+        os.kill(waiting, signal.SIGKILL)
+    os.utime(slow.path)
+    with slow.opened() if is_reading else contextlib.nullcontext():
+        if is_reading:
+            os.kill(waiting, signal.SIGKILL)
+        assert_reported_while_old_poses_are_served(
+            bridge, listener, start_listener, slow.path, 'start this program again')
+    assert 'start this program again' in reload(listener).message
+    bridge.send(signal.SIGTERM)
+    assert bridge.wait_for_end() == 0
+    assert len([line for line in bridge.lines if 'start this program again' in line]) == 1
+
+
 LIMITED = """
 import sys
-from sdf_pose_bridge.limited_process import Allowance
+from sdf_pose_bridge.process_limits import Allowance
 from sdf_pose_bridge.ros import scene_reader
 from sdf_pose_bridge.ros.bridge import main
 
-scene_reader.ALLOWANCE = Allowance({})
+scene_reader.FOR_FILES = Allowance({})
 sys.exit(main())
 """
 """The node with smaller limits than those for which the smallest file would be very large."""
 
 
 @pytest.mark.parametrize(('limits', 'message'), [
-    ('memory_bytes=10**9, processor_s=0.5, wall_s=60.0', 'more than 0.5 s of processor time'),
-    ('memory_bytes=10**8, processor_s=60.0, wall_s=60.0', 'more than 100 MB of memory'),
+    ('processor_s=0.5, memory_bytes=10**9', 'more than 1 s of processor time'),
+    ('processor_s=60.0, memory_bytes=10**8', 'more than 100 MB of memory'),
 ])
 def test_a_file_that_needs_too_much_keeps_nobody_waiting(
         ros_domain, file, tmp_path, listener, limits, message):
@@ -249,19 +261,37 @@ def test_a_file_that_needs_too_much_keeps_nobody_waiting(
         bridge.end()
 
 
-@pytest.mark.parametrize('is_reading', [False, True])
-def test_no_process_outlives_the_bridge(start, tmp_path, listener, is_reading):
+def test_no_process_outlives_the_bridge(start, tmp_path):
     slow = SlowFile(tmp_path / 'slow.sdf', world(1))
     bridge = start(slow.path)
-    descriptor = os.pidfd_open(reading_process(bridge, listener))
     slow.hold()
-    if is_reading:
-        os.utime(slow.path)
-    with slow.opened() if is_reading else contextlib.nullcontext():
+    os.utime(slow.path)
+    with slow.opened():
+        pids = waiting_process(bridge), busy_process(bridge)
+        descriptors = list(map(os.pidfd_open, pids))
         bridge.send(signal.SIGKILL)
         bridge.wait_for_end()
+    for descriptor in descriptors:
+        assert select.select([descriptor], [], [], SECONDS)[0]
+        os.close(descriptor)
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_to_all_processes_ends_them_well(ros_domain, tmp_path, number):
+    slow = SlowFile(tmp_path / 'slow.sdf', world(1))
+    bridge = LoggedProcess(
+        [executable_of_workspace('bridge'), '--ros-args', '-p', f'sdf_file:={slow.path}'],
+        with_children=True)
+    bridge.wait_for_line(STARTED)
+    slow.hold()
+    os.utime(slow.path)
+    with slow.opened():
+        descriptor = os.pidfd_open(busy_process(bridge))
+        bridge.send(number)
+        assert bridge.wait_for_end() == 0
     assert select.select([descriptor], [], [], SECONDS)[0]
     os.close(descriptor)
+    assert len(bridge.lines) == 1, bridge.lines
 
 
 def test_what_is_read_by_each_way_of_starting(start_bridge, ros_domain, file, start_listener):

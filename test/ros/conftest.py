@@ -41,9 +41,9 @@ def finish():
     return run
 
 
-@pytest.fixture
+@pytest.fixture(scope='session')
 def reader():
-    """Return a reader of files, whose process ends with the test."""
+    """Return a reader of files."""
     from sdf_pose_bridge.ros.scene_reader import SceneReader
     found = SceneReader()
     yield found

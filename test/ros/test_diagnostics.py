@@ -11,7 +11,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, status_from_scene
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
 from sdf_pose_bridge.ros.log_lines import MissingJoints
-from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request
+from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 
 NOTHING_MISSING = MissingJoints()
 LOADED_AT_NS = 1767323045_678900000

@@ -7,11 +7,8 @@ import pytest
 from sdf_pose_bridge.errors import PassingReadError, Place, SdfError
 from sdf_pose_bridge.ros import file_follower
 from sdf_pose_bridge.ros.file_follower import FileFollower
-from sdf_pose_bridge.tf.loaded_scene import (
-    files_behind_error,
-    loaded_scene_from_request,
-    LoadRequest,
-)
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.tf.loading import files_behind_error, loaded_scene_from_request
 
 GOOD = '<sdf version="1.10"><model name="m"><link name="l"/></model></sdf>'
 HALF, LONGER_HALF = GOOD[:40], '\n' + GOOD[:50]

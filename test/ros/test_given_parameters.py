@@ -21,8 +21,8 @@ from sdf_pose_bridge.ros.given_parameters import (
     words_about_wrong_type,
 )
 from sdf_pose_bridge.ros.parameters import DECLARATIONS, SettingsError
-from sdf_pose_bridge.scene.loading import MissingInclude
 from sdf_pose_bridge.sdformat.grammar import Kind
+from sdf_pose_bridge.sdformat.limits import MissingInclude
 from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.tree import TfOptions

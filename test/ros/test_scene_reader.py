@@ -4,16 +4,18 @@
 
 import os
 import signal
-import sys
 
 import pytest
 from sdf_texts import model_file, world_file
 
-from sdf_pose_bridge.errors import FileReadError, LimitError, PassingReadError, SdfError
+from sdf_pose_bridge.errors import (
+    AddressError,
+    FileReadError,
+    LimitError,
+    PassingReadError,
+    SdfError,
+)
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.limited_process import LimitedProcess
-from sdf_pose_bridge.ros import scene_reader
-from sdf_pose_bridge.sdformat.include.uris import AddressError
 from sdf_pose_bridge.tf.loaded_scene import LoadRequest, may_pass
 
 LINK = """<link name="l"><pose>1 0 0 0 0 0</pose>
@@ -36,7 +38,7 @@ def test_a_scene_comes_from_another_process(reader, request_of_file, path):
     loaded = reader.loaded_scene(request_of_file)
     assert loaded.path == path
     assert loaded.lookup.pose('l').pose == Pose(1.0)
-    assert reader._process.call(os.getpid) != os.getpid()
+    assert reader._result(request_of_file, os.getpid) != os.getpid()
 
 
 def test_markers_and_changes_come_from_it_too(reader, request_of_file):
@@ -69,19 +71,11 @@ def test_a_uri_without_a_file_is_an_error(reader):
         reader.loaded_scene(LoadRequest('package://no_such_package/cell.sdf', ''))
 
 
-@pytest.mark.parametrize(('changes', 'message'), [
-    ({'memory_bytes': 1_000_000}, 'the file needs more than 1 MB of memory to be read'),
-    ({'wall_s': 0.0}, 'the file needs more than 0 s to be read'),
-])
-def test_a_file_that_needs_too_much_is_an_error(
-        reader, request_of_file, monkeypatch, changes, message):
-    # To start the process takes longer than the period in which it is looked at.
-    allowance = scene_reader.ALLOWANCE._replace(
-        memory_bytes_per_megabyte=0, seconds_per_megabyte=0.0, **changes)
-    monkeypatch.setattr(reader, '_process', LimitedProcess(allowance))
+def test_a_file_that_needs_too_much_is_an_error(reader, request_of_file):
     with pytest.raises(LimitError) as caught:
-        reader.loaded_scene(request_of_file)
-    assert str(caught.value) == f'{request_of_file.sdf_file}: LIMIT: {message}'
+        reader._result(request_of_file, bytearray, 2_000_000_000)
+    assert str(caught.value) == (
+        f'{request_of_file.sdf_file}: LIMIT: the file needs more than 700 MB of memory to be read')
     assert not may_pass(caught.value)
 
 
@@ -98,10 +92,3 @@ def test_a_process_that_crashes_is_an_error_that_stays(reader, request_of_file):
     assert not may_pass(caught.value)
 
 
-def test_a_process_that_cannot_be_started_is_an_error_that_passes(
-        reader, request_of_file, monkeypatch):
-    monkeypatch.setattr(sys, 'executable', '/none/python')
-    with pytest.raises(PassingReadError, match='cannot be started'):
-        reader.loaded_scene(request_of_file)
-    monkeypatch.undo()
-    assert reader.loaded_scene(request_of_file)

@@ -27,7 +27,8 @@ from sdf_pose_bridge.ros.services import (
     set_pose,
 )
 from sdf_pose_bridge.scene.loading import load_text
-from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request, LoadRequest
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose, SetPose

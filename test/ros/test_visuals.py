@@ -15,7 +15,8 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.ros.visuals import message_from_markers, VisualPublisher
-from sdf_pose_bridge.tf.loaded_scene import loaded_scene_from_request, LoadRequest
+from sdf_pose_bridge.tf.loaded_scene import LoadRequest
+from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 from sdf_pose_bridge.tf.visual_markers import Form, VisualMarker
 
 SDF = """<sdf version="1.10"><model name="m"><link name="l">

@@ -10,11 +10,8 @@ from sdf_pose_bridge import load_text
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.tf.frame_setting import frame_change_from_request
-from sdf_pose_bridge.tf.loaded_scene import (
-    fingerprint_of_scene,
-    loaded_scene_from_request,
-    LoadRequest,
-)
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest
+from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 from sdf_pose_bridge.tf.tree import TfOptions
 
 ARM = model_file(

@@ -14,11 +14,8 @@ from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf import visual_markers
 from sdf_pose_bridge.tf.anchors import AnchorModels
-from sdf_pose_bridge.tf.loaded_scene import (
-    fingerprint_of_scene,
-    loaded_scene_from_request,
-    LoadRequest,
-)
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest
+from sdf_pose_bridge.tf.loading import loaded_scene_from_request
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 from sdf_pose_bridge.tf.visual_markers import markers_from_text, visual_markers_from_scene
 

@@ -22,13 +22,9 @@ import trimesh
 from trimesh.resolvers import FilePathResolver
 
 from sdf_pose_bridge.errors import SdfError
-from sdf_pose_bridge.limited_process import (
-    Allowance,
-    LimitedProcess,
-    LimitExceededError,
-    ProcessEndedError,
-)
+from sdf_pose_bridge.limited_process import LimitedProcess, ProcessEndedError
 from sdf_pose_bridge.names import printable, quoted_names, shortened
+from sdf_pose_bridge.process_limits import Allowance, LimitExceededError
 from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.sdformat.limits import Limits, Usage
 from sdf_pose_bridge.sdformat.shapes import Shape
@@ -39,8 +35,7 @@ MOST_BYTES = 100_000_000
 """Size of a mesh with the files that it names."""
 MOST_TRIANGLES = 500_000
 """Largest number of triangles of a mesh."""
-ALLOWANCE = Allowance(
-    memory_bytes=2_000_000_000, processor_s=20.0, wall_s=20.0, address_space_bytes=2_000_000_000)
+ALLOWANCE = Allowance(processor_s=20.0, memory_bytes=2_000_000_000)
 """Limits for reading a mesh."""
 MOST_BYTES_KEPT = 300_000_000
 """Largest size of all meshes that are kept."""
@@ -97,11 +92,12 @@ class MeshReader:
     Reads meshes, and keeps the last used ones until their files change.
 
     :param finder: finds their files.
+    :param process: reads them.
     """
 
-    def __init__(self, finder: ResourceFinder) -> None:
+    def __init__(self, finder: ResourceFinder, process: LimitedProcess) -> None:
         self._finder = finder
-        self._process = LimitedProcess(ALLOWANCE)
+        self._process = process
         # The last used one comes last.
         self._kept: dict[tuple[str, str, bool], _KeptMesh] = {}
         self._kept_bytes = 0
@@ -121,10 +117,6 @@ class MeshReader:
             return mesh
         box = trimesh.creation.box(np.full(3, 0.03 * size_m))
         return Mesh((MeshPart(box.vertices, box.faces, _MISSING),), mesh.reason)
-
-    def close(self) -> None:
-        """End the process."""
-        self._process.close()
 
     def _mesh_of_file(self, shape: Shape, file: str) -> Mesh:
         path = self._finder.file_from_uri(shape.mesh_uri, file)
@@ -148,7 +140,7 @@ class MeshReader:
     def _read(self, path: str, submesh: str, *, is_centered: bool) -> Mesh:
         try:
             return self._process.call(
-                partial(mesh_from_file, is_centered=is_centered), path, submesh)
+                ALLOWANCE, partial(mesh_from_file, is_centered=is_centered), path, submesh)
         except LimitExceededError as error:
             return Mesh(reason=f'it needs {error} to be read')
         except ProcessEndedError as error:

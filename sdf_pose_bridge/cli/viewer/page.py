@@ -35,7 +35,6 @@ from sdf_pose_bridge.cli.viewer.view_point import (
     view_of_bounds,
 )
 from sdf_pose_bridge.names import printable
-from sdf_pose_bridge.sdformat.include.uris import ResourceFinder
 from sdf_pose_bridge.tf.joint_positions import scene_at_positions
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 
@@ -50,19 +49,19 @@ class Page:
     :param shown: the scene that it shows at first.
     :param port: its port, or the next one that is free; 0 for any.
     :param units: the units of poses and sliders at first.
-    :param finder: finds the meshes.
+    :param meshes: reads the meshes.
     :param set_pose: writes a pose into the file; None if frames cannot be moved.
     :param hidden: groups, kinds of frames and models that are hidden at first.
     """
 
     def __init__(
-        self, shown: ShownScene, port: int, units: Units, finder: ResourceFinder,
+        self, shown: ShownScene, port: int, units: Units, meshes: MeshReader,
         set_pose: SetPose | None = None, hidden: Iterable[str] = HIDDEN_AT_FIRST,
     ) -> None:
         self._server, self.address = server_for_its_owner(port)
         gui, nodes = self._server.gui, self._server.scene
         self._shown, self._units, self._hidden = shown, units, set(hidden)
-        self._events, self._meshes = Events(), MeshReader(finder)
+        self._events, self._meshes = Events(), meshes
         gui.set_panel_label(printable(shown.loaded.path))
         self._errors, self._reasons, self._names, self._textures = (
             gui.add_html('') for _ in range(4))
@@ -99,8 +98,7 @@ class Page:
             page, printable(title), html_of_names(self._drawing.names))
 
     def close(self) -> None:
-        """End the server, and the process that reads meshes."""
-        self._meshes.close()
+        """End the server."""
         self._server.stop()
 
     def show(self, shown: ShownScene) -> None:

@@ -17,7 +17,7 @@ import re
 from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
-from sdf_pose_bridge.errors import FileReadError, ParsingError, Place, SdfWarning
+from sdf_pose_bridge.errors import AddressError, FileReadError, ParsingError, Place, SdfWarning
 from sdf_pose_bridge.names import quoted_names, shortened
 from sdf_pose_bridge.sdformat.limits import Usage
 from sdf_pose_bridge.sdformat.versions import NEWEST, version_numbers
@@ -31,10 +31,6 @@ _PATH_VARIABLES = ('GZ_SIM_RESOURCE_PATH', 'SDF_PATH')
 
 _MOST_SHOWN = 5
 """Largest number of directories that a message names."""
-
-
-class AddressError(ValueError):
-    """An address does not name a file."""
 
 
 class ResourceFinder(NamedTuple):

@@ -12,11 +12,9 @@ pytest.importorskip('viser', reason='needs viser')
 import viser
 
 from sdf_pose_bridge.cli.viewer.drawing import Drawing
-from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.loading import load_text
-from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf.tree import TfOptions
 
 BOX = '<geometry><box/></geometry>'
@@ -31,21 +29,19 @@ def nodes():
 
 
 @pytest.fixture
-def drawing_of(nodes):
+def drawing_of(nodes, mesh_reader):
     """Returns the drawing of a model with these elements, and its poses."""
-    meshes = MeshReader(resource_finder([], {}))
     drawings = []
 
     def draw(content):
         text = f'<sdf version="1.11"><model name="m">{content}</model></sdf>'
         shown = ShownScene(load_text(text.encode(), 'm.sdf', shapes=True), TfOptions())
         posed = shown.at({})
-        drawings.append(Drawing(nodes, '/drawing', meshes, shown, posed, set(), 1.0, print))
+        drawings.append(Drawing(nodes, '/drawing', mesh_reader, shown, posed, set(), 1.0, print))
         return drawings[-1], posed
     yield draw
     for drawing in drawings:
         drawing.remove()
-    meshes.close()
 
 
 def test_names_of_bodies_are_in_the_order_of_the_nodes(drawing_of):

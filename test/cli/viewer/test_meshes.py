@@ -13,8 +13,7 @@ import pytest
 pytest.importorskip('trimesh', reason='needs trimesh')
 pytest.importorskip('collada', reason='needs pycollada')
 from sdf_pose_bridge.cli.viewer import meshes
-from sdf_pose_bridge.cli.viewer.meshes import mesh_from_file, MeshReader
-from sdf_pose_bridge.sdformat.include.uris import resource_finder
+from sdf_pose_bridge.cli.viewer.meshes import mesh_from_file
 from sdf_pose_bridge.sdformat.shape_types import SHAPE_TYPES
 from sdf_pose_bridge.sdformat.shapes import Shape
 
@@ -227,12 +226,9 @@ def test_gltf_with_a_buffer_beside_it(mesh, tmp_path):
     assert extent(mesh('mesh.gltf', mesh_texts.gltf())) == pytest.approx((1, 2, 0))
 
 
-@pytest.fixture
-def reader():
-    """A reader of meshes."""
-    with_process = MeshReader(resource_finder([], {}))
-    yield with_process
-    with_process.close()
+@pytest.fixture(name='reader')
+def reader_with_short_name(mesh_reader):
+    return mesh_reader
 
 
 @pytest.fixture

@@ -11,7 +11,6 @@ from sdf_pose_bridge.cli.viewer.page import Page
 from sdf_pose_bridge.cli.viewer.shown_scene import ShownScene
 from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.sdformat.file_change import FileChange
-from sdf_pose_bridge.sdformat.include.uris import resource_finder
 from sdf_pose_bridge.tf.tree import TfOptions
 
 TEXT = """<sdf version="1.11"><model name="m"><link name="l"/></model></sdf>"""
@@ -19,7 +18,7 @@ MESH = '<geometry><mesh><uri>&lt;b&gt;</uri></mesh></geometry>'
 
 
 @pytest.fixture
-def page_of(tmp_path):
+def page_of(tmp_path, mesh_reader):
     """Returns the page of a file whose link has this content."""
     pages = []
 
@@ -27,7 +26,7 @@ def page_of(tmp_path):
         (tmp_path / 'm.sdf').write_text(TEXT.replace('"l"/>', f'"l">{content}</link>'))
         scene = load(tmp_path / 'm.sdf', shapes=True)
         pages.append(Page(
-            ShownScene(scene, TfOptions()), 0, Units(), resource_finder([], {}), **options))
+            ShownScene(scene, TfOptions()), 0, Units(), mesh_reader, **options))
         return pages[-1]
     yield make
     for page in pages:

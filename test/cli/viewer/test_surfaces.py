@@ -10,21 +10,17 @@ pytest.importorskip('trimesh', reason='needs trimesh')
 pytest.importorskip('viser', reason='needs viser')
 from sdf_pose_bridge import load
 from sdf_pose_bridge.cli.viewer import surfaces as surfaces_module
-from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.cli.viewer.surfaces import (
     boxes_of_surfaces,
     lines_from_not_drawn,
     NotDrawn,
     surfaces_from_scene,
 )
-from sdf_pose_bridge.sdformat.include.uris import resource_finder
 
 
 @pytest.fixture
-def drawn(tmp_path):
+def drawn(tmp_path, mesh_reader):
     """Returns the scene, its surfaces and what is not drawn, of visuals with these contents."""
-    reader = MeshReader(resource_finder([], {}))
-
     def draw(*visuals):
         text = ''.join(
             f'<visual name="v{number}">{visual}</visual>' for number, visual in enumerate(visuals))
@@ -32,9 +28,8 @@ def drawn(tmp_path):
         path.write_text(f'<sdf version="1.11"><model name="m"><link name="l">{text}</link></model>'
                         '</sdf>')
         scene = load(path, shapes=True)
-        return scene, *surfaces_from_scene(scene, list(scene.shapes), 2.0, reader)
-    yield draw
-    reader.close()
+        return scene, *surfaces_from_scene(scene, list(scene.shapes), 2.0, mesh_reader)
+    return draw
 
 
 def geometry(text):

@@ -8,11 +8,8 @@ from pathlib import Path
 import pytest
 
 from sdf_pose_bridge import SdfError
-from sdf_pose_bridge.sdformat.include.uris import (
-    AddressError,
-    model_file_from_directory,
-    resource_finder,
-)
+from sdf_pose_bridge.errors import AddressError
+from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory, resource_finder
 from sdf_pose_bridge.sdformat.limits import Usage
 
 

@@ -1,0 +1,119 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Limit the processor time and the memory of this process, in proportion to what it reads.
+
+The kernel enforces these limits, so they hold for all code, also that of libraries. They work on
+Linux only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+import math
+import resource
+import time
+from typing import NamedTuple
+
+_MEGABYTE = 1_000_000
+
+
+class LimitExceededError(Exception):
+    """A limit is exceeded; the text begins with "more than"."""
+
+
+class Allowance(NamedTuple):
+    """Processor time and memory that a process may use beyond what it has used before."""
+
+    processor_s: float
+    """The kernel rounds it up to a whole second."""
+    memory_bytes: int
+    """Address space."""
+    seconds_per_megabyte: float = 0.0
+    """More processor time for each megabyte of :func:`raise_limits`."""
+    memory_bytes_per_megabyte: int = 0
+
+
+FOR_FILES = Allowance(
+    processor_s=9.0, memory_bytes=700_000_000,
+    seconds_per_megabyte=10.0, memory_bytes_per_megabyte=200_000_000)
+"""For reading SDFormat: several times the use of the largest files on slow machines."""
+
+
+class _Limits:
+    """The limits of this process, which grow."""
+
+    def __init__(self, allowance: Allowance) -> None:
+        self._allowance = allowance
+        self._bytes_read = 0
+        with open('/proc/self/statm', encoding='ascii') as file:  # noqa: PTH123 - fewer imports
+            self._memory_bytes = int(file.read().split()[0]) * resource.getpagesize()
+        self._processor_s = time.process_time()
+        self._before = {
+            kind: resource.getrlimit(kind) for kind in (resource.RLIMIT_CPU, resource.RLIMIT_AS)}
+
+    @property
+    def more_memory_bytes(self) -> float:
+        """The allowed memory beyond that of the process before."""
+        return (self._allowance.memory_bytes
+                + self._megabytes * self._allowance.memory_bytes_per_megabyte)
+
+    @property
+    def _megabytes(self) -> float:
+        return self._bytes_read / _MEGABYTE
+
+    def raise_for(self, byte_count: int) -> None:
+        """Set the limits after so many bytes more were read."""
+        self._bytes_read += byte_count
+        self._set(
+            resource.RLIMIT_CPU, self._processor_s + self._allowance.processor_s
+            + self._megabytes * self._allowance.seconds_per_megabyte)
+        self._set(resource.RLIMIT_AS, self._memory_bytes + self.more_memory_bytes)
+
+    def end(self) -> None:
+        """Restore the limits before."""
+        for kind, limits in self._before.items():
+            resource.setrlimit(kind, limits)
+
+    def _set(self, kind: int, value: float) -> None:
+        soft, hard = self._before[kind]
+        most = math.ceil(value)
+        if soft != resource.RLIM_INFINITY:
+            most = min(most, soft)  # a lower limit of the user stays
+        resource.setrlimit(kind, (most, hard))
+
+
+_LIMITS: ContextVar[_Limits | None] = ContextVar('limits', default=None)
+
+
+@contextmanager
+def limited(allowance: Allowance) -> Iterator[None]:
+    """
+    Limit this process while the block runs.
+
+    If the processor time is exceeded, the kernel sends SIGXCPU, which ends the process.
+
+    :raises LimitExceededError: if a request for memory fails in the block.
+    """
+    limits = _Limits(allowance)
+    token = _LIMITS.set(limits)
+    limits.raise_for(0)
+    try:
+        yield
+        return
+    except MemoryError:
+        pass  # there is memory for another exception when the limits are restored
+    finally:
+        limits.end()
+        _LIMITS.reset(token)
+    msg = f'more than {limits.more_memory_bytes / _MEGABYTE:.0f} MB of memory'
+    raise LimitExceededError(msg)
+
+
+def raise_limits(byte_count: int) -> None:
+    """Raise the limits of :func:`limited` around the caller, if any, for bytes that are read."""
+    limits = _LIMITS.get()
+    if limits is not None:
+        limits.raise_for(byte_count)

@@ -1,0 +1,152 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Read a file or a text, and make its TF tree."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+import os
+from pathlib import Path
+import time
+
+from lxml import etree
+
+from sdf_pose_bridge.errors import AddressError, SdfError, SdfWarning, UriLookupError
+from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.include.uris import model_file_from_directory, resource_finder
+from sdf_pose_bridge.sdformat.limits import Usage
+from sdf_pose_bridge.sdformat.xml_file import bytes_from_file, xml_from_bytes
+from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat, LoadedScene, LoadRequest
+from sdf_pose_bridge.tf.lookup import PoseLookup
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+
+
+def loaded_scene_from_request(
+    request: LoadRequest, texts: Mapping[str, bytes] | None = None,
+) -> LoadedScene:
+    """
+    Read a file or a text.
+
+    :param texts: texts to read instead of some files, by their paths.
+    :raises AddressError: if ``sdf_file`` is a URI of a file that is not found.
+    :raises SdfError: if it is not valid, or cannot be published with these options.
+    """
+    read_since_ns = time.time_ns()
+    begin = time.perf_counter()
+    path, manifests, warnings = _file_from_request(request)
+    text = bytes_from_file(str(path), Usage()) if request.sdf_file else request.robot_description
+    is_made_urdf = request.description_format is DescriptionFormat.URDF
+    scene = scene_from_text(text, path, request, shapes=is_made_urdf, texts=texts)
+    options = request.tf_options
+    tree = tf_tree_from_scene(scene, options)
+    joint_positions = None if tree.moving is None else JointPositions(
+        scene, tree.moving.dofs, options.frame_names, options.model, request.unreported_joints)
+    description = '' if tree.world else unicode_text(text)
+    warnings_of_urdf: tuple[SdfWarning, ...] = ()
+    if is_made_urdf and scene.urdf_root is None:
+        description, warnings_of_urdf = _urdf(scene, request)
+    # The tree and the URDF may have the same warnings.
+    found = dict.fromkeys((*warnings, *warnings_of_urdf, *scene.warnings, *tree.warnings))
+    return LoadedScene(
+        request=request,
+        path=path,
+        text=text,
+        description=description,
+        scene=scene,
+        tree=tree,
+        lookup=PoseLookup(scene, tree, joint_positions),
+        joint_positions=joint_positions,
+        warnings=tuple(warning for warning in found if not warning.is_for_gazebo),
+        gazebo_warning_count=sum(warning.is_for_gazebo for warning in found),
+        files=(*manifests, *(scene.files if request.sdf_file else scene.files[1:])),
+        read_since_ns=read_since_ns,
+        seconds=time.perf_counter() - begin,
+    )
+
+
+def _urdf(scene: Scene, request: LoadRequest) -> tuple[str, tuple[SdfWarning, ...]]:
+    """Return URDF with warnings, or an empty text with a warning that says why there is none."""
+    # Imported here because it takes 2 ms, and most nodes make no URDF.
+    from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
+    options = request.tf_options
+    try:
+        return urdf_from_scene(
+            scene, model=options.model, kinds=options.kinds, frame_names=options.frame_names,
+            frame_separator=options.frame_separator, optical_frames=options.optical_frames,
+            root_frame=options.root_frame, resource_paths=request.resource_paths)
+    except SdfError as error:
+        first = error.errors[0]
+        msg = f'there is no robot_description, because no URDF can be made: {first.message}'
+        return '', (SdfWarning(first.code, msg, first.place),)
+
+
+def unicode_text(text: str | bytes) -> str:
+    """
+    Return XML as text.
+
+    :param text: XML; bytes are in the encoding that they declare.
+    :return: the text; for bytes in another encoding than UTF-8 without their declaration.
+    """
+    if isinstance(text, str):
+        return text
+    try:
+        return text.decode('utf-8-sig')
+    except UnicodeDecodeError:
+        return str(etree.tostring(xml_from_bytes(text, '').root, encoding='unicode'))
+
+
+def scene_from_text(
+    text: str | bytes, path: Path, request: LoadRequest, *, shapes: bool = False,
+    texts: Mapping[str, bytes] | None = None,
+) -> Scene:
+    """
+    Resolve every pose in a text.
+
+    :param path: path of its file; for a text without one, the name of its parameter.
+    :param request: the settings of the load.
+    :param shapes: whether to read the shapes of visuals and collisions too.
+    :param texts: texts to read instead of some files, by their paths.
+    :raises SdfError: if it is not valid.
+    """
+    return load_text(
+        text, str(path), resource_paths=request.resource_paths,
+        on_missing_include=request.on_missing_include, shapes=shapes, texts=texts)
+
+
+def files_behind_error(error: Exception, request: LoadRequest) -> list[str]:
+    """
+    Return the files that have to change before loading can succeed.
+
+    :param error: the exception of :func:`loaded_scene_from_request`.
+    :return: the files with errors; if something was not found, also the searched directories.
+    """
+    errors = error.errors if isinstance(error, SdfError) else ()
+    files = [each.place.file for each in errors]
+    missing = [each for each in errors if isinstance(each, UriLookupError)]
+    if missing or isinstance(error, AddressError):
+        finder = resource_finder(request.resource_paths, os.environ)
+        files += [
+            *(str(Path(each.place.file).parent) for each in missing),
+            *finder.search_paths, *finder.environment_paths]
+    return list(dict.fromkeys(files))
+
+
+def _file_from_request(
+    request: LoadRequest,
+) -> tuple[Path, tuple[str, ...], tuple[SdfWarning, ...]]:
+    """
+    Return the path of the file, and the manifests and warnings on the way to it.
+
+    A text has the name of its parameter for a path.
+    """
+    if not request.sdf_file:
+        return Path(request.source), (), ()
+    finder = resource_finder(request.resource_paths, os.environ)
+    path = finder.path_from_address(request.sdf_file)
+    # Path.is_dir raises for a path that is too long; reading the file gives a better message.
+    if not os.path.isdir(path):  # noqa: PTH112
+        return path, (), ()
+    chosen = model_file_from_directory(str(path), Usage())
+    return Path(chosen.path), (chosen.manifest,), chosen.warnings

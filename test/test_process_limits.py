@@ -1,0 +1,75 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Limits of this process, which are restored."""
+
+import resource
+import time
+
+import pytest
+
+from sdf_pose_bridge.process_limits import Allowance, limited, LimitExceededError, raise_limits
+
+AMPLE = Allowance(
+    processor_s=1000.0, memory_bytes=1_000_000_000, seconds_per_megabyte=10.0,
+    memory_bytes_per_megabyte=500_000_000)
+KINDS = resource.RLIMIT_CPU, resource.RLIMIT_AS
+
+
+def soft_limits():
+    return [resource.getrlimit(kind)[0] for kind in KINDS]
+
+
+@pytest.fixture(autouse=True)
+def check_that_limits_are_restored():
+    before = soft_limits()
+    yield
+    assert soft_limits() == before
+
+
+def test_a_request_for_more_memory_is_an_error():
+    with pytest.raises(LimitExceededError) as caught, limited(AMPLE):
+        bytearray(1_500_000_000)
+    assert str(caught.value) == 'more than 1000 MB of memory'
+
+
+def test_other_exceptions_pass():
+    with pytest.raises(ZeroDivisionError), limited(AMPLE):
+        divmod(1, 0)
+
+
+def test_what_is_read_raises_limits():
+    with limited(AMPLE):
+        before = soft_limits()
+        assert 1000 <= before[0] - time.process_time() <= 1001
+        for _ in range(1000):
+            raise_limits(1000)
+        after = soft_limits()
+        assert [b - a for a, b in zip(before, after, strict=True)] == [10, 500_000_000]
+        bytearray(1_400_000_000)
+
+
+def test_the_message_names_the_raised_limit():
+    def read_and_use():
+        raise_limits(1_000_000)
+        bytearray(1_600_000_000)
+
+    with pytest.raises(LimitExceededError, match='more than 1500 MB'), limited(AMPLE):
+        read_and_use()
+
+
+def test_nothing_else_is_changed_by_what_is_read():
+    before = soft_limits()
+    raise_limits(1_000_000)
+    assert soft_limits() == before
+
+
+def test_a_lower_limit_of_the_user_stays():
+    kind = resource.RLIMIT_CPU
+    before = resource.getrlimit(kind)
+    resource.setrlimit(kind, (900, before[1]))
+    try:
+        with limited(AMPLE):
+            raise_limits(1_000_000)
+            assert resource.getrlimit(kind) == (900, before[1])
+    finally:
+        resource.setrlimit(kind, before)
