@@ -59,7 +59,7 @@ class LimitedProcess:
     :param prepare: is called once in the waiting process, to import what calls need.
     """
 
-    def __init__(self, prepare: Callable[[], None]) -> None:
+    def __init__(self, prepare: Callable[[], None] = lambda: None) -> None:
         self._lock = threading.Lock()
         self._calls, calls = socket.socketpair()
         self._calls.setblocking(False)

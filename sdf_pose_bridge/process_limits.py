@@ -64,6 +64,11 @@ class _Limits:
     def _megabytes(self) -> float:
         return self._bytes_read / _MEGABYTE
 
+    @property
+    def are_of_the_user(self) -> bool:
+        """Whether the memory had a lower limit before."""
+        return self._before[resource.RLIMIT_AS] == resource.getrlimit(resource.RLIMIT_AS)
+
     def raise_for(self, byte_count: int) -> None:
         """Set the limits after so many bytes more were read."""
         self._bytes_read += byte_count
@@ -96,6 +101,7 @@ def limited(allowance: Allowance) -> Iterator[None]:
     If the processor time is exceeded, the kernel sends SIGXCPU, which ends the process.
 
     :raises LimitExceededError: if a request for memory fails in the block.
+    :raises MemoryError: if it fails because of a lower limit of the user.
     """
     limits = _Limits(allowance)
     token = _LIMITS.set(limits)
@@ -104,12 +110,21 @@ def limited(allowance: Allowance) -> Iterator[None]:
         yield
         return
     except MemoryError:
-        pass  # there is memory for another exception when the limits are restored
+        if limits.are_of_the_user:
+            raise
+        # There is memory for another exception when the limits are restored.
     finally:
         limits.end()
         _LIMITS.reset(token)
     msg = f'more than {limits.more_memory_bytes / _MEGABYTE:.0f} MB of memory'
     raise LimitExceededError(msg)
+
+
+def lift_limits() -> None:
+    """Restore the limits before :func:`limited`, in a process that is forked for a program."""
+    limits = _LIMITS.get()
+    if limits is not None:
+        limits.end()
 
 
 def raise_limits(byte_count: int) -> None:

@@ -28,7 +28,7 @@ STARTER_ENDED = 'the process that starts the reading of files has ended'
 
 @pytest.fixture(name='process')
 def make_process():
-    process = LimitedProcess(lambda: None)
+    process = LimitedProcess()
     yield process
     process.close()
 
@@ -49,7 +49,7 @@ def start_busy_call(process_with_pipe):
 @pytest.fixture(name='process_with_pipe')
 def make_process_with_pipe():
     reader, writer = os.pipe()
-    process = LimitedProcess(lambda: None)
+    process = LimitedProcess()
     yield process, reader, writer
     process.close()
     os.close(reader)
@@ -279,7 +279,7 @@ PARENT = """
 import sys, threading
 from sdf_pose_bridge.limited_process import LimitedProcess
 from sdf_pose_bridge.process_limits import FOR_FILES
-process = LimitedProcess(lambda: None)
+process = LimitedProcess()
 print(process._pid, flush=True)
 if {code!r}:
     threading.Thread(

@@ -7,7 +7,13 @@ import time
 
 import pytest
 
-from sdf_pose_bridge.process_limits import Allowance, limited, LimitExceededError, raise_limits
+from sdf_pose_bridge.process_limits import (
+    Allowance,
+    lift_limits,
+    limited,
+    LimitExceededError,
+    raise_limits,
+)
 
 AMPLE = Allowance(
     processor_s=1000.0, memory_bytes=1_000_000_000, seconds_per_megabyte=10.0,
@@ -63,13 +69,25 @@ def test_nothing_else_is_changed_by_what_is_read():
     assert soft_limits() == before
 
 
-def test_a_lower_limit_of_the_user_stays():
-    kind = resource.RLIMIT_CPU
+def test_limits_can_be_lifted_for_another_program():
+    before = soft_limits()
+    with limited(AMPLE):
+        lift_limits()
+        assert soft_limits() == before
+
+
+@pytest.mark.parametrize(('kind', 'limit'), [
+    (resource.RLIMIT_CPU, 900), (resource.RLIMIT_AS, 100_000_000_000)])
+def test_a_lower_limit_of_the_user_stays(kind, limit):
+    allowance = AMPLE._replace(memory_bytes=10**12)
     before = resource.getrlimit(kind)
-    resource.setrlimit(kind, (900, before[1]))
+    resource.setrlimit(kind, (limit, before[1]))
     try:
-        with limited(AMPLE):
+        with limited(allowance):
             raise_limits(1_000_000)
-            assert resource.getrlimit(kind) == (900, before[1])
+            assert resource.getrlimit(kind) == (limit, before[1])
+        if kind == resource.RLIMIT_AS:
+            with pytest.raises(MemoryError), limited(allowance):
+                bytearray(limit)
     finally:
         resource.setrlimit(kind, before)

@@ -25,6 +25,7 @@ from sdf_pose_bridge.cli.loading import (
 )
 from sdf_pose_bridge.cli.printing import add_output_argument, CommandError, write_text
 from sdf_pose_bridge.names import printable, shortened
+from sdf_pose_bridge.process_limits import lift_limits
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.tree import elements_in_model
@@ -164,7 +165,7 @@ def _write(text: str, path: Path) -> None:
         raise CommandError(msg)
     done = subprocess.run(
         ['dot', f'-T{path.suffix[1:].lower()}', '-o', os.fspath(path)],
-        input=text, encoding='utf-8', capture_output=True, check=False)
+        input=text, encoding='utf-8', capture_output=True, check=False, preexec_fn=lift_limits)
     if done.returncode:
         msg = f'dot cannot draw the graph: {done.stderr.strip()}'
         raise CommandError(msg)

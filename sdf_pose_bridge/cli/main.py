@@ -6,13 +6,15 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 import contextlib
 import importlib
 import io
 import os
 import re
+import signal
 import sys
+import time
 from typing import Any, NoReturn
 
 import sdf_pose_bridge
@@ -22,6 +24,7 @@ from sdf_pose_bridge.cli.printing import CommandError, discard_output, print_pro
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import PoseFormatError
 from sdf_pose_bridge.names import hint_from_names, printable
+from sdf_pose_bridge.process_limits import FOR_FILES, limited, LimitExceededError
 
 _NEGATIVE_NUMBER = re.compile(
     r'^-(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$|^-(inf|nan)', re.IGNORECASE)
@@ -51,7 +54,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if options.command is None:
             parser.print_help()
             return 0
-        code: int = options.run(options)
+        # This command calls a limited process instead, as its server needs threads and time.
+        with contextlib.nullcontext() if options.run is view.run else _limited():
+            code: int = options.run(options)
         sys.stdout.flush()
     except BrokenPipeError:
         # The reader, such as head, has closed the pipe.
@@ -71,12 +76,34 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SdfError as error:
         print_problems(error.errors, error.warnings, sys.stderr)
         return 1
+    except LimitExceededError as error:
+        print(f'sdf_pose {options.command}: this needs {error}', file=sys.stderr)
+        return 1
     except MemoryError:
         print(f'sdf_pose {options.command}: there is not enough memory', file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         return 130
     return code
+
+
+@contextlib.contextmanager
+def _limited() -> Iterator[None]:
+    """
+    Limit processor time and memory while the block runs.
+
+    :raises LimitExceededError: if it needs more.
+    """
+    def end(_number: int, _frame: object) -> NoReturn:
+        msg = f'more than {time.process_time():.0f} s of processor time'
+        raise LimitExceededError(msg)
+
+    before = signal.signal(signal.SIGXCPU, end)
+    try:
+        with limited(FOR_FILES):
+            yield
+    finally:
+        signal.signal(signal.SIGXCPU, before)
 
 
 class _Parser(argparse.ArgumentParser):

@@ -81,7 +81,7 @@ def print_annotations(problems: Iterable[SdfError | SdfWarning]) -> None:
         level = 'error' if isinstance(problem, SdfError) else 'warning'
         place = problem.place
         line = f',line={place.line}' if place.line else ''
-        print(f'::{level} file={_escaped(place.file, _ESCAPES_OF_PROPERTIES)}{line},'
+        print(f'::{level} file={_escaped(printable(place.file), _ESCAPES_OF_PROPERTIES)}{line},'
               f'title={problem.code}::{_escaped(printable(problem.message), _ESCAPES)}')
 
 

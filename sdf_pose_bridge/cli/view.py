@@ -92,7 +92,7 @@ def run(options: argparse.Namespace) -> int:
     # Otherwise a browser that draws a picture would outlive this process.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     # It is made before the server starts threads.
-    with contextlib.closing(LimitedProcess(lambda: None)) as process:
+    with contextlib.closing(LimitedProcess()) as process:
         return _shown(viewer, process, options)
 
 

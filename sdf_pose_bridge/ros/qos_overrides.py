@@ -22,6 +22,9 @@ SUBSCRIPTION_OVERRIDES = QoSOverridingOptions((
     QoSPolicyKind.RELIABILITY, QoSPolicyKind.DURABILITY))
 """Without the depth, which the node chooses."""
 
+LARGEST_DEPTH = 2**31 - 1
+"""Largest depth of a queue that rclpy and Fast DDS accept."""
+
 _VALUES = {
     'reliability': ReliabilityPolicy, 'durability': DurabilityPolicy, 'history': HistoryPolicy}
 
@@ -46,7 +49,9 @@ def sentences_about_overrides(given: Mapping[str, Parameter]) -> list[str]:
                     f'parameter {name} is {parameter.value}; it must be one of '
                     f'{", ".join(known)}')
         elif policy == 'depth' and (
-                parameter.type_ is not Parameter.Type.INTEGER or parameter.value < 0):
+                parameter.type_ is not Parameter.Type.INTEGER
+                or not 0 <= parameter.value <= LARGEST_DEPTH):
             sentences.append(
-                f'parameter {name} is {parameter.value}; it must be an integer, not below zero')
+                f'parameter {name} is {parameter.value}; it must be an integer from 0 to '
+                f'{LARGEST_DEPTH}')
     return sentences

@@ -134,7 +134,10 @@ def path_setting(value: str) -> str:
 def directories_setting(values: Sequence[str]) -> tuple[Path, ...]:
     """Return the paths without empty ones; reject too many, and long ones."""
     _check_count(values, 'directories')
-    return tuple(Path(path_setting(value)).expanduser() for value in values if value)
+    try:
+        return tuple(Path(path_setting(value)).expanduser() for value in values if value)
+    except RuntimeError:
+        raise refusal(values, 'paths; "~name" needs a user of this name') from None
 
 
 def _check_count(values: Sequence[str], what: str) -> None:

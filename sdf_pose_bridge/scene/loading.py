@@ -54,7 +54,9 @@ def load(
     :param resource_paths: directories in which included models are searched first; then come
         the environment variables ``GZ_SIM_RESOURCE_PATH`` and ``SDF_PATH``.
     :param on_missing_include: ``error``, or ``skip`` to leave out includes that are not found.
-    :param limits: limits of the load, against hostile files.
+    :param limits: limits of the size of the load, against hostile files. They do not bound its
+        time and memory; to bound these too, call it in a process, as
+        :class:`~sdf_pose_bridge.limited_process.LimitedProcess` does.
     :param shapes: whether to also read the shapes of visuals and collisions, masses and moments of
         inertia, and the dynamics of joints.
     :param texts: texts to read instead of some files, by their paths as in ``Scene.files``, to try

@@ -14,7 +14,7 @@ from lxml import etree
 from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.geometry.poses import canonical_relative_poses, Pose, pose_product
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -118,7 +118,8 @@ class _Writer:
 
     def urdf(self) -> Urdf:
         scene, robot = self._scene, self._robot
-        self._add_comment(f'Made by sdf_pose urdf from {scene.path}. Change that file instead.')
+        self._add_comment(
+            f'Made by sdf_pose urdf from {printable(scene.path)}. Change that file instead.')
         file = scene.path
         for link in robot.links:
             if link.element >= 0 and scene.place(link.element).file != file:

@@ -12,6 +12,8 @@ from command_line import COMMAND, ENVIRONMENT
 import pytest
 from sdf_texts import model_file
 
+from sdf_pose_bridge.process_limits import Allowance
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -50,6 +52,21 @@ def test_an_option_is_not_abbreviated(sdf_pose):
     done = sdf_pose('check', 'good.sdf', '--stric')
     assert (done.returncode, done.stdout) == (2, '')
     assert 'unrecognized arguments: --stric' in done.stderr
+
+
+@pytest.mark.parametrize(('changes', 'message'), [
+    ({'processor_s': 0.0}, r'sdf_pose tree: this needs more than \d+ s of processor time'),
+    ({'memory_bytes': 10_000_000}, 'sdf_pose tree: this needs more than 10 MB of memory'),
+])
+def test_a_file_that_needs_too_much_is_one_sentence(
+        run_main, files, monkeypatch, changes, message):
+    allowance = Allowance(processor_s=60.0, memory_bytes=10**10)._replace(**changes)
+    monkeypatch.setattr('sdf_pose_bridge.cli.main.FOR_FILES', allowance)
+    (files / 'large.sdf').write_text(model_file(''.join(
+        f'<link name="l{i}"/>' for i in range(100_000))), encoding='utf-8')
+    done = run_main('tree', 'large.sdf')
+    assert done.returncode == 1
+    assert re.fullmatch(f'{message}\n', done.stderr)
 
 
 def test_a_lack_of_memory_is_one_sentence(files):

@@ -66,8 +66,9 @@ def test_policies_are_overridden_under_the_remapped_name(make_node):
     ('reliability', 'sometimes', 'it must be one of system_default, reliable, best_effort'),
     ('durability', 3, 'it must be one of system_default, transient_local, volatile'),
     ('history', 'all', 'it must be one of system_default, keep_last, keep_all'),
-    ('depth', '7', 'it must be an integer, not below zero'),
-    ('depth', -1, 'it must be an integer, not below zero'),
+    ('depth', '7', 'it must be an integer from 0 to 2147483647'),
+    ('depth', -1, 'it must be an integer from 0 to 2147483647'),
+    ('depth', 2**31, 'it must be an integer from 0 to 2147483647'),
 ])
 def test_a_value_that_no_policy_has_is_refused(policy, value, rule):
     name = f'qos_overrides./tf.publisher.{policy}'

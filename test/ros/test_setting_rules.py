@@ -82,6 +82,11 @@ def test_taken(rule, value, setting):
     assert rule(value) == setting
 
 
+def test_directory_of_an_unknown_user_is_refused():
+    with pytest.raises(ValueError, match=r'no_such_user/models.*needs a user of this name'):
+        rules.directories_setting(['~no_such_user/models'])
+
+
 def test_directories_may_begin_with_that_of_the_user(monkeypatch):
     monkeypatch.setenv('HOME', '/home/me')
     assert rules.directories_setting(['~/models']) == (Path('/home/me/models'),)

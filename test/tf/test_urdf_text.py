@@ -43,6 +43,10 @@ def joint_of(content, joint_type='revolute'):
 
 # What is refused or left out
 
+def test_a_path_that_is_not_unicode_is_escaped():
+    assert r'from \udcff.sdf.' in urdf_of(model_file(TWO_LINKS), '\udcff.sdf').text
+
+
 def test_scene_without_shapes_is_refused():
     with pytest.raises(ValueError, match='shapes=True'):
         urdf_from_scene(load_text(link_with('')))

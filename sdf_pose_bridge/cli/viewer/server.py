@@ -22,12 +22,13 @@ import rich
 import viser
 from websockets.asyncio import server as websockets_server
 from websockets.asyncio.server import ServerConnection
-from websockets.datastructures import Headers
+from websockets.datastructures import Headers, MultipleValuesError
 from websockets.http11 import Request, Response
 
 from sdf_pose_bridge.cli.printing import CommandError
 from sdf_pose_bridge.cli.viewer import LIBRARIES
 from sdf_pose_bridge.cli.viewer.browser_script import page_with_script
+from sdf_pose_bridge.names import printable
 
 _ADDRESS = '127.0.0.1'
 _NAMES = (_ADDRESS, 'localhost')
@@ -117,12 +118,15 @@ def reason_to_refuse(request: Request, secret: str) -> str:
     :param secret: the beginning of its path.
     :return: the reason why it is rejected; empty if it is not.
     """
-    given = urlsplit(request.path).path.split('/')[1:2]
-    if not given or not secrets.compare_digest(given[0].encode(), secret.encode()):
-        return 'this page is shown only at the address that sdf_pose view has printed'
-    host, origin = request.headers.get('Host'), request.headers.get('Origin')
-    if urlsplit(f'//{host}').hostname not in _NAMES or origin not in (None, f'http://{host}'):
-        return 'only the page of this server may connect'
+    try:
+        given = urlsplit(request.path).path.split('/')[1:2]
+        if not given or not secrets.compare_digest(given[0].encode(), secret.encode()):
+            return 'this page is shown only at the address that sdf_pose view has printed'
+        host, origin = request.headers.get('Host'), request.headers.get('Origin')
+        if urlsplit(f'//{host}').hostname not in _NAMES or origin not in (None, f'http://{host}'):
+            return 'only the page of this server may connect'
+    except (ValueError, MultipleValuesError) as error:
+        return f'the address is not valid: {printable(str(error))}'
     return ''
 
 

@@ -89,7 +89,11 @@ class ResourceFinder(NamedTuple):
         :raises AddressError: for other URIs, and for packages and models that are not found.
         """
         if _SCHEME_OF_ADDRESS.match(address) is None:
-            return Path(address).expanduser().absolute()
+            try:
+                return Path(address).expanduser().absolute()
+            except RuntimeError:
+                msg = f'"{address}" begins with the name of a user who does not exist'
+                raise AddressError(msg) from None
         try:
             parts = urlsplit(address)
         except ValueError as error:

@@ -8,7 +8,7 @@ import pytest
 @pytest.fixture(name='process', scope='session')
 def process_for_meshes():
     from sdf_pose_bridge.limited_process import LimitedProcess
-    process = LimitedProcess(lambda: None)
+    process = LimitedProcess()
     yield process
     process.close()
 

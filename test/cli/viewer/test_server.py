@@ -39,6 +39,12 @@ def test_other_pages_are_refused(origin, host):
     assert 'only the page' in reason_to_refuse(request('/secret/', origin, host), 'secret')
 
 
+@pytest.mark.parametrize(('path', 'host'), [
+    ('//[/secret/', '127.0.0.1:8080'), ('/\udcff/', '127.0.0.1:8080'), ('/secret/', '[127')])
+def test_malformed_addresses_are_refused(path, host):
+    assert 'is not valid' in reason_to_refuse(request(path, HERE, host), 'secret')
+
+
 def request(path, origin, host):
     headers = Headers()
     for name, value in (('Origin', origin), ('Host', host)):

@@ -204,6 +204,7 @@ def finder(tmp_path):
     ('file:///cell.sdf?x=1', r'write %3F or %23'),
     ('file:///cell#2.sdf', r'write %3F or %23'),
     ('file://[cell.sdf', 'is not a URI'),
+    ('~no_such_user/cell.sdf', 'a user who does not exist'),
 ])
 def test_address_that_names_no_file_is_refused(finder, address, reason):
     with pytest.raises(AddressError, match=reason) as refusal:
