@@ -33,9 +33,14 @@ WAITING_S = 50.0
 
 _PR_SET_PDEATHSIG = 1
 
-_STATUS = struct.Struct('=id')
-"""A report about a call: first the id of its process, or a negative error number, and 0; then
-its exit code, and the processor time in s that it has used."""
+_STATUS = struct.Struct('=cid')
+"""A report about a call: one of the events below, its number, and processor time in s."""
+_BEGUN = b'b'
+"""The number is the id of the process."""
+_ENDED = b'e'
+"""The number is the exit code, or the signal below zero."""
+_NOT_STARTED = b'n'
+"""The number is the error number."""
 
 _Result = TypeVar('_Result')
 
@@ -134,7 +139,7 @@ class LimitedProcess:
         """
         begin, pid = time.monotonic(), 0
 
-        def received() -> tuple[int, float]:
+        def received() -> tuple[bytes, int, float]:
             while True:
                 longest_s = allowance.processor_s + WAITING_S
                 with contextlib.suppress(OSError):  # the process has ended
@@ -156,24 +161,26 @@ class LimitedProcess:
                         raise ProcessEndedError(msg, may_pass=False)
                     return _STATUS.unpack(message)
 
-        pid, _ = received()
-        if pid < 0:
-            msg = f'the process that reads files cannot be started: {os.strerror(-pid)}'
+        event, number, processor_s = received()
+        if event == _BEGUN:
+            pid = number
+            try:
+                event, number, processor_s = received()
+            except BaseException:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGKILL)
+                raise
+        if event == _NOT_STARTED:
+            msg = f'the process that reads files cannot be started: {os.strerror(number)}'
             raise ProcessEndedError(msg, may_pass=True)
-        try:
-            code, processor_s = received()
-        except BaseException:
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(pid, signal.SIGKILL)
-            raise
-        if code == -signal.SIGXCPU:
+        if number == -signal.SIGXCPU:
             msg = f'more than {processor_s:.0f} s of processor time'
             raise LimitExceededError(msg)
-        if code:
-            how = f'by signal {-code}' if code < 0 else f'with exit code {code}'
+        if number:
+            how = f'by signal {-number}' if number < 0 else f'with exit code {number}'
             # The kernel uses this signal when memory runs out.
             msg = f'the process that reads files has ended {how}'
-            raise ProcessEndedError(msg, may_pass=code == -signal.SIGKILL)
+            raise ProcessEndedError(msg, may_pass=number == -signal.SIGKILL)
 
 
 def _serve(calls: socket.socket, prepare: Callable[[], None]) -> NoReturn:
@@ -209,13 +216,13 @@ def _fork_for_call(file: int, status: socket.socket) -> None:
         try:
             pid = os.fork()
         except OSError as error:
-            status.sendall(_STATUS.pack(-(error.errno or errno.EAGAIN), 0.0))
+            status.sendall(_STATUS.pack(_NOT_STARTED, error.errno or errno.EAGAIN, 0.0))
             return
         if pid == 0:
             _answer_call(file, status)
         _, code, usage = os.wait4(pid, 0)
         status.sendall(_STATUS.pack(
-            os.waitstatus_to_exitcode(code), usage.ru_utime + usage.ru_stime))
+            _ENDED, os.waitstatus_to_exitcode(code), usage.ru_utime + usage.ru_stime))
 
 
 def _answer_call(descriptor: int, status: socket.socket) -> NoReturn:
@@ -223,7 +230,7 @@ def _answer_call(descriptor: int, status: socket.socket) -> NoReturn:
     code = 1
     try:
         _end_with_parent()
-        status.sendall(_STATUS.pack(os.getpid(), 0.0))
+        status.sendall(_STATUS.pack(_BEGUN, os.getpid(), 0.0))
         with contextlib.suppress(OSError), open('/proc/self/oom_score_adj', 'w') as score:  # noqa: PTH123
             # When memory runs out, this process is ended, not the one that serves others.
             score.write('1000')
@@ -235,7 +242,7 @@ def _answer_call(descriptor: int, status: socket.socket) -> NoReturn:
             file.write(answer)
         # The end of the process takes a while, and the caller need not wait for it.
         code = 0
-        status.sendall(_STATUS.pack(code, 0.0))
+        status.sendall(_STATUS.pack(_ENDED, code, 0.0))
     finally:
         os._exit(code)
 

@@ -3,6 +3,7 @@
 """Calls in real processes: their limits, and what happens when one is killed or stopped."""
 
 from concurrent.futures import ThreadPoolExecutor
+import faulthandler
 import os
 import resource
 import select
@@ -205,6 +206,20 @@ def test_a_process_that_ends_itself_would_do_so_again(process, code, message):
     with pytest.raises(ProcessEndedError, match=message) as caught:
         process.call(AMPLE, exec, code, {})
     assert not caught.value.may_pass
+
+
+@pytest.mark.parametrize(('function', 'message'), [
+    ('os.abort()', 'has ended by signal 6'), ('os.kill(os.getpid(), 9)', 'has ended by signal 9'),
+    ('1 / 0', 'has ended with exit code 1')])
+def test_a_process_that_ends_before_it_begins_is_an_error(function, message):
+    def fail():
+        faulthandler.disable()
+        eval(function)
+
+    process = LimitedProcess(lambda: setattr(limited_process, '_end_with_parent', fail))
+    with pytest.raises(ProcessEndedError, match=message):
+        process.call(AMPLE, pow, 2, 2)
+    process.close()
 
 
 def test_a_process_that_is_stopped_while_it_is_busy_is_killed(busy_pid, monkeypatch):

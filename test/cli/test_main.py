@@ -6,13 +6,12 @@ from pathlib import Path
 import re
 import shlex
 import subprocess
+import sys
 import xml.etree.ElementTree as ET
 
 from command_line import COMMAND, ENVIRONMENT
 import pytest
 from sdf_texts import model_file
-
-from sdf_pose_bridge.process_limits import Allowance
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -54,17 +53,24 @@ def test_an_option_is_not_abbreviated(sdf_pose):
     assert 'unrecognized arguments: --stric' in done.stderr
 
 
-@pytest.mark.parametrize(('changes', 'message'), [
-    ({'processor_s': 0.0}, r'sdf_pose tree: this needs more than \d+ s of processor time'),
-    ({'memory_bytes': 10_000_000}, 'sdf_pose tree: this needs more than 10 MB of memory'),
+LIMITED = """
+import sys
+from sdf_pose_bridge.cli import main
+main.FOR_FILES = main.FOR_FILES._replace({}, seconds_per_megabyte=0, memory_bytes_per_megabyte=0)
+sys.exit(main.main())
+"""
+
+
+@pytest.mark.parametrize(('limit', 'message'), [
+    ('processor_s=0', r'sdf_pose tree: this needs more than \d+ s of processor time'),
+    ('memory_bytes=10**7', 'sdf_pose tree: this needs more than 10 MB of memory'),
 ])
-def test_a_file_that_needs_too_much_is_one_sentence(
-        run_main, files, monkeypatch, changes, message):
-    allowance = Allowance(processor_s=60.0, memory_bytes=10**10)._replace(**changes)
-    monkeypatch.setattr('sdf_pose_bridge.cli.main.FOR_FILES', allowance)
+def test_a_file_that_needs_too_much_is_one_sentence(files, limit, message):
     (files / 'large.sdf').write_text(model_file(''.join(
-        f'<link name="l{i}"/>' for i in range(100_000))), encoding='utf-8')
-    done = run_main('tree', 'large.sdf')
+        f'<link name="l{i}"/>' for i in range(200_000))), encoding='utf-8')
+    done = subprocess.run(
+        [sys.executable, '-c', LIMITED.format(limit), 'tree', 'large.sdf'], cwd=files,
+        env=ENVIRONMENT, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 1
     assert re.fullmatch(f'{message}\n', done.stderr)
 
