@@ -15,33 +15,27 @@ All poses are poses of a child in its parent.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-import enum
 import math
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.geometry import floats
 from sdf_pose_bridge.geometry.formulas import degrees_from_radians, radians_from_degrees
 from sdf_pose_bridge.geometry.rotations import (
     canonical_quaternion,
     Floats,
     matrix_from_quaternion,
-    near_gimbal_lock,
-    Quaternion,
     quaternion_from_matrix,
     quaternion_from_rotation_vector,
     quaternion_from_rpy,
     rotation_vector_from_quaternion,
     RotationError,
     rpy_from_quaternion,
-    Triple,
 )
 
 LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 """Last row of the 4 x 4 matrix of a pose, exactly; libfranka compares without a tolerance."""
-
 
 LARGEST_ANGLE_RAD = 2.5 * math.pi
 """A larger angle is probably in degrees; one of a little more than a turn may be meant."""
@@ -100,24 +94,6 @@ class Format(NamedTuple):
         return None
 
 
-class Given(enum.IntEnum):
-    """The given representation of a rotation; the constants of ConvertRotation.srv."""
-
-    RPY = 0
-    QUATERNION = 1
-
-
-class RotationAnswer(NamedTuple):
-    """One rotation in both representations."""
-
-    rpy: Triple
-    """Roll, pitch, yaw; in degrees if requested."""
-    quat_xyzw: Quaternion
-    """x, y, z, w; unit, w >= 0."""
-    gimbal_lock: bool
-    """Whether pitch is within 4.5e-8 of a right angle, where roll and yaw alone are uncertain."""
-
-
 def converted_poses(
     values: Sequence[float] | Sequence[Sequence[float]] | Floats,
     from_format: str,
@@ -171,46 +147,13 @@ def without_rounding_errors(values: Floats, source: Format, target: Format) -> F
     return shown
 
 
-def converted_rotation(
-    given: int, rpy: Triple, quat_xyzw: Quaternion, *, degrees: bool,
-) -> RotationAnswer:
+def are_canonical_angles(rpy: Any, half_turn: float) -> Any:
     """
-    Return both representations of one rotation, as the service ConvertRotation does.
+    Return whether angles are in their ranges and not near gimbal lock.
 
-    :param given: a value of :class:`Given`, which chooses one of the next two; the other one is
-        ignored.
-    :param rpy: roll, pitch, yaw, of any size.
-    :param quat_xyzw: x, y, z, w, of any norm but zero.
-    :param degrees: True if the angles, given and returned, are in degrees.
-    :return: roll and yaw within a half turn, pitch within a right angle, yaw 0 at gimbal lock; the
-        canonical quaternion. Angles in these ranges keep their digits.
-    :raises RotationError: an unknown value of ``given``, numbers that are not finite, or a
-        quaternion of zeros.
+    :param rpy: roll, pitch, yaw, as floats or as arrays.
+    :param half_turn: half a turn in their unit.
     """
-    if given == Given.RPY:
-        rpy_rad: Sequence[float] = rpy
-        # Angles that are not finite are not changed: the error shows them as they are given.
-        if degrees and all(map(math.isfinite, rpy)):
-            rpy_rad = [radians_from_degrees(floats, angle) for angle in rpy]
-        quat = quaternion_from_rpy(rpy_rad)
-    elif given == Given.QUATERNION:
-        quat = canonical_quaternion(quat_xyzw)
-    else:
-        known = ', '.join(f'{value.value} ({value.name})' for value in Given)
-        msg = f'given is {given!r}, which is neither RPY nor quaternion; known are {known}'
-        raise RotationError(msg)
-    half_turn = 180.0 if degrees else math.pi
-    if given == Given.RPY and _are_canonical(rpy, half_turn):
-        roll, pitch, yaw = rpy
-    else:
-        roll, pitch, yaw = rpy_from_quaternion(quat)
-        if degrees:
-            roll, pitch, yaw = map(degrees_from_radians, (roll, pitch, yaw))
-    return RotationAnswer((roll + 0.0, pitch + 0.0, yaw + 0.0), quat, near_gimbal_lock(quat))
-
-
-def _are_canonical(rpy: Any, half_turn: float) -> Any:
-    """Return whether angles are in their ranges and not near gimbal lock."""
     roll, pitch, yaw = rpy
     return (
         (abs(roll) <= half_turn) & (abs(yaw) <= half_turn)
@@ -238,7 +181,7 @@ def _converted(
     if source.half_turn and target.half_turn:
         # Rounding must not change angles that are already canonical.
         angles = rows[:, -3:]
-        are_canonical = _are_canonical(angles.T, source.half_turn)
+        are_canonical = are_canonical_angles(angles.T, source.half_turn)
         if target.half_turn != source.half_turn:
             angles = angles * target.half_turn / source.half_turn
         np.copyto(result[:, -3:], angles, where=are_canonical[:, np.newaxis])

@@ -16,12 +16,8 @@ from rclpy.node import Node
 from rclpy.qos import qos_profile_parameters
 
 from sdf_pose_bridge.errors import JointPositionError, Place, PoseNotSetError, UnknownFrameError
-from sdf_pose_bridge.geometry.formats import (
-    converted_poses,
-    converted_rotation,
-    POSE_FORMATS,
-    PoseFormatError,
-)
+from sdf_pose_bridge.geometry.converted_rotation import converted_rotation
+from sdf_pose_bridge.geometry.formats import converted_poses, POSE_FORMATS, PoseFormatError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import RotationError
 from sdf_pose_bridge.ros.background import CoroutineLock, run_in_thread

@@ -11,7 +11,7 @@ pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sdf_pose_bridge.geometry.formats import converted_rotation, Given
+from sdf_pose_bridge.geometry.converted_rotation import converted_rotation, Given
 from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy, RotationError
 
 NO_RPY = (math.nan, math.nan, math.nan)

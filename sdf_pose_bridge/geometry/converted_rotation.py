@@ -1,0 +1,79 @@
+# Copyright 2026 The sdf_pose_bridge authors
+# SPDX-License-Identifier: Apache-2.0
+"""Both representations of one rotation, as the service ConvertRotation returns them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import enum
+import math
+from typing import NamedTuple
+
+from sdf_pose_bridge.geometry import floats
+from sdf_pose_bridge.geometry.formats import are_canonical_angles
+from sdf_pose_bridge.geometry.formulas import degrees_from_radians, radians_from_degrees
+from sdf_pose_bridge.geometry.rotations import (
+    canonical_quaternion,
+    near_gimbal_lock,
+    Quaternion,
+    quaternion_from_rpy,
+    RotationError,
+    rpy_from_quaternion,
+    Triple,
+)
+
+
+class Given(enum.IntEnum):
+    """The given representation of a rotation; the constants of ConvertRotation.srv."""
+
+    RPY = 0
+    QUATERNION = 1
+
+
+class RotationAnswer(NamedTuple):
+    """One rotation in both representations."""
+
+    rpy: Triple
+    """Roll, pitch, yaw; in degrees if requested."""
+    quat_xyzw: Quaternion
+    """x, y, z, w; unit, w >= 0."""
+    gimbal_lock: bool
+    """Whether pitch is within 4.5e-8 of a right angle, where roll and yaw alone are uncertain."""
+
+
+def converted_rotation(
+    given: int, rpy: Triple, quat_xyzw: Quaternion, *, degrees: bool,
+) -> RotationAnswer:
+    """
+    Return both representations of one rotation, as the service ConvertRotation does.
+
+    :param given: a value of :class:`Given`, which chooses one of the next two; the other one is
+        ignored.
+    :param rpy: roll, pitch, yaw, of any size.
+    :param quat_xyzw: x, y, z, w, of any norm but zero.
+    :param degrees: True if the angles, given and returned, are in degrees.
+    :return: roll and yaw within a half turn, pitch within a right angle, yaw 0 at gimbal lock; the
+        canonical quaternion. Angles in these ranges keep their digits.
+    :raises RotationError: an unknown value of ``given``, numbers that are not finite, or a
+        quaternion of zeros.
+    """
+    if given == Given.RPY:
+        rpy_rad: Sequence[float] = rpy
+        # Angles that are not finite are not changed: the error shows them as they are given.
+        if degrees and all(map(math.isfinite, rpy)):
+            rpy_rad = [radians_from_degrees(floats, angle) for angle in rpy]
+        quat = quaternion_from_rpy(rpy_rad)
+    elif given == Given.QUATERNION:
+        quat = canonical_quaternion(quat_xyzw)
+    else:
+        known = ', '.join(f'{value.value} ({value.name})' for value in Given)
+        msg = f'given is {given!r}, which is neither RPY nor quaternion; known are {known}'
+        raise RotationError(msg)
+    half_turn = 180.0 if degrees else math.pi
+    if given == Given.RPY and are_canonical_angles(rpy, half_turn):
+        roll, pitch, yaw = rpy
+    else:
+        roll, pitch, yaw = rpy_from_quaternion(quat)
+        if degrees:
+            roll, pitch, yaw = map(degrees_from_radians, (roll, pitch, yaw))
+    return RotationAnswer((roll + 0.0, pitch + 0.0, yaw + 0.0), quat, near_gimbal_lock(quat))
