@@ -312,24 +312,9 @@ class _Conversion:
         return True
 
     def _add_axis(self, xml: XmlElement, joint: Joint) -> None:
-        values = {tag: dict(part) for tag, part in joint.values.items()}
-        xyz = values.get('axis', {'xyz': [1.0, 0.0, 0.0]}).get('xyz', [0.0, 0.0, 0.0])
-        limit = values.get('limit', {})
-        if joint.type == 'fixed':
-            # It has the axis of SDFormat, as URDF gives it none.
-            xyz, values, limit = [0.0, 0.0, 1.0], {}, {'lower': [0.0], 'upper': [0.0]}
-        elif 'limit' in values:
-            ends = sorted((*limit.pop('lower', [0.0]), *limit.pop('upper', [0.0])))
-            if URDF_JOINT_TYPES[joint.type].has_limit:
-                limit.update({'lower': ends[:1], 'upper': ends[1:]})
-        axis = self._write.add(xml, 'axis', joint.xml)
-        self._write.add_numbers(axis, joint.xml, {'xyz': xyz})
-        self._write.add_numbers(self._write.add(axis, 'limit', joint.xml), joint.xml, limit)
-        if 'dynamics' in values:
-            dynamics = self._write.add(axis, 'dynamics', joint.xml)
-            self._write.add_numbers(dynamics, joint.xml, values['dynamics'])
+        axis = self._write.add_axis(xml, joint)
         mimic = first_child(joint.xml, 'mimic')
-        if mimic is not None and 'mimic' in values:
+        if mimic is not None and 'mimic' in joint.values and joint.type != 'fixed':
             name = mimic.get('joint', '')
             leader = self._robot.joint_names.get(name)
             if leader is None and self._for_ros:
@@ -338,7 +323,7 @@ class _Conversion:
                 return
             self._write.add_numbers(
                 self._write.add(axis, 'mimic', mimic, joint=leader or name), mimic,
-                {'multiplier': [1.0], 'offset': [0.0], **values['mimic']})
+                {'multiplier': [1.0], 'offset': [0.0], **joint.values['mimic']})
 
     def _add_frames(self) -> None:
         for name, (base, *_) in self._bases.items():

@@ -11,6 +11,8 @@ from lxml import etree
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import MODEL_FRAME, WORLD_FRAME
 from sdf_pose_bridge.sdformat.sources import Sources
+from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
+from sdf_pose_bridge.sdformat.urdf.robot import Joint
 from sdf_pose_bridge.sdformat.urdf.values import rpy_by_gz_math, text_from_numbers
 from sdf_pose_bridge.sdformat.xml_tree import XmlElement
 
@@ -71,3 +73,28 @@ class ElementWriter:
         """Add an element for each tag, with its numbers."""
         for tag, values in numbers.items():
             self.add(xml, tag, source, text=text_from_numbers(values))
+
+    def add_axis(self, xml: XmlElement, joint: Joint) -> XmlElement:
+        """
+        Add the ``<axis>`` of a joint, with its limits and its damping.
+
+        :param xml: the joint in SDFormat.
+        :return: the new element.
+        """
+        values = {tag: dict(part) for tag, part in joint.values.items()}
+        xyz = values.get('axis', {'xyz': [1.0, 0.0, 0.0]}).get('xyz', [0.0, 0.0, 0.0])
+        limit = values.get('limit', {})
+        if joint.type == 'fixed':
+            # It has the axis of SDFormat, as URDF gives it none.
+            xyz, values, limit = [0.0, 0.0, 1.0], {}, {'lower': [0.0], 'upper': [0.0]}
+        elif 'limit' in values:
+            ends = sorted((*limit.pop('lower', [0.0]), *limit.pop('upper', [0.0])))
+            if URDF_JOINT_TYPES[joint.type].has_limit:
+                limit.update({'lower': ends[:1], 'upper': ends[1:]})
+        axis = self.add(xml, 'axis', joint.xml)
+        self.add_numbers(axis, joint.xml, {'xyz': xyz})
+        self.add_numbers(self.add(axis, 'limit', joint.xml), joint.xml, limit)
+        if 'dynamics' in values:
+            dynamics = self.add(axis, 'dynamics', joint.xml)
+            self.add_numbers(dynamics, joint.xml, values['dynamics'])
+        return axis
