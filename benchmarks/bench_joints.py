@@ -144,7 +144,7 @@ def transforms_of_100_joints() -> Iterator[tuple[Function, Function | None]]:
             assert message is not None
             meaning, values, stamp_ns = message
             positions.update(meaning.selection, values, stamp_ns, ignore_stamps=True)
-            frames.publish_tf(meanings.rows(meaning), stamp_ns)
+            frames.publish_tf(frames.stamp(meanings.rows(meaning), stamp_ns))
 
         yield publish, lambda: broadcaster.take(next(messages))
 

@@ -58,8 +58,6 @@ each message of many slow robots would be published by itself."""
 _REST_S = 0.5
 _LONGEST_SLEEP_S = 0.1
 
-_NO_ROWS = np.array([], np.intp)
-
 
 class Rule(NamedTuple):
     """When transforms are published on ``/tf``."""
@@ -207,8 +205,7 @@ class JointStateThread:
     def _follow_next_target(self) -> None:
         before, self._target = self._target, self._next_target
         if self._target.frames is not before.frames:
-            if self._target.frames.positions is not before.frames.positions:
-                self._target.frames.positions.take_over(before.frames.positions)
+            self._target.frames.positions.take_over(before.frames.positions)
             self._start_frames()
         if self._target.rule != before.rule:
             self._start_rule()
@@ -293,9 +290,8 @@ class JointStateThread:
                 moved.append(self._move(topic, message))
         if not moved:
             return
-        for rows, stamps_ns in moved if len(moved) == 1 else _merged(moved):
-            if len(rows):
-                self._target.frames.publish_tf(rows, stamps_ns)
+        self._target.frames.publish_tf(
+            moved[0] if len(moved) == 1 else np.unique(np.concatenate(moved)))
         self._publish_topics_soon()
         if self._is_in_period:
             self._await([each for each in self._awaited if each not in topics])
@@ -322,13 +318,11 @@ class JointStateThread:
                 if message is None:
                     continue
                 known = newest.get(message.meaning)
-                if known is None or known[1].stamp_ns <= message.stamp_ns or (
-                        not message.stamp_ns):
+                if known is None or not 0 < message.stamp_ns < known[1].stamp_ns:
                     newest[message.meaning] = topic, message
             topics = others
         for topic, message in newest.values():
-            rows, _ = self._move(topic, message)
-            self._target.frames.wait(rows)
+            self._target.frames.wait(self._move(topic, message))
 
     def _follow_clock(self) -> None:
         """Accept any stamp after time has jumped back, for example when a bag starts again."""
@@ -340,17 +334,13 @@ class JointStateThread:
             self._logger.info('time has jumped back', throttle_duration_sec=10.0)
             self._target.frames.forget_stamps()
 
-    def _move(self, topic: JointStateTopic, message: Message) -> tuple[NDArray[np.intp], int]:
-        """
-        Set the positions of a message.
-
-        :return: the moving transforms that have to be published, and their stamp in nanoseconds.
-        """
+    def _move(self, topic: JointStateTopic, message: Message) -> NDArray[np.intp]:
+        """Set the positions of a message; return the moving transforms to publish."""
         target, meaning = self._target, message.meaning
         positions, ignores_stamps = target.frames.positions, target.rule.ignores_stamps
         stamp_ns = message.stamp_ns or self._now_ns
         if self._has_jumped and stamp_ns > self._now_ns:
-            return _NO_ROWS, stamp_ns  # it was sent before that
+            return np.array([], np.intp)  # it was sent before that
         topic.last_period = self._period
         topic.warn_about_invalid(positions.update(
             meaning.selection, message.positions, stamp_ns, ignore_stamps=ignores_stamps))
@@ -364,7 +354,7 @@ class JointStateThread:
                 f'following {topic.name}' if target.topic_count == 1 else
                 f'following {target.topic_count} topics of joint states; the first message is on '
                 f'{topic.name}')
-        return target.frames.stamp(rows, stamp_ns, ignore_stamps=ignores_stamps), stamp_ns
+        return target.frames.stamp(rows, stamp_ns, ignore_stamps=ignores_stamps)
 
     # Publication
 
@@ -408,13 +398,3 @@ class JointStateThread:
         if unreported.number:
             self._has_reported_missing = True
             self._logger.info(line_about_unreported_joints(unreported))
-
-
-def _merged(
-    moved: Sequence[tuple[NDArray[np.intp], int]],
-) -> Sequence[tuple[NDArray[np.intp], NDArray[np.int64] | int]]:
-    """Return transforms with their stamps for one message, unless some are there twice."""
-    rows = np.concatenate([rows for rows, _ in moved])
-    stamps_ns = np.repeat([stamp_ns for _, stamp_ns in moved], [len(rows) for rows, _ in moved])
-    order = np.argsort(rows)
-    return [(rows[order], stamps_ns[order])] if np.diff(rows[order]).all() else moved

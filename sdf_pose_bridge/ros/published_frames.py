@@ -233,8 +233,7 @@ class PublishedMovingFrames:
     def publish_waiting(self) -> bool:
         """Publish the moving transforms that wait; return whether there are any."""
         rows = np.flatnonzero(self._is_waiting)
-        if len(rows):
-            self.publish_tf(rows, self._stamps_ns[rows])
+        self.publish_tf(rows)
         return len(rows) > 0
 
     def publish_all(self) -> bool:
@@ -250,17 +249,20 @@ class PublishedMovingFrames:
         # TF would reject other transforms with the same stamps.
         self._stamps_ns[rows[is_stamped]] = last_ns[is_stamped] + 1
         self._newest_ns = int(self._stamps_ns.max(initial=NEVER))
-        if len(rows):
-            self.publish_tf(rows, np.where(is_stamped, last_ns + 1, self._publishers.now_ns()))
+        self._publish_tf(rows, np.where(is_stamped, last_ns + 1, self._publishers.now_ns()))
         return len(rows) > 0 and not is_stamped.any()
 
-    def publish_tf(self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64] | int) -> None:
+    def publish_tf(self, rows: NDArray[np.intp]) -> None:
         """
-        Publish one message on ``/tf``.
+        Publish moving transforms in one message on ``/tf``, with their stamps.
 
-        :param rows: indices of the moving transforms in it, in ascending order.
-        :param stamps_ns: the stamp of each of these, in nanoseconds; or one for all.
+        :param rows: their indices, in ascending order; without any, nothing is published.
         """
+        self._publish_tf(rows, self._stamps_ns[rows])
+
+    def _publish_tf(self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64]) -> None:
+        if not len(rows):
+            return
         self._is_waiting[rows] = False
         self._transforms.set_poses(self.frames.transforms(self.positions.values))
         self._tf.publish(
@@ -321,10 +323,8 @@ class PublishedMovingFrames:
         return _stamps_from_ns(np.where(newest == NEVER, self._publishers.now_ns(), newest))
 
 
-def _stamps_from_ns(stamps_ns: NDArray[np.int64] | int) -> Stamps:
-    """Return seconds and nanoseconds."""
-    if isinstance(stamps_ns, int):
-        return divmod(stamps_ns, NANOSECONDS)
+def _stamps_from_ns(stamps_ns: NDArray[np.int64]) -> Stamps:
+    """Return seconds and nanoseconds, shape (n, 2)."""
     stamps = np.empty((len(stamps_ns), 2), np.int64)
     np.divmod(stamps_ns, NANOSECONDS, stamps[:, 0], stamps[:, 1])
     return stamps

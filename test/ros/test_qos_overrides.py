@@ -11,6 +11,7 @@ from rclpy.qos import DurabilityPolicy, qos_profile_sensor_data, ReliabilityPoli
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.given_parameters import settings_from_node
+from sdf_pose_bridge.ros.joint_state_thread import Rule
 from sdf_pose_bridge.ros.joint_states import JointStates
 from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.published_frames import PublishedFrames
@@ -29,13 +30,13 @@ def qualities(node):
     tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
     frames = PublishedFrames(
         Publishers(node), tree, JointPositions(scene, tree.moving.dofs), {})
-    for frequency in (20.0, 0.0):
-        states = JointStates(
-            node, frames.moving, JointStateTopics({'joint_states': ''}), (frequency, False))
-        subscription, = node.subscriptions
-        if frequency:
-            states.destroy()
-    return {each.topic_name: each.qos_profile for each in [*node.publishers, subscription]}
+    states = JointStates(
+        node, frames.moving, JointStateTopics({'joint_states': ''}),
+        Rule(highest_hz=0.0, ignores_stamps=False))
+    found = {
+        each.topic_name: each.qos_profile for each in [*node.publishers, *node.subscriptions]}
+    states.end()
+    return found
 
 
 def test_policies_are_declared_with_their_defaults(make_node):
