@@ -71,7 +71,7 @@ class WaitSet:
         :return: the indices of the subscriptions that have a message.
         :raises rclpy.exceptions.InvalidHandle: if one of them has been destroyed.
         """
-        if subscriptions is not self._subscriptions or timer is not self._timer:
+        if subscriptions != self._subscriptions or timer is not self._timer:
             self._prepare(subscriptions, timer)
         wait_set = self._wait_set
         wait_set.clear_entities()

@@ -74,9 +74,9 @@ def test_a_timer_ends_the_wait(node, wait_set):
 
 def test_a_subscription_that_is_destroyed_during_the_wait_is_kept_for_it(
         node, wait_set, subscription):
-    subscriptions = [subscription]
-    wait_set.wait(subscriptions, None, 0.0)
+    wait_set.wait([subscription], None, 0.0)
     node.destroy_subscription(subscription)
-    assert wait_set.wait(subscriptions, None, 0.01) == []
+    assert wait_set.wait([subscription], None, 0.01) == []
+    wait_set.wait([], None, 0.0)
     with pytest.raises(InvalidHandle):
         wait_set.wait([subscription], None, 0.0)
