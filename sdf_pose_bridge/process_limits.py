@@ -53,6 +53,10 @@ class _Limits:
         self._processor_s = time.process_time()
         self._before = {
             kind: resource.getrlimit(kind) for kind in (resource.RLIMIT_CPU, resource.RLIMIT_AS)}
+        # Freed at the end, as restoring the limits needs some memory, too.
+        self._reserve = bytearray(_MEGABYTE)
+        self.are_of_the_user = False
+        """Whether the memory had a lower limit before."""
 
     @property
     def more_memory_bytes(self) -> float:
@@ -64,11 +68,6 @@ class _Limits:
     def _megabytes(self) -> float:
         return self._bytes_read / _MEGABYTE
 
-    @property
-    def are_of_the_user(self) -> bool:
-        """Whether the memory had a lower limit before."""
-        return self._before[resource.RLIMIT_AS] == resource.getrlimit(resource.RLIMIT_AS)
-
     def raise_for(self, byte_count: int) -> None:
         """Set the limits after so many bytes more were read."""
         self._bytes_read += byte_count
@@ -76,9 +75,12 @@ class _Limits:
             resource.RLIMIT_CPU, self._processor_s + self._allowance.processor_s
             + self._megabytes * self._allowance.seconds_per_megabyte)
         self._set(resource.RLIMIT_AS, self._memory_bytes + self.more_memory_bytes)
+        self.are_of_the_user = (
+            self._before[resource.RLIMIT_AS] == resource.getrlimit(resource.RLIMIT_AS))
 
     def end(self) -> None:
-        """Restore the limits before."""
+        """Restore the limits before, also if there is no memory."""
+        self._reserve.clear()
         for kind, limits in self._before.items():
             resource.setrlimit(kind, limits)
 
@@ -110,9 +112,9 @@ def limited(allowance: Allowance) -> Iterator[None]:
         yield
         return
     except MemoryError:
+        limits.end()
         if limits.are_of_the_user:
             raise
-        # There is memory for another exception when the limits are restored.
     finally:
         limits.end()
         _LIMITS.reset(token)

@@ -204,6 +204,7 @@ def _parsed(text: bytes, path: str) -> XmlElement:
 
     :return: the outermost element.
     :raises FileReadError: for the first error that is not ignored.
+    :raises MemoryError: if libxml2 has not enough memory.
     """
     parser = etree.XMLParser(
         encoding='utf-8', recover=True, resolve_entities=False, no_network=True, load_dtd=False,
@@ -212,6 +213,8 @@ def _parsed(text: bytes, path: str) -> XmlElement:
     with contextlib.suppress(etree.XMLSyntaxError):
         root = etree.fromstring(text, parser)
     errors = [entry for entry in parser.error_log if entry.type_name not in _IGNORED_ERRORS]
+    if any(entry.type_name == 'ERR_NO_MEMORY' for entry in errors):
+        raise MemoryError
     if errors:
         msg = f'this is not well-formed XML: {_fault_from_message(errors[0].message.strip())}'
         # libxml2 reports a missing end behind the last line break.

@@ -64,6 +64,8 @@ sys.exit(main.main())
 @pytest.mark.parametrize(('limit', 'message'), [
     ('processor_s=0', r'sdf_pose tree: this needs more than \d+ s of processor time'),
     ('memory_bytes=10**7', 'sdf_pose tree: this needs more than 10 MB of memory'),
+    # The parser has not enough memory.
+    ('memory_bytes=5 * 10**7', 'sdf_pose tree: this needs more than 50 MB of memory'),
 ])
 def test_a_file_that_needs_too_much_is_one_sentence(files, limit, message):
     (files / 'large.sdf').write_text(model_file(''.join(
