@@ -31,7 +31,7 @@ from sdf_pose_bridge.geometry.formats import (
 from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.names import printable, scoped_name
 from sdf_pose_bridge.scene.comparison import names_of_moved
-from sdf_pose_bridge.scene.pose_setting import are_close, Measure, pose_change, PoseChange
+from sdf_pose_bridge.scene.pose_setting import are_close, pose_change
 from sdf_pose_bridge.scene.scene import Scene
 
 
@@ -97,6 +97,9 @@ def run(options: argparse.Namespace) -> int:
     def measured(scene: Scene, element: int) -> Pose:
         return pose_lookup(scene).pose_of_element(element, options.relative_to)
 
+    def loaded(texts: Mapping[str, bytes]) -> Scene:
+        return scene_from_file(options.files[0], options, texts=texts)
+
     lookup = pose_lookup(scene)
     element, _ = lookup.element(options.frame)
     part = options.by or options.frame
@@ -107,9 +110,9 @@ def run(options: argparse.Namespace) -> int:
     else:
         quat_xyzw = converted_rotations(numbers, source.name, 'quaternion').tolist()
         asked = Pose(*lookup.pose(part, options.relative_to).pose[:3], *quat_xyzw)
-    change = set_pose(
+    change = pose_change(
         scene, element, pose_product(asked, lookup.pose_of_element(element, part)), measured,
-        options, all_instances=options.all_instances, dry_run=True)
+        loaded, all_instances=options.all_instances)
     name = printable(scene.names[element])
     if options.by and not are_close(
             pose_lookup(change.scene).pose(part, options.relative_to).pose, asked):
@@ -135,26 +138,3 @@ def run(options: argparse.Namespace) -> int:
         print(f'sdf_pose set: {printable(change.file.path)} has the new pose, but the change '
               f'cannot be printed: {(error.strerror or str(error)).lower()}', file=sys.stderr)
     return 0
-
-
-def set_pose(
-    scene: Scene, element: int, asked: Pose, measure: Measure, options: argparse.Namespace, *,
-    all_instances: bool = False, dry_run: bool = False,
-) -> PoseChange:
-    """
-    Write the pose of an element into its file.
-
-    :param asked: the pose, as ``measure`` shall return it.
-    :param options: the arguments with which the scene was loaded.
-    :param all_instances: whether other elements that the same ``<pose>`` places may move too.
-    :param dry_run: whether nothing is written.
-    :return: the change of the file.
-    :raises SdfError: if the pose cannot be written into the file.
-    """
-    def loaded(texts: Mapping[str, bytes]) -> Scene:
-        return scene_from_file(options.files[0], options, texts=texts)
-
-    change = pose_change(scene, element, asked, measure, loaded, all_instances=all_instances)
-    if not dry_run:
-        change.file.write()
-    return change

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 import contextlib
 from functools import partial
 import importlib
@@ -33,11 +34,12 @@ from sdf_pose_bridge.cli.printing import (
     print_problems,
     Units,
 )
-from sdf_pose_bridge.cli.set import set_pose
 from sdf_pose_bridge.cli.viewer import LIBRARIES
 from sdf_pose_bridge.errors import FileReadError, LimitError, Place, SdfError
+from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.limited_process import LimitedProcess, ProcessEndedError
 from sdf_pose_bridge.process_limits import FOR_FILES, LimitExceededError
+from sdf_pose_bridge.scene.pose_setting import Measure, pose_change, PoseChange
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_watcher import FileWatcher
 from sdf_pose_bridge.sdformat.include.uris import resource_finder
@@ -104,7 +106,7 @@ def _shown(viewer: ModuleType, process: LimitedProcess, options: argparse.Namesp
         viewer.ShownScene(scene, tf_options_from_arguments(options)),
         0 if options.output else options.port, Units(options.length_unit, options.angle_unit),
         viewer.MeshReader(resource_finder(options.resource_paths, os.environ), process),
-        partial(set_pose, options=options) if options.edit else None,
+        partial(_set_pose, process, options) if options.edit else None,
         # A page in a file has no switches.
         viewer.HIDDEN_AT_FIRST - ({'all names'} if options.output else set()))
     try:
@@ -195,16 +197,32 @@ def _follow(
                 page.show_errors(map(str, error.errors))
 
 
-def _scene(process: LimitedProcess, options: argparse.Namespace) -> Scene:
+def _set_pose(
+    process: LimitedProcess, options: argparse.Namespace, scene: Scene, element: int, asked: Pose,
+    measure: Measure, *, dry_run: bool,
+) -> PoseChange:
+    """Find a change of the file as :func:`pose_change` does, and write it unless it is a trial."""
+    change = pose_change(scene, element, asked, measure, partial(_scene, process, options))
+    if not dry_run:
+        change.file.write()
+    return change
+
+
+def _scene(
+    process: LimitedProcess, options: argparse.Namespace,
+    texts: Mapping[str, bytes] | None = None,
+) -> Scene:
     """
     Load the file in another process.
 
+    :param texts: texts to read instead of some files, by their paths.
     :raises SdfError: if it is not valid, or needs too much time or memory.
     """
     place = Place(options.files[0])
     try:
         return process.call(
-            FOR_FILES, partial(scene_from_file, shapes=True), options.files[0], options)
+            FOR_FILES, partial(scene_from_file, shapes=True, texts=texts), options.files[0],
+            options)
     except LimitExceededError as error:
         msg = f'the file needs {error} to be read'
         raise LimitError(msg, place) from None

@@ -21,8 +21,9 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.file_change import FileChange
 
 SetPose = Callable[..., PoseChange]
-"""Writes a pose into a file, as ``sdf_pose_bridge.cli.set.set_pose`` does, with the same arguments
-except the options."""
+"""Writes a pose of a scene into its file: takes the arguments of
+:func:`~sdf_pose_bridge.scene.pose_setting.pose_change` but the load, and whether to write
+nothing."""
 
 _STEPS = (1.0, 10.0, 100.0, 1000.0)
 """Step of the arrows beside a number, in units of its last digit."""
