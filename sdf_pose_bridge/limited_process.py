@@ -105,7 +105,6 @@ class LimitedProcess:
                 file.flush()
                 if self._pid:
                     socket.send_fds(self._calls, [b'.'], [file.fileno(), other_end.fileno()])
-                other_end.close()
             except BrokenPipeError:
                 pass  # the waiting process has ended, as its missing status shows
             except OSError as error:
