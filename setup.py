@@ -148,6 +148,8 @@ setup(
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (SHARE, ['package.xml']),
+        ('share/man/man1', ['resource/sdf_pose.1']),
+        ('share/bash-completion/completions', ['resource/completions/sdf_pose']),
         *(pair for folder in shared_folders() for pair in data_files_of(folder)),
     ],
     cmdclass={'install_scripts': InstallScripts},

@@ -22,7 +22,10 @@ MOST_CHARACTERS_OF_HINTS = 1_000_000
 _LONGEST_CHAIN = 10
 """Largest number of includes that an error names on the way to a file."""
 
-_Problem = TypeVar('_Problem', SdfError, SdfWarning)
+_MOST_LINES_NAMED = 5
+"""Largest number of lines that a text names for other problems with the same message."""
+
+_Problem = TypeVar('_Problem', bound=SdfError | SdfWarning)
 
 
 class Problems:
@@ -175,6 +178,29 @@ class Problems:
             steps.append(f'included from {self._includes[file]}')
             file = self._includes[file].file
         return f' ({", ".join(steps)})'
+
+
+def folded(problems: Iterable[_Problem]) -> list[tuple[_Problem, str]]:
+    """
+    Join the problems of one file that have the same message.
+
+    :return: the first problem of each message, and a text with the lines of the others; '' if
+        there are none.
+    """
+    groups: dict[Hashable, list[_Problem]] = {}
+    for problem in problems:
+        key = (problem.place.file, problem.code, problem.message)
+        groups.setdefault(key, []).append(problem)
+    return [(group[0], _text_of_lines([str(each.place.line) for each in group[1:]]))
+            for group in groups.values()]
+
+
+def _text_of_lines(lines: Sequence[str]) -> str:
+    if not lines:
+        return ''
+    more = len(lines) - _MOST_LINES_NAMED
+    text = ', '.join(lines[:_MOST_LINES_NAMED]) + (f' and {more} more' if more > 0 else '')
+    return f' (also line{"s" if lines[1:] else ""} {text})'
 
 
 class _First(dict[Hashable, _Problem]):

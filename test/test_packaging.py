@@ -16,6 +16,7 @@ from command_line import skip_without
 import pytest
 
 import sdf_pose_bridge
+from sdf_pose_bridge.cli.main import new_parser
 from sdf_pose_bridge.cli.viewer import LIBRARIES
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -201,6 +202,12 @@ def test_package_xml_and_the_index_entry_are_installed():
     assert (places['package.xml'], places['resource/sdf_pose_bridge']) == (
         'share/sdf_pose_bridge/package.xml',
         'share/ament_index/resource_index/packages/sdf_pose_bridge')
+
+
+def test_the_manual_page_names_every_command():
+    page = (ROOT / 'resource/sdf_pose.1').read_text()
+    listed = re.findall(r'^    ([a-z]+) +(.+)$', new_parser().format_help(), re.MULTILINE)
+    assert re.findall(r'^\.B ([a-z]+)\n(.+)$', page, re.MULTILINE) == listed
 
 
 def test_license_is_the_whole_apache_license():

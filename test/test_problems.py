@@ -5,7 +5,13 @@
 import pytest
 
 from sdf_pose_bridge.errors import LoadError, ParsingError, Place
-from sdf_pose_bridge.problems import MOST_CHARACTERS_OF_HINTS, MOST_HINTS, MOST_PROBLEMS, Problems
+from sdf_pose_bridge.problems import (
+    folded,
+    MOST_CHARACTERS_OF_HINTS,
+    MOST_HINTS,
+    MOST_PROBLEMS,
+    Problems,
+)
 
 PLACE = Place('a.sdf', 7, '/sdf')
 
@@ -127,3 +133,20 @@ def test_error_and_warning_shorten_what_they_quote():
     for problem in (*problems.errors, *problems.warnings):
         assert len(problem.message) < 130
         assert problem.message.endswith('x" names no frame in model "m"')
+
+
+@pytest.mark.parametrize(('places', 'other_lines'), [
+    (['a.sdf:1'], ['']),
+    (['a.sdf:1', 'a.sdf:3'], [' (also line 3)']),
+    (['a.sdf:1', 'b.sdf:3'], ['', '']),
+    ([f'a.sdf:{line}' for line in range(1, 9)], [' (also lines 2, 3, 4, 5, 6 and 2 more)']),
+])
+def test_problems_of_a_file_with_one_message_are_joined(places, other_lines):
+    parts = [place.split(':') for place in places]
+    errors = [ParsingError('x', Place(path, int(line))) for path, line in parts]
+    assert [text for _, text in folded(errors)] == other_lines
+
+
+def test_problems_with_other_messages_are_not_joined():
+    errors = [ParsingError(message, PLACE) for message in 'xyx']
+    assert [error.message for error, _ in folded(errors)] == ['x', 'y']

@@ -18,6 +18,7 @@ from sdf_pose_bridge.errors import SdfError, SdfWarning, UriLookupError
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.names import printable, shortened
+from sdf_pose_bridge.problems import folded
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.tree import TfTree
@@ -56,13 +57,14 @@ def print_problems(
     sys.stdout.flush()
     has_colors = is_colored(stream)
     bold, plain = (_BOLD, _PLAIN) if has_colors else ('', '')
-    for problem in in_order(errors, warnings):
+    for problem, other_lines in folded(in_order(errors, warnings)):
         is_error = isinstance(problem, SdfError)
         color = '' if not has_colors else _RED if is_error else _YELLOW
         kind = '' if is_error or problem.code == 'WARNING' else 'WARNING: '
         place, message = printable(str(problem.place)), printable(problem.message)
         hint = '; --skip-missing leaves it out' if isinstance(problem, UriLookupError) else ''
-        print(f'{bold}{place}:{plain} {color}{kind}{problem.code}:{plain} {message}{hint}',
+        print(f'{bold}{place}:{plain} {color}{kind}{problem.code}:{plain} {message}{hint}'
+              f'{other_lines}',
               file=stream)
 
 

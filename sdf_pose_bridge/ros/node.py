@@ -19,6 +19,7 @@ from rclpy.task import Future
 from std_srvs.srv import Trigger
 
 from sdf_pose_bridge.errors import AddressError, SdfError
+from sdf_pose_bridge.problems import folded
 from sdf_pose_bridge.ros.background import CoroutineLock, PollingThread, run_in_thread
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, PERIOD_S
 from sdf_pose_bridge.ros.file_follower import FileFollower
@@ -180,7 +181,8 @@ class SdfPoseBridge:
 
     def _report_success(self) -> None:
         loaded = self._loaded
-        for line in lines_from_warnings(loaded.warnings):
+        for line in lines_from_warnings([
+                f'{each}{other_lines}' for each, other_lines in folded(loaded.warnings)]):
             self._logger.warning(line)
         for line in lines_about_scene(loaded):
             self._logger.info(line)

@@ -201,8 +201,6 @@ class _Repairer:
         if token['instruction']:
             if token.start():
                 self._note('the declaration is not at the beginning')
-            elif not re.search(r'version\s*=\s*["\']1\.0', whole):
-                self._note('the declared XML version is not 1.0')
             return _blank(whole)
         if token['verbatim']:
             whole = self._replaced(self._replaced(whole, _SPACES), _CHARACTERS)

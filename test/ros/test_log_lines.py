@@ -46,7 +46,7 @@ def test_the_error_of_a_missing_include_names_the_parameter_that_leaves_it_out()
 
 
 def test_a_flood_of_errors_ends_with_its_size():
-    errors = [ParsingError('fact', Place('a.sdf', line)) for line in range(MOST_LINES + 1)]
+    errors = [ParsingError(f'fact {line}', Place('a.sdf', line)) for line in range(MOST_LINES + 1)]
     lines = lines_from_error(LoadError(errors))
     assert len(lines) == MOST_LINES + 1
     assert lines[-1] == '1 more error is not shown; "sdf_pose check" shows all of them'
@@ -73,7 +73,8 @@ def test_a_name_cannot_write_a_line_of_its_own(name, shown):
 
 
 def test_a_flood_that_the_load_has_cut_has_no_exact_size():
-    errors = [ParsingError('fact', Place('a.sdf', line)) for line in range(MOST_PROBLEMS + 1)]
+    errors = [
+        ParsingError(f'fact {line}', Place('a.sdf')) for line in range(MOST_PROBLEMS + 1)]
     assert lines_from_error(LoadError(errors))[-1].startswith('at least 81 more errors')
     assert lines_from_warnings(errors)[-1].startswith('at least 81 more warnings')
 

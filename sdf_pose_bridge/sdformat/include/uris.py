@@ -27,7 +27,7 @@ from sdf_pose_bridge.sdformat.xml_tree import child_elements, first_child, text_
 _SCHEME = re.compile(r'([A-Za-z][A-Za-z0-9+.-]*)://')
 _SCHEME_OF_ADDRESS = re.compile(r'[A-Za-z][A-Za-z0-9+.-]+(?=:/)')
 _PATH_VARIABLES = ('GZ_SIM_RESOURCE_PATH', 'SDF_PATH')
-
+_MODELS_OF_GAZEBO_CLASSIC = ('model://sun', 'model://ground_plane')
 
 _MOST_SHOWN = 5
 """Largest number of directories that a message names."""
@@ -51,7 +51,9 @@ class ResourceFinder(NamedTuple):
 
         The order is: the search paths; an absolute path; the share directory of a package for
         ``package://``; the Fuel cache for ``https://``; the directory of the including file for a
-        relative path or ``file://``; the paths of the environment; the working directory.
+        relative path or ``file://``; the paths of the environment; for ``model://`` and
+        ``package://`` the model or package of that name that the including file is in; the working
+        directory.
 
         :param uri: such as ``model://box``, ``package://pkg/models/box`` or ``box.sdf``.
         :param including_file: path of the file with the include.
@@ -143,8 +145,10 @@ class ResourceFinder(NamedTuple):
             is_known = next(self._package_shares(package), None) is not None
             packages = f'the package "{package}" has no such file, and it is ' if is_known else (
                 f'no package "{package}" is installed, and it is ')
-        return (f'{packages or "it is "}not in {quoted_names(directories, _MOST_SHOWN)}; -I, '
-                'the parameter resource_paths and GZ_SIM_RESOURCE_PATH add directories')
+        cure = ('it comes with Gazebo Classic, and no frame needs it'
+                if uri in _MODELS_OF_GAZEBO_CLASSIC else
+                '-I, the parameter resource_paths and GZ_SIM_RESOURCE_PATH add directories')
+        return f'{packages or "it is "}not in {quoted_names(directories, _MOST_SHOWN)}; {cure}'
 
     def _candidates(self, uri: str, including_file: str) -> Iterator[str]:
         scheme = _SCHEME.match(uri)
@@ -168,6 +172,11 @@ class ResourceFinder(NamedTuple):
             yield os.path.join(os.path.dirname(including_file), name)  # noqa: PTH118, PTH120
         for directory in self.environment_paths:
             yield os.path.join(directory, relative)  # noqa: PTH118
+        if scheme_name in ('model', 'package'):
+            owner, _, rest = relative.partition('/')
+            for folder in Path(including_file).absolute().parents:
+                if _is_model(folder, owner) or _is_package(folder, owner):
+                    yield str(folder / rest)
         yield name
 
     def _package_shares(self, package: str) -> Iterator[Path]:
@@ -227,6 +236,19 @@ def resource_finder(
         tuple(paths('AMENT_PREFIX_PATH')),
         environment.get('GZ_FUEL_CACHE_PATH') or os.path.join(home, '.gz', 'fuel'),  # noqa: PTH118
     )
+
+
+def _is_model(directory: Path, name: str) -> bool:
+    return directory.name == name and os.path.isfile(directory / _NAME)  # noqa: PTH113
+
+
+def _is_package(directory: Path, name: str) -> bool:
+    manifest = directory / 'package.xml'
+    try:
+        return manifest.is_file() and f'<name>{name}</name>' in manifest.read_text(
+            errors='replace')
+    except OSError:
+        return False
 
 
 def _entry_in_any_case(directory: str, name: str) -> str:
@@ -312,8 +334,4 @@ def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
     if root.tag != 'model' or chosen is None or not name:
         msg = 'the manifest names no file: it has no <sdf> in a <model>'
         raise ParsingError(msg, Place(manifest, root.sourceline or 0))
-    if chosen.get('version') is None:
-        msg = '<sdf> does not say which version the file has'
-        place = Place(manifest, chosen.sourceline or 0, '/model/sdf')
-        warnings.append(SdfWarning('WARNING', msg, place))
     return ModelFile(str(Path(directory, name)), manifest, tuple(warnings))

@@ -75,6 +75,21 @@ def test_file_is_found(uri, tmp_path):
     assert resource_finder([tmp_path], {}).file_from_uri(uri, 'm.sdf') == mesh
 
 
+@pytest.mark.parametrize(('uri', 'manifest', 'is_found'), [
+    ('model://arm/a.stl', 'arm/model.config', True),
+    ('model://arm/a.stl', 'arm/package.xml', False),
+    ('model://leg/a.stl', 'arm/model.config', False),
+    ('package://robots/a.stl', 'arm/package.xml', True),
+    ('package://arm/a.stl', 'arm/package.xml', False),
+    ('package://robots/a.stl', 'arm/model.config', False),
+])
+def test_mesh_is_found_in_the_model_or_package_of_the_file(uri, manifest, is_found, tmp_path):
+    mesh = write(tmp_path, 'arm/a.stl')
+    (tmp_path / manifest).write_text('<package><name>robots</name></package>')
+    path = resource_finder((), {}).file_from_uri(uri, str(tmp_path / 'arm' / 'sdf' / 'arm.sdf'))
+    assert path == (mesh if is_found else None)
+
+
 @pytest.mark.parametrize('scheme', ['', 'file://'])
 def test_absolute_path_is_used_as_it_is(scheme, tmp_path):
     box = write(tmp_path, 'box.sdf')
@@ -295,9 +310,9 @@ def test_version_that_is_too_new_is_skipped_with_a_warning(tmp_path):
     assert 'version 1.99 of the model is newer' in found.warnings[0].message
 
 
-def test_entry_without_a_version_is_chosen_with_a_warning(tmp_path):
+def test_entry_without_a_version_is_chosen_silently(tmp_path):
     found = model_file(tmp_path, '<model><sdf>a.sdf</sdf></model>')
-    assert (Path(found.path).name, len(found.warnings)) == ('a.sdf', 1)
+    assert (Path(found.path).name, found.warnings) == ('a.sdf', ())
 
 
 def test_deprecated_name_of_a_manifest_gives_a_warning(tmp_path):
