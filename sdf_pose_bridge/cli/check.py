@@ -26,8 +26,8 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import resource_finder, ResourceFinder
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
-_FOLDER = re.compile('(?:model|package|file)://+[^/]+', re.IGNORECASE)
-"""The package, model or folder at the beginning of a URI."""
+_END_OF_FOLDER = re.compile('(?<=[^/:])/')
+"""The end of a package, model or folder in a URI."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -102,14 +102,19 @@ def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[S
     missing: dict[tuple[str, str], list[str]] = {}
     for uri, file in sorted(places, key=lambda key: places[key].line):
         if finder.file_from_uri(uri, file) is None:
-            match = _FOLDER.match(uri)
-            is_folder_missing = match and finder.path_from_uri(match[0], file) is None
-            key = (match[0] if match and is_folder_missing else uri), file
-            missing.setdefault(key, []).append(uri)
+            missing.setdefault((_missing_part(uri, file, finder), file), []).append(uri)
     for (folder, file), uris in missing.items():
         problems.warning(
             _reason_without_meshes(folder, uris, file, finder), places[uris[0], file])
     return problems.warnings
+
+
+def _missing_part(uri: str, file: str, finder: ResourceFinder) -> str:
+    """Return the first folder in a URI that is not found, or the URI."""
+    if uri.lower().startswith('http'):
+        return uri  # each model of Fuel is fetched by itself
+    folders = (uri[:end.start()] for end in _END_OF_FOLDER.finditer(uri))
+    return next((each for each in folders if finder.path_from_uri(each, file) is None), uri)
 
 
 def _reason_without_meshes(

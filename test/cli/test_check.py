@@ -6,6 +6,7 @@ import os
 import subprocess
 
 from command_line import COMMAND, ENVIRONMENT
+import pytest
 from sdf_texts import model_file
 
 
@@ -118,15 +119,20 @@ def test_a_second_world_is_a_warning(run_main, files):
     assert 'world "b" is not published' in done.stdout
 
 
-def test_meshes_of_a_missing_package_are_one_warning(run_main, files):
-    (files / 'arm.sdf').write_text("""<sdf version="1.9"><model name="m"><link name="l">
-      <visual name="a"><geometry><mesh><uri>package://p/1.stl</uri></mesh></geometry></visual>
-      <visual name="b"><geometry><mesh><uri>package://p/2.stl</uri></mesh></geometry></visual>
+@pytest.mark.parametrize(('folder', 'missing'), [
+    ('package://p', '"package://p": no package "p" is installed'),
+    ('package://p/q', '"package://p": no package'), ('p', '"p": '), ('file://p/q', '"file://p": '),
+    ('a/q', '"a/q": '),
+])
+def test_meshes_of_a_missing_folder_are_one_warning(folder, missing, run_main, files):
+    (files / 'a').mkdir()
+    (files / 'arm.sdf').write_text(f"""<sdf version="1.9"><model name="m"><link name="l">
+      <visual name="a"><geometry><mesh><uri>{folder}/1.stl</uri></mesh></geometry></visual>
+      <visual name="b"><geometry><mesh><uri>{folder}/2.stl</uri></mesh></geometry></visual>
       </link></model></sdf>""")
     (line,) = run_main('check', 'arm.sdf').stdout.splitlines()
     assert line.startswith(
-        'arm.sdf:2: WARNING: the mesh "package://p/1.stl" is not found, like 1 more of '
-        '"package://p": no package "p" is installed')
+        f'arm.sdf:2: WARNING: the mesh "{folder}/1.stl" is not found, like 1 more of {missing}')
 
 
 def test_meshes_that_a_package_does_not_have_are_sorted_by_line(run_main, files):
