@@ -135,7 +135,11 @@ pictures: setup
 	  && python -m sdf_pose_bridge view examples/work_cell.sdf -o docs/pictures/work_cell.png \
 	  && python -m sdf_pose_bridge view docs/pictures/arm.sdf -o docs/pictures/view.png \
 	  && python -m sdf_pose_bridge view docs/pictures/tutorial/cell.sdf -o docs/pictures/tutorial.png \
-	  && exec python -m sdf_pose_bridge graph docs/pictures/arm.sdf -o docs/pictures/graph.svg
+	  && python -m sdf_pose_bridge graph docs/pictures/arm.sdf -o docs/pictures/graph.svg \
+	  && script --quiet --command \
+	    'stty columns 80 && python -m sdf_pose_bridge tree examples/work_cell.sdf' /dev/null \
+	  | python docs/pictures/terminal.py 'sdf_pose tree examples/work_cell.sdf' \
+	  > docs/pictures/terminal.svg
 
 # What they need is fetched into .underlay-release at first; then they use no network.
 wheel_check: setup

@@ -55,7 +55,7 @@ _BROWSER_OPTIONS = (
     '--enable-unsafe-swiftshader', '--no-first-run', '--disable-background-networking',
     '--disable-component-update', '--disable-sync', '--disable-quic',
     # Milliseconds without activity of the page before the picture is drawn.
-    '--window-size=1600,1000', '--hide-scrollbars', '--virtual-time-budget=10000')
+    '--window-size=1120,700', '--force-device-scale-factor=1.4286', '--hide-scrollbars', '--virtual-time-budget=10000')
 _ONLY_THE_SCENE = '<style>body :not(canvas, :has(canvas)) {visibility: hidden}</style>'
 _MOST_SECONDS = 300.0
 
