@@ -54,8 +54,10 @@ _BROWSER_OPTIONS = (
     '--headless', '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
     '--enable-unsafe-swiftshader', '--no-first-run', '--disable-background-networking',
     '--disable-component-update', '--disable-sync', '--disable-quic',
+    # 1600 x 1000 pixels, in which names can be read on a page that shows them smaller.
+    '--window-size=1120,700', '--force-device-scale-factor=1.4286', '--hide-scrollbars',
     # Milliseconds without activity of the page before the picture is drawn.
-    '--window-size=1120,700', '--force-device-scale-factor=1.4286', '--hide-scrollbars', '--virtual-time-budget=10000')
+    '--virtual-time-budget=10000')
 _ONLY_THE_SCENE = '<style>body :not(canvas, :has(canvas)) {visibility: hidden}</style>'
 _MOST_SECONDS = 300.0
 
