@@ -96,9 +96,9 @@ class StampedRecords:
         self._numbers = (ends - _NUMBERS)[:, np.newaxis] // 8 + np.arange(7)
         self.set_poses(poses)
         # The rows of the last message, the indices of their stamps, and the parts of the message.
-        self._rows: NDArray[np.intp] | None = None
-        self._stamps_of_rows = self._stamps
-        self._parts_of_rows: list[bytes | memoryview] = []
+        self._rows = np.array([], np.intp)
+        self._stamps_of_rows = self._stamps[:0]
+        self._parts_of_rows = self._parts_of_message(self._rows)
 
     def __len__(self) -> int:
         return len(self._stamps)
@@ -128,11 +128,11 @@ class StampedRecords:
         """
         Return one tf2_msgs/TFMessage of some records.
 
-        :param rows: their indices, in ascending order. This is quicker if the array is that of
-            the last call.
+        :param rows: their indices, in ascending order. This is quicker if they are those of the
+            last call.
         :param stamps: the stamps that they get.
         """
-        if rows is not self._rows:
+        if not np.array_equal(rows, self._rows):
             self._rows, self._stamps_of_rows = rows, self._stamps[rows]
             self._parts_of_rows = self._parts_of_message(rows)
         self._buffer.view('<i4')[self._stamps_of_rows] = stamps

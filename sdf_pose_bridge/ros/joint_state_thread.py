@@ -27,11 +27,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from rclpy.clock import Clock, ClockType
+from rclpy.clock import JumpThreshold
+from rclpy.duration import Duration
 from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
 from rclpy.task import Future
-from rclpy.timer import Timer
 
 from sdf_pose_bridge.ros.background import wake
 from sdf_pose_bridge.ros.joint_names import Meaning, Meanings
@@ -57,6 +57,7 @@ each message of many slow robots would be published by itself."""
 
 _REST_S = 0.5
 _LONGEST_SLEEP_S = 0.1
+_NO_ROWS = np.array([], np.intp)
 
 
 class Rule(NamedTuple):
@@ -67,6 +68,12 @@ class Rule(NamedTuple):
     ignores_stamps: bool
     """Whether to publish for each message, also with a stamp that is not newer than the last."""
 
+    @property
+    def period_ns(self) -> float:
+        """The period in nanoseconds; 0.0 for each message."""
+        has_period = self.highest_hz and not self.ignores_stamps
+        return NANOSECONDS / self.highest_hz if has_period else 0.0
+
 
 class Target(NamedTuple):
     """The frames, topics and rule that the thread follows."""
@@ -76,14 +83,6 @@ class Target(NamedTuple):
     topic_count: int
     """The number of these topics, and of those that follow."""
     rule: Rule
-
-
-class Caller(NamedTuple):
-    """One who waits until the messages that have come are processed."""
-
-    future: Future
-    due: float
-    """When it does not wait longer, if messages come too fast."""
 
 
 class JointStateThread:
@@ -99,7 +98,8 @@ class JointStateThread:
         self._wait_set = WaitSet(node.context)
         # Other threads set these.
         self._next_target = target
-        self._callers: deque[Caller] = deque()
+        # Futures of callers, and when they do not wait longer if messages come too fast.
+        self._callers: deque[tuple[Future, float]] = deque()
         self._has_to_publish_topics = False
         self._has_to_end = False
         # The thread alone uses everything else.
@@ -110,12 +110,15 @@ class JointStateThread:
         self._now_ns = 0
         self._has_jumped = False
         self._has_moved = False
-        self._is_grace_over = False
         self._has_reported_missing = False
         self._period = 0
-        self._timer: Timer | None = None
         self._start_frames()
-        self._start_rule()
+        self._end_periods()
+        # Simulated time does not pass while the thread waits, so each step of it may end a period.
+        self._clock_steps = node.get_clock().create_jump_callback(
+            JumpThreshold(
+                min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1)),
+            post_callback=self._follow_step)
         # The node may be destroyed with its context only.
         node.context.on_shutdown(self.end)
         self._thread = threading.Thread(target=self._run, name='joint states', daemon=True)
@@ -139,16 +142,20 @@ class JointStateThread:
 
     def catch_up(self) -> Future:
         """Return a future that is done when all calls and messages so far are processed."""
-        caller = Caller(Future(), time.monotonic() + TOPICS_PERIOD_S)
-        self._callers.append(caller)
+        future = Future()
+        self._callers.append((future, time.monotonic() + TOPICS_PERIOD_S))
         self._wake()
-        return caller.future
+        return future
 
     def end(self) -> None:
         """End the thread."""
         self._has_to_end = True
         self._wake()
         self._thread.join()
+
+    def _follow_step(self, _step: object) -> None:
+        if self._has_period_ended(self._node.get_clock().now().nanoseconds):
+            self._wake()
 
     def _wake(self) -> None:
         # The thread may have ended with the node.
@@ -170,45 +177,58 @@ class JointStateThread:
                 self._logger.error(
                     f'internal error in joint states: {error}\n{traceback.format_exc()}',
                     throttle_duration_sec=60.0)
+        self._clock_steps.unregister()
         self._wait_set.close()
-        self._answer_callers()
+        self._answer(len(self._callers))
 
     def _turn(self) -> None:
         """Wait once, and do what is due."""
-        due = 0.0 if self._callers else min(self._due.values(), default=math.inf)
+        caller_count = len(self._callers)
         ready = self._wait_set.wait(
-            self._subscriptions, self._timer, max(0.0, due - time.monotonic()))
+            self._subscriptions, 0.0 if caller_count else self._longest_wait())
         if self._target is not self._next_target:
             self._follow_next_target()
             return  # the messages are ready again
-        if ready:
+        self._follow_clock()
+        has_ended = self._has_period_ended(self._now_ns)
+        is_due = has_ended or not ready or (
+            caller_count > 0 and time.monotonic() > self._callers[0][1])
+        if ready and not has_ended:
             self._take_at_once([self._awaited[index] for index in ready])
-        if self._timer is not None and self._timer.is_ready():
+        if self._is_in_period and is_due:
+            self._target.frames.wait(self._rows_of_messages(self._target.topics))
+        if has_ended:
             self._end_period()
-        now = time.monotonic()
-        if self._callers and (not ready or now > self._callers[0].due):
-            if self._is_in_period:
-                self._take_waiting()
-            self._answer_callers()
+        if is_due:
+            self._answer(caller_count)
         if self._has_to_publish_topics:
             self._has_to_publish_topics = False
             self._target.frames.publish_topics(only_listeners=False)
+        now = time.monotonic()
         for function in [each for each, due in self._due.items() if due <= now]:
             del self._due[function]
             function()
 
-    def _answer_callers(self) -> None:
-        while self._callers:
-            self._callers.popleft().future.set_result(None)
-        wake(self._node.executor)
+    def _longest_wait(self) -> float:
+        seconds = min(self._due.values(), default=math.inf) - time.monotonic()
+        if self._is_in_period:
+            # Messages of a long period are taken before there are too many.
+            rest_ns = self._period_ends_ns - self._time_ns()
+            seconds = min(seconds, rest_ns / NANOSECONDS, _LONGEST_SLEEP_S)
+        return max(seconds, 0.0)
+
+    def _answer(self, count: int) -> None:
+        for _ in range(count):
+            future, _ = self._callers.popleft()
+            future.set_result(None)
+        if count:
+            wake(self._node.executor)
 
     def _follow_next_target(self) -> None:
         before, self._target = self._target, self._next_target
         if self._target.frames is not before.frames:
             self._target.frames.positions.take_over(before.frames.positions)
             self._start_frames()
-        if self._target.rule != before.rule:
-            self._start_rule()
         self._end_periods()
 
     def _start_frames(self) -> None:
@@ -217,24 +237,16 @@ class JointStateThread:
         now = time.monotonic()
         self._due[self._publish_all] = now
         if not self._has_reported_missing:
-            self._is_grace_over = False
             self._due[self._end_grace] = now + GRACE_S
 
-    def _start_rule(self) -> None:
-        if self._timer is not None:
-            self._timer.destroy()
-            self._timer = None
-        rule = self._target.rule
-        if rule.highest_hz and not rule.ignores_stamps:
-            # A bag that is played faster has as many transforms in each of its seconds.
-            clock = self._node.get_clock()
-            self._timer = Timer(
-                None, None, int(NANOSECONDS / rule.highest_hz),
-                clock if clock.ros_time_is_active else Clock(clock_type=ClockType.STEADY_TIME),
-                context=self._node.context)
-        self._end_periods()
-
     # Periods
+
+    @property
+    def _is_in_period(self) -> bool:
+        return self._period_ends_ns < math.inf
+
+    def _has_period_ended(self, now_ns: int) -> bool:
+        return self._is_in_period and (self._has_jumped or now_ns >= self._period_ends_ns)
 
     def _begin_period(self, awaited: Sequence[JointStateTopic]) -> None:
         """
@@ -242,17 +254,12 @@ class JointStateThread:
 
         :param awaited: the topics whose messages do not wait for its end.
         """
-        assert self._timer is not None
-        self._timer.reset()
-        self._is_in_period = True
+        self._period_ends_ns = self._now_ns + self._target.rule.period_ns
         self._period += 1
-        self._due[self._empty_subscriptions] = time.monotonic() + _LONGEST_SLEEP_S
         self._await(awaited)
 
     def _end_period(self) -> None:
         """Publish what has waited; without any, publish the next message at once."""
-        assert self._timer is not None
-        self._take_waiting()
         if self._target.frames.publish_waiting():
             self._publish_topics_soon()
             longest = max(2.0, SILENCE_S * self._target.rule.highest_hz)
@@ -262,58 +269,49 @@ class JointStateThread:
             self._end_periods()
 
     def _end_periods(self) -> None:
-        if self._timer is not None:
-            self._timer.cancel()
-        self._is_in_period = False
-        self._due.pop(self._empty_subscriptions, None)
+        self._period_ends_ns = math.inf
         self._await(self._target.topics)
 
     def _await(self, topics: Sequence[JointStateTopic]) -> None:
         self._awaited = topics
         self._subscriptions = [each.subscription for each in topics]
 
-    def _empty_subscriptions(self) -> None:
-        """Take messages in a long period, before there are too many."""
-        self._take_waiting()
-        self._due[self._empty_subscriptions] = time.monotonic() + _LONGEST_SLEEP_S
-
     # Messages
 
     def _take_at_once(self, topics: Sequence[JointStateTopic]) -> None:
         """Take a message of each of some topics, and publish what they move."""
-        self._follow_clock()
-        moved = []
-        for topic in topics:
-            data = topic.take()
-            message = data and topic.read(data, self._meanings, self._target.frames.positions)
-            if message:
-                moved.append(self._move(topic, message))
-        if not moved:
+        rows = self._rows_of_messages(topics, has_all=False)
+        if not len(rows):
             return
-        self._target.frames.publish_tf(
-            moved[0] if len(moved) == 1 else np.unique(np.concatenate(moved)))
+        self._target.frames.publish_tf(rows)
         self._publish_topics_soon()
         if self._is_in_period:
             self._await([each for each in self._awaited if each not in topics])
         # Simulated time that has not begun would never end a period.
-        elif self._timer is not None and self._now_ns:
+        elif self._target.rule.period_ns and self._now_ns:
             self._begin_period([])
 
-    def _take_waiting(self) -> None:
-        """Take the messages that wait; of those with the same names the newest counts."""
-        self._follow_clock()
+    def _rows_of_messages(
+        self, topics: Sequence[JointStateTopic], *, has_all: bool = True,
+    ) -> NDArray[np.intp]:
+        """
+        Take messages; of those with the same names the newest counts.
+
+        :param has_all: whether to take all that wait, or one of each topic.
+        :return: the moving transforms to publish.
+        """
         newest: dict[Meaning, tuple[JointStateTopic, Message]] = {}
         # Messages may come faster than they are taken. Topics take turns, so that one with too
         # many messages does not delay the others.
         ends_at = time.monotonic() + TOPICS_PERIOD_S
-        topics: Sequence[JointStateTopic] = self._target.topics
         while topics and time.monotonic() < ends_at:
             others = []
             for topic in topics:
                 data = topic.take()
                 if data is None:
                     continue
-                others.append(topic)
+                if has_all:
+                    others.append(topic)
                 message = topic.read(data, self._meanings, self._target.frames.positions)
                 if message is None:
                     continue
@@ -321,13 +319,16 @@ class JointStateThread:
                 if known is None or not 0 < message.stamp_ns < known[1].stamp_ns:
                     newest[message.meaning] = topic, message
             topics = others
-        for topic, message in newest.values():
-            self._target.frames.wait(self._move(topic, message))
+        moved = [self._move(topic, message) for topic, message in newest.values()]
+        return moved[0] if len(moved) == 1 else np.unique(np.concatenate([_NO_ROWS, *moved]))
+
+    def _time_ns(self) -> int:
+        clock = self._node.get_clock()
+        return clock.now().nanoseconds if clock.ros_time_is_active else time.time_ns()
 
     def _follow_clock(self) -> None:
         """Accept any stamp after time has jumped back, for example when a bag starts again."""
-        clock = self._node.get_clock()
-        now_ns = clock.now().nanoseconds if clock.ros_time_is_active else time.time_ns()
+        now_ns = self._time_ns()
         self._has_jumped = now_ns < self._now_ns
         self._now_ns = now_ns
         if self._has_jumped:
@@ -340,7 +341,7 @@ class JointStateThread:
         positions, ignores_stamps = target.frames.positions, target.rule.ignores_stamps
         stamp_ns = message.stamp_ns or self._now_ns
         if self._has_jumped and stamp_ns > self._now_ns:
-            return np.array([], np.intp)  # it was sent before that
+            return _NO_ROWS  # it was sent before that
         topic.last_period = self._period
         topic.warn_about_invalid(positions.update(
             meaning.selection, message.positions, stamp_ns, ignore_stamps=ignores_stamps))
@@ -384,7 +385,7 @@ class JointStateThread:
         """The joints that no message has named in time."""
         target = self._next_target
         positions = target.frames.positions
-        found = positions.unreported() if self._is_grace_over else None
+        found = None if self._end_grace in self._due else positions.unreported()
         if found is None:
             return MissingJoints()
         name = positions.names[found.first]
@@ -393,7 +394,6 @@ class JointStateThread:
 
     def _end_grace(self) -> None:
         """Report the joints that no message has named, once."""
-        self._is_grace_over = True
         unreported = self.unreported
         if unreported.number:
             self._has_reported_missing = True

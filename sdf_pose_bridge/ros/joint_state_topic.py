@@ -66,10 +66,6 @@ class JointStateTopic:
         self.name: str = self.subscription.topic_name
         """The full name of the topic."""
 
-    def destroy(self) -> None:
-        """Destroy the subscription."""
-        self._node.destroy_subscription(self.subscription)
-
     def take(self) -> bytes | None:
         """Take a message; return None if there is none."""
         return take_message(self.subscription)

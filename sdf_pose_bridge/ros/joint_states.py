@@ -4,12 +4,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from rclpy.node import Node
-from rclpy.task import Future
 
 from sdf_pose_bridge.ros.joint_state_thread import JointStateThread, Rule, Target
 from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic
-from sdf_pose_bridge.ros.log_lines import MissingJoints
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
 from sdf_pose_bridge.ros.topic_names import JointStateTopics
 
@@ -33,7 +33,7 @@ class JointStates:
         self._missing_topics: list[tuple[str, str]] = []
         self._warnings: tuple[str, ...] = ()
         self._target = Target(frames, (), 0, rule)
-        self._thread = JointStateThread(node, self._target)
+        self.thread = JointStateThread(node, self._target)
         self.follow(frames, topics, rule)
 
     def follow(
@@ -50,28 +50,17 @@ class JointStates:
         self._missing_topics = [key for key in wanted if key not in self._topics]
         self._target = Target(frames, (), len(wanted), rule)
         self._open_missing_topics()
-        for topic in unwanted:
-            topic.destroy()
-
-    def publish_topics(self) -> None:
-        """Publish all moving frames on ``~/transforms`` and ``~/poses/...`` soon."""
-        self._thread.publish_topics()
-
-    def catch_up(self) -> Future:
-        """Return a future that is done when all calls and messages so far are processed."""
-        return self._thread.catch_up()
-
-    @property
-    def unreported(self) -> MissingJoints:
-        """The joints that no message has named in time."""
-        return self._thread.unreported
+        self._destroy(unwanted)
 
     def end(self) -> None:
         """Stop following, and destroy the subscriptions."""
         self._missing_topics.clear()
-        self._thread.end()
-        for topic in self._topics.values():
-            topic.destroy()
+        self.thread.end()
+        self._destroy(self._topics.values())
+
+    def _destroy(self, topics: Iterable[JointStateTopic]) -> None:
+        for topic in topics:
+            self._node.destroy_subscription(topic.subscription)
 
     def _open_missing_topics(self) -> None:
         """Make some subscriptions now, and leave the others to a task."""
@@ -85,6 +74,6 @@ class JointStates:
                 reason = str(error).partition(', at /')[0]
                 self._node.get_logger().warning(f'no subscription to {key[0]}: {reason}')
         self._target = self._target._replace(topics=tuple(self._topics.values()))
-        self._thread.follow(self._target)
+        self.thread.follow(self._target)
         if self._missing_topics:
             self._node.executor.create_task(self._open_missing_topics)

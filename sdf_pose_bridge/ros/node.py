@@ -40,8 +40,8 @@ from sdf_pose_bridge.ros.publishers import NANOSECONDS, TextPublisher
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.ros.services import add_services, SERVICE_QOS, set_pose
 from sdf_pose_bridge.ros.topic_names import (
+    check_number_of_topics,
     joint_state_topics_from_patterns,
-    sentence_about_too_many_topics,
 )
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene
 from sdf_pose_bridge.tf.loading import files_behind_error
@@ -116,7 +116,8 @@ class SdfPoseBridge:
             self._node, lambda: self._reader.loaded_scene(settings.load_request))
 
     async def _show(self, loaded: LoadedScene) -> None:
-        """Publish a scene on the topics of the settings."""
+        """Publish a scene on the topics of the settings, unless they would be too many."""
+        check_number_of_topics(self._settings.joint_states_topics, loaded.joint_positions)
         frames = await frames_from_scene(self._node, loaded, self._settings, self._frames)
         async with self._publishing:
             before, self._loaded, self._frames = self._loaded, loaded, frames
@@ -127,7 +128,7 @@ class SdfPoseBridge:
                 frames.publish_tf_static()
             await frames.publish_topics()
             if self._joint_states is not None:
-                self._joint_states.publish_topics()
+                self._joint_states.thread.publish_topics()
         if loaded is not before:
             lines = await run_in_thread(
                 self._node, lambda: lines_about_lost_frames(before.tree, loaded.tree))
@@ -166,10 +167,11 @@ class SdfPoseBridge:
     async def _process_messages(self) -> None:
         """Wait until the messages of joint states so far are processed."""
         if self._joint_states is not None:
-            await self._joint_states.catch_up()
+            await self._joint_states.thread.catch_up()
 
     def _unreported_joints(self) -> MissingJoints:
-        return MissingJoints() if self._joint_states is None else self._joint_states.unreported
+        return MissingJoints() if self._joint_states is None else (
+            self._joint_states.thread.unreported)
 
     def _follow_switches(self) -> None:
         self._diagnostics.switch(on=self._settings.publish_diagnostics)
@@ -267,8 +269,7 @@ class SdfPoseBridge:
                     parameter.name in ('sdf_file', 'robot_description')
                     for parameter in parameters):
                 loaded = await self._load(settings)
-            if settings.joint_states_topics != self._settings.joint_states_topics:
-                _check_number_of_topics(settings, loaded)
+            check_number_of_topics(settings.joint_states_topics, loaded.joint_positions)
             result = self._node.set_parameters_atomically(parameters)
             if result.successful:
                 await self._apply(settings, loaded)
@@ -327,10 +328,3 @@ async def start_bridge(
     frames = await frames_from_scene(node, loaded, settings, frames)
     await frames.publish_topics()
     SdfPoseBridge(node, frames, settings, loaded, reader)
-
-
-def _check_number_of_topics(settings: Settings, loaded: LoadedScene) -> None:
-    models = () if loaded.joint_positions is None else loaded.joint_positions.models
-    sentence = sentence_about_too_many_topics(settings.joint_states_topics, models)
-    if sentence:
-        raise SettingsError([sentence])

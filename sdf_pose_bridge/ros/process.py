@@ -40,6 +40,7 @@ from sdf_pose_bridge.ros.programs import Program, PROGRAMS, ROBOT_STATE_PUBLISHE
 from sdf_pose_bridge.ros.published_frames import PublishedFrames, TF_STATIC
 from sdf_pose_bridge.ros.publishers import Publishers
 from sdf_pose_bridge.ros.scene_reader import SceneReader
+from sdf_pose_bridge.ros.topic_names import check_number_of_topics
 import sdf_pose_bridge_interfaces  # noqa: F401 - if it is missing, say so before anything else
 
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -106,6 +107,7 @@ def _exit_code_from_node(
                 stack.enter_context(_interrupted_by_signals())
 
             loaded = reader.loaded_scene(settings.load_request, meanwhile)
+            check_number_of_topics(settings.joint_states_topics, loaded.joint_positions)
     except (SdfError, SettingsError, AddressError) as error:
         _log_warnings(node, [
             warning for warning in (error.warnings if isinstance(error, SdfError) else ())

@@ -32,7 +32,9 @@ import re
 from typing import NamedTuple
 
 from sdf_pose_bridge.ros.log_lines import names_in_line
+from sdf_pose_bridge.ros.parameters import SettingsError
 from sdf_pose_bridge.ros.setting_rules import MODEL_FIELD, WORLD_FIELD
+from sdf_pose_bridge.tf.joint_positions import JointPositions
 
 LONGEST_FULL_NAME = 246
 """Largest length of the full name of a topic in the middleware."""
@@ -171,10 +173,6 @@ def joint_state_topics_from_patterns(
     :param full_name: returns the full name of a topic, after it is remapped.
     """
     warnings = []
-    sentence = sentence_about_too_many_topics(patterns, models)
-    if sentence:
-        warnings.append(f'no topics of joint states for single models: {sentence}')
-        models = ()
     names = []
     for pattern in dict.fromkeys(patterns):
         if MODEL_FIELD not in pattern and (world or WORLD_FIELD not in pattern):
@@ -213,18 +211,22 @@ def joint_state_topics_from_patterns(
     return JointStateTopics(topics, tuple(warnings))
 
 
-def sentence_about_too_many_topics(patterns: Sequence[str], models: Sequence[str]) -> str:
+def check_number_of_topics(patterns: Sequence[str], positions: JointPositions | None) -> None:
     """
-    Return a sentence if there would be too many topics of joint states, else an empty one.
+    Check that there would not be too many topics of joint states.
 
     :param patterns: as for :func:`joint_state_topics_from_patterns`.
-    :param models: likewise.
+    :param positions: the positions of the joints; None if joints move nothing.
+    :raises SettingsError: if there would be.
     """
+    models = () if positions is None else positions.models
     count = sum(len(models) if MODEL_FIELD in each else 1 for each in dict.fromkeys(patterns))
-    return '' if count <= MOST_BY_DEFAULT else (
-        f'joint_states_topics names {count} topics with {len(models)} models that have moving '
-        f'joints, and at most {MOST_BY_DEFAULT} are allowed; publish some of the models by '
-        'another node')
+    if count > MOST_BY_DEFAULT:
+        sentence = (
+            f'joint_states_topics names {count} topics with {len(models)} models that have moving '
+            f'joints, and at most {MOST_BY_DEFAULT} are allowed; set it without {MODEL_FIELD}, or '
+            'publish some of the models by another node')
+        raise SettingsError([sentence])
 
 
 def _level_from_text(text: str) -> str:

@@ -19,7 +19,6 @@ from rclpy.context import Context
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.subscription import Subscription
-from rclpy.timer import Timer
 
 from sdf_pose_bridge.ros.publishers import NANOSECONDS
 
@@ -33,13 +32,6 @@ class NoExecutor(CallbackGroup):
         """Return that no executor has to wait."""
         return False
 
-    def beginning_execution(self, _entity: object) -> bool:
-        """Return that no executor may begin."""
-        return False
-
-    def ending_execution(self, _entity: object) -> None:
-        """Do nothing; it is never called."""
-
 
 class WaitSet:
     """
@@ -52,32 +44,26 @@ class WaitSet:
         self._context = context
         self._guard_condition = GuardCondition(None, None, context=context)
         self._subscriptions: Sequence[Subscription] | None = None
-        self._timer: Timer | None = None
         self._held = ExitStack()
 
     def wake(self) -> None:
         """End the current call of :meth:`wait`, or the next one."""
         self._guard_condition.trigger()
 
-    def wait(
-        self, subscriptions: Sequence[Subscription], timer: Timer | None, timeout_s: float,
-    ) -> list[int]:
+    def wait(self, subscriptions: Sequence[Subscription], timeout_s: float) -> list[int]:
         """
-        Wait for a message, a timer, or a call of :meth:`wake`.
+        Wait for a message, or a call of :meth:`wake`.
 
         :param subscriptions: the subscriptions, which are in the group :class:`NoExecutor`.
-        :param timer: a timer that no executor has; None for none.
         :param timeout_s: the longest time in s; infinity for any time.
         :return: the indices of the subscriptions that have a message.
         :raises rclpy.exceptions.InvalidHandle: if one of them has been destroyed.
         """
-        if subscriptions != self._subscriptions or timer is not self._timer:
-            self._prepare(subscriptions, timer)
+        if subscriptions != self._subscriptions:
+            self._prepare(subscriptions)
         wait_set = self._wait_set
         wait_set.clear_entities()
         wait_set.add_guard_condition(self._guard_condition.handle)
-        if timer is not None:
-            wait_set.add_timer(timer.handle)
         for subscription in subscriptions:
             wait_set.add_subscription(subscription.handle)
         wait_set.wait(_FOREVER if math.isinf(timeout_s) else int(timeout_s * NANOSECONDS))
@@ -91,20 +77,20 @@ class WaitSet:
         self._held.close()
         self._guard_condition.destroy()
 
-    def _prepare(self, subscriptions: Sequence[Subscription], timer: Timer | None) -> None:
+    def _prepare(self, subscriptions: Sequence[Subscription]) -> None:
         self._subscriptions = None
         self._held.close()
         with ExitStack() as stack:
             # What is held is not released while the middleware uses it, even if it is destroyed.
             for handle in (
                 self._context.handle, self._guard_condition.handle,
-                *(each.handle for each in subscriptions), *([timer.handle] if timer else ()),
+                *(each.handle for each in subscriptions),
             ):
                 stack.enter_context(handle)
             self._wait_set = rclpy_implementation.WaitSet(
-                len(subscriptions), 1, int(timer is not None), 0, 0, 0, self._context.handle)
+                len(subscriptions), 1, 0, 0, 0, 0, self._context.handle)
             self._held = stack.pop_all()
-        self._subscriptions, self._timer = subscriptions, timer
+        self._subscriptions = subscriptions
 
 
 def take_message(subscription: Subscription) -> bytes | None:

@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
-from changes import BRIDGE, pose_of, replace, set_parameters
+from changes import BRIDGE, pose_of, reload, replace, set_parameters
 
 ROBOT = """<sdf version="1.11"><model name="robot">
 <link name="base"/><link name="arm"><pose>1 0 0 0 0 0</pose></link>
@@ -154,10 +154,28 @@ def test_topics_that_become_one_are_reported_and_lose_nothing(start_bridge, file
     move(joints, tf, 'r3/joint_states', 'r3', 0.5, 0.5)
 
 
-@pytest.mark.usefixtures('file', 'bridge')
-def test_a_setting_that_names_too_many_topics_is_rejected_with_their_number(tf):
-    set_parameters(tf.listener, use_joint_states=True)
+@pytest.mark.usefixtures('bridge')
+def test_too_many_topics_are_rejected_in_a_setting_and_in_a_file(file, tf):
+    set_parameters(tf.listener, use_joint_states=True, watch=False)
     patterns = [f'{{model}}/j{number}' for number in range(400)]
     result, = set_parameters(tf.listener, joint_states_topics=patterns)
     assert not result.successful
     assert result.reason.startswith('joint_states_topics names 1200 topics with 3 models')
+    result, = set_parameters(tf.listener, joint_states_topics=patterns[:300])
+    assert result.successful, result.reason
+    replace(file, fleet(r1=10, r2=20, r3=30, r4=40))
+    answer = reload(tf.listener)
+    assert not answer.success
+    assert answer.message.startswith('joint_states_topics names 1200 topics with 4 models')
+    assert pose_of(tf, 'r1::base').x == 10
+
+
+def test_too_many_topics_prevent_the_start(start_bridge, file):
+    patterns = [f'{{model}}/j{number}' for number in range(400)]
+    bridge = start_bridge(
+        '--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true', '-p',
+        f'joint_states_topics:={patterns}')
+    assert bridge.wait_for_end() == 1
+    (line,) = bridge.lines
+    assert line.startswith('[FATAL]')
+    assert 'joint_states_topics names 1200 topics with 3 models' in line

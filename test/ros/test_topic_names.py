@@ -235,12 +235,6 @@ def test_a_model_whose_topic_would_have_too_long_a_name_has_none():
     assert f'no topic of joint states for "{"m" * 60}": its name would be longer' in warning
 
 
-def test_the_default_does_not_mean_thousands_of_topics_of_joint_states():
-    named, (warning,) = joint_state_topics(DEFAULT, models=[f'r{i}' for i in range(1001)])
-    assert named == {'joint_states': ''}
-    assert 'joint_states_topics names 1002 topics with 1001 models' in warning
-
-
 def test_patterns_that_name_no_topic_of_a_model_file_are_reported():
     named, (warning,) = joint_state_topics(['{model}/joint_states'], '', [])
     assert named == {}
