@@ -95,8 +95,13 @@ class PublishedFrames:
         self._tf_static = publishers.opened(TF_STATIC)
         self._transforms_topics = [
             _transforms_topic(len(tree.fixed_indices), 'fixed')] if has_transforms else []
+        posed = () if tree.moving is None else tree.moving.posed_indices
+        self._moving_ids = {tree.frame_ids[index] for index in posed}
+        # A frame that begins to move has another publisher, which does not keep its last pose.
         self._pose_topics = {
-            frame_id: Topic(f'~/poses/{name}', PoseStamped)
+            frame_id: Topic(
+                f'~/poses/{name}', PoseStamped,
+                part='moving' if frame_id in self._moving_ids else '')
             for frame_id, name in pose_topics.items()}
         self.moving: PublishedMovingFrames | None = None
         """The moving frames; None if joints move nothing."""
@@ -157,10 +162,9 @@ class PublishedFrames:
     @cached_property
     def _fixed_poses(self) -> tuple[Sequence[Topic], StampedRecords]:
         tree = self.tree
-        moving = set() if tree.moving is None else set(tree.moving.posed_indices.tolist())
         posed = [
             (index, self._pose_topics[frame_id]) for index, frame_id in enumerate(tree.frame_ids)
-            if frame_id in self._pose_topics and index not in moving]
+            if frame_id in self._pose_topics and frame_id not in self._moving_ids]
         poses = tree.poses_in_pose_frame[[index for index, _ in posed]]
         return [topic for _, topic in posed], StampedRecords(
             [[tree.pose_frame] * len(posed)], poses)

@@ -320,6 +320,9 @@ def test_following_can_be_switched_off_and_on(follow, joints, tf):
         lambda: not tf.listener.node.count_subscribers('/joint_states'), lambda: 'its end')
     result, = set_parameters(tf.listener, use_joint_states=True)
     assert result.successful, result.reason
+    late = listen_to_poses(tf, 'base', 'slide')
+    tf.listener.wait(lambda: 'base' in late, lambda: late)
+    assert 'slide' not in late, 'it was fixed when it had this pose'
     assert tf.wait_for('slide', joints.send({'lift': 0.7})).translation.z == 1.7
 
 
