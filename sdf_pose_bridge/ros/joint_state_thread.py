@@ -114,8 +114,9 @@ class JointStateThread:
         self._period = 0
         self._start_frames()
         self._end_periods()
-        # Simulated time does not pass while the thread waits, so each step of it may end a period.
-        self._clock_steps = node.get_clock().create_jump_callback(
+        self._clock = node.get_clock()
+        # The thread waits in real time, and any step of simulated time may end a period.
+        self._clock_steps = self._clock.create_jump_callback(
             JumpThreshold(
                 min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1)),
             post_callback=self._follow_step)
@@ -154,7 +155,7 @@ class JointStateThread:
         self._thread.join()
 
     def _follow_step(self, _step: object) -> None:
-        if self._has_period_ended(self._node.get_clock().now().nanoseconds):
+        if self._has_period_ended(self._clock.now().nanoseconds):
             self._wake()
 
     def _wake(self) -> None:
@@ -213,8 +214,9 @@ class JointStateThread:
         seconds = min(self._due.values(), default=math.inf) - time.monotonic()
         if self._is_in_period:
             # Messages of a long period are taken before there are too many.
-            rest_ns = self._period_ends_ns - self._time_ns()
-            seconds = min(seconds, rest_ns / NANOSECONDS, _LONGEST_SLEEP_S)
+            seconds = min(seconds, _LONGEST_SLEEP_S)
+            if not self._clock.ros_time_is_active:
+                seconds = min(seconds, (self._period_ends_ns - time.time_ns()) / NANOSECONDS)
         return max(seconds, 0.0)
 
     def _answer(self, count: int) -> None:
@@ -322,13 +324,10 @@ class JointStateThread:
         moved = [self._move(topic, message) for topic, message in newest.values()]
         return moved[0] if len(moved) == 1 else np.unique(np.concatenate([_NO_ROWS, *moved]))
 
-    def _time_ns(self) -> int:
-        clock = self._node.get_clock()
-        return clock.now().nanoseconds if clock.ros_time_is_active else time.time_ns()
-
     def _follow_clock(self) -> None:
         """Accept any stamp after time has jumped back, for example when a bag starts again."""
-        now_ns = self._time_ns()
+        clock = self._clock
+        now_ns = clock.now().nanoseconds if clock.ros_time_is_active else time.time_ns()
         self._has_jumped = now_ns < self._now_ns
         self._now_ns = now_ns
         if self._has_jumped:
