@@ -57,8 +57,8 @@ class MovingFrames:
         self._pose_frame = pose_frame
         self._poses, self._elements = poses, elements
         crossed = [
-            _dofs_between(motion.previous, *ends) for ends in zip(
-                last_of_parents[self.indices].tolist(), last[self.indices].tolist(), strict=True)]
+            _dofs_from_last(motion.previous, *ends)[::-1] for ends in zip(
+                last[self.indices].tolist(), last_of_parents[self.indices].tolist(), strict=True)]
         identities = np.tile(Pose(), (len(self.indices), 1))
         parents = parents[self.indices]
         # The last pose is for ROOT_IS_PARENT.
@@ -128,7 +128,7 @@ class MovingFrames:
         # The root comes last, at the index -1.
         previous = np.append(self._motion.previous, NO_DOF)
         is_unknown = np.append(~is_known, False)
-        common = self._with_previous(self.last_dof_of_pose_frame)
+        common = _dofs_from_last(self._motion.previous, self.last_dof_of_pose_frame)
         needed = [dof for dof in common if is_unknown[dof]][:1]
         is_common = np.isin(np.arange(len(previous)), common)
         # Those between the root and the reference count only for frames that are not behind them.
@@ -155,13 +155,9 @@ class MovingFrames:
         :param first: the last degree of freedom between the root and the one; -1 for none.
         :param second: likewise for the other one.
         """
-        ways = self._with_previous(first), self._with_previous(second)
+        ways = [_dofs_from_last(self._motion.previous, last) for last in (first, second)]
         common = set(ways[0]).intersection(ways[1])
         return [dof for dof in (*ways[0], *ways[1]) if dof not in common]
-
-    def _with_previous(self, dof: int) -> list[int]:
-        """Return a degree of freedom and all before it, from the last to the first."""
-        return _dofs_between(self._motion.previous, NO_DOF, dof)[::-1]
 
     def pose_of_frame(self, index: int, positions: NDArray[np.float64]) -> Pose:
         """Return the pose of one frame in the root."""
@@ -179,10 +175,10 @@ class MovingFrames:
         return Pose(*moved.tolist())
 
 
-def _dofs_between(previous: Indices, begin: int, end: int) -> list[int]:
-    """Return the degrees of freedom behind one, up to another one that follows it."""
+def _dofs_from_last(previous: Indices, last: int, end: int = NO_DOF) -> list[int]:
+    """Return a degree of freedom and those before it, back to another one that is left out."""
     found = []
-    while end != begin:
-        found.append(end)
-        end = int(previous[end])
-    return found[::-1]
+    while last != end:
+        found.append(last)
+        last = int(previous[last])
+    return found
