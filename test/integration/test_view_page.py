@@ -119,6 +119,58 @@ def test_slider_moves_frames_and_those_that_mimic(page):
     page.wait_for("document.body.innerText.includes('xyz 0.0000 0.0000 1.0000 m')")
 
 
+IN_WINDOW = """(box => box && box.width > 0 && box.left >= 0 && box.top >= 0
+  && box.right <= innerWidth && box.bottom <= innerHeight)"""
+
+
+def is_in_window(element):
+    """Return a condition: the element is wholly in the window, and nothing is above it."""
+    return f"""(element => {IN_WINDOW}(element?.getBoundingClientRect())
+      && (box => element.contains(document.elementFromPoint(box.left + 3, box.top + 3)))(
+        element.getBoundingClientRect()))({element})"""
+
+
+@pytest.fixture(params=[(1366, 768), (800, 600)])
+def sized_page(page, request):
+    page.size(*request.param)
+    page.run('new Promise(drawn => setTimeout(drawn, 300))')
+    yield page
+    page.size(1366, 768)
+
+
+def test_selected_frame_and_errors_are_in_view(sized_page, shown):
+    select(sized_page, 'slide')
+    strip = "document.querySelector('.strip')"
+    sized_page.wait_for(f"{strip}.innerText.includes('arm/slide in world')")
+    sized_page.wait_for(is_in_window(strip))
+    shown.file.write_text(TEXT.replace('<parent>base', '<parent>bass'))
+    sized_page.wait_for("document.querySelector('.strip .errors')")
+    sized_page.wait_for(is_in_window("document.querySelector('.strip .errors')"))
+
+
+def test_tree_scrolls_to_the_frame_that_is_selected_in_the_scene(page, shown):
+    frames = ''.join(f'<frame name="f{number}"/>' for number in range(60))
+    shown.file.write_text(TEXT.replace('</world>', f'{frames}</world>'))
+    page.wait_for(f'{ROWS}.length === 65')
+    assert page.run("document.querySelector('.rows').scrollTop") == 0
+    select(page, 'f59')
+    page.wait_for("""(row => row.offsetTop + row.clientHeight <= row.parentElement.offsetTop
+      + row.parentElement.scrollTop + row.parentElement.clientHeight)(
+      document.querySelector('.rows .selected'))""")
+
+
+def test_arrow_keys_move_a_slider_and_nothing_else(page):
+    page.run("window.keys = 0; window.addEventListener('keydown', () => { window.keys++; })")
+    thumb = "document.querySelectorAll('[role=slider]')[1]"
+    page.run(f'{thumb}.focus()')
+    before = page.run(f'{thumb}.ariaValueNow')
+    for kind in ('keyDown', 'keyUp'):
+        page.call('Input.dispatchKeyEvent', type=kind, key='ArrowRight', code='ArrowRight')
+    page.wait_for(f"{thumb}.ariaValueNow !== '{before}'")
+    assert page.run('window.keys') == 0
+    enter(page, control('rail'), '0')
+
+
 def test_search(page):
     enter(page, control('search'), 'SLI')
     page.wait_for(f'{ROWS}.length === 1')
@@ -164,8 +216,8 @@ def point_on_screen(page, point):
     return 0.5 * width + scale * x / z, 0.5 * height - scale * y / z
 
 
-def button(text):
-    return f"[...document.querySelectorAll('button')].find(b => b.innerText === '{text}')"
+def strip_label(text):
+    return f"[...document.querySelectorAll('.strip label')].find(l => l.innerText === '{text}')"
 
 
 def drag(page):
@@ -177,19 +229,21 @@ def drag(page):
         0.0, 0.02, 0.05, 0.08, 0.1)))
     z = "document.querySelector('.difference')?.rows[3].cells[2].innerText"
     page.wait_for(f'Math.abs({z} - 0.1) < 0.02')
+    for label in ('write to file', 'cancel'):
+        page.wait_for(is_in_window(strip_label(label)))
 
 
 def test_frame_is_dragged_and_written(page, shown):
     drag(page)
-    page.run(f"{button('write to file')}.click()")
-    page.wait_for(f"!{button('write to file')}")
+    page.run(f"{strip_label('write to file')}.click()")
+    page.wait_for(f"!{strip_label('write to file')}")
     pose = load(shown.file).pose(HOSTILE)
     assert pose[:3] == pytest.approx((1.0, 0.0, 0.1), abs=0.02)
     changed = shown.file.read_text().splitlines()
     assert [line for line in TEXT.splitlines() if line not in changed] == [
         f'  <frame name="{html.escape(HOSTILE)}"><pose>1 0 0 0 0 0</pose></frame>']
-    page.run(f"{button('undo the last write')}.click()")
-    page.wait_for(f"!{button('undo the last write')}")
+    page.run(f"{strip_label('undo the last write')}.click()")
+    page.wait_for(f"!{strip_label('undo the last write')}")
     assert shown.file.read_text() == TEXT
 
 

@@ -3,9 +3,9 @@
 """
 Features of the page that viser does not have.
 
-These are frames and lines on top of bodies, names at the pointer, the opacity of textures,
-copying, and changes of several controls at once. The scene is found as the developer tools of
-three.js find it.
+These are frames and lines on top of bodies, names at the pointer, a strip over the scene, the
+opacity of textures, copying, and changes of several controls at once. The scene is found as the
+developer tools of three.js find it.
 """
 
 from __future__ import annotations
@@ -19,10 +19,19 @@ _TITLE = '<title>Viser</title>'
 _STYLE = """<style>
   /* A joint has one line; of a long name, the end is seen. */
   .mantine-Flex-root:has(> div .mantine-Slider-root) > div:first-child {width: 9em !important}
+  .mantine-Flex-root > .mantine-NumberInput-root {width: 4.2rem !important}
   p.mantine-Text-root:has(> label) {white-space: nowrap; overflow: hidden; text-overflow: ellipsis;
     direction: rtl; text-align: left}
   p > label {direction: ltr; unicode-bidi: isolate}
   p > label wbr {display: none}
+  /* Labels elsewhere stand for the buttons behind this element: HTML cannot do more. */
+  div:has(> .as-labels) ~ * {display: none}
+  .strip {position: fixed; left: 8px; bottom: 8px; z-index: 8; padding: 4px 10px; font: 13px
+    sans-serif; background: #fffe; color: #212529; border: 1px solid #adb5bd; border-radius: 4px}
+  .strip:empty {display: none}
+  .strip label {display: inline-block; padding: 3px 10px; margin: 4px 6px 2px 0; cursor: pointer;
+    border: 1px solid #868e96; border-radius: 4px; font-weight: normal}
+  .strip label.primary {background: #228be6; border-color: #228be6; color: #fff}
 </style>"""
 _SCRIPT = """<script>(() => {
   // viser sends a change at most every 50 ms, and of several in between only the last one: when
@@ -116,6 +125,22 @@ _SCRIPT = """<script>(() => {
     // A body is looked for when the pointer rests, as that takes long in a large scene.
     if (!text) resting = setTimeout(() => show(event, nameOfBodyAt(event, box)), 100);
   });
+  const strip = document.createElement('div');
+  strip.className = 'strip';
+  let shownInStrip = '';
+  new MutationObserver(() => {
+    const text = document.querySelector('[data-strip]')?.dataset.strip ?? shownInStrip;
+    if (text === shownInStrip) return;
+    shownInStrip = strip.innerHTML = text;
+    strip.style.maxWidth = `${document.querySelector('canvas').clientWidth - 16}px`;
+    document.body.append(strip);
+    const row = document.querySelector('.rows .selected'), rows = row?.parentElement;
+    if (row) rows.scrollTop = row.offsetTop - rows.offsetTop - 0.5 * rows.clientHeight;
+  }).observe(document, {childList: true, subtree: true});
+  // Behind the controls and before viser, whose camera also turns by the arrow keys.
+  addEventListener('DOMContentLoaded', () => document.body.addEventListener('keydown', event => {
+    if (event.target.closest('[role=slider], input, textarea')) event.stopPropagation();
+  }));
   addEventListener('click', event => {
     const text = event.target.closest?.('[data-copy]')?.dataset.copy;
     if (text) navigator.clipboard.writeText(text).then(() => {
@@ -135,7 +160,7 @@ class NamesInScene(NamedTuple):
     """Those of the copies of each surface, in the order of the nodes."""
 
 
-def page_with_script(page: str, title: str = 'sdf_pose view', names: str = '') -> str:
+def page_with_script(page: str, title: str, names: str = '') -> str:
     """
     Add the style and the script to a page of viser.
 
@@ -153,6 +178,11 @@ def html_of_names(names: NamesInScene) -> str:
 def html_of_opacity(opacity: float) -> str:
     """Return an element that is not seen, from which the script has the opacity of textures."""
     return f'<meta data-opacity="{opacity}">'
+
+
+def html_of_strip(content: str) -> str:
+    """Return an element that is not seen, whose content the script shows over the scene."""
+    return f'<meta data-strip="{html.escape(content)}">'
 
 
 def html_of_copy_button(text: str) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 import viser
 
-from sdf_pose_bridge.cli.printing import kind_labels_of
+from sdf_pose_bridge.cli.printing import kind_labels_of, Unit
 from sdf_pose_bridge.cli.viewer.browser_script import NamesInScene
 from sdf_pose_bridge.cli.viewer.labels import labels_from_names
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
@@ -47,14 +47,15 @@ GROUPS = ('visuals', 'collisions', 'all names', 'all lines to parents', 'grid')
 HIDDEN_AT_FIRST = frozenset(('collisions', 'all names', 'all lines to parents'))
 """The groups that a page hides at first."""
 
-_REASON_WIDTH, _MOST_REASONS = 60, 3
+_REASON_WIDTH, _MOST_REASONS = 60, 1
 _WXYZ = [6, 3, 4, 5]
 _LINE_COLOR = (255, 146, 43)
 _MEASURED_COLOR = (230, 73, 128)
 _GRID_COLOR, _GRID_SECTION_COLOR = (173, 178, 184), (134, 141, 149)
 _COLLISION_RGBA = (0.05, 0.62, 0.55, 1.0)
 _LIGHT_FROM_BELOW = (120, 124, 130)
-_DIRECTION_TO_LIGHT = (0.35, -0.6, 1.0)
+_LIGHTS = ((1.9, (0.35, -0.6, 1.0)), (0.8, (-0.6, 0.8, 0.4)))
+"""The intensity of each light, and the direction to it."""
 
 
 class Drawing:
@@ -131,6 +132,7 @@ class Drawing:
             f'{name}/frames', *_places(tree.poses[self.frames]), axes_length=length_m,
             axes_radius=0.035 * length_m)
         self._select_by_click(self._axes, self.frames)
+        self._distances: dict[str, Floats] = {}
         self._copies = [
             (self._add_surface(number, surface, posed, opacity), surface.elements)
             for number, surface in enumerate(self._surfaces)]
@@ -146,16 +148,23 @@ class Drawing:
         for copies, elements in self._copies:
             copies.batched_wxyzs, copies.batched_positions = _places(scene.poses[elements])
 
-    def mark(self, tree: TfTree, frame: int, pose: Pose | None, reference: Pose | None) -> None:
+    def mark(
+        self, tree: TfTree, frame: int, pose: Pose | None, reference: Pose | None, unit: Unit,
+    ) -> None:
         """
         Show larger axes for a frame, and lines to its ancestors, or all lines if they are on.
 
         :param frame: its index, or -1 for none.
         :param pose: the pose of the axes in the root frame.
         :param reference: the pose of a frame to which there is a line.
+        :param unit: the unit of the length of this line.
         """
-        ends = [end[:3] for end in (reference, pose) if end is not None]
-        self._measured.points = np.array([ends] if len(ends) == 2 else []).reshape(-1, 2, 3)
+        ends = np.array([end[:3] for end in (reference, pose) if end is not None])
+        is_measured = len(ends) == 2
+        self._measured.points = ends[None] if is_measured else np.zeros((0, 2, 3))
+        self._distances = {
+            f'{unit.factor * math.dist(*ends):.{unit.digits}f} {unit.name}': ends.mean(axis=0),
+        } if is_measured else {}
         self._marker.visible = pose is not None
         if pose is not None:
             self._marker.position, self._marker.wxyz = pose[:3], (pose.qw, *pose[3:6])
@@ -166,7 +175,7 @@ class Drawing:
         self, posed: PosedScene, frame: int, pose: Pose | None, eye: Floats, look_at: Floats,
     ) -> list[tuple[str, Floats]]:
         """
-        Return names of frames and reasons for missing meshes, with their points.
+        Return names of frames, reasons for missing meshes and a distance, with their points.
 
         :param frame: index of a frame whose name is always shown, or -1.
         :param pose: the pose of this frame in the root frame, if it is not the one in the scene.
@@ -182,9 +191,11 @@ class Drawing:
         origins = tree.poses[frames, :3]
         if pose is not None:
             origins[frames.index(frame)] = pose[:3]
-        points = np.concatenate([scene.poses[list(self._reasons), :3], origins])
-        return labels_from_names(
-            [*self._reasons.values(), *names], points, eye, look_at, len(self._reasons))
+        points = np.concatenate([
+            *(point[None] for point in self._distances.values()),
+            scene.poses[list(self._reasons), :3], origins])
+        first = [*self._distances, *self._reasons.values()]
+        return labels_from_names([*first, *names], points, eye, look_at, len(first))
 
     def boxes(self, posed: PosedScene, is_in: NDArray[np.bool_]) -> Floats:
         """
@@ -206,10 +217,11 @@ class Drawing:
         nodes, name = self._nodes, self._name
         nodes.add_light_hemisphere(
             f'{name}/sky', ground_color=_LIGHT_FROM_BELOW, intensity=1.7)
-        # Far away and without decay, so that its rays are parallel.
-        nodes.add_light_point(
-            f'{name}/sun', intensity=1.9, decay=0.0,
-            position=tuple(100.0 * self.size_m * np.array(_DIRECTION_TO_LIGHT)))
+        # Far away and without decay, so that their rays are parallel.
+        for number, (intensity, direction) in enumerate(_LIGHTS):
+            nodes.add_light_point(
+                f'{name}/sun {number}', intensity=intensity, decay=0.0,
+                position=tuple(100.0 * self.size_m * np.array(direction)))
         if not has_grid:
             return
         spacing_m = grid_spacing_m(view_m)

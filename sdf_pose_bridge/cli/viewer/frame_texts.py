@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 import html
-import math
 from pathlib import Path
 import shlex
 from xml.sax.saxutils import quoteattr
@@ -63,10 +62,6 @@ def html_of_frame(scene: Scene, tree: TfTree, frame: int, reference: int, units:
             lines.append(
                 f'in <b>{escaped(ids[other])}</b><br>xyz {" ".join(texts[:3])} {units.length.name}'
                 f'<br>rpy {" ".join(texts[3:])} {units.angle.name}')
-            if other == reference:
-                distance = units.length.factor * math.dist(poses[other][:3], poses[frame][:3])
-                lines.append(
-                    f'distance {distance:.{units.length.digits}f} {units.length.name}')
     pose = relative_pose(poses[reference], poses[frame])
     # Smaller differences are rounding errors. Adding zero removes negative zeros.
     rpy, quat, franka = (
@@ -105,6 +100,13 @@ def _relative_to(scene: Scene, tree: TfTree, frame: int, reference: int) -> str:
     return f' relative_to={quoteattr(name.removeprefix(scope))}'
 
 
+def html_of_place(frame_id: str, reference_id: str, pose: Pose, units: Units) -> str:
+    """Write the pose of a frame in another one in a line."""
+    texts = units.texts(pose)
+    return (f'<b>{escaped(frame_id)}</b> in {escaped(reference_id)}: xyz {" ".join(texts[:3])} '
+            f'{units.length.name}, rpy {" ".join(texts[3:])} {units.angle.name}')
+
+
 def html_of_difference(old: Pose, new: Pose, reference: Pose, units: Units) -> str:
     """
     Write the current and the new pose of a frame and their difference side by side.
@@ -119,7 +121,7 @@ def html_of_difference(old: Pose, new: Pose, reference: Pose, units: Units) -> s
         for label, unit, before, after in zip(
             POSE_LABELS, units.of_pose, *columns, strict=True))
     return (f'<table class="difference" cellpadding="3" '
-            f'style="font-size:0.8em;margin:0 1em;text-align:right">'
+            f'style="text-align:right">'
             f'<tr><td></td><td>old</td><td>new</td><td>change</td></tr>{rows}</table>')
 
 
@@ -145,6 +147,14 @@ def html_of_lines(name: str, lines: Iterable[str]) -> str:
     """Return lines in an element of this class; empty if there are none."""
     text = '\n'.join(map(escaped, lines))
     return text and f'<pre class="{name}" style="{_ERROR_STYLE}">{text}</pre>'
+
+
+def html_of_reasons(lines: Sequence[str]) -> str:
+    """Return the reasons why shapes are not drawn: the first one, and the others on request."""
+    if len(lines) < 2:
+        return html_of_lines('reasons', lines)
+    return (f'<details class="reasons" style="{_ERROR_STYLE}"><summary>{escaped(lines[0])}; '
+            f'and {len(lines) - 1} more</summary>{html_of_lines("others", lines[1:])}</details>')
 
 
 def rows_of_tree(tree: TfTree, search: str) -> Iterator[tuple[int, int, str]]:

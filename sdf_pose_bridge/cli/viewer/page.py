@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import partial
 from itertools import cycle
+from pathlib import Path
 
 import numpy as np
 import viser
@@ -15,10 +16,11 @@ from sdf_pose_bridge.cli.printing import DEGREES, RADIANS, Units
 from sdf_pose_bridge.cli.viewer.browser_script import (
     html_of_names,
     html_of_opacity,
+    html_of_strip,
     page_with_script,
 )
 from sdf_pose_bridge.cli.viewer.drawing import Drawing, GROUPS, HIDDEN_AT_FIRST
-from sdf_pose_bridge.cli.viewer.frame_texts import html_of_lines
+from sdf_pose_bridge.cli.viewer.frame_texts import html_of_lines, html_of_place, html_of_reasons
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
 from sdf_pose_bridge.cli.viewer.labels import Labels
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
@@ -34,6 +36,7 @@ from sdf_pose_bridge.cli.viewer.view_point import (
     view_in_window,
     view_of_bounds,
 )
+from sdf_pose_bridge.geometry.poses import relative_pose
 from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.tf.joint_positions import scene_at_positions
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
@@ -58,13 +61,15 @@ class Page:
         self, shown: ShownScene, port: int, units: Units, meshes: MeshReader,
         set_pose: SetPose | None = None, hidden: Iterable[str] = HIDDEN_AT_FIRST,
     ) -> None:
-        self._server, self.address = server_for_its_owner(port)
+        title = printable(Path(shown.loaded.path).name)
+        self._server, self.address = server_for_its_owner(port, title)
         gui, nodes = self._server.gui, self._server.scene
         self._shown, self._units, self._hidden = shown, units, set(hidden)
         self._events, self._meshes = Events(), meshes
-        gui.set_panel_label(printable(shown.loaded.path))
-        self._errors, self._reasons, self._names, self._textures = (
+        gui.set_panel_label(title)
+        self._strip, self._reasons, self._names, self._textures = (
             gui.add_html('') for _ in range(4))
+        self._errors: Iterable[str] = ()
         self._edit = None if set_pose is None else PoseEdit(
             self._server, set_pose, self._events, self._describe)
         place_of_selected = gui.add_folder(None)
@@ -121,8 +126,9 @@ class Page:
             self.show_errors([])
 
     def show_errors(self, lines: Iterable[str]) -> None:
-        """Show the errors of a file, a line for each, above its last scene."""
-        self._errors.content = html_of_lines('errors', lines)
+        """Show the errors of a file, a line for each, over its last scene."""
+        self._errors = lines
+        self._describe()
 
     def act(self, seconds: float) -> None:
         """Process the requests of browsers; wait no longer than this for them."""
@@ -148,7 +154,7 @@ class Page:
             self._server.scene, next(self._node_names), self._meshes, self._shown, self._posed,
             self._hidden, self._opacity.value,
             lambda frame: self._events.put(partial(self._selected.select, frame)))
-        self._reasons.content = html_of_lines('reasons', drawing.reasons)
+        self._reasons.content = html_of_reasons(drawing.reasons)
         self._names.content = html_of_names(drawing.names)
         return drawing
 
@@ -159,9 +165,10 @@ class Page:
 
     def _show_frame(self) -> None:
         """Show the selected frame at its current pose."""
-        if self._edit is not None:
+        if self._edit is None:
+            self._describe()
+        else:
             self._edit.begin(self._edited_frame(), self._units)
-        self._describe()
 
     def _edited_frame(self) -> EditedFrame | None:
         tree, positions = self._posed.tree, dict(self._positions)
@@ -180,11 +187,18 @@ class Page:
         frame, pose = self._selected.frame, None if self._edit is None else self._edit.pose
         if frame >= 0 and pose is None:
             pose = self._posed.pose_of(frame)
-        reference = self._selected.reference
+        tree, reference = self._posed.tree, self._selected.reference
+        origin, place = self._posed.pose_of(reference), ''
+        if pose is not None:
+            place = html_of_place(
+                tree.frame_ids[frame], (*tree.frame_ids, tree.root_frame)[reference],
+                relative_pose(origin, pose), self._units)
         self._drawing.mark(
-            self._posed.tree, frame, pose,
-            None if reference == ROOT_IS_PARENT else self._posed.pose_of(reference))
+            tree, frame, pose, None if reference == ROOT_IS_PARENT else origin, self._units.length)
         self._selected.describe(self._posed, pose, self._units)
+        self._strip.content = html_of_strip(
+            f'{html_of_lines("errors", self._errors)}{place}'
+            f'{"" if self._edit is None else self._edit.html}')
 
     def _show_names(self) -> None:
         self._labels.show(self._drawing.texts(

@@ -11,7 +11,7 @@ import viser
 
 from sdf_pose_bridge.cli.printing import POSE_LABELS, Units
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_difference, html_of_edit, html_of_lines
-from sdf_pose_bridge.cli.viewer.server import Events
+from sdf_pose_bridge.cli.viewer.server import Events, id_of_button
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS
 from sdf_pose_bridge.geometry.poses import Pose, pose_product, relative_pose
@@ -52,7 +52,7 @@ class PoseEdit:
     The folder that changes the pose of the selected frame, and the gizmo at the frame.
 
     :param set_pose: writes a pose into the file.
-    :param changed: called when the new pose has changed.
+    :param changed: called when :attr:`html` has changed.
     """
 
     def __init__(
@@ -74,10 +74,10 @@ class PoseEdit:
             self._title = gui.add_html(html_of_edit((), []))
             self._numbers = [gui.add_number(label, 0.0, disabled=True) for label in POSE_LABELS]
             self._steps = gui.add_dropdown('steps', ('',))
+            gui.add_html('<div class="as-labels"></div>')
             write, cancel, undo = self._write, self._cancel, self._undo = [
                 gui.add_button(label, visible=False)
                 for label in ('write to file', 'cancel', 'undo the last write')]
-            self._text = gui.add_html('')
         events.when(self._gizmo.on_update, self._take_gizmo)
         for number in self._numbers:
             events.when(number.on_update, self._take_numbers)
@@ -105,9 +105,23 @@ class PoseEdit:
             self._file = []
         elif before is None or frame.scene is not before.scene or frame.element != before.element:
             self._file = self._change(frame.pose, dry_run=True)
-        self._show()
         self._place_gizmo()
         self._show_numbers()
+        self._show()
+
+    @property
+    def html(self) -> str:
+        """The new pose beside the one in the file, errors, and labels of the buttons to click."""
+        text = ''
+        if self._frame is not None and self.pose is not None:
+            text = html_of_difference(
+                self._frame.pose, self.pose, self._frame.reference, self._units)
+        buttons = (button for button in (self._write, self._cancel, self._undo) if button.visible)
+        labels = (
+            f'<label for="{id_of_button(button)}"'
+            f'{" class=primary" if button is self._write else ""}>{button.label}</label>'
+            for button in buttons)
+        return f'{text}{html_of_lines("errors", self._errors)}{"".join(labels)}'
 
     def _set_units(self, units: Units) -> None:
         self._units = units
@@ -159,7 +173,6 @@ class PoseEdit:
     def _take(self, pose: Pose | None, doubts: Iterable[str] = ()) -> None:
         self.pose, self._errors = pose, doubts
         self._show()
-        self._changed()
 
     def _place_gizmo(self) -> None:
         if self._frame is not None:
@@ -177,18 +190,16 @@ class PoseEdit:
                     number.value = value
 
     def _show(self) -> None:
-        frame, text = self._frame, ''
+        frame = self._frame
         is_possible = isinstance(self._file, PoseChange)
         for number in self._numbers:
             number.disabled = not is_possible
         self._gizmo.visible = is_possible
-        if frame is not None and self.pose is not None:
-            text = html_of_difference(frame.pose, self.pose, frame.reference, self._units)
         self._title.content = html_of_edit(
             () if frame is None else frame.names, self._file)
-        self._text.content = text + html_of_lines('errors', self._errors)
         self._write.visible = self._cancel.visible = self.pose is not None
         self._undo.visible = self._undone is not None
+        self._changed()
 
     def _write_pose(self) -> None:
         if self.pose is not None and self._frame is not None:

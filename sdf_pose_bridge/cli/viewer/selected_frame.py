@@ -26,7 +26,7 @@ MOST_ROWS = 300
 _MOST_CHOICES = 1000
 _ROWS_STYLE = ('<style>.rows{max-height:40vh;overflow:auto;margin:0 1em;font-size:0.8em}'
                '.rows label{display:block;cursor:pointer;white-space:pre}'
-               '.rows .selected{font-weight:bold}div:has(>.rows)~*{display:none}</style>')
+               '.rows .selected{font-weight:bold}</style>')
 
 
 class SelectedFrame:
@@ -44,7 +44,7 @@ class SelectedFrame:
         self._gui, self._events, self._changed = gui, events, changed
         self._tree, self._frame_id = tree, ''
         self._row_frames: list[int] = []
-        # The rows are labels of these buttons, which are not shown: HTML cannot do more.
+        # The rows are labels of these buttons, which are not shown.
         self._buttons: list[Any] = []
         self._folder = gui.add_folder('Frames')
         with self._folder:
@@ -113,7 +113,7 @@ class SelectedFrame:
             for button, (frame, depth, text) in zip(self._buttons, rows, strict=False))
         if not self._search.value and len(rows) < len(ids):
             content += f'{len(ids) - len(rows)} more, to be found by the search'
-        self._rows.content = f'{_ROWS_STYLE}<div class="rows">{content}</div>'
+        self._rows.content = f'{_ROWS_STYLE}<div class="rows as-labels">{content}</div>'
 
     def _select_row(self, number: int) -> None:
         # The clicked frame may be gone by now.

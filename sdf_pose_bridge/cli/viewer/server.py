@@ -73,10 +73,11 @@ class Events:
         return actions
 
 
-def server_for_its_owner(port: int) -> PageServer:
+def server_for_its_owner(port: int, title: str) -> PageServer:
     """
     Start a server for this user only, not for other machines, users or pages of other servers.
 
+    :param title: the title of its page.
     :param port: its port, or the next one that is free; 0 for any.
     :raises CommandError: if this cannot be done with the installed viser.
     """
@@ -84,7 +85,7 @@ def server_for_its_owner(port: int) -> PageServer:
     # Else each connection that a browser opens in advance, and closes, is an error with a trace.
     logging.getLogger('websockets').setLevel(logging.CRITICAL)
     secret = secrets.token_urlsafe(16)
-    with _requests_need(secret):
+    with _requests_need(secret, title):
         server = viser.ViserServer(_ADDRESS, port, verbose=False)
     server.gui.configure_theme(show_logo=False, show_share_button=False)
     # Beside the scene, not on it; in a small window, it is folded.
@@ -131,7 +132,7 @@ def reason_to_refuse(request: Request, secret: str) -> str:
 
 
 @contextlib.contextmanager
-def _requests_need(secret: str) -> Iterator[None]:
+def _requests_need(secret: str, title: str) -> Iterator[None]:
     """
     Let a server that is started meanwhile answer only to requests with a secret in their path.
 
@@ -155,7 +156,7 @@ def _requests_need(secret: str) -> Iterator[None]:
                 connection, replace(request, path=path, headers=headers))
             kind = '' if answer is None else answer.headers.get('Content-Type', '')
             if answer is not None and kind.startswith('text/html'):
-                answer.body = page_with_script((answer.body or b'').decode()).encode()
+                answer.body = page_with_script((answer.body or b'').decode(), title).encode()
                 answer.headers.pop('Content-Length', None)
                 answer.headers['Content-Length'] = str(len(answer.body))
             return answer

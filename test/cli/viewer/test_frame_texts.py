@@ -9,7 +9,13 @@ import shlex
 import pytest
 
 from sdf_pose_bridge.cli.printing import Units
-from sdf_pose_bridge.cli.viewer.frame_texts import html_of_difference, html_of_frame, rows_of_tree
+from sdf_pose_bridge.cli.viewer.frame_texts import (
+    html_of_difference,
+    html_of_frame,
+    html_of_place,
+    html_of_reasons,
+    rows_of_tree,
+)
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
@@ -63,8 +69,16 @@ def test_arguments_of_static_transform_publisher(described):
         '--qw': '1.0', '--frame-id': 'm/l', '--child-frame-id': 'm/f'}
 
 
-def test_distance_between_two_frames(described):
-    assert 'distance 0.5000 m' in described('m/f', 'm/l').split('\n')
+def test_place_of_a_frame_is_one_line_of_text():
+    assert html_of_place('<a>', 'b', Pose(x=0.5), Units()) == (
+        '<b>&lt;a&gt;</b> in b: xyz 0.5000 0.0000 0.0000 m, rpy 0.0000 0.0000 0.0000 rad')
+
+
+def test_first_reason_is_a_line_of_its_own():
+    assert '<details' not in html_of_reasons(['<a>'])
+    text = html_of_reasons(['<a>', 'b', 'c'])
+    assert '<summary>&lt;a&gt;; and 2 more</summary>' in text
+    assert 'b\nc</pre></details>' in text
 
 
 def test_name_is_copied_as_it_is_shown(scene):

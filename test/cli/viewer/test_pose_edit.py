@@ -3,6 +3,7 @@
 """How the numbers of a pose are edited; integration/test_view_page.py drags a frame and types."""
 
 import math
+import re
 
 import pytest
 
@@ -93,7 +94,7 @@ def test_typed_numbers_in_another_unit_are_asked_about(written):
     edit.begin(edited('free'), Units())
     edit._numbers[5].value = 90.0
     edit._take_numbers()
-    assert 'the angles 0 0 90 are radians; did you mean degrees?' in edit._text.content
+    assert 'the angles 0 0 90 are radians; did you mean degrees?' in edit.html
 
 
 def test_numbers_are_relative_to_the_reference(written):
@@ -130,10 +131,23 @@ def test_new_pose_stays_for_the_same_frame_only(written):
     drag(edit, 1.0)
     edit.begin(edited('free', 1.0), Units(angle=DEGREES))
     assert edit.pose == Pose(z=1.0)
-    assert 'class="difference"' in edit._text.content
+    assert 'class="difference"' in edit.html
     edit.begin(edited('l'), Units())
     assert edit.pose is None
-    assert 'class="difference"' not in edit._text.content
+    assert 'class="difference"' not in edit.html
+
+
+def test_only_buttons_that_can_be_used_have_labels(written):
+    _, edit = written
+
+    def labels():
+        return re.findall('<label[^>]*?( class=primary)?>(.*?)</label>', edit.html)
+    edit.begin(edited('free'), Units())
+    assert labels() == []
+    drag(edit, 1.0)
+    assert labels() == [(' class=primary', 'write to file'), ('', 'cancel')]
+    edit._write_pose()
+    assert labels() == [('', 'undo the last write')]
 
 
 def test_steps_are_in_the_units_of_the_numbers(written):

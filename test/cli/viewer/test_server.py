@@ -56,7 +56,7 @@ def request(path, origin, host):
 def test_a_server_that_is_started_in_another_way_is_an_error(monkeypatch):
     monkeypatch.setattr('viser.ViserServer', lambda *_, **__: None)
     with pytest.raises(CommandError, match='does not work as the releases'):
-        server_for_its_owner(0)
+        server_for_its_owner(0, 'a.sdf')
 
 
 def test_button_without_an_id_is_an_error():
@@ -66,7 +66,7 @@ def test_button_without_an_id_is_an_error():
 
 def test_each_server_has_its_own_secret():
     serve = websockets_server.serve
-    servers = [server_for_its_owner(0) for _ in range(2)]
+    servers = [server_for_its_owner(0, 'a.sdf') for _ in range(2)]
     assert websockets_server.serve is serve
     secrets = {server.address.split('/')[3] for server in servers}
     for server in servers:
