@@ -5,8 +5,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import islice
 import math
-import textwrap
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,6 @@ from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene, ShownScene
 from sdf_pose_bridge.cli.viewer.surfaces import (
     boxes_of_surfaces,
     lines_from_not_drawn,
-    NotDrawn,
     Surface,
     surfaces_from_scene,
 )
@@ -47,7 +46,6 @@ GROUPS = ('visuals', 'collisions', 'all names', 'all lines to parents', 'grid')
 HIDDEN_AT_FIRST = frozenset(('collisions', 'all names', 'all lines to parents'))
 """The groups that a page hides at first."""
 
-_REASON_WIDTH, _MOST_REASONS = 60, 1
 _WXYZ = [6, 3, 4, 5]
 _LINE_COLOR = (255, 146, 43)
 _MEASURED_COLOR = (230, 73, 128)
@@ -102,7 +100,7 @@ class Drawing:
             [printable(tree.frame_ids[frame]) for frame in self.frames],
             [_names_of_bodies(posed, surface) for surface in self._surfaces])
         """The names that the page shows at the pointer."""
-        self._reasons = _texts_of_reasons(scene, self._surfaces)
+        self._missing = _names_of_missing_meshes(scene, self._surfaces)
         self._bodies = np.array(
             [element for surface in self._surfaces for element in surface.elements], int)
         boxes = boxes_of_surfaces(scene, self._surfaces)
@@ -175,7 +173,7 @@ class Drawing:
         self, posed: PosedScene, frame: int, pose: Pose | None, eye: Floats, look_at: Floats,
     ) -> list[tuple[str, Floats]]:
         """
-        Return names of frames, reasons for missing meshes and a distance, with their points.
+        Return names of frames, of missing meshes, and a distance, with their points.
 
         :param frame: index of a frame whose name is always shown, or -1.
         :param pose: the pose of this frame in the root frame, if it is not the one in the scene.
@@ -193,8 +191,8 @@ class Drawing:
             origins[frames.index(frame)] = pose[:3]
         points = np.concatenate([
             *(point[None] for point in self._distances.values()),
-            scene.poses[list(self._reasons), :3], origins])
-        first = [*self._distances, *self._reasons.values()]
+            scene.poses[list(self._missing), :3], origins])
+        first = [*self._distances, *self._missing.values()]
         return labels_from_names([*first, *names], points, eye, look_at, len(first))
 
     def boxes(self, posed: PosedScene, is_in: NDArray[np.bool_]) -> Floats:
@@ -289,19 +287,12 @@ def _names_of_bodies(posed: PosedScene, surface: Surface) -> list[str]:
             surface.elements, tree.nearest_frames[surface.elements].tolist(), strict=True)]
 
 
-def _texts_of_reasons(scene: Scene, surfaces: Sequence[Surface]) -> dict[int, str]:
-    """Return texts for elements whose mesh is not drawn: a few reasons, and names of files."""
-    texts: dict[int, str] = {}
-    for surface in surfaces:
-        if surface.reason and len(texts) < MOST_NAMES:
-            first = surface.elements[0]
-            name = printable(shortened(scene.shapes[first].mesh_uri.rpartition('/')[2]))
-            texts.update(dict.fromkeys(surface.elements, name))
-            if len(texts) <= _MOST_REASONS:
-                reason = NotDrawn(scene.shapes[first].mesh_uri, surface.reason)
-                texts[first] = '\n'.join(textwrap.wrap(
-                    printable(str(reason)), _REASON_WIDTH, max_lines=4, placeholder=' ...'))
-    return texts
+def _names_of_missing_meshes(scene: Scene, surfaces: Sequence[Surface]) -> dict[int, str]:
+    """Return the names of the files of meshes that are not drawn, by their elements."""
+    missing = (element for surface in surfaces if surface.reason for element in surface.elements)
+    return {
+        element: f'{printable(shortened(scene.shapes[element].mesh_uri.rpartition("/")[2]))}?'
+        for element in islice(missing, MOST_NAMES)}
 
 
 def _ancestry(tree: TfTree, frame: int) -> NDArray[np.intp]:

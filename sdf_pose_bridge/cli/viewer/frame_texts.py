@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 import html
-from pathlib import Path
 import shlex
 from xml.sax.saxutils import quoteattr
 
@@ -15,12 +14,10 @@ from sdf_pose_bridge.cli.viewer.browser_script import html_of_copy_button
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.names import printable, SEPARATOR
-from sdf_pose_bridge.scene.pose_setting import PoseChange
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
-_FILE_STYLE = 'margin:0 1em;font-size:0.8em;overflow-wrap:anywhere'
 _ERROR_STYLE = ('color:#e03131;white-space:pre-wrap;overflow-wrap:anywhere;margin:0 1em;'
                 'font-size:0.85em;max-height:30vh;overflow-y:auto')
 _COPIED = 'display:block;user-select:all;white-space:pre-wrap;overflow-wrap:anywhere;'
@@ -123,24 +120,6 @@ def html_of_difference(old: Pose, new: Pose, reference: Pose, units: Units) -> s
     return (f'<table class="difference" cellpadding="3" '
             f'style="text-align:right">'
             f'<tr><td></td><td>old</td><td>new</td><td>change</td></tr>{rows}</table>')
-
-
-def html_of_edit(names: Sequence[str], change: PoseChange | list[str]) -> str:
-    """
-    Describe the edited frame, and the file.
-
-    :param names: the names of the frame and of the frame that its pose is relative to; empty if no
-        frame that can be edited is selected.
-    :param change: the change of the file, or the reason why it is impossible.
-    """
-    if not names:
-        return f'<div style="{_FILE_STYLE}">Select a frame, then drag it or type numbers.</div>'
-    text = ' in '.join(f'<b>{escaped(name)}</b>' for name in names)
-    if isinstance(change, PoseChange):
-        text += f'<br>in the file {escaped(str(Path(change.file.path).resolve()))}'
-        change = []
-    return (f'<div class="file" style="{_FILE_STYLE}">{text}</div>'
-            + html_of_lines('errors_of_setting', change))
 
 
 def html_of_lines(name: str, lines: Iterable[str]) -> str:

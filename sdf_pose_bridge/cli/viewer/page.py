@@ -177,8 +177,7 @@ class Page:
             return None
         return EditedFrame(
             self._shown.loaded, int(tree.elements[frame]), self._posed.pose_of(frame),
-            self._posed.pose_of(reference),
-            (tree.frame_ids[frame], (*tree.frame_ids, tree.root_frame)[reference]),
+            self._posed.pose_of(reference), tree.frame_ids[frame],
             2.5 * self._drawing.axes_length_m,
             lambda scene, element: scene_at_positions(scene, positions).pose_of(element))
 

@@ -5,12 +5,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import NamedTuple
 
 import viser
 
 from sdf_pose_bridge.cli.printing import POSE_LABELS, Units
-from sdf_pose_bridge.cli.viewer.frame_texts import html_of_difference, html_of_edit, html_of_lines
+from sdf_pose_bridge.cli.viewer.frame_texts import escaped, html_of_difference, html_of_lines
 from sdf_pose_bridge.cli.viewer.server import Events, id_of_button
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS
@@ -39,8 +40,7 @@ class EditedFrame(NamedTuple):
     """Its pose in the root frame."""
     reference: Pose
     """The pose, in the root frame, of the frame relative to which numbers are."""
-    names: tuple[str, str]
-    """The names of both frames."""
+    name: str
     gizmo_m: float
     """The size of the gizmo."""
     measured: Callable[[Scene, int], Pose]
@@ -71,7 +71,6 @@ class PoseEdit:
             '/gizmo', depth_test=False, visible=False)
         gui = server.gui
         with gui.add_folder('Edit'):
-            self._title = gui.add_html(html_of_edit((), []))
             self._numbers = [gui.add_number(label, 0.0, disabled=True) for label in POSE_LABELS]
             self._steps = gui.add_dropdown('steps', ('',))
             gui.add_html('<div class="as-labels"></div>')
@@ -98,7 +97,7 @@ class PoseEdit:
         if units != self._units:
             self._set_units(units)
         is_same = frame is not None and before is not None and (
-            frame.names[0], frame.pose) == (before.names[0], before.pose)
+            frame.name, frame.pose) == (before.name, before.pose)
         if not is_same:
             self.pose, self._errors = None, ()
         if frame is None:
@@ -112,9 +111,12 @@ class PoseEdit:
     @property
     def html(self) -> str:
         """The new pose beside the one in the file, errors, and labels of the buttons to click."""
-        text = ''
+        if isinstance(self._file, PoseChange):
+            text = f'<div>in the file {escaped(str(Path(self._file.file.path).resolve()))}</div>'
+        else:
+            text = html_of_lines('errors_of_setting', self._file)
         if self._frame is not None and self.pose is not None:
-            text = html_of_difference(
+            text += html_of_difference(
                 self._frame.pose, self.pose, self._frame.reference, self._units)
         buttons = (button for button in (self._write, self._cancel, self._undo) if button.visible)
         labels = (
@@ -190,13 +192,10 @@ class PoseEdit:
                     number.value = value
 
     def _show(self) -> None:
-        frame = self._frame
         is_possible = isinstance(self._file, PoseChange)
         for number in self._numbers:
             number.disabled = not is_possible
         self._gizmo.visible = is_possible
-        self._title.content = html_of_edit(
-            () if frame is None else frame.names, self._file)
         self._write.visible = self._cancel.visible = self.pose is not None
         self._undo.visible = self._undone is not None
         self._changed()

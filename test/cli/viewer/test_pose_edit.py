@@ -46,7 +46,7 @@ def written():
 def edited(name, x=0.0):
     element = [each.rpartition('::')[2] for each in SCENE.names].index(name)
     return EditedFrame(
-        SCENE, element, POSE, Pose(x=x), (name, 'x'), 1.0, lambda scene, element: POSE)
+        SCENE, element, POSE, Pose(x=x), name, 1.0, lambda scene, element: POSE)
 
 
 def drag(edit, z):
@@ -72,7 +72,7 @@ def test_only_frames_that_can_be_placed_are_edited(written):
         edit.begin(edited(name), Units())
         assert edit._gizmo.visible is is_possible
         assert [number.disabled for number in edit._numbers] == [not is_possible] * 6
-        assert ('errors_of_setting' in edit._title.content) is not is_possible
+        assert ('errors_of_setting' in edit.html) is not is_possible
     edit.begin(None, Units())
     assert not edit._gizmo.visible
 
