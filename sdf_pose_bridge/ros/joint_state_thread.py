@@ -153,6 +153,8 @@ class JointStateThread:
         self._has_to_end = True
         self._wake()
         self._thread.join()
+        # Not by the thread, as the executor may be calling it.
+        self._clock_steps.unregister()
 
     def _follow_step(self, _step: object) -> None:
         if self._has_period_ended(self._clock.now().nanoseconds):
@@ -178,7 +180,6 @@ class JointStateThread:
                 self._logger.error(
                     f'internal error in joint states: {error}\n{traceback.format_exc()}',
                     throttle_duration_sec=60.0)
-        self._clock_steps.unregister()
         self._wait_set.close()
         self._answer(len(self._callers))
 

@@ -299,13 +299,6 @@ def test_the_rate_can_be_set_while_joints_move(follow, joints, tf):
             lambda: tf.last)
 
 
-def test_lookups_do_not_wait_for_the_next_period(follow, joints, tf):
-    follow(publish_frequency=0.01)
-    tf.listener.wait(
-        lambda: joints.send({'lift': 0.25}) and pose_of(tf, 'slide').z == 2.25,
-        lambda: 'the position')
-
-
 def test_following_can_be_switched_off_and_on(follow, joints, tf):
     follow()
     tf.wait_for('slide', joints.send({'lift': 0.1}))

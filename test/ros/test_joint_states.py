@@ -251,11 +251,6 @@ def test_other_frames_continue_with_the_positions_and_one_nanosecond_later(arm):
         (FIRST, {'slide', 'finger'}), (FIRST + 1, {'slide'})]
 
 
-def test_bytes_that_are_no_message_are_ignored(arm):
-    arm._senders['/joint_states'].publish(b'\0\1\0\0abc')
-    assert arm.published((FIRST, {'turn': 0.5})) == [(FIRST, {'upper'})]
-
-
 def test_topics_have_few_of_many_messages_and_the_last_one_again_at_rest(arm):
     secs = []
     arm.listener.create_subscription(
