@@ -185,6 +185,8 @@ class JointStateThread:
 
     def _turn(self) -> None:
         """Wait once, and do what is due."""
+        with self._node.handle:
+            pass  # the wait set would not notice that the node was destroyed
         caller_count = len(self._callers)
         ready = self._wait_set.wait(
             self._subscriptions, 0.0 if caller_count else self._longest_wait())
@@ -252,11 +254,7 @@ class JointStateThread:
         return self._is_in_period and (self._has_jumped or now_ns >= self._period_ends_ns)
 
     def _begin_period(self, awaited: Sequence[JointStateTopic]) -> None:
-        """
-        Begin a period.
-
-        :param awaited: the topics whose messages do not wait for its end.
-        """
+        """Begin a period, for whose end the messages of all but some topics wait."""
         self._period_ends_ns = self._now_ns + self._target.rule.period_ns
         self._period += 1
         self._await(awaited)
