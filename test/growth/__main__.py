@@ -22,7 +22,7 @@ import sys
 import tempfile
 from typing import NamedTuple
 
-from growth.families import AROUND, FILES, Files, Link, PARTS
+from growth.families import AROUND, FILES, Files, PARTS
 
 WIDTH = 40
 """Of the column of names."""
@@ -48,10 +48,7 @@ def measured(files: Files) -> Load:
         for path, text in files.items():
             file = Path(folder, path)
             file.parent.mkdir(exist_ok=True, parents=True)
-            if isinstance(text, Link):
-                file.symlink_to(text.target)
-            else:
-                file.write_bytes(text.encode(errors='surrogateescape'))
+            file.write_bytes(text.encode(errors='surrogateescape'))
         process = subprocess.run(
             [sys.executable, '-m', 'growth.measurement', str(Path(folder, 'scene.sdf'))],
             check=False, capture_output=True, text=True,
@@ -66,9 +63,7 @@ def measured(files: Files) -> Load:
 
 def size_of(files: Files) -> int:
     """Return how many bytes files have together."""
-    return sum(
-        len(text.target if isinstance(text, Link) else text.encode(errors='surrogateescape'))
-        for text in files.values())
+    return sum(len(text.encode(errors='surrogateescape')) for text in files.values())
 
 
 def largest_n(family: Callable[[int], Files], most_bytes: int) -> int:
