@@ -189,7 +189,8 @@ class JointStateThread:
             pass  # the wait set would not notice that the node was destroyed
         caller_count = len(self._callers)
         ready = self._wait_set.wait(
-            self._subscriptions, 0.0 if caller_count else self._longest_wait())
+            [each.subscription for each in self._awaited],
+            0.0 if caller_count else self._longest_wait())
         if self._target is not self._next_target:
             self._follow_next_target()
             return  # the messages are ready again
@@ -257,7 +258,7 @@ class JointStateThread:
         """Begin a period, for whose end the messages of all but some topics wait."""
         self._period_ends_ns = self._now_ns + self._target.rule.period_ns
         self._period += 1
-        self._await(awaited)
+        self._awaited = awaited
 
     def _end_period(self) -> None:
         """Publish what has waited; without any, publish the next message at once."""
@@ -271,11 +272,7 @@ class JointStateThread:
 
     def _end_periods(self) -> None:
         self._period_ends_ns = math.inf
-        self._await(self._target.topics)
-
-    def _await(self, topics: Sequence[JointStateTopic]) -> None:
-        self._awaited = topics
-        self._subscriptions = [each.subscription for each in topics]
+        self._awaited = self._target.topics
 
     # Messages
 
@@ -287,7 +284,7 @@ class JointStateThread:
         self._target.frames.publish_tf(rows)
         self._publish_topics_soon()
         if self._is_in_period:
-            self._await([each for each in self._awaited if each not in topics])
+            self._awaited = [each for each in self._awaited if each not in topics]
         # Simulated time that has not begun would never end a period.
         elif self._target.rule.period_ns and self._now_ns:
             self._begin_period([])
