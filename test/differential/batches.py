@@ -158,8 +158,7 @@ def add_batch(tally: Tally, batch: Batch, reference: Reference) -> None:
         tally.traits.update(scene.traits)
         difference = difference_from_intent(scene, answer)
         if own is not None:
-            difference = difference_between(
-                own, answer, reference.version, scene.traits) or difference
+            difference = difference_between(own, answer, scene.traits) or difference
             if has_wrong_moments(answer):
                 tally.wrong_moments += 1
             elif not own.accepted and not answer.accepted:

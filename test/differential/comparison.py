@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import math
 from pathlib import Path
 
-from differential.known_defects import JOINT_SENSOR, MERGED_PLACEMENT, PROJECTOR
 from differential.reference import Answer, AxisValues, CRASH, JointValues, PoseValues
 import sdf_pose_bridge
 from sdf_pose_bridge.scene.scene import Joint, Scene
@@ -18,14 +17,8 @@ from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
 TOLERANCE = 1e-9
 """Metres, relative to the distance from the root where that is more than one; and radians."""
 
-ROUNDED_TOLERANCE = 1e-3
-"""The same for a scene in which the reference rounds poses to six digits: MERGED_PLACEMENT."""
-
 URDF_TOLERANCE = 2e-5
-"""The same for a scene with URDF: URDF_ANGLES."""
-
-NOT_RESOLVED = {'sensor of a joint': JOINT_SENSOR, 'projector': PROJECTOR}
-"""Elements that some release cannot resolve."""
+"""The same for a scene with URDF, in which libsdformat writes angles with few digits."""
 
 
 @dataclass(frozen=True)
@@ -82,14 +75,14 @@ def own_joint(scene: Scene, joint: Joint) -> JointValues:
         joint.type, body(joint.parent), body(joint.child), joint.screw_pitch_m, axes)
 
 
-def difference_between(own: Answer, reference: Answer, version: str,
-                       traits: frozenset[str] = frozenset()) -> Difference | None:
+def difference_between(
+    own: Answer, reference: Answer, traits: frozenset[str] = frozenset(),
+) -> Difference | None:
     """
     Find the first thing on which the two sides disagree.
 
     :param own: what the package says.
     :param reference: what libsdformat says.
-    :param version: of libsdformat, such as ``12.3.0``.
     :param traits: what is known of the scene.
     :return: the difference, or None.
     """
@@ -109,12 +102,7 @@ def difference_between(own: Answer, reference: Answer, version: str,
         # and libsdformat by steps of loading.
         text = f'{", ".join(own.codes)} here, {reference.codes[0]} by libsdformat'
         return Difference('code', f'{text}: {reference.message}')
-    is_rounded = 'merge-placement' in traits and is_before(version, MERGED_PLACEMENT.fixed_in)
-    tolerance = TOLERANCE
-    if 'urdf' in traits:
-        tolerance = URDF_TOLERANCE
-    if is_rounded:
-        tolerance = ROUNDED_TOLERANCE
+    tolerance = URDF_TOLERANCE if 'urdf' in traits else TOLERANCE
     for key, expected in reference.poses.items():
         got = own.poses.get(key)
         if got is None:
@@ -126,12 +114,8 @@ def difference_between(own: Answer, reference: Answer, version: str,
         text = joint_difference(own.joints.get(joint_key), joint, tolerance)
         if text:
             return Difference('joint', f'joint "{joint_key[1]}": {text}')
-    joints = {(world, name) for world, kind, name in own.poses if kind == 'joint'}
-    for world, kind, name in own.poses.keys() - reference.poses.keys():
-        of_joint = (world, name.rpartition('::')[0]) in joints
-        known = NOT_RESOLVED.get(f'{kind} of a joint' if of_joint else kind)
-        if not known or not is_before(version, known.fixed_in):
-            return Difference('extra', f'{kind} "{name}" is not resolved by libsdformat')
+    for _, kind, name in own.poses.keys() - reference.poses.keys():
+        return Difference('extra', f'{kind} "{name}" is not resolved by libsdformat')
     return None
 
 
@@ -152,7 +136,7 @@ def joint_difference(own: JointValues | None, expected: JointValues, tolerance: 
         return '' if expected.parent == expected.child else 'it is not in the scene'
     if own[:3] != expected[:3]:
         return f'{own[:3]} here, {expected[:3]} by libsdformat'
-    if own.type == 'screw' and expected.pitch_m not in (None, own.pitch_m):
+    if own.type == 'screw' and expected.pitch_m != own.pitch_m:
         return f'the pitch is {own.pitch_m} here, {expected.pitch_m} by libsdformat'
     for own_axis, axis in zip(own.axes, expected.axes, strict=True):
         if axis is None:
@@ -169,12 +153,6 @@ def _with_floats(values: tuple[object, ...] | None) -> tuple[object, ...] | None
     # To add zero leaves no negative zeros.
     return values and tuple(
         value + 0.0 if isinstance(value, (int, float)) else value for value in values)
-
-
-def is_before(version: str, other: str) -> bool:
-    """Tell whether a version such as ``12.3.0`` came before another one."""
-    first, second = ([int(part) for part in text.split('.')] for text in (version, other))
-    return first < second
 
 
 def is_same_pose(expected: PoseValues, got: PoseValues, tolerance: float) -> bool:

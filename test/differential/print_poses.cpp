@@ -124,13 +124,11 @@ std::string CodeName(sdf::ErrorCode _code)
     CODE(MODEL_PLACEMENT_FRAME_INVALID);
     CODE(VERSION_DEPRECATED);
     CODE(MERGE_INCLUDE_UNSUPPORTED);
-#if SDF_MAJOR_VERSION >= 14
     CODE(CONVERSION_ERROR);
     CODE(PARSING_ERROR);
     CODE(JOINT_AXIS_EXPRESSED_IN_INVALID);
     CODE(JOINT_AXIS_MIMIC_INVALID);
     CODE(WARNING);
-#endif
     default:
       return "ERROR_" + std::to_string(static_cast<int>(_code));
   }
@@ -175,7 +173,6 @@ class Printer
       this->Resolved("light", "", *_world.LightByIndex(i), "world", Pose::Zero);
     for (uint64_t i = 0; i < _world.ActorCount(); ++i)
       this->Print("actor", _world.ActorByIndex(i)->Name(), _world.ActorByIndex(i)->RawPose());
-#if SDF_MAJOR_VERSION >= 14
     for (uint64_t i = 0; i < _world.JointCount(); ++i)
     {
       const auto *joint = _world.JointByIndex(i);
@@ -187,7 +184,6 @@ class Printer
             Pose::Zero);
       }
     }
-#endif
   }
 
   /// _scope is empty or ends with "::"; _scopePose is the pose of the enclosing model frame.
@@ -253,10 +249,8 @@ class Printer
       this->Resolved("particle_emitter", scope, *_link.ParticleEmitterByIndex(i), self,
           _modelPose);
     }
-#if SDF_MAJOR_VERSION >= 14
     for (uint64_t i = 0; i < _link.ProjectorCount(); ++i)
       this->Resolved("projector", scope, *_link.ProjectorByIndex(i), self, _modelPose);
-#endif
   }
 
   private: void Joint(const std::string &_scope, const sdf::Joint &_joint)
@@ -294,25 +288,17 @@ class Printer
 
   private: static std::string Pitch(const sdf::Joint &_joint)
   {
-#if SDF_MAJOR_VERSION >= 14
     return Number(_joint.ScrewThreadPitch());
-#else
-    return "null";
-#endif
   }
 
   private: static std::string Mimic(const std::string &_scope, const sdf::JointAxis &_axis)
   {
-#if SDF_MAJOR_VERSION >= 14
     const auto mimic = _axis.Mimic();
     if (!mimic)
       return "null";
     return "[" + Quoted(_scope + mimic->Joint()) + ", " + Quoted(mimic->Axis()) + ", " +
         Number(mimic->Multiplier()) + ", " + Number(mimic->Offset()) + ", " +
         Number(mimic->Reference()) + "]";
-#else
-    return "null";
-#endif
   }
 
   private: template <typename Element>

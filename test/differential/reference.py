@@ -13,7 +13,7 @@ import subprocess
 from typing import Any, NamedTuple, TypeAlias
 
 SOURCE = Path(__file__).with_name('print_poses.cpp')
-RELEASES = ('sdformat14', 'sdformat15', 'sdformat', 'sdformat13', 'sdformat12')
+RELEASES = ('sdformat14', 'sdformat15', 'sdformat')
 """Names by which pkg-config may know libsdformat, which has no number from 16 on; the first that
 is found is used."""
 
@@ -43,8 +43,7 @@ class JointValues(NamedTuple):
     parent: str
     """Scoped name of the body; ``world`` for the world."""
     child: str
-    pitch_m: float | None
-    """None where the release does not tell."""
+    pitch_m: float
     axes: tuple[AxisValues | None, ...]
 
 
@@ -76,7 +75,7 @@ class Reference:
 
     program: Path
     version: str
-    """Of libsdformat, such as ``12.3.0``."""
+    """Of libsdformat, such as ``14.9.0``."""
 
     def answers(self, files: Iterable[Path], resource_path: Path) -> list[Answer]:
         """
@@ -162,7 +161,7 @@ def built_reference(folder: Path) -> Reference:
         if found.returncode == 0:
             break
     else:
-        msg = f'libsdformat 12 or later is not installed; {advice}'
+        msg = f'libsdformat 14 or later is not installed; {advice}'
         raise ReferenceMissingError(msg)
     version = found.stdout.strip()
     program = folder.resolve() / f'print_poses-{version}'

@@ -48,9 +48,7 @@ def chain_scene(dice: Random) -> SceneFiles:
     """
     family = dice.choice(FAMILIES)
     files = {path: text_of(root) for path, root in family(dice).items()}
-    # Merged poses are written with six digits by releases before 14.
-    return SceneFiles(
-        files, frozenset({ODD_VALUES, 'merge-placement', family.__name__}), family.__name__)
+    return SceneFiles(files, frozenset({ODD_VALUES, family.__name__}), family.__name__)
 
 
 # Families

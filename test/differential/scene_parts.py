@@ -39,17 +39,11 @@ class Feature(enum.Enum):
     OLD_STATES = 'old-states'
 
 
-_SINCE_14 = frozenset({
-    Feature.AUTOMATIC_INERTIALS, Feature.CHAINS, Feature.MERGED_OVERRIDES, Feature.NESTED_JOINTS,
-    Feature.ODD_VALUES, Feature.POSES_SET, Feature.URDF, Feature.XML_ODDITIES})
-
-
 def features_of_release(version):
     """Return the features that a release of libsdformat reads as the package does."""
-    release = int(version.split('.')[0])
     # Each grammar knows the parts of a state by one of two names.
-    states = {Feature.STATES_OF_1_12} if release < 15 else {Feature.OLD_STATES}
-    return frozenset(Feature) - states - (_SINCE_14 if release < 14 else set())
+    is_14 = version.startswith('14.')
+    return frozenset(Feature) - {Feature.STATES_OF_1_12 if is_14 else Feature.OLD_STATES}
 
 
 class Visible(NamedTuple):

@@ -160,19 +160,17 @@ class SceneBuilder:
     def place(self, built: Built, available: list[Visible], *, merge: bool = False) -> None:
         """Draw the pose of a nested, included or merged model."""
         element = built.element
-        pose = new_pose(self.draw, self.reference(available), short=merge)
+        pose = new_pose(self.draw, self.reference(available))
         if pose is None or element.find('placement_frame') is not None:
             return
         element.insert(self.draw(st.integers(0, len(element))), pose)
         if element.tag == 'include' and self.chance(6 if merge else 3):
-            if merge:
-                self.traits.add('merge-placement')
             frame = self.draw(st.sampled_from(built.inner)).reference
             ElementTree.SubElement(element, 'placement_frame').text = frame
 
     def override_placement(self, include: ElementTree.Element, built: Built) -> None:
         """Let an include override a placement frame that does not exist."""
-        self.traits |= {'merge-placement', 'merged-override'}
+        self.traits.add('merged-override')
         built.element.set('placement_frame', UNKNOWN_FRAME)
         frame = self.draw(st.sampled_from(built.inner)).reference
         ElementTree.SubElement(include, 'placement_frame').text = frame
@@ -245,13 +243,11 @@ class SceneBuilder:
             ElementTree.SubElement(element, 'static').text = text
         element.extend(children)
         if self.chance(8 if merged else 4):
-            if merged:
-                self.traits.add('merge-placement')
             element.set('placement_frame', draw(st.sampled_from(built.inner)).reference)
         if top:
-            pose = new_pose(draw, short=merged)
+            pose = new_pose(draw)
             if pose is not None:
-                # libsdformat 12 takes a blank for a name here, and here alone.
+                # A blank is taken for a name here, and here alone.
                 pose.attrib.pop('relative_to', None)
                 element.insert(draw(st.integers(0, len(element))), pose)
         return built

@@ -77,8 +77,7 @@ def number_from(dice: Random, often: tuple[float, ...], limit: float) -> float:
     return value if dice.random() < 0.7 else round(value, 3)
 
 
-def new_pose(draw: Draw, reference: str = '', *,
-             short: bool = False) -> ElementTree.Element | None:
+def new_pose(draw: Draw, reference: str = '') -> ElementTree.Element | None:
     """
     Draw a pose element, or None for no element.
 
@@ -86,9 +85,6 @@ def new_pose(draw: Draw, reference: str = '', *,
     no interest.
 
     :param reference: what ``relative_to`` says; nothing where it is empty.
-    :param short: few digits, and angles in the range that a rotation is turned back into. The
-        pose of a merged model is written anew by libsdformat 12 with six digits, and stays as it
-        is only then.
     """
     dice = Random(draw(SEEDS))
     if not reference and dice.randrange(5) == 0:
@@ -99,12 +95,6 @@ def new_pose(draw: Draw, reference: str = '', *,
         pose.set('relative_to', padding + reference + padding)
     elif dice.randrange(10) == 0:
         pose.set('relative_to', dice.choice(('', ' ')))
-    if short:
-        values = [dice.randint(-9999, 9999) / 1000 for _ in range(3)]
-        values += [dice.randint(-150, 150) / 100 for _ in range(3)]
-        pose.text = ' '.join(map(repr, values))
-        return pose
-
     kind = dice.choice(FORMATS)
     numbers = [text_from_number(dice, number_from(dice, LENGTHS, 10)) for _ in range(3)]
     if kind == 'quaternion':

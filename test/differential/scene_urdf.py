@@ -94,7 +94,7 @@ class RobotBuilder:
 
     def write_odd_number(self) -> bool:
         """Replace one number by what may be none; return whether there is a number."""
-        robot_origin = self.root.find('origin')  # KnownDefect: an overflow there
+        robot_origin = self.root.find('origin')  # an overflow there ends libsdformat
         places = [(element, name) for element in self.root.iter() for name in element.attrib
                   if element.tag in NUMBERED and name in NUMBERED[element.tag]
                   and element is not robot_origin]
