@@ -71,25 +71,16 @@ class Mesh(NamedTuple):
     reason: str = ''
     """The reason why the surfaces are replaced; empty if they come from the file."""
 
-
-class _KeptMesh(NamedTuple):
-    """A mesh that may be drawn again."""
-
-    mesh: Mesh
-    version: tuple[int, int]
-    """Time of change and size of its file."""
-
     @property
     def size(self) -> int:
         """Its size in bytes, with some for the rest of the record."""
         return 1000 + sum(
-            int(part.points.nbytes + part.faces.nbytes) + len(part.glb)
-            for part in self.mesh.parts)
+            int(part.points.nbytes + part.faces.nbytes) + len(part.glb) for part in self.parts)
 
 
 class MeshReader:
     """
-    Reads meshes, and keeps the last used ones until their files change.
+    Reads meshes, and keeps them until they are too large together.
 
     :param finder: finds their files.
     :param process: reads them.
@@ -98,8 +89,7 @@ class MeshReader:
     def __init__(self, finder: ResourceFinder, process: LimitedProcess) -> None:
         self._finder = finder
         self._process = process
-        # The last used one comes last.
-        self._kept: dict[tuple[str, str, bool], _KeptMesh] = {}
+        self._kept: dict[tuple[str, str, bool, int, int], Mesh] = {}
         self._kept_bytes = 0
 
     def mesh(self, shape: Shape, file: str, size_m: float) -> Mesh:
@@ -123,19 +113,15 @@ class MeshReader:
         if path is None:
             return Mesh(reason=self._finder.reason_not_found(shape.mesh_uri, file))
         status = os.stat(path)  # noqa: PTH116
-        version = status.st_mtime_ns, status.st_size
-        key = path, shape.submesh, shape.is_centered
-        kept = self._kept.pop(key, None)
-        if kept is not None:
-            self._kept_bytes -= kept.size
-        if kept is None or kept.version != version:
+        key = path, shape.submesh, shape.is_centered, status.st_mtime_ns, status.st_size
+        if key not in self._kept:
             mesh = self._read(path, shape.submesh, is_centered=shape.is_centered)
-            kept = _KeptMesh(mesh, version)
-        while self._kept and self._kept_bytes + kept.size > MOST_BYTES_KEPT:
-            self._kept_bytes -= self._kept.pop(next(iter(self._kept))).size
-        self._kept[key] = kept
-        self._kept_bytes += kept.size
-        return kept.mesh
+            self._kept_bytes += mesh.size
+            if self._kept_bytes > MOST_BYTES_KEPT:
+                self._kept.clear()
+                self._kept_bytes = mesh.size
+            self._kept[key] = mesh
+        return self._kept[key]
 
     def _read(self, path: str, submesh: str, *, is_centered: bool) -> Mesh:
         try:

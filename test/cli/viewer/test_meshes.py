@@ -262,22 +262,13 @@ def test_mesh_is_remembered_until_its_file_changes(named):
     assert named('a.stl', mesh_texts.STL.format(y=10)) is not first
 
 
-def test_a_mesh_that_was_not_used_for_long_is_not_kept(named, reader, monkeypatch):
-    texts = {name: mesh_texts.STL.format(y=1) for name in ('a.stl', 'b.stl', 'c.stl')}
-    first = named('a.stl', texts['a.stl'])
-    monkeypatch.setattr(meshes, 'MOST_BYTES_KEPT', 2 * reader._kept_bytes)
-    second = named('b.stl', texts['b.stl'])
-    assert named('a.stl') is first
-    named('c.stl', texts['c.stl'])
-    assert (named('a.stl') is first, named('b.stl') is second) == (True, False)
-
-
-def test_the_old_content_of_a_changed_mesh_is_not_kept(named, reader):
+def test_kept_meshes_are_not_too_large_together(named, reader, monkeypatch):
     named('a.stl', mesh_texts.STL.format(y=1))
     size = reader._kept_bytes
-    for y in range(10, 15):
+    monkeypatch.setattr(meshes, 'MOST_BYTES_KEPT', 2 * size)
+    for y, count in ((2, 2), (3, 1), (4, 2)):
         named('a.stl', mesh_texts.STL.format(y=y) + y * ' ')
-    assert (len(reader._kept), reader._kept_bytes) == (1, size)
+        assert (len(reader._kept), reader._kept_bytes) == (count, count * size)
 
 
 # Shapes without a file
