@@ -306,6 +306,31 @@ def test_opacity_of_a_texture(tmp_path):
         page.wait_for("opacities() === '0.5'")
 
 
+def test_folded_section_is_a_line(page):
+    section = """[...document.querySelectorAll('.mantine-Paper-root')].findLast(
+      each => each.innerText === 'Show').parentElement"""
+    page.wait_for(f'{section}.clientHeight < 15')
+    assert page.run(f'getComputedStyle({section}).borderBottomWidth') == '0px'
+
+
+def test_axes_of_the_root_frame_are_in_a_corner(page):
+    # The camera is above and in front, so that x points down, and z up.
+    page.wait_for(is_in_window("document.querySelector('.axis-cross')"))
+    page.wait_for("document.querySelector('.axis-cross').children[2].hasAttribute('d')")
+    x_end, z_end = (float(page.run(
+        f"document.querySelector('.axis-cross').children[{axis}].getAttribute('d')").split()[-1])
+        for axis in (0, 2))
+    assert x_end > 5
+    assert z_end < -15
+
+
+def test_path_of_the_file_is_shown_at_its_name(page, shown):
+    title = "[...document.querySelectorAll('div')].findLast(e => e.innerText === 'cell.sdf')"
+    x, y = page.run(f"""(box => [box.left + 5, box.top + 5])({title}.getBoundingClientRect())""")
+    page.call('Input.dispatchMouseEvent', type='mouseMoved', x=x, y=y)
+    page.wait_for(f"{title}.title === '{shown.file}'")
+
+
 def test_long_name_of_a_joint_has_one_line(page, shown):
     name = 'left_outer_finger_joint_of_the_gripper'
     shown.file.write_text(TEXT.replace('"rail"', f'"{name}"'))

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 import html
 import json
+from pathlib import Path
 from typing import NamedTuple
 
 _TITLE = '<title>Viser</title>'
@@ -24,8 +25,12 @@ _STYLE = """<style>
     direction: rtl; text-align: left}
   p > label {direction: ltr; unicode-bidi: isolate}
   p > label wbr {display: none}
+  /* A section is folded while its content, which is not its last element, is hidden. */
+  .mantine-Paper-root:has(> [aria-hidden=true]:not(:last-child)) {border-width: 1px 0 0}
+  .mantine-Paper-root > [aria-hidden=true] + :last-child > div {padding: 0 !important}
   /* Labels elsewhere stand for the buttons behind this element: HTML cannot do more. */
   div:has(> .as-labels) ~ * {display: none}
+  .axis-cross {position: absolute; right: 8px; top: 8px; width: 60px; stroke-width: 3}
   .strip {position: fixed; left: 8px; bottom: 8px; z-index: 8; padding: 4px 10px; font: 13px
     sans-serif; background: #fffe; color: #212529; border: 1px solid #adb5bd; border-radius: 4px}
   .strip:empty {display: none}
@@ -64,8 +69,21 @@ _SCRIPT = """<script>(() => {
         node.material.transparent = true;
         node.onBeforeRender = drawing => drawing.clearDepth();
       });
+      if (frames?.parent) turnCross(renderer.domElement.parentElement);
     };
   });
+  // The axes of the root frame, as the camera sees them.
+  const turnCross = scenePlace => {
+    let cross = document.querySelector('.axis-cross');
+    if (!cross) {
+      scenePlace.insertAdjacentHTML('beforeend', `<svg class="axis-cross" viewBox="-30 -30 60 60">
+        <path stroke="#d00"/><path stroke="#4b1"/><path stroke="#00d"/></svg>`);
+      cross = scenePlace.lastElementChild;
+    }
+    const m = camera.matrixWorldInverse.clone().multiply(frames.matrixWorld).elements;
+    [0, 4, 8].forEach((i, axis) => cross.children[axis].setAttribute(
+      'd', `M0 0 L${28 * m[i]} ${-28 * m[i + 1]}`));
+  };
   let listed, names = {frames: [], bodies: []};
   const namesInScene = () => {
     const given = document.querySelector('[data-names]')?.dataset.names;
@@ -141,6 +159,10 @@ _SCRIPT = """<script>(() => {
   addEventListener('DOMContentLoaded', () => document.body.addEventListener('keydown', event => {
     if (event.target.closest('[role=slider], input, textarea')) event.stopPropagation();
   }));
+  addEventListener('pointerover', ({target}) => {
+    const path = document.querySelector('[data-path]')?.dataset.path;
+    if (path && target.textContent === document.title) target.title = path;
+  });
   addEventListener('click', event => {
     const text = event.target.closest?.('[data-copy]')?.dataset.copy;
     if (text) navigator.clipboard.writeText(text).then(() => {
@@ -178,6 +200,11 @@ def html_of_names(names: NamesInScene) -> str:
 def html_of_opacity(opacity: float) -> str:
     """Return an element that is not seen, from which the script has the opacity of textures."""
     return f'<meta data-opacity="{opacity}">'
+
+
+def html_of_path(path: str) -> str:
+    """Return an element that is not seen, from which the script has the path of the file."""
+    return f'<meta data-path="{html.escape(str(Path(path).resolve()))}">'
 
 
 def html_of_strip(content: str) -> str:

@@ -116,7 +116,10 @@ class Drawing:
         """The lowest and the highest corner of the first view, shape (2, 3)."""
         self.home = home_view(self.bounds, origins[self.frames], boxes)
         """The first view."""
-        self._add_surroundings(view_m, has_grid='grid' not in hidden)
+        sizes_m = np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1)
+        self._add_surroundings(
+            view_m, boxes[sizes_m <= view_m, 0, 2].min(initial=0.0),
+            has_grid='grid' not in hidden)
         self._marker = nodes.add_frame(
             f'{name}/selected', axes_length=2.0 * length_m, axes_radius=0.06 * length_m,
             visible=False)
@@ -210,8 +213,8 @@ class Drawing:
             if isinstance(copies, viser.BatchedMeshHandle):
                 copies.opacity = None if opacity >= 1.0 else opacity
 
-    def _add_surroundings(self, view_m: float, *, has_grid: bool) -> None:
-        """Add light from above and from one side, and a grid on the ground."""
+    def _add_surroundings(self, view_m: float, ground_m: float, *, has_grid: bool) -> None:
+        """Add light from above and from two sides, and a grid on the ground at a height."""
         nodes, name = self._nodes, self._name
         nodes.add_light_hemisphere(
             f'{name}/sky', ground_color=_LIGHT_FROM_BELOW, intensity=1.7)
@@ -226,7 +229,7 @@ class Drawing:
         middle = np.round(self.bounds.mean(axis=0)[:2] / spacing_m) * spacing_m
         width_m = 2.0 * spacing_m * np.ceil(view_m / spacing_m)
         # A little above the floors of many files.
-        height_m = 0.001 * view_m
+        height_m = ground_m + 0.001 * view_m
         nodes.add_grid(
             f'{name}/grid', width_m, width_m, cell_size=spacing_m, section_size=5.0 * spacing_m,
             cell_color=_GRID_COLOR, section_color=_GRID_SECTION_COLOR, shadow_opacity=0.0,

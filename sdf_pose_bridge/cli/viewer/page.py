@@ -16,6 +16,7 @@ from sdf_pose_bridge.cli.printing import DEGREES, RADIANS, Units
 from sdf_pose_bridge.cli.viewer.browser_script import (
     html_of_names,
     html_of_opacity,
+    html_of_path,
     html_of_strip,
     page_with_script,
 )
@@ -69,6 +70,7 @@ class Page:
         gui.set_panel_label(title)
         self._strip, self._reasons, self._names, self._textures = (
             gui.add_html('') for _ in range(4))
+        gui.add_html(html_of_path(shown.loaded.path))
         self._errors: Iterable[str] = ()
         self._edit = None if set_pose is None else PoseEdit(
             self._server, set_pose, self._events, self._describe)
@@ -124,6 +126,7 @@ class Page:
             self._selected.list_frames(self._posed.tree)
             self._redraw()
             self.show_errors([])
+            self._show_names()
 
     def show_errors(self, lines: Iterable[str]) -> None:
         """Show the errors of a file, a line for each, over its last scene."""

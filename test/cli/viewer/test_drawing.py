@@ -70,6 +70,14 @@ def test_name_of_a_missing_mesh_is_not_hidden_by_a_nearer_name(drawing_of):
     assert text == 'a.stl?'
 
 
+@pytest.mark.parametrize(('size', 'ground_m'), [('1 1 1', -0.5), ('3 3 1', 0.0)])
+def test_ground_is_below_bodies_but_a_floor(drawing_of, nodes, size, ground_m):
+    drawing_of(f'<link name="a"><visual name="v"><geometry><box><size>{size}</size></box>'
+               '</geometry></visual></link><frame name="b"><pose>0 0 2 0 0 0</pose></frame>')
+    grid = nodes.get_handle_by_name('/drawing/grid')
+    assert grid.position[2] == pytest.approx(ground_m, abs=0.01)
+
+
 @pytest.mark.parametrize(('places_m', 'part'), [
     ((0.0, 10.0), 0.1), (range(2, 11), 0.25 / math.sqrt(10)), ((0.0, 0.1, 0.2, 0.3, 10.0), 0.01)])
 def test_axes_are_short_where_frames_are_many_or_near(drawing_of, places_m, part):

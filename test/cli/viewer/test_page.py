@@ -60,6 +60,15 @@ def test_name_of_a_mesh_stands_beside_the_box_that_is_drawn_for_it(page_of):
     assert (label.text, label.position.tolist()) == ('<b>?', [0.0, 0.0, 0.5])
 
 
+def test_name_moves_with_its_frame_when_the_file_is_read_again(page_of):
+    sensor = '<sensor name="s" type="imu"><pose>0 0 {} 0 0 0</pose></sensor>'
+    page = page_of(sensor.format(0))
+    page._selected.select(page._posed.tree.frame_ids.index('l/s'))
+    page.show(page_of(sensor.format(0.1))._shown)
+    label = page._server.scene.get_handle_by_name('/names/0')
+    assert (label.text, label.position.tolist()) == ('s', [0.0, 0.0, 0.1])
+
+
 def test_what_is_switched_off_is_not_drawn(page_of):
     page = page_of('<visual name="v"><geometry><box/></geometry></visual>')
     assert all(nodes(page, 'grid', 'visuals/0'))
