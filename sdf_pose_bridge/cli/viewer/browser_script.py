@@ -27,7 +27,7 @@ _STYLE = """<style>
   p > label wbr {display: none}
   /* A section is folded while its content, which is not its last element, is hidden. */
   .mantine-Paper-root:has(> [aria-hidden=true]:not(:last-child)) {border-width: 1px 0 0}
-  .mantine-Paper-root > [aria-hidden=true] + :last-child > div {padding: 0 !important}
+  .mantine-Paper-root > [aria-hidden=true] + :last-child > div {padding: 4px !important}
   /* Labels elsewhere stand for the buttons behind this element: HTML cannot do more. */
   div:has(> .as-labels) ~ * {display: none}
   .axis-cross {position: absolute; right: 8px; top: 8px; width: 60px; stroke-width: 3}

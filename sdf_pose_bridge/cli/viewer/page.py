@@ -139,6 +139,7 @@ class Page:
         with self._server.atomic():
             for action in actions:
                 action()
+            next(self._joints.moves, None)
             if self._positions != self._joints.positions:
                 self._move()
                 self._drawing.place(self._posed)

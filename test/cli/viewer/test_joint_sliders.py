@@ -11,6 +11,7 @@ pytest.importorskip('viser', reason='needs viser')
 import viser
 
 from sdf_pose_bridge.cli.printing import DEGREES, Units
+from sdf_pose_bridge.cli.viewer import joint_sliders
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointRange, JointSliders, range_of_dof
 from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.scene.loading import load_text
@@ -30,16 +31,15 @@ def joint_range(kind, limit=''):
 @pytest.mark.parametrize(('kind', 'most'), [('revolute', math.pi), ('prismatic', 0.5)])
 @pytest.mark.parametrize('limit', ['', '<limit><lower>-1</lower></limit>'])
 def test_joint_without_both_limits(kind, most, limit):
-    assert joint_range(kind, limit)[1:] == (-most, most)
+    assert joint_range(kind, limit)[1:] == (-most, most, kind == 'revolute')
 
 
 @pytest.mark.parametrize(('lower', 'upper', 'home'), [(-3, -1, -1), (1, 3, 1), (-1, 3, 0)])
 def test_home_is_where_the_limits_allow_it(lower, upper, home):
     limits = joint_range(
         'revolute', f'<limit><lower>{lower}</lower><upper>{upper}</upper></limit>')
-    assert limits[1:] == (lower, upper)
+    assert limits[1:] == (lower, upper, False)
     assert limits.clipped(0.0) == home
-    assert limits.middle == (lower + upper) / 2
 
 
 @pytest.fixture
@@ -54,7 +54,7 @@ def test_all_joints_go_home_and_to_the_middle(gui):
     events = Events()
     joints = JointSliders(gui, ranges, {'m/k': 0.5, 'gone': 1.0}, Units(angle=DEGREES), events)
     assert joints.positions == {'m/j': -1.0, 'm/k': 0.5}
-    buttons, first, second = gui._gui_input_handle_from_uuid.values()
+    buttons, _, first, second = gui._gui_input_handle_from_uuid.values()
     assert (first.label, second.label) == ('j', 'k')
     for value, expected in (('middle', [-2.0, 0.5]), ('home', [-1.0, 0.0])):
         buttons.value = value
@@ -64,3 +64,31 @@ def test_all_joints_go_home_and_to_the_middle(gui):
                 action()
         assert list(joints.positions.values()) == expected
         assert second.value == pytest.approx(math.degrees(expected[1]))
+
+
+def test_each_joint_moves_through_its_range_once(gui, monkeypatch):
+    monkeypatch.setattr(joint_sliders, '_STEP_S', 0.001)
+    ranges = {'m/j': JointRange(False, -3.0, -1.0), 'm/k': JointRange(True, 0.0, 1.0)}
+    events = Events()
+    joints = JointSliders(gui, ranges, {'m/k': 0.5}, Units(), events)
+    _, button, *sliders = gui._gui_input_handle_from_uuid.values()
+    button.value = True
+    (action,) = events.asked(20.0)
+    action()
+    values = [[slider.value for slider in sliders] for _ in joints.moves]
+    first, second = zip(*values, strict=True)
+    assert (min(first), max(first), first[-1]) == (-3.0, -1.0, -1.0)
+    assert (min(second), max(second), second[-1]) == (0.0, 1.0, 0.5)
+    assert not any(j != -1.0 and k != 0.5 for j, k in values)
+
+
+@pytest.mark.parametrize('end', [math.pi, -math.pi])
+def test_wheel_goes_round(gui, end):
+    joints = JointSliders(
+        gui, {'m/j': joint_range('revolute')}, {}, Units(), Events())
+    (slider,) = joints._sliders
+    slider.value = end
+    joints._take_position('m/j', slider, 1.0, is_turn=True)
+    assert joints.positions['m/j'] == slider.value == pytest.approx(-end, abs=0.01)
+    joints._take_position('m/j', slider, 1.0, is_turn=True)
+    assert slider.value == pytest.approx(-end, abs=0.01)

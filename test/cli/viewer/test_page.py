@@ -85,6 +85,13 @@ def test_drawing_shares_no_name_with_the_one_before(page_of):
     assert page._server.scene.get_handle_by_name(before.name) is None
 
 
+def test_joints_move_on_while_the_page_acts(page_of):
+    page = page_of('')
+    page._joints.moves = moves = iter([None, None])
+    page.act(0.0)
+    assert list(moves) == [None]
+
+
 def test_number_that_is_typed_while_a_file_is_read_stays(page_of):
     page = page_of('', set_pose=lambda scene, *_, **__: PoseChange(
         FileChange(scene.path, b'', 'utf-8', 0, 0, b''), 1, scene))
