@@ -18,13 +18,14 @@ from typing import NamedTuple
 
 _TITLE = '<title>Viser</title>'
 _STYLE = """<style>
-  /* A joint has one line; of a long name, the end is seen. */
-  .mantine-Flex-root:has(> div .mantine-Slider-root) > div:first-child {width: 9em !important}
+  /* A control is below its label if the label is long. */
+  .mantine-Flex-root:has(> div > p > label) {flex-wrap: wrap}
+  .mantine-Flex-root > div:has(> p > label) {width: auto !important; min-width: 5.5em}
+  .mantine-Flex-root > div:has(> p > label) + div {flex: 1 1 8em}
+  .mantine-Flex-root > div:has(> p > label) + div:has(.mantine-Slider-root) {flex-basis: 10em}
+  /* The limits are centered at the ends. */
+  .mantine-Slider-root {margin-left: 1em}
   .mantine-Flex-root > .mantine-NumberInput-root {width: 4.2rem !important}
-  p.mantine-Text-root:has(> label) {white-space: nowrap; overflow: hidden; text-overflow: ellipsis;
-    direction: rtl; text-align: left}
-  p > label {direction: ltr; unicode-bidi: isolate}
-  p > label wbr {display: none}
   /* A section is folded while its content, which is not its last element, is hidden. */
   .mantine-Paper-root:has(> [aria-hidden=true]:not(:last-child)) {border-width: 1px 0 0}
   .mantine-Paper-root > [aria-hidden=true] + :last-child > div {padding: 4px !important}

@@ -32,8 +32,9 @@ from sdf_pose_bridge.names import printable
 
 _ADDRESS = '127.0.0.1'
 _NAMES = (_ADDRESS, 'localhost')
-_PANEL_WIDTH, _LEAST_WIDTH = 360, 720
-"""The width of the panel, and of a window in which it is open at first, in pixels."""
+_PANEL_WIDTH, _PANEL_PART, _LEAST_WIDTH = 360, 0.35, 720
+"""The largest width of the panel in pixels and as a part of a window, and the least width of a
+window in which it is open at first."""
 _NOT_KNOWN = (
     f'viser {viser.__version__} does not work as the releases that this is tested with '
     f'({LIBRARIES[0]})')
@@ -88,16 +89,20 @@ def server_for_its_owner(port: int, title: str) -> PageServer:
     with _requests_need(secret, title):
         server = viser.ViserServer(_ADDRESS, port, verbose=False)
     server.gui.configure_theme(show_logo=False, show_share_button=False)
-    # Beside the scene, not on it; in a small window, it is folded.
+    # Beside the scene, not on it.
     server.gui.main_panel.dock_right()
-    server.gui.main_panel.set_width(_PANEL_WIDTH)
-    server.on_client_connect(
-        lambda client: client.gui.main_panel.minimize()
-        if client.camera.image_width < _LEAST_WIDTH else None)
+    server.on_client_connect(_fit_panel)
     # The environment map of viser makes every color pale.
     server.scene.configure_environment_map(None)
     server.scene.configure_default_lights(enabled=False)
     return PageServer(server, f'http://{_ADDRESS}:{server.get_port()}/{secret}/')
+
+
+def _fit_panel(client: viser.ClientHandle) -> None:
+    panel, width = client.gui.main_panel, client.camera.image_width
+    panel.set_width(min(_PANEL_WIDTH, int(_PANEL_PART * width)))
+    if width < _LEAST_WIDTH:
+        panel.minimize()
 
 
 def id_of_button(button: viser.GuiButtonHandle) -> str:
