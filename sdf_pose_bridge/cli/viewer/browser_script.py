@@ -10,11 +10,7 @@ developer tools of three.js find it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 import html
-import json
-from pathlib import Path
-from typing import NamedTuple
 
 _TITLE = '<title>Viser</title>'
 _STYLE = """<style>
@@ -29,15 +25,14 @@ _STYLE = """<style>
   /* A section is folded while its content, which is not its last element, is hidden. */
   .mantine-Paper-root:has(> [aria-hidden=true]:not(:last-child)) {border-width: 1px 0 0}
   .mantine-Paper-root > [aria-hidden=true] + :last-child > div {padding: 4px !important}
-  /* Labels elsewhere stand for the buttons behind this element: HTML cannot do more. */
-  div:has(> .as-labels) ~ * {display: none}
+  div:has(> .asked), div:has(> .asked) + * {display: none}
   .axis-cross {position: absolute; right: 8px; top: 8px; width: 60px; stroke-width: 3}
   .strip {position: fixed; left: 8px; bottom: 8px; z-index: 8; padding: 4px 10px; font: 13px
     sans-serif; background: #fffe; color: #212529; border: 1px solid #adb5bd; border-radius: 4px}
   .strip:empty {display: none}
   .strip label {display: inline-block; padding: 3px 10px; margin: 4px 6px 2px 0; cursor: pointer;
     border: 1px solid #868e96; border-radius: 4px; font-weight: normal}
-  .strip label.primary {background: #228be6; border-color: #228be6; color: #fff}
+  .strip label[data-ask^=write] {background: #228be6; border-color: #228be6; color: #fff}
 </style>"""
 _SCRIPT = """<script>(() => {
   // viser sends a change at most every 50 ms, and of several in between only the last one: when
@@ -164,53 +159,35 @@ _SCRIPT = """<script>(() => {
     const path = document.querySelector('[data-path]')?.dataset.path;
     if (path && target.textContent === document.title) target.title = path;
   });
-  addEventListener('click', event => {
-    const text = event.target.closest?.('[data-copy]')?.dataset.copy;
-    if (text) navigator.clipboard.writeText(text).then(() => {
-      event.target.textContent = 'copied';
-      setTimeout(() => { event.target.textContent = 'copy'; }, 1000);
+  addEventListener('click', ({target}) => {
+    const {copy, ask} = target.closest?.('[data-copy], [data-ask]')?.dataset ?? {};
+    if (copy) navigator.clipboard.writeText(copy).then(() => {
+      target.textContent = 'copied';
+      setTimeout(() => { target.textContent = 'copy'; }, 1000);
     });
+    if (!ask) return;
+    // It is typed into a control that is not seen, with a number, as the same text is no change.
+    const input = document.querySelector('div:has(> .asked) + * input');
+    Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set.call(
+      input, `${performance.now()} ${ask}`);
+    input.dispatchEvent(new Event('input', {bubbles: true}));
   });
 })();</script>"""
-
-
-class NamesInScene(NamedTuple):
-    """The names that are shown at the pointer."""
-
-    frames: Sequence[str]
-    """Those of all axes, in their order."""
-    bodies: Sequence[Sequence[str]]
-    """Those of the copies of each surface, in the order of the nodes."""
 
 
 def page_with_script(page: str, title: str, names: str = '') -> str:
     """
     Add the style and the script to a page of viser.
 
-    :param names: an element with the names in the scene; see :func:`html_of_names`.
+    :param names: an element with the names in the scene.
     """
     added = f'<title>{html.escape(title)}</title>{names}{_STYLE}{_SCRIPT}'
     return page.replace(_TITLE, added, 1)
 
 
-def html_of_names(names: NamesInScene) -> str:
-    """Return an element that is not seen, from which the script has the names in the scene."""
-    return f'<meta data-names="{html.escape(json.dumps(names._asdict()))}">'
-
-
-def html_of_opacity(opacity: float) -> str:
-    """Return an element that is not seen, from which the script has the opacity of textures."""
-    return f'<meta data-opacity="{opacity}">'
-
-
-def html_of_path(path: str) -> str:
-    """Return an element that is not seen, from which the script has the path of the file."""
-    return f'<meta data-path="{html.escape(str(Path(path).resolve()))}">'
-
-
-def html_of_strip(content: str) -> str:
-    """Return an element that is not seen, whose content the script shows over the scene."""
-    return f'<meta data-strip="{html.escape(content)}">'
+def html_of_data(name: str, value: str) -> str:
+    """Return an element that is not seen, from which the script has a value."""
+    return f'<meta data-{name}="{html.escape(value)}">'
 
 
 def html_of_copy_button(text: str) -> str:

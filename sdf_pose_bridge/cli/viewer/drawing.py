@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import islice
+import json
 import math
 from typing import Any
 
@@ -14,7 +15,6 @@ from numpy.typing import NDArray
 import viser
 
 from sdf_pose_bridge.cli.printing import kind_labels_of, Unit
-from sdf_pose_bridge.cli.viewer.browser_script import NamesInScene
 from sdf_pose_bridge.cli.viewer.labels import labels_from_names
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene, ShownScene
@@ -96,10 +96,11 @@ class Drawing:
         self._surfaces, not_drawn = surfaces_from_scene(scene, bodies, extent_m, meshes)
         self.reasons = lines_from_not_drawn(not_drawn)
         """Lines that say which visuals and collisions cannot be drawn."""
-        self.names = NamesInScene(
-            [printable(tree.frame_ids[frame]) for frame in self.frames],
-            [_names_of_bodies(posed, surface) for surface in self._surfaces])
-        """The names that the page shows at the pointer."""
+        self.names = json.dumps({
+            'frames': [printable(tree.frame_ids[frame]) for frame in self.frames],
+            'bodies': [_names_of_bodies(posed, surface) for surface in self._surfaces]})
+        """The names that the page shows at the pointer: those of all axes, and of the copies of
+        each surface, in the order of the nodes."""
         self._missing = _names_of_missing_meshes(scene, self._surfaces)
         self._bodies = np.array(
             [element for surface in self._surfaces for element in surface.elements], int)

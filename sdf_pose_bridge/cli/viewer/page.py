@@ -13,13 +13,7 @@ import numpy as np
 import viser
 
 from sdf_pose_bridge.cli.printing import DEGREES, RADIANS, Units
-from sdf_pose_bridge.cli.viewer.browser_script import (
-    html_of_names,
-    html_of_opacity,
-    html_of_path,
-    html_of_strip,
-    page_with_script,
-)
+from sdf_pose_bridge.cli.viewer.browser_script import html_of_data, page_with_script
 from sdf_pose_bridge.cli.viewer.drawing import Drawing, GROUPS, HIDDEN_AT_FIRST
 from sdf_pose_bridge.cli.viewer.frame_texts import html_of_lines, html_of_place, html_of_reasons
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
@@ -70,7 +64,10 @@ class Page:
         gui.set_panel_label(title)
         self._strip, self._reasons, self._names, self._textures = (
             gui.add_html('') for _ in range(4))
-        gui.add_html(html_of_path(shown.loaded.path))
+        gui.add_html(html_of_data('path', str(Path(shown.loaded.path).resolve())))
+        gui.add_html('<div class="asked"></div>')
+        asked = gui.add_text('asked', '')
+        self._events.when(asked.on_update, lambda: self._answer(asked.value.split(maxsplit=1)[1]))
         self._errors: Iterable[str] = ()
         self._edit = None if set_pose is None else PoseEdit(
             self._server, set_pose, self._events, self._describe)
@@ -102,7 +99,7 @@ class Page:
         """Return the scene, without controls, as a page that needs no network."""
         page: str = self._server.get_scene_serializer().as_html()
         return page_with_script(
-            page, printable(title), html_of_names(self._drawing.names))
+            page, printable(title), html_of_data('names', self._drawing.names))
 
     def close(self) -> None:
         """End the server."""
@@ -159,7 +156,7 @@ class Page:
             self._hidden, self._opacity.value,
             lambda frame: self._events.put(partial(self._selected.select, frame)))
         self._reasons.content = html_of_reasons(drawing.reasons)
-        self._names.content = html_of_names(drawing.names)
+        self._names.content = html_of_data('names', drawing.names)
         return drawing
 
     def _redraw(self) -> None:
@@ -199,8 +196,8 @@ class Page:
         self._drawing.mark(
             tree, frame, pose, None if reference == ROOT_IS_PARENT else origin, self._units.length)
         self._selected.describe(self._posed, pose, self._units)
-        self._strip.content = html_of_strip(
-            f'{html_of_lines("errors", self._errors)}{place}'
+        self._strip.content = html_of_data(
+            'strip', f'{html_of_lines("errors", self._errors)}{place}'
             f'{"" if self._edit is None else self._edit.html}')
 
     def _show_names(self) -> None:
@@ -217,6 +214,13 @@ class Page:
         self._camera = camera
 
     # Controls
+
+    def _answer(self, ask: str) -> None:
+        """Do what was clicked outside of the controls."""
+        if ask.isdecimal():
+            self._selected.select(int(ask))
+        elif self._edit is not None and ask in self._edit.actions:
+            self._edit.actions[ask]()
 
     def _add_switches(self) -> viser.GuiFolderHandle:
         """Add the folders "Show" and "Models"."""
@@ -279,7 +283,7 @@ class Page:
 
     def _change_opacity(self) -> None:
         self._drawing.set_opacity(self._opacity.value)
-        self._textures.content = html_of_opacity(self._opacity.value)
+        self._textures.content = html_of_data('opacity', str(self._opacity.value))
 
     def _look(self, name: str) -> None:
         """Turn the cameras to a view; "zoom to" shows the selected frame, link or model."""

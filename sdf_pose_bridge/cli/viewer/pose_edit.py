@@ -12,7 +12,7 @@ import viser
 
 from sdf_pose_bridge.cli.printing import POSE_LABELS, Units
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped, html_of_difference, html_of_lines
-from sdf_pose_bridge.cli.viewer.server import Events, id_of_button
+from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.geometry.formats import POSE_FORMATS
 from sdf_pose_bridge.geometry.poses import Pose, pose_product, relative_pose
@@ -73,17 +73,10 @@ class PoseEdit:
         with gui.add_folder('Edit'):
             self._numbers = [gui.add_number(label, 0.0, disabled=True) for label in POSE_LABELS]
             self._steps = gui.add_dropdown('steps', ('',))
-            gui.add_html('<div class="as-labels"></div>')
-            write, cancel, undo = self._write, self._cancel, self._undo = [
-                gui.add_button(label, visible=False)
-                for label in ('write to file', 'cancel', 'undo the last write')]
         events.when(self._gizmo.on_update, self._take_gizmo)
         for number in self._numbers:
             events.when(number.on_update, self._take_numbers)
         events.when(self._steps.on_update, self._set_steps)
-        events.when(write.on_click, self._write_pose)
-        events.when(cancel.on_click, self._cancel_edit)
-        events.when(undo.on_click, self._undo_write)
         self._set_units(self._units)
 
     def begin(self, frame: EditedFrame | None, units: Units) -> None:
@@ -109,8 +102,18 @@ class PoseEdit:
         self._show()
 
     @property
+    def actions(self) -> dict[str, Callable[[], object]]:
+        """The actions that are possible now, by the labels to click."""
+        actions: dict[str, Callable[[], object]] = {}
+        if self.pose is not None:
+            actions |= {'write to file': self._write_pose, 'cancel': self._cancel_edit}
+        if self._undone is not None:
+            actions['undo the last write'] = self._undo_write
+        return actions
+
+    @property
     def html(self) -> str:
-        """The new pose beside the one in the file, errors, and labels of the buttons to click."""
+        """The new pose beside the one in the file, errors, and labels to click."""
         if isinstance(self._file, PoseChange):
             text = f'<div>in the file {escaped(str(Path(self._file.file.path).resolve()))}</div>'
         else:
@@ -118,11 +121,7 @@ class PoseEdit:
         if self._frame is not None and self.pose is not None:
             text += html_of_difference(
                 self._frame.pose, self.pose, self._frame.reference, self._units)
-        buttons = (button for button in (self._write, self._cancel, self._undo) if button.visible)
-        labels = (
-            f'<label for="{id_of_button(button)}"'
-            f'{" class=primary" if button is self._write else ""}>{button.label}</label>'
-            for button in buttons)
+        labels = (f'<label data-ask="{label}">{label}</label>' for label in self.actions)
         return f'{text}{html_of_lines("errors", self._errors)}{"".join(labels)}'
 
     def _set_units(self, units: Units) -> None:
@@ -196,28 +195,27 @@ class PoseEdit:
         for number in self._numbers:
             number.disabled = not is_possible
         self._gizmo.visible = is_possible
-        self._write.visible = self._cancel.visible = self.pose is not None
-        self._undo.visible = self._undone is not None
         self._changed()
 
     def _write_pose(self) -> None:
-        if self.pose is not None and self._frame is not None:
-            change = self._change(self.pose, dry_run=False)
-            if isinstance(change, PoseChange):
-                self._undone = change.file.undone
-                self._frame, self.pose = self._frame._replace(pose=self.pose), None
-            else:
-                self._errors = change
-            self._show()
+        assert self.pose is not None
+        assert self._frame is not None
+        change = self._change(self.pose, dry_run=False)
+        if isinstance(change, PoseChange):
+            self._undone = change.file.undone
+            self._frame, self.pose = self._frame._replace(pose=self.pose), None
+        else:
+            self._errors = change
+        self._show()
 
     def _undo_write(self) -> None:
-        if self._undone is not None:
-            try:
-                self._undone.write()
-                self._undone = None
-            except SdfError as error:
-                self._errors = list(map(str, error.errors))
-            self._show()
+        assert self._undone is not None
+        try:
+            self._undone.write()
+            self._undone = None
+        except SdfError as error:
+            self._errors = list(map(str, error.errors))
+        self._show()
 
     def _change(self, pose: Pose, *, dry_run: bool) -> PoseChange | list[str]:
         """Write the pose into the file; return the reason if this is not possible."""

@@ -6,15 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from itertools import islice
-from typing import Any
 
 import viser
 
 from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.viewer.frame_texts import escaped, html_of_frame, rows_of_tree
-from sdf_pose_bridge.cli.viewer.server import Events, id_of_button
+from sdf_pose_bridge.cli.viewer.server import Events
 from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
@@ -41,13 +39,8 @@ class SelectedFrame:
         self, gui: viser.GuiApi, place: viser.GuiFolderHandle, tree: TfTree, events: Events,
         changed: Callable[[], object],
     ) -> None:
-        self._gui, self._events, self._changed = gui, events, changed
-        self._tree, self._frame_id = tree, ''
-        self._row_frames: list[int] = []
-        # The rows are labels of these buttons, which are not shown.
-        self._buttons: list[Any] = []
-        self._folder = gui.add_folder('Frames')
-        with self._folder:
+        self._changed, self._tree, self._frame_id = changed, tree, ''
+        with gui.add_folder('Frames'):
             self._search = gui.add_text('search', '', hint='frames are selected in the scene, too')
             self._rows = gui.add_html('')
         with place:
@@ -79,10 +72,6 @@ class SelectedFrame:
         """List the frames of another tree; the selected frame stays."""
         self._tree = tree
         self._choice.options = (tree.root_frame, *tree.frame_ids[:_MOST_CHOICES])
-        with self._folder:
-            for number in range(len(self._buttons), min(len(tree.frame_ids), MOST_ROWS)):
-                self._buttons.append(self._gui.add_button('select'))
-                self._events.when(self._buttons[-1].on_click, partial(self._select_row, number))
         self._show_rows()
 
     def select(self, frame: int) -> None:
@@ -103,22 +92,16 @@ class SelectedFrame:
             posed.scene, replace(posed.tree, poses=poses), self.frame, self.reference, units)
 
     def _show_rows(self) -> None:
-        rows = list(islice(rows_of_tree(self._tree, self._search.value), len(self._buttons)))
-        self._row_frames = [frame for frame, _, _ in rows]
+        rows = list(islice(rows_of_tree(self._tree, self._search.value), MOST_ROWS))
         ids = self._tree.frame_ids
         content = ''.join(
-            f'<label for="{id_of_button(button)}" style="padding-left:{depth}em"'
+            f'<label data-ask="{frame}" style="padding-left:{depth}em"'
             f'{" class=selected" if ids[frame] == self._frame_id else ""}>'
             f'{escaped(text)}</label>'
-            for button, (frame, depth, text) in zip(self._buttons, rows, strict=False))
+            for frame, depth, text in rows)
         if not self._search.value and len(rows) < len(ids):
             content += f'{len(ids) - len(rows)} more, to be found by the search'
-        self._rows.content = f'{_ROWS_STYLE}<div class="rows as-labels">{content}</div>'
-
-    def _select_row(self, number: int) -> None:
-        # The clicked frame may be gone by now.
-        if number < len(self._row_frames):
-            self.select(self._row_frames[number])
+        self._rows.content = f'{_ROWS_STYLE}<div class="rows">{content}</div>'
 
     def _measure_from_here(self) -> None:
         if self.frame >= 0 and self._frame_id in self._choice.options:

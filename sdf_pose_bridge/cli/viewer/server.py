@@ -105,18 +105,6 @@ def _fit_panel(client: viser.ClientHandle) -> None:
         panel.minimize()
 
 
-def id_of_button(button: viser.GuiButtonHandle) -> str:
-    """
-    Return the id of a button in HTML, so that a label can stand for it.
-
-    :raises CommandError: if the installed viser does not tell it.
-    """
-    try:
-        return str(button._impl.uuid)  # noqa: SLF001  # there is no public name for it
-    except AttributeError:
-        raise CommandError(_NOT_KNOWN) from None
-
-
 def reason_to_refuse(request: Request, secret: str) -> str:
     """
     Judge a request for a file, or for a connection.

@@ -3,19 +3,17 @@
 """What is put into a page; integration/test_view_page.py lets a browser run it."""
 
 import html
-import json
 import re
 
-from sdf_pose_bridge.cli.viewer.browser_script import html_of_names, NamesInScene, page_with_script
+from sdf_pose_bridge.cli.viewer.browser_script import html_of_data, page_with_script
 
 HOSTILE = '"><script>'
 
 
-def test_names_are_escaped():
-    text = html_of_names(NamesInScene([HOSTILE, 'b'], [[HOSTILE], []]))
-    (names,) = re.fullmatch('<meta data-names="([^"<>]*)">', text).groups()
-    assert json.loads(html.unescape(names)) == {
-        'frames': [HOSTILE, 'b'], 'bodies': [[HOSTILE], []]}
+def test_data_are_escaped():
+    (value,) = re.fullmatch(
+        '<meta data-names="([^"<>]*)">', html_of_data('names', HOSTILE)).groups()
+    assert html.unescape(value) == HOSTILE
 
 
 def test_title_is_escaped_and_the_rest_stays():

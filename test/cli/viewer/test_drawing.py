@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The names in a drawing, and the size of its axes."""
 
+import json
 import math
 
 import numpy as np
@@ -48,7 +49,8 @@ def test_names_of_bodies_are_in_the_order_of_the_nodes(drawing_of):
     drawing, _ = drawing_of(
         f'<link name="a"><visual name="v">{BOX}</visual><collision name="c">{BOX}</collision>'
         f'</link><link name="b"><visual name="v">{BOX}</visual></link>')
-    assert drawing.names.bodies == [['a, visual v', 'b, visual v'], ['a, collision c']]
+    assert json.loads(drawing.names)['bodies'] == [
+        ['a, visual v', 'b, visual v'], ['a, collision c']]
     assert [copies.name for copies, _ in drawing._copies] == [
         '/drawing/visuals/0', '/drawing/collisions/1']
 

@@ -10,7 +10,7 @@ from websockets.datastructures import Headers
 from websockets.http11 import Request
 
 from sdf_pose_bridge.cli.printing import CommandError
-from sdf_pose_bridge.cli.viewer.server import id_of_button, reason_to_refuse, server_for_its_owner
+from sdf_pose_bridge.cli.viewer.server import reason_to_refuse, server_for_its_owner
 
 HERE = 'http://127.0.0.1:8080'
 
@@ -57,11 +57,6 @@ def test_a_server_that_is_started_in_another_way_is_an_error(monkeypatch):
     monkeypatch.setattr('viser.ViserServer', lambda *_, **__: None)
     with pytest.raises(CommandError, match='does not work as the releases'):
         server_for_its_owner(0, 'a.sdf')
-
-
-def test_button_without_an_id_is_an_error():
-    with pytest.raises(CommandError, match='viser>='):
-        id_of_button(object())
 
 
 def test_each_server_has_its_own_secret():
