@@ -221,12 +221,13 @@ def strip_label(text):
 
 
 def drag(page):
-    """Drag the gizmo of the frame with the hostile name upwards."""
+    """Drag the gizmo of the frame with the hostile name upwards, 11 pixels beside its arrow."""
     select(page, HOSTILE)
     # Nothing says when the gizmo is drawn; until then there is nothing to drag.
     page.run('new Promise(drawn => requestAnimationFrame(() => requestIdleCallback(drawn)))')
-    page.mouse(*(point_on_screen(page, (1.0, 0.0, 2.4 * AXES_M + height)) for height in (
-        0.0, 0.02, 0.05, 0.08, 0.1)))
+    points = (point_on_screen(page, (1.0, 0.0, height)) for height in (0.0, 0.02, 0.05, 0.08, 0.1))
+    # The arrow is 8 pixels further right there.
+    page.mouse(*((x + 8 - 11, y - 70) for x, y in points))
     z = "document.querySelector('.difference')?.rows[3].cells[2].innerText"
     page.wait_for(f'Math.abs({z} - 0.1) < 0.02')
     for label in ('write to file', 'cancel'):
@@ -271,6 +272,20 @@ def test_name_of_a_frame_is_shown_at_the_pointer(page):
 def test_name_of_a_body_is_shown_where_the_pointer_rests(page):
     wait_for_name_at(page, *point_on_screen(page, (0.1, -0.1, 0.09)), 'arm/base, visual v')
     assert name_at(page, 5, 5) == ''
+
+
+def test_what_moves_is_drawn_and_named_before_it_is_written(sized_page, shown):
+    select(sized_page, 'arm')
+    enter(sized_page, control('x [m]'), '0.5')
+    sized_page.wait_for(is_in_window("document.querySelector('.strip .moved')"))
+    assert '"arm/base"' in sized_page.run("document.querySelector('.moved').innerText")
+    wait_for_name_at(
+        sized_page, *point_on_screen(sized_page, (0.6, -0.1, 0.09)), 'arm/base, visual v')
+    assert shown.file.read_text() == TEXT
+    sized_page.run(f"{strip_label('cancel')}.click()")
+    wait_for_name_at(
+        sized_page, *point_on_screen(sized_page, (0.1, -0.1, 0.09)), 'arm/base, visual v')
+    assert sized_page.run("document.querySelector('.moved')") is None
 
 
 def test_name_of_a_body_is_that_of_the_last_drawing(page, shown):

@@ -9,17 +9,20 @@ import html
 import shlex
 from xml.sax.saxutils import quoteattr
 
+import numpy as np
+
 from sdf_pose_bridge.cli.printing import kind_labels_of, POSE_LABELS, Units
 from sdf_pose_bridge.cli.viewer.browser_script import html_of_copy_button
 from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.poses import Pose, relative_pose
-from sdf_pose_bridge.names import printable, SEPARATOR
+from sdf_pose_bridge.names import printable, quoted_names, SEPARATOR
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
 _ERROR_STYLE = ('color:#e03131;white-space:pre-wrap;overflow-wrap:anywhere;margin:0 1em;'
                 'font-size:0.85em;max-height:30vh;overflow-y:auto')
+_MOST_MOVED = 5
 _COPIED = 'display:block;user-select:all;white-space:pre-wrap;overflow-wrap:anywhere;'
 
 
@@ -104,6 +107,14 @@ def html_of_place(frame_id: str, reference_id: str, pose: Pose, units: Units) ->
             f'{units.length.name}, rpy {" ".join(texts[3:])} {units.angle.name}')
 
 
+def html_of_moved(old: TfTree, new: TfTree, frame: int) -> str:
+    """Name the other frames that are elsewhere in a tree of the same frames; empty for none."""
+    is_moved = (np.abs(new.poses - old.poses) > 1e-9).any(axis=1)
+    names = [old.frame_ids[index] for index in np.flatnonzero(is_moved) if index != frame]
+    text = escaped(quoted_names(names, _MOST_MOVED))
+    return f'<div class="moved">moves with it: {text}</div>' if names else ''
+
+
 def html_of_difference(old: Pose, new: Pose, reference: Pose, units: Units) -> str:
     """
     Write the current and the new pose of a frame and their difference side by side.
@@ -117,7 +128,7 @@ def html_of_difference(old: Pose, new: Pose, reference: Pose, units: Units) -> s
         f'<td>{float(after) - float(before):+.{unit.digits}f}</td></tr>'
         for label, unit, before, after in zip(
             POSE_LABELS, units.of_pose, *columns, strict=True))
-    return (f'<table class="difference" cellpadding="3" '
+    return (f'<table class="difference" cellpadding="1" '
             f'style="text-align:right">'
             f'<tr><td></td><td>old</td><td>new</td><td>change</td></tr>{rows}</table>')
 

@@ -15,7 +15,12 @@ import viser
 from sdf_pose_bridge.cli.printing import DEGREES, RADIANS, Units
 from sdf_pose_bridge.cli.viewer.browser_script import html_of_data, page_with_script
 from sdf_pose_bridge.cli.viewer.drawing import Drawing, GROUPS, HIDDEN_AT_FIRST
-from sdf_pose_bridge.cli.viewer.frame_texts import html_of_lines, html_of_place, html_of_reasons
+from sdf_pose_bridge.cli.viewer.frame_texts import (
+    html_of_lines,
+    html_of_moved,
+    html_of_place,
+    html_of_reasons,
+)
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
 from sdf_pose_bridge.cli.viewer.labels import Labels
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
@@ -139,8 +144,10 @@ class Page:
             next(self._joints.moves, None)
             if self._positions != self._joints.positions:
                 self._move()
-                self._drawing.place(self._posed)
                 self._show_frame()
+            # While a gizmo moves, there is no time to read a file.
+            if not actions and self._edit is not None:
+                self._edit.look_ahead()
             if actions:
                 self._show_names()
 
@@ -155,6 +162,7 @@ class Page:
             self._server.scene, next(self._node_names), self._meshes, self._shown, self._posed,
             self._hidden, self._opacity.value,
             lambda frame: self._events.put(partial(self._selected.select, frame)))
+        self._drawn = self._posed
         self._reasons.content = html_of_reasons(drawing.reasons)
         self._names.content = html_of_data('names', drawing.names)
         return drawing
@@ -179,7 +187,6 @@ class Page:
         return EditedFrame(
             self._shown.loaded, int(tree.elements[frame]), self._posed.pose_of(frame),
             self._posed.pose_of(reference), tree.frame_ids[frame],
-            2.5 * self._drawing.axes_length_m,
             lambda scene, element: scene_at_positions(scene, positions).pose_of(element))
 
     def _describe(self) -> None:
@@ -187,6 +194,11 @@ class Page:
         frame, pose = self._selected.frame, None if self._edit is None else self._edit.pose
         if frame >= 0 and pose is None:
             pose = self._posed.pose_of(frame)
+        ahead = None if self._edit is None else self._edit.scene_ahead
+        drawn = self._posed if ahead is None else self._shown.at(self._positions, ahead)
+        if drawn is not self._drawn:
+            self._drawing.place(drawn)
+            self._drawn = drawn
         tree, reference = self._posed.tree, self._selected.reference
         origin, place = self._posed.pose_of(reference), ''
         if pose is not None:
@@ -194,15 +206,17 @@ class Page:
                 tree.frame_ids[frame], (*tree.frame_ids, tree.root_frame)[reference],
                 relative_pose(origin, pose), self._units)
         self._drawing.mark(
-            tree, frame, pose, None if reference == ROOT_IS_PARENT else origin, self._units.length)
-        self._selected.describe(self._posed, pose, self._units)
+            drawn.tree, frame, pose, None if reference == ROOT_IS_PARENT else origin,
+            self._units.length)
+        self._selected.describe(drawn, pose, self._units)
         self._strip.content = html_of_data(
             'strip', f'{html_of_lines("errors", self._errors)}{place}'
+            f'{html_of_moved(tree, drawn.tree, frame)}'
             f'{"" if self._edit is None else self._edit.html}')
 
     def _show_names(self) -> None:
         self._labels.show(self._drawing.texts(
-            self._posed, self._selected.frame, None if self._edit is None else self._edit.pose,
+            self._drawn, self._selected.frame, None if self._edit is None else self._edit.pose,
             self._camera.position, self._camera.look_at))
 
     def _add_client(self, client: viser.ClientHandle) -> None:

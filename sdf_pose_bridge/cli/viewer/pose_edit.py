@@ -41,8 +41,6 @@ class EditedFrame(NamedTuple):
     reference: Pose
     """The pose, in the root frame, of the frame relative to which numbers are."""
     name: str
-    gizmo_m: float
-    """The size of the gizmo."""
     measured: Callable[[Scene, int], Pose]
     """Returns the pose of an element of a scene in the root frame."""
 
@@ -67,8 +65,11 @@ class PoseEdit:
         self._units, self._shown = Units(), [0.0] * 6
         self.pose: Pose | None = None
         """The new pose in the root frame; None until something is changed."""
+        self._ahead: PoseChange | list[str] = []
+        self._looked_at: Pose | None = None
+        # In pixels: with lines of this width, 24 of them react to the pointer.
         self._gizmo = server.scene.add_transform_controls(
-            '/gizmo', depth_test=False, visible=False)
+            '/gizmo', 110.0, line_width=6.0, fixed=True, depth_test=False, visible=False)
         gui = server.gui
         with gui.add_folder('Edit'):
             self._numbers = [gui.add_number(label, 0.0, disabled=True) for label in POSE_LABELS]
@@ -87,6 +88,7 @@ class PoseEdit:
         elsewhere.
         """
         before, self._frame = self._frame, frame
+        self._ahead, self._looked_at = [], None
         if units != self._units:
             self._set_units(units)
         is_same = frame is not None and before is not None and (
@@ -100,6 +102,18 @@ class PoseEdit:
         self._place_gizmo()
         self._show_numbers()
         self._show()
+
+    def look_ahead(self) -> None:
+        """Find the scene with the new pose, unless it is known."""
+        if self.pose not in (None, self._looked_at):
+            self._looked_at = self.pose
+            self._ahead = self._change(self.pose, dry_run=True)
+            self._show()
+
+    @property
+    def scene_ahead(self) -> Scene | None:
+        """The scene as the file would give it, or gives it by now; None if nothing is changed."""
+        return self._ahead.scene if isinstance(self._ahead, PoseChange) else None
 
     @property
     def actions(self) -> dict[str, Callable[[], object]]:
@@ -122,7 +136,8 @@ class PoseEdit:
             text += html_of_difference(
                 self._frame.pose, self.pose, self._frame.reference, self._units)
         labels = (f'<label data-ask="{label}">{label}</label>' for label in self.actions)
-        return f'{text}{html_of_lines("errors", self._errors)}{"".join(labels)}'
+        errors = [*self._errors, *(self._ahead if isinstance(self._ahead, list) else ())]
+        return f'{text}{html_of_lines("errors", errors)}{"".join(labels)}'
 
     def _set_units(self, units: Units) -> None:
         self._units = units
@@ -173,12 +188,13 @@ class PoseEdit:
 
     def _take(self, pose: Pose | None, doubts: Iterable[str] = ()) -> None:
         self.pose, self._errors = pose, doubts
+        if pose is None:
+            self._ahead, self._looked_at = [], None
         self._show()
 
     def _place_gizmo(self) -> None:
         if self._frame is not None:
             pose = self.pose or self._frame.pose
-            self._gizmo.scale = self._frame.gizmo_m
             self._gizmo.position, self._gizmo.wxyz = pose[:3], (pose.qw, *pose[3:6])
 
     def _show_numbers(self) -> None:

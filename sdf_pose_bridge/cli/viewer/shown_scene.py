@@ -79,7 +79,11 @@ class ShownScene:
             np.where(is_end, -1, self.loaded.parents)) == element
         return inside
 
-    def at(self, positions: Mapping[str, float]) -> PosedScene:
-        """Return the scene with its joints at positions, in radians or metres."""
-        scene = scene_at_positions(self.loaded, positions)
+    def at(self, positions: Mapping[str, float], scene: Scene | None = None) -> PosedScene:
+        """
+        Return the scene with its joints at positions, in radians or metres.
+
+        :param scene: the same scene with other poses.
+        """
+        scene = scene_at_positions(scene or self.loaded, positions)
         return PosedScene(scene, tf_tree_from_scene(scene, self._options))

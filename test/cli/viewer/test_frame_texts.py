@@ -12,6 +12,7 @@ from sdf_pose_bridge.cli.printing import Units
 from sdf_pose_bridge.cli.viewer.frame_texts import (
     html_of_difference,
     html_of_frame,
+    html_of_moved,
     html_of_place,
     html_of_reasons,
     rows_of_tree,
@@ -67,6 +68,16 @@ def test_arguments_of_static_transform_publisher(described):
     assert dict(zip(words[::2], words[1::2], strict=True)) == {
         '--x': '0.5', '--y': '0.0', '--z': '0.0', '--qx': '0.0', '--qy': '0.0', '--qz': '0.0',
         '--qw': '1.0', '--frame-id': 'm/l', '--child-frame-id': 'm/f'}
+
+
+def test_frames_that_move_with_another_are_named(scene):
+    old = tf_tree_from_scene(scene)
+    frame = old.frame_ids.index('m')
+    new = tf_tree_from_scene(load_text(TEXT.replace('<pose>1 2', '<pose>9 2').encode(), 'a.sdf'))
+    assert html_of_moved(old, new, frame) == (
+        '<div class="moved">moves with it: &quot;m/l&quot;, &quot;m/l/s&quot;, &quot;m/f&quot;, '
+        '&quot;m/l/s_optical&quot;</div>')
+    assert html_of_moved(old, old, frame) == ''
 
 
 def test_place_of_a_frame_is_one_line_of_text():

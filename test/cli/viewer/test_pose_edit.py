@@ -46,7 +46,7 @@ def written():
 def edited(name, x=0.0):
     element = [each.rpartition('::')[2] for each in SCENE.names].index(name)
     return EditedFrame(
-        SCENE, element, POSE, Pose(x=x), name, 1.0, lambda scene, element: POSE)
+        SCENE, element, POSE, Pose(x=x), name, lambda scene, element: POSE)
 
 
 def drag(edit, z):
@@ -114,6 +114,29 @@ def test_new_pose_stays_while_the_frame_does_not_move(written):
     assert edit.pose == Pose(z=1.0)
     edit.begin(edited('free')._replace(pose=Pose()), Units())
     assert edit.pose is None
+
+
+def test_scene_with_a_new_pose_is_found_until_it_is_cancelled(written):
+    poses, edit = written
+    edit.begin(edited('free'), Units())
+    edit.look_ahead()
+    assert edit.scene_ahead is None
+    drag(edit, 1.0)
+    edit.look_ahead()
+    drag(edit, 2.0)
+    assert (edit.scene_ahead, poses) == (SCENE, [])
+    edit._cancel_edit()
+    assert edit.scene_ahead is None
+
+
+def test_pose_that_cannot_be_written_is_an_error_before_it_is(written):
+    _, edit = written
+    edit.begin(edited('free'), Units())
+    drag(edit, 1.0)
+    edit._frame = edited('fixed')
+    edit.look_ahead()
+    assert edit.scene_ahead is None
+    assert 'class="errors"' in edit.html
 
 
 def test_what_is_written_is_the_old_pose_then(written):
