@@ -9,14 +9,12 @@ The package against libsdformat: a fixed share of the random scenes, and the exa
 from pathlib import Path
 from random import Random
 
-import pytest
-
-pytest.importorskip('hypothesis', reason='needs hypothesis')
 from differential.batches import compare_scenes, write_scene
 from differential.comparison import difference_between, own_answer
 from differential.reference import Answer, built_reference, CRASH, ReferenceMissingError
 from differential.scene_chains import FAMILIES, text_of
 from differential.scene_parts import Feature, features_of_release
+import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = sorted((ROOT / 'examples').rglob('*.sdf'))

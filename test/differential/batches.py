@@ -8,11 +8,10 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from random import Random
 import shutil
 import subprocess
 import tempfile
-
-from hypothesis import given, HealthCheck, Phase, seed, settings
 
 from differential.comparison import (
     Difference,
@@ -21,8 +20,8 @@ from differential.comparison import (
     own_answer,
 )
 from differential.reference import Answer, Reference
+from differential.scene_builder import random_scene
 from differential.scene_parts import Feature, SCENE, SceneFiles
-from differential.scene_strategy import scenes
 from differential.scene_values import ODD_VALUES
 
 BATCH = 200
@@ -56,28 +55,6 @@ class Batch:
     folder: Path
     process: subprocess.Popen[str]
     own: list[Answer | None]
-
-
-def drawn_scenes(count: int, number: int, features: frozenset[Feature]) -> list[SceneFiles]:
-    """
-    Draw scenes.
-
-    :param count: how many.
-    :param number: seed; the same one gives the same scenes in runs that draw the same before.
-    :param features: what they may hold.
-    :return: the scenes.
-    """
-    drawn: list[SceneFiles] = []
-
-    @seed(number)
-    @settings(max_examples=count, database=None, deadline=None, phases=[Phase.generate],
-              suppress_health_check=list(HealthCheck))
-    @given(scenes(features))
-    def collect(scene: SceneFiles) -> None:
-        drawn.append(scene)
-
-    collect()
-    return drawn[:count]
 
 
 def write_scene(files: dict[str, str], folder: Path, name: str) -> Path:
@@ -116,7 +93,8 @@ def compare_scenes(reference: Reference, count: int, first_seed: int,
     try:
         for start in range(0, count, BATCH):
             number = first_seed * 1_000_003 + start // BATCH
-            drawn = drawn_scenes(min(BATCH, count - start), number, features)
+            dice = Random(number)
+            drawn = [random_scene(dice, features) for _ in range(min(BATCH, count - start))]
             # libsdformat was busy with the batch before while this one was drawn.
             if pending:
                 add_batch(tally, pending, reference)

@@ -10,12 +10,9 @@ over in deeply nested models, or that later releases judge otherwise, are not.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from random import Random
 from typing import Any, NamedTuple
 from xml.etree import ElementTree
-
-from hypothesis import strategies as st
-
-from differential.scene_text import Draw
 
 Element = ElementTree.Element
 FRAMES = ('link', 'joint', 'frame')
@@ -79,16 +76,16 @@ def add_frame(scope: Element, reference: str = '', **attributes: str) -> None:
         set_reference(frame, reference)
 
 
-def add_ring(draw: Any, scope: Element) -> None:
+def add_ring(dice: Random, scope: Element) -> None:
     """Give two to four frames from one another in a ring."""
-    count = draw(st.integers(2, 4))
+    count = dice.randint(2, 4)
     for number in range(count):
         add_frame(scope, f'ring{(number + 1) % count}', name=f'ring{number}')
 
 
-def add_attached_ring(draw: Any, scope: Element) -> None:
+def add_attached_ring(dice: Random, scope: Element) -> None:
     """Attach frames to one another in a ring while their poses are fine."""
-    count = draw(st.integers(1, 4))
+    count = dice.randint(1, 4)
     for number in range(count):
         add_frame(scope, root_of(scope), name=f'ring{number}',
                   attached_to=f'ring{(number + 1) % count}')
@@ -99,10 +96,10 @@ def root_of(scope: Element) -> str:
     return 'world' if scope.tag == 'world' else '__model__'
 
 
-def place_relative_to_content(draw: Any, place: Place) -> None:
+def place_relative_to_content(dice: Random, place: Place) -> None:
     """Place a model relative to its own content."""
     model = place.element
-    inner = draw(st.sampled_from([child for child in model if child.tag in FRAMES]))
+    inner = dice.choice([child for child in model if child.tag in FRAMES])
     set_reference(model, f'{model.get("name")}::{inner.get("name")}')
 
 
@@ -114,30 +111,30 @@ def add_pose(scope: Element, text: str, attributes: dict[str, str]) -> None:
     ElementTree.SubElement(scope, 'frame', name='extra').append(pose)
 
 
-def add_twice(_draw: Any, model: Element) -> None:
+def add_twice(_dice: Random, model: Element) -> None:
     """Give two children of a model that are of one kind the same name."""
     add_frame(model)
     add_frame(model)
 
 
-def join_to_itself(_draw: Any, place: Place) -> None:
+def join_to_itself(_dice: Random, place: Place) -> None:
     """Join a frame to the link that it is attached to."""
     joint = place.element
     add_frame(place.scope, name='shadow', attached_to=joint.findtext('child', ''))
     joint.find('parent').text = 'shadow'
 
 
-def add_model_without_link(draw: Any, scope: Element) -> None:
+def add_model_without_link(dice: Random, scope: Element) -> None:
     """Add a model that has nothing and is not static."""
     model = ElementTree.SubElement(scope, 'model', name='empty')
-    if draw(st.booleans()):
+    if dice.random() < 0.5:
         add_frame(model)
 
 
-def add_nameless(draw: Any, scope: Element) -> None:
+def add_nameless(dice: Random, scope: Element) -> None:
     """Add a frame without a name."""
     add_frame(scope, name='')
-    if draw(st.booleans()):
+    if dice.random() < 0.5:
         del scope[-1].attrib['name']
 
 
@@ -146,17 +143,12 @@ def set_text(place: Place, tag: str, text: str) -> None:
     place.element.find(tag).text = text
 
 
-def misplace(draw: Any, place: Place) -> None:
+def misplace(dice: Random, place: Place) -> None:
     """Place an included model by a frame that it does not have, or without a pose."""
-    if draw(st.booleans()):
+    if dice.random() < 0.5:
         place.element.remove(place.element.find('pose'))
     else:
         set_text(place, 'placement_frame', 'nothing')
-
-
-def any_of(draw: Any, *choices: Any) -> Any:
-    """Draw one of some values."""
-    return draw(st.sampled_from(choices))
 
 
 class Defect(NamedTuple):
@@ -190,23 +182,23 @@ DEFECTS = {
         lambda _, model: add_frame(model, model.get('name', ''))),
     'world from a model': Defect(models, lambda _, model: add_frame(model, 'world')),
     'unknown attachment': Defect(
-        scopes, lambda draw, scope: add_frame(
-            scope, any_of(draw, '', root_of(scope)), attached_to='nothing')),
+        scopes, lambda dice, scope: add_frame(
+            scope, dice.choice(('', root_of(scope))), attached_to='nothing')),
     'cycle of attachments': Defect(scopes, add_attached_ring),
     'duplicate name': Defect(models, add_twice),
     'reserved name': Defect(
-        scopes, lambda draw, scope: add_frame(
-            scope, name=any_of(draw, 'world', '__mine__', '____', '__model__'))),
+        scopes, lambda dice, scope: add_frame(
+            scope, name=dice.choice(('world', '__mine__', '____', '__model__')))),
     'wrong child': Defect(
         children('joint'),
-        lambda draw, place: set_text(place, 'child', any_of(draw, 'nothing', 'world'))),
+        lambda dice, place: set_text(place, 'child', dice.choice(('nothing', 'world')))),
     'wrong parent': Defect(
-        outer_joints, lambda draw, place: set_text(
-            place, 'parent', any_of(draw, place.element.findtext('child'), 'nothing'))),
+        outer_joints, lambda dice, place: set_text(
+            place, 'parent', dice.choice((place.element.findtext('child'), 'nothing')))),
     'joint on one link': Defect(outer_joints, join_to_itself),
-    'bad pose': Defect(scopes, lambda draw, scope: add_pose(scope, any_of(draw, *BAD_POSES), {})),
+    'bad pose': Defect(scopes, lambda dice, scope: add_pose(scope, dice.choice(BAD_POSES), {})),
     'bad attributes of a pose': Defect(
-        scopes, lambda draw, scope: add_pose(scope, *any_of(draw, *BAD_POSE_ATTRIBUTES))),
+        scopes, lambda dice, scope: add_pose(scope, *dice.choice(BAD_POSE_ATTRIBUTES))),
     'unknown placement frame': Defect(
         models, lambda _, model: model.set('placement_frame', 'nothing')),
     'unknown canonical link': Defect(
@@ -215,13 +207,13 @@ DEFECTS = {
     'model without a link': Defect(scopes, add_model_without_link),
     'reference of the root': Defect(
         lambda content: [top for top in content[:1] if top.tag == 'model'],
-        lambda draw, model: set_reference(model, any_of(draw, 'world', 'x', '__root__'))),
+        lambda dice, model: set_reference(model, dice.choice(('world', 'x', '__root__')))),
     'missing name': Defect(scopes, add_nameless),
     'missing end of a joint': Defect(
         lambda content: [
             place for place in outer_joints(content) if place.element.get('type') != 'ball'],
-        lambda draw, place: place.element.remove(
-            place.element.find(any_of(draw, 'parent', 'child')))),
+        lambda dice, place: place.element.remove(
+            place.element.find(dice.choice(('parent', 'child'))))),
     'unknown URI': Defect(
         children('include'), lambda _, place: set_text(place, 'uri', 'model://no_such_model')),
     'wrong placement of an include': Defect(
@@ -238,18 +230,18 @@ CHOICES = ('',) * 4 * len(DEFECTS) + tuple(DEFECTS)
 """Four of five scenes stay valid."""
 
 
-def add_defect(draw: Draw, content: list[Element]) -> str:
+def add_defect(dice: Random, content: list[Element]) -> str:
     """
     Break one scene in five in one place.
 
     :param content: the elements below ``sdf``; changed in place.
     :return: the name of the defect, or nothing if the scene has no place for it, or stays valid.
     """
-    name: Any = draw(st.sampled_from(CHOICES))
+    name = dice.choice(CHOICES)
     if not name:
         return ''
     places = DEFECTS[name].places(content)
     if not places:
         return ''
-    DEFECTS[name].add(draw, draw(st.sampled_from(places)))
+    DEFECTS[name].add(dice, dice.choice(places))
     return name

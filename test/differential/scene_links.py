@@ -4,13 +4,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from random import Random
 from xml.etree import ElementTree
 
-from hypothesis import strategies as st
-
 from differential.scene_parts import Feature
-from differential.scene_text import Draw, NAMES, new_pose
+from differential.scene_text import NAMES, new_pose
 
 AXES = {
     'fixed': 0, 'ball': 0, 'revolute': 1, 'continuous': 1, 'prismatic': 1, 'screw': 1,
@@ -45,9 +43,9 @@ SHAPES = {
 UNKNOWN_FRAME = 'no such frame'
 
 
-def joint_body(draw: Draw, name: str, parent: str, child: str) -> ElementTree.Element:
+def joint_body(dice: Random, name: str, parent: str, child: str) -> ElementTree.Element:
     """Draw a joint with its type and axes, but without its pose."""
-    kind: Any = draw(st.sampled_from(sorted(AXES)))
+    kind = dice.choice(sorted(AXES))
     element = ElementTree.Element('joint', name=name, type=kind)
     ElementTree.SubElement(element, 'parent').text = parent
     ElementTree.SubElement(element, 'child').text = child
@@ -55,12 +53,12 @@ def joint_body(draw: Draw, name: str, parent: str, child: str) -> ElementTree.El
         ElementTree.SubElement(element, 'gearbox_reference_body').text = parent
     for number in range(AXES[kind]):
         axis = ElementTree.SubElement(element, 'axis2' if number else 'axis')
-        vector = draw(st.sampled_from(('0 0 1', '0 1 0', '1 0 0', '-1 0 0', '0.6 0 0.8')))
+        vector = dice.choice(('0 0 1', '0 1 0', '1 0 0', '-1 0 0', '0.6 0 0.8'))
         ElementTree.SubElement(axis, 'xyz').text = vector
-        for part in draw(st.sampled_from(AXIS_PARTS)):
+        for part in dice.choice(AXIS_PARTS):
             axis.append(ElementTree.fromstring(part))
     if kind == 'screw':
-        for part in draw(st.sampled_from(PITCHES)):
+        for part in dice.choice(PITCHES):
             element.append(ElementTree.fromstring(part))
     return element
 
@@ -68,8 +66,8 @@ def joint_body(draw: Draw, name: str, parent: str, child: str) -> ElementTree.El
 class LinkBuilder:
     """Draws the children of links and joints; none of them can make a scene invalid."""
 
-    def __init__(self, draw: Draw, features: frozenset[Feature]) -> None:
-        self.draw: Any = draw
+    def __init__(self, dice: Random, features: frozenset[Feature]) -> None:
+        self.dice = dice
         self.features = features
 
     def fill(self, element: ElementTree.Element, references: list[str]) -> None:
@@ -81,23 +79,23 @@ class LinkBuilder:
         """
         if element.tag == 'joint':
             for vector in element.iter('xyz'):
-                if self.draw(st.integers(0, 2)) == 0:
-                    vector.set('expressed_in', self.draw(st.sampled_from(references)))
-            if self.draw(st.integers(0, 5)) == 0:
+                if self.dice.randint(0, 2) == 0:
+                    vector.set('expressed_in', self.dice.choice(references))
+            if self.dice.randint(0, 5) == 0:
                 self.posed(element, 'sensor', 'wrench', references).set('type', 'force_torque')
             return
-        if self.draw(st.integers(0, 3)) == 0:
+        if self.dice.randint(0, 3) == 0:
             inertial = ElementTree.SubElement(element, 'inertial')
-            pose = new_pose(self.draw)
+            pose = new_pose(self.dice)
             if pose is not None:
                 inertial.append(pose)
-        kinds = self.draw(st.lists(st.sampled_from(LINK_CHILDREN), max_size=3))
+        kinds = self.dice.choices(LINK_CHILDREN, k=self.dice.randint(0, 3))
         for number, kind in enumerate(kinds):
-            stem = self.draw(st.sampled_from(NAMES))
+            stem = self.dice.choice(NAMES)
             name = f'{stem}_{number}' if kind in kinds[:number] else stem
             child = self.posed(element, kind, name, references)
             if kind == 'sensor':
-                sensor_type = self.draw(st.sampled_from(SENSORS))
+                sensor_type = self.dice.choice(SENSORS)
                 child.set('type', sensor_type)
                 if sensor_type == 'camera':
                     # The optics' own offset is no frame.
@@ -112,7 +110,7 @@ class LinkBuilder:
         if (Feature.AUTOMATIC_INERTIALS in self.features and element.find('inertial') is not None
                 and element.find('collision') is not None):
             self.make_inertial_automatic(element)
-        if self.draw(st.integers(0, 15)) == 0:
+        if self.dice.randint(0, 15) == 0:
             self.add_foreign(element)
 
     def add_mimics(self, joints: list[ElementTree.Element]) -> None:
@@ -120,14 +118,14 @@ class LinkBuilder:
         leaders = [(joint, tag) for joint in joints for tag in ('axis', 'axis2')
                    if joint.find(tag) is not None]
         for joint, tag in leaders:
-            if self.draw(st.integers(0, 7)) == 0 and len(leaders) > 1:
-                leader, leader_tag = self.draw(st.sampled_from(
-                    [each for each in leaders if each != (joint, tag)]))
+            if self.dice.randint(0, 7) == 0 and len(leaders) > 1:
+                leader, leader_tag = self.dice.choice(
+                    [each for each in leaders if each != (joint, tag)])
                 mimic = ElementTree.Element('mimic', joint=leader.get('name', ''))
-                if leader_tag == 'axis2' or self.draw(st.booleans()):
+                if leader_tag == 'axis2' or self.dice.random() < 0.5:
                     mimic.set('axis', leader_tag)
                 for part in ('multiplier', 'offset', 'reference'):
-                    text = self.draw(st.sampled_from(MIMIC_NUMBERS))
+                    text = self.dice.choice(MIMIC_NUMBERS)
                     if text is not None:
                         ElementTree.SubElement(mimic, part).text = text
                 joint.find(tag).append(mimic)
@@ -135,22 +133,22 @@ class LinkBuilder:
     def geometry(self) -> ElementTree.Element:
         """Draw a shape."""
         geometry = ElementTree.Element('geometry')
-        tag = self.draw(st.sampled_from(sorted(SHAPES)))
+        tag = self.dice.choice(sorted(SHAPES))
         shape = ElementTree.SubElement(geometry, tag)
         for child, count in SHAPES[tag].items():
-            sizes = self.draw(st.lists(st.integers(1, 50), min_size=count, max_size=count))
+            sizes = [self.dice.randint(1, 50) for _ in range(count)]
             ElementTree.SubElement(shape, child).text = ' '.join(str(size / 10) for size in sizes)
         return geometry
 
     def make_inertial_automatic(self, link: ElementTree.Element) -> None:
         """Let the collisions of a link give the inertial, most of the time."""
         inertial = link.find('inertial')
-        if inertial is None or self.draw(st.integers(0, 3)) == 0:
+        if inertial is None or self.dice.randint(0, 3) == 0:
             return
         inertial.set('auto', 'true')
         for element in (inertial, *link.iterfind('collision')):
-            if self.draw(st.booleans()):
-                density = self.draw(st.one_of(st.just(''), st.integers(1, 9000).map(str)))
+            if self.dice.random() < 0.5:
+                density = self.dice.choice(('', str(self.dice.randint(1, 9000))))
                 ElementTree.SubElement(element, 'density').text = density
         for pose in link.iterfind('collision/pose'):
             # The collision has to be somewhere for its mass to count.
@@ -162,12 +160,12 @@ class LinkBuilder:
         """Add a child whose pose may name any frame, or one that does not exist."""
         child = ElementTree.SubElement(element, kind, name=name)
         reference = ''
-        choice = self.draw(st.integers(0, 20))
+        choice = self.dice.randint(0, 20)
         if choice == 0:
             reference = UNKNOWN_FRAME
         elif choice > 10:
-            reference = self.draw(st.sampled_from(references))
-        pose = new_pose(self.draw, reference)
+            reference = self.dice.choice(references)
+        pose = new_pose(self.dice, reference)
         if pose is not None:
             child.append(pose)
         return child

@@ -6,18 +6,7 @@ from __future__ import annotations
 
 import math
 from random import Random
-from typing import Protocol
 from xml.etree import ElementTree
-
-from hypothesis import strategies as st
-
-
-class Draw(Protocol):
-    """What a composite strategy draws with."""
-
-    def __call__(self, strategy: st.SearchStrategy) -> object:
-        """Draw one value."""
-
 
 NAMES = (
     'base', 'arm', 'tool', 'l', 'a', 'b', 'cam', 'left arm', 'größe', '関節', 'a/b', 'v1.2',
@@ -37,12 +26,11 @@ TURNS = (0.0, math.pi / 2, -math.pi / 2, math.pi, -math.pi, math.pi / 4, 1.5708,
          3.14159, 2 * math.pi, 1e-9, 7.0)
 DEGREES = (0.0, 90.0, -90.0, 180.0, -180.0, 45.0, 360.0, 30.0, 89.9999, 270.0, -720.5)
 FORMATS = ('rpy', 'rpy', 'rpy', 'degrees', 'degrees', 'quaternion', 'quaternion', 'empty')
-SEEDS = st.integers(0, 2**40)
 
 
-def new_name(draw: Draw, taken: set[str]) -> str:
+def new_name(dice: Random, taken: set[str]) -> str:
     """Draw a name that is not taken, and take it."""
-    stem = draw(st.sampled_from(NAMES))
+    stem = dice.choice(NAMES)
     name, number = stem, 1
     while name in taken:
         number += 1
@@ -77,16 +65,12 @@ def number_from(dice: Random, often: tuple[float, ...], limit: float) -> float:
     return value if dice.random() < 0.7 else round(value, 3)
 
 
-def new_pose(draw: Draw, reference: str = '') -> ElementTree.Element | None:
+def new_pose(dice: Random, reference: str = '') -> ElementTree.Element | None:
     """
     Draw a pose element, or None for no element.
 
-    Its numbers come from one drawn seed: a scene has hundreds of them, and how they shrink is of
-    no interest.
-
     :param reference: what ``relative_to`` says; nothing where it is empty.
     """
-    dice = Random(draw(SEEDS))
     if not reference and dice.randrange(5) == 0:
         return None
     pose = ElementTree.Element('pose')

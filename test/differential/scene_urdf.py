@@ -5,17 +5,14 @@
 from __future__ import annotations
 
 from random import Random
-from typing import Any
 from xml.etree import ElementTree
 
 from differential.scene_parts import Built, MODEL, OWN, Visible, WORLD
 from differential.scene_text import (
-    Draw,
     LENGTHS,
     new_name,
     new_pose,
     number_from,
-    SEEDS,
     text_from_number,
     TURNS,
 )
@@ -39,9 +36,8 @@ ODD_NUMBERS = (
 class RobotBuilder:
     """Draws one robot: its file, and what can be said of the model that it becomes."""
 
-    def __init__(self, draw: Draw, first_body: int) -> None:
-        self.draw: Any = draw
-        self.dice = Random(self.draw(SEEDS))
+    def __init__(self, dice: Random, first_body: int) -> None:
+        self.dice = dice
         self.last_body = first_body
         self.root = ElementTree.Element('robot')
         self.bases: dict[str, str] = {}
@@ -105,7 +101,7 @@ class RobotBuilder:
 
     def name(self, taken: set[str]) -> str:
         """Draw a name on which libsdformat does not crash."""
-        return next(name for name in iter(lambda: new_name(self.draw, taken), '')
+        return next(name for name in iter(lambda: new_name(self.dice, taken), '')
                     if not set(name) & set('"\'&<'))
 
     def in_order(self, link: str, children: dict[str, list[tuple[bytes, str]]]) -> list[str]:
@@ -182,7 +178,7 @@ class RobotBuilder:
             else:
                 element.set('type', {'sensor': 'imu', 'light': 'point'}[kind])
             reference = self.dice.choice(references) if self.dice.random() < 0.2 else ''
-            pose = new_pose(self.draw, reference)
+            pose = new_pose(self.dice, reference)
             if pose is not None and not (pose.text or '').strip():
                 pose.text = None if len(pose) else '0 0 0 0 0 0'
             if pose is not None:

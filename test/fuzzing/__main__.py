@@ -13,6 +13,7 @@ import argparse
 from collections.abc import Callable
 import contextlib
 from pathlib import Path
+from random import Random
 import sys
 import tempfile
 import time
@@ -24,8 +25,7 @@ with atheris.instrument_imports(include=['sdf_pose_bridge']):
     import sdf_pose_bridge.sdformat.include.expansion  # noqa: F401  # else imported at first use
     from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
-from differential.scene_strategy import scenes
-from hypothesis import given, HealthCheck, settings
+from differential.scene_builder import random_scene
 
 from fuzzing.hostile_files import files_from_choices
 
@@ -51,10 +51,25 @@ def load_bytes(data: bytes) -> None:
         load_text(data, str(ROOT / 'examples' / 'fuzzed.sdf'))
 
 
-@settings(database=None, deadline=None, suppress_health_check=list(HealthCheck))
-@given(scenes())
-def load_scene(scene):
+class Dice(Random):
+    """Draws from bytes, so that similar bytes make similar scenes."""
+
+    def __init__(self, data: bytes) -> None:
+        super().__init__()
+        self._provider = atheris.FuzzedDataProvider(data)
+
+    def random(self) -> float:
+        """Return a number from 0 to 1."""
+        return self.getrandbits(32) / 2 ** 32
+
+    def getrandbits(self, k: int) -> int:
+        """Return a number of k bits."""
+        return self._provider.ConsumeIntInRange(0, 2 ** k - 1)
+
+
+def load_scene(data: bytes) -> None:
     """Load a scene of one or several files, some of which are wrong."""
+    scene = random_scene(Dice(data))
     with tempfile.TemporaryDirectory(dir=MEMORY) as folder:
         for name, text in scene.files.items():
             path = Path(folder, name)
@@ -77,8 +92,7 @@ def load_hostile(data: bytes) -> None:
 
 
 TARGETS: dict[str, Callable[[bytes], object]] = {
-    'bytes': load_bytes, 'hostile': load_hostile,
-    'scenes': load_scene.hypothesis.fuzz_one_input}
+    'bytes': load_bytes, 'hostile': load_hostile, 'scenes': load_scene}
 
 
 def main() -> None:
