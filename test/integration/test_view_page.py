@@ -38,6 +38,7 @@ TEXT = f"""<sdf version="1.11"><world name="w">
   </model>
   <frame name="{html.escape(HOSTILE)}"><pose>1 0 0 0 0 0</pose></frame>
 </world></sdf>"""
+BOX = '<visual name="v"><geometry><box><size>0.1 0.1 0.1</size></box></geometry></visual>'
 AXES_M = 0.1 * np.linalg.norm((1.1, 0.2, 0.2))
 ROWS = "[...document.querySelectorAll('.rows label')]"
 
@@ -293,14 +294,15 @@ def test_name_of_a_body_is_that_of_the_last_drawing(page, shown):
     wait_for_name_at(page, *point_on_screen(page, (0.1, -0.1, 0.09)), 'arm/base, visual other')
 
 
-def test_opacity_of_a_texture(tmp_path):
+def test_opacity_of_bodies_with_and_without_a_texture(tmp_path):
     image = pytest.importorskip('PIL.Image', reason='needs Pillow')
     image.new('RGB', (4, 4)).save(tmp_path / 'texture.png')
     (tmp_path / 'colors.mtl').write_text('newmtl red\nmap_Kd texture.png\n')
     (tmp_path / 'mesh.obj').write_text(mesh_texts.TEXTURED_OBJ)
     (tmp_path / 'cell.sdf').write_text(TEXT.replace(
         '<box><size>0.2 0.2 0.2</size></box>', '<mesh><uri>mesh.obj</uri></mesh>').replace(
-        '<material><diffuse>1 0 0 1</diffuse></material>', ''))
+        '<material><diffuse>1 0 0 1</diffuse></material>', '').replace(
+        '<link name="slide"/>', f'<link name="slide">{BOX}</link>'))
     with browser(tmp_path / 'browser') as page, view_of(tmp_path) as address:
         page.call('Page.addScriptToEvaluateOnNewDocument', source="""
           window.__THREE_DEVTOOLS__ = new EventTarget();
@@ -310,15 +312,15 @@ def test_opacity_of_a_texture(tmp_path):
           window.opacities = () => {
             const found = [];
             scenes.forEach(scene => scene.traverse(node => {
-              if (node.material?.map && node.isInstancedMesh2) found.push(node.material.opacity);
+              if (node.isInstancedMesh2) found.push(node.material.opacity);
             }));
             return found.join(' ');
           };""")
         page.open(address)
-        page.wait_for("window.scenes && opacities() === '1'")
+        page.wait_for("window.scenes && opacities() === '1 1'")
         page.wait_for(control('opacity'))
         enter(page, control('opacity'), '0.5')
-        page.wait_for("opacities() === '0.5'")
+        page.wait_for("opacities() === '0.5 0.5'")
 
 
 def test_folded_section_is_a_line(page):

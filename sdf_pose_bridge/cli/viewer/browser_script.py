@@ -4,7 +4,7 @@
 Features of the page that viser does not have.
 
 These are frames and lines on top of bodies, names at the pointer, a strip over the scene, the
-opacity of textures, copying, and changes of several controls at once. The scene is found as the
+opacity of bodies, copying, and changes of several controls at once. The scene is found as the
 developer tools of three.js find it.
 """
 
@@ -47,9 +47,11 @@ _SCRIPT = """<script>(() => {
       const {frames: names} = namesInScene();
       const opacity = Number(document.querySelector('[data-opacity]')?.dataset.opacity ?? 1);
       observed.traverse(node => {
-        // viser has no opacity for bodies with a texture.
-        if (node.isInstancedMesh2 && node.material.map) {
-          Object.assign(node.material, {opacity, transparent: opacity < 1});
+        // viser has no opacity for bodies with a texture, and makes others anew for it.
+        if (node.isInstancedMesh2) {
+          node.isTransparent ??= node.material.transparent;
+          node.sortObjects = node.isTransparent || opacity < 1;
+          Object.assign(node.material, {opacity, transparent: node.sortObjects});
         }
         // Lines to parents, and the measured one.
         if (node.isLineSegments2 && node.material.depthTest) {

@@ -67,13 +67,12 @@ class Drawing:
     :param shown: the scene.
     :param posed: the same at the positions of its joints.
     :param hidden: the groups, kinds of frames and models that are not drawn.
-    :param opacity: opacity of surfaces, from 0 to 1.
     :param select: called with the clicked frame, an index into the TF tree.
     """
 
     def __init__(
         self, nodes: viser.SceneApi, name: str, meshes: MeshReader, shown: ShownScene,
-        posed: PosedScene, hidden: set[str], opacity: float, select: Callable[[int], None],
+        posed: PosedScene, hidden: set[str], select: Callable[[int], None],
     ) -> None:
         scene, tree = posed
         self._nodes, self._name, self._select = nodes, name, select
@@ -136,7 +135,7 @@ class Drawing:
         self._select_by_click(self._axes, self.frames)
         self._distances: dict[str, Floats] = {}
         self._copies = [
-            (self._add_surface(number, surface, posed, opacity), surface.elements)
+            (self._add_surface(number, surface, posed), surface.elements)
             for number, surface in enumerate(self._surfaces)]
 
     def remove(self) -> None:
@@ -208,12 +207,6 @@ class Drawing:
         boxes: Floats = boxes_of_surfaces(posed.scene, self._surfaces)[is_in[self._bodies]]
         return boxes
 
-    def set_opacity(self, opacity: float) -> None:
-        """Set the opacity of surfaces without textures, from 0 to 1."""
-        for copies, _ in self._copies:
-            if isinstance(copies, viser.BatchedMeshHandle):
-                copies.opacity = None if opacity >= 1.0 else opacity
-
     def _add_surroundings(self, view_m: float, ground_m: float, *, has_grid: bool) -> None:
         """Add light from above and from two sides, and a grid on the ground at a height."""
         nodes, name = self._nodes, self._name
@@ -240,9 +233,7 @@ class Drawing:
             f'{name}/grid spacing', f'grid {spacing_m:g} m', font_screen_scale=0.8,
             position=(*(middle + spacing_m * np.round(to_camera / spacing_m)), height_m))
 
-    def _add_surface(
-        self, number: int, surface: Surface, posed: PosedScene, opacity: float,
-    ) -> Any:
+    def _add_surface(self, number: int, surface: Surface, posed: PosedScene) -> Any:
         is_collision = surface.kind == Kind.COLLISION
         name = f'{self._name}/{surface.kind.label}s/{number}'
         places = _places(posed.scene.poses[surface.elements])
@@ -258,8 +249,7 @@ class Drawing:
             batched_scales=surface.scales,
             batched_colors=np.round(255.0 * rgba[:, :3]).astype(np.uint8),
             batched_opacities=rgba[:, 3] if (rgba[:, 3] < 1.0).any() else None,
-            opacity=None if opacity >= 1.0 else opacity, lod='off',
-            wireframe=is_collision, flat_shading=not is_collision, side='double')
+            lod='off', wireframe=is_collision, flat_shading=not is_collision, side='double')
         self._select_by_click(copies, posed.tree.nearest_frames[surface.elements])
         return copies
 

@@ -67,8 +67,7 @@ class Page:
         self._shown, self._units, self._hidden = shown, units, set(hidden)
         self._events, self._meshes = Events(), meshes
         gui.set_panel_label(title)
-        self._strip, self._reasons, self._names, self._textures = (
-            gui.add_html('') for _ in range(4))
+        self._strip, self._reasons, self._names = (gui.add_html('') for _ in range(3))
         gui.add_html(html_of_data('path', str(Path(shown.loaded.path).resolve())))
         gui.add_html('<div class="asked"></div>')
         asked = gui.add_text('asked', '')
@@ -77,7 +76,7 @@ class Page:
         self._edit = None if set_pose is None else PoseEdit(
             self._server, set_pose, self._events, self._describe)
         place_of_selected = gui.add_folder(None)
-        self._opacity = self._add_view_controls()
+        self._add_view_controls()
         self._place_of_switches, self._place_of_joints = (gui.add_folder(None) for _ in range(2))
         self._switches = self._add_switches()
         self._sliders, self._joints = self._add_joints({})
@@ -160,7 +159,7 @@ class Page:
     def _new_drawing(self) -> Drawing:
         drawing = Drawing(
             self._server.scene, next(self._node_names), self._meshes, self._shown, self._posed,
-            self._hidden, self._opacity.value,
+            self._hidden,
             lambda frame: self._events.put(partial(self._selected.select, frame)))
         self._drawn = self._posed
         self._reasons.content = html_of_reasons(drawing.reasons)
@@ -274,8 +273,8 @@ class Page:
             self._redraw()
         self._events.when(switch.on_update, change)
 
-    def _add_view_controls(self) -> viser.GuiSliderHandle[float]:
-        """Add the folder "View"; return the slider for the opacity."""
+    def _add_view_controls(self) -> None:
+        """Add the folder "View"."""
         gui = self._server.gui
         with gui.add_folder('View'):
             views = gui.add_button_group('view', ('home', *DIRECTIONS, 'zoom to'))
@@ -283,21 +282,18 @@ class Page:
             angles = gui.add_dropdown(
                 'angles', tuple(_ANGLES), initial_value=self._units.angle.name)
             dark = gui.add_checkbox('dark background', initial_value=False)
+            shown_opacity = gui.add_html('')
 
         def change_angles() -> None:
             self._units = self._units._replace(angle=_ANGLES[angles.value])
             self._replace_joints()
             self._show_frame()
         self._events.when(views.on_click, lambda: self._look(views.value))
-        self._events.when(opacity.on_update, self._change_opacity)
+        self._events.when(opacity.on_update, lambda: setattr(
+            shown_opacity, 'content', html_of_data('opacity', str(opacity.value))))
         self._events.when(angles.on_update, change_angles)
         self._events.when(dark.on_update, lambda: gui.configure_theme(
             show_logo=False, show_share_button=False, dark_mode=dark.value))
-        return opacity
-
-    def _change_opacity(self) -> None:
-        self._drawing.set_opacity(self._opacity.value)
-        self._textures.content = html_of_data('opacity', str(self._opacity.value))
 
     def _look(self, name: str) -> None:
         """Turn the cameras to a view; "zoom to" shows the selected frame, link or model."""

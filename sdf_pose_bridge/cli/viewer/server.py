@@ -15,7 +15,7 @@ from http import HTTPStatus
 import logging
 from queue import Empty, SimpleQueue
 import secrets
-from typing import Any, NamedTuple
+from typing import Any
 from urllib.parse import urlsplit
 
 import rich
@@ -38,14 +38,6 @@ window in which it is open at first."""
 _NOT_KNOWN = (
     f'viser {viser.__version__} does not work as the releases that this is tested with '
     f'({LIBRARIES[0]})')
-
-
-class PageServer(NamedTuple):
-    """A server, and the address of its page."""
-
-    viser: viser.ViserServer
-    address: str
-    """The address with a secret in its path; requests without the secret are rejected."""
 
 
 class Events:
@@ -74,12 +66,14 @@ class Events:
         return actions
 
 
-def server_for_its_owner(port: int, title: str) -> PageServer:
+def server_for_its_owner(port: int, title: str) -> tuple[viser.ViserServer, str]:
     """
     Start a server for this user only, not for other machines, users or pages of other servers.
 
     :param title: the title of its page.
     :param port: its port, or the next one that is free; 0 for any.
+    :return: the server, and the address of its page: with a secret in its path, without which
+        requests are rejected.
     :raises CommandError: if this cannot be done with the installed viser.
     """
     rich.get_console().quiet = True
@@ -95,7 +89,7 @@ def server_for_its_owner(port: int, title: str) -> PageServer:
     # The environment map of viser makes every color pale.
     server.scene.configure_environment_map(None)
     server.scene.configure_default_lights(enabled=False)
-    return PageServer(server, f'http://{_ADDRESS}:{server.get_port()}/{secret}/')
+    return server, f'http://{_ADDRESS}:{server.get_port()}/{secret}/'
 
 
 def _fit_panel(client: viser.ClientHandle) -> None:

@@ -63,8 +63,8 @@ def test_each_server_has_its_own_secret():
     serve = websockets_server.serve
     servers = [server_for_its_owner(0, 'a.sdf') for _ in range(2)]
     assert websockets_server.serve is serve
-    secrets = {server.address.split('/')[3] for server in servers}
-    for server in servers:
-        server.viser.stop()
+    secrets = {address.split('/')[3] for _, address in servers}
+    for server, _ in servers:
+        server.stop()
     assert len(secrets) == 2
     assert all(len(secret) > 20 for secret in secrets)
