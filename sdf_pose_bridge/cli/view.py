@@ -58,7 +58,8 @@ _BROWSER_OPTIONS = (
     '--window-size=1120,700', '--force-device-scale-factor=1.4286', '--hide-scrollbars',
     # Milliseconds without activity of the page before the picture is drawn.
     '--virtual-time-budget=10000')
-_ONLY_THE_SCENE = '<style>body :not(canvas, :has(canvas)) {visibility: hidden}</style>'
+_ONLY_THE_SCENE = ('<style>body :not(canvas, :has(canvas)) {visibility: hidden} '
+                   '.labels div {visibility: visible}</style>')
 _MOST_SECONDS = 300.0
 
 

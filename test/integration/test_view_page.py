@@ -160,6 +160,36 @@ def test_tree_scrolls_to_the_frame_that_is_selected_in_the_scene(page, shown):
       document.querySelector('.rows .selected'))""")
 
 
+LABELS = "[...document.querySelectorAll('.labels div')]"
+
+
+def test_name_stays_at_its_frame(page):
+    select(page, 'slide')
+    for position in (0.2, 0.0):
+        enter(page, control('rail'), str(position))
+        x, y = point_on_screen(page, (0.0, 0.0, position))
+        page.wait_for(f"""{LABELS}.some(label => (box => label.innerText === 'slide'
+          && Math.hypot(box.left - {x}, box.top - {y}) < 2)(label.getBoundingClientRect()))""")
+
+
+def test_names_do_not_overlap(tmp_path):
+    # From the camera, the last one is a little further, and further right.
+    long = 40 * 'a'
+    points = {**{f'p{number}': (0.0, 0.0, 2.0) for number in range(6)},
+              long: (1.0, 0.0, 0.0), 'far': (1.05, 0.15, 0.0)}
+    frames = ''.join(f'<frame name="{name}"><pose>{" ".join(map(str, point))} 0 0 0</pose></frame>'
+                     for name, point in points.items())
+    (tmp_path / 'cell.sdf').write_text(
+        f'<sdf version="1.11"><world name="w">{frames}</world></sdf>')
+    run_view(tmp_path, 'cell.sdf', '-o', 'page.html').communicate(timeout=DEADLINE_S)
+    with browser(tmp_path / 'browser') as page:
+        page.size(1366, 768)
+        page.open((tmp_path / 'page.html').as_uri())
+        page.wait_for(f'{LABELS}.length')
+        texts = page.run(f'{LABELS}.map(label => label.innerText)')
+    assert sorted(texts) == sorted(['p0\np1\np2\np3\nand 2 more', long])
+
+
 def test_arrow_keys_move_a_slider_and_nothing_else(page):
     page.run("window.keys = 0; window.addEventListener('keydown', () => { window.keys++; })")
     thumb = "document.querySelectorAll('[role=slider]')[1]"
@@ -332,7 +362,7 @@ def test_folded_section_is_a_line(page):
 
 def test_axes_of_the_root_frame_are_in_a_corner(page):
     # The camera is above and in front, so that x points down, and z up.
-    page.wait_for(is_in_window("document.querySelector('.axis-cross')"))
+    page.wait_for(f"{IN_WINDOW}(document.querySelector('.axis-cross')?.getBoundingClientRect())")
     page.wait_for("document.querySelector('.axis-cross').children[2].hasAttribute('d')")
     x_end, z_end = (float(page.run(
         f"document.querySelector('.axis-cross').children[{axis}].getAttribute('d')").split()[-1])

@@ -3,9 +3,9 @@
 """
 Features of the page that viser does not have.
 
-These are frames and lines on top of bodies, names at the pointer, a strip over the scene, the
-opacity of bodies, copying, and changes of several controls at once. The scene is found as the
-developer tools of three.js find it.
+These are frames and lines on top of bodies, labels without overlaps, names at the pointer, a strip
+over the scene, the opacity of bodies, copying, and changes of several controls at once. The scene
+is found as the developer tools of three.js find it.
 """
 
 from __future__ import annotations
@@ -26,7 +26,10 @@ _STYLE = """<style>
   .mantine-Paper-root:has(> [aria-hidden=true]:not(:last-child)) {border-width: 1px 0 0}
   .mantine-Paper-root > [aria-hidden=true] + :last-child > div {padding: 4px !important}
   div:has(> .asked), div:has(> .asked) + * {display: none}
+  .over-scene {position: absolute; inset: 0; overflow: hidden; pointer-events: none}
   .axis-cross {position: absolute; right: 8px; top: 8px; width: 60px; stroke-width: 3}
+  .labels div {position: absolute; padding: 0 2px; font: 12px/14px sans-serif; white-space: pre;
+    background: #fffc; color: #212529}
   .strip {position: fixed; left: 8px; bottom: 8px; z-index: 8; padding: 4px 10px; font: 13px
     sans-serif; background: #fffe; color: #212529; border: 1px solid #adb5bd; border-radius: 4px}
   .strip:empty {display: none}
@@ -67,20 +70,61 @@ _SCRIPT = """<script>(() => {
         node.material.transparent = true;
         node.onBeforeRender = drawing => drawing.clearDepth();
       });
-      if (frames?.parent) turnCross(renderer.domElement.parentElement);
+      if (frames?.parent) drawOver(renderer.domElement);
     };
   });
-  // The axes of the root frame, as the camera sees them.
-  const turnCross = scenePlace => {
-    let cross = document.querySelector('.axis-cross');
-    if (!cross) {
-      scenePlace.insertAdjacentHTML('beforeend', `<svg class="axis-cross" viewBox="-30 -30 60 60">
-        <path stroke="#d00"/><path stroke="#4b1"/><path stroke="#00d"/></svg>`);
-      cross = scenePlace.lastElementChild;
-    }
+  const over = document.createElement('div');
+  over.className = 'over-scene';
+  over.innerHTML = `<svg class="axis-cross" viewBox="-30 -30 60 60"><path stroke="#d00"/>
+    <path stroke="#4b1"/><path stroke="#00d"/></svg><div class="labels"></div>`;
+  const [cross, labels] = over.children;
+  const drawOver = canvas => {
+    if (over.parentElement !== canvas.parentElement) canvas.parentElement.append(over);
+    // The axes of the root frame, as the camera sees them.
     const m = camera.matrixWorldInverse.clone().multiply(frames.matrixWorld).elements;
     [0, 4, 8].forEach((i, axis) => cross.children[axis].setAttribute(
       'd', `M0 0 L${28 * m[i]} ${-28 * m[i + 1]}`));
+    const placed = labelsWithoutOverlaps(canvas), drawn = JSON.stringify(placed);
+    if (drawn === labels.dataset.drawn) return;
+    labels.dataset.drawn = drawn;
+    labels.replaceChildren(...placed.map(({lines, x, y}) => {
+      const label = document.createElement('div');
+      label.textContent = lines.join('\\n');
+      label.style.transform = `translate(${x}px, ${y}px)`;
+      return label;
+    }));
+  };
+  // The distance of a point in the root frame from the camera, and its place in pixels.
+  const inPicture = (point, {clientWidth, clientHeight}) => {
+    const at = frames.position.clone().set(...point).applyMatrix4(frames.matrixWorld);
+    const depth = -at.clone().applyMatrix4(camera.matrixWorldInverse).z;
+    const {x, y} = at.project(camera);
+    return {depth, x: (0.5 + 0.5 * x) * clientWidth, y: (0.5 - 0.5 * y) * clientHeight};
+  };
+  const labelOf = (texts, x, y) => {
+    const more = texts.length - 4;
+    const lines = [...texts.slice(0, 4), ...(more > 0 ? [`and ${more} more`] : [])];
+    return {texts, lines, x, y, right: x + 6.5 * Math.max(...lines.map(line => line.length)),
+            bottom: y + 14 * lines.length};
+  };
+  // Names at one place are lines of one text; of others, those that would overlap are left out.
+  const labelsWithoutOverlaps = canvas => {
+    const given = JSON.parse(document.querySelector('[data-labels]')?.dataset.labels ?? '[]');
+    const seen = given.map(([text, isFirst, ...point]) => {
+      const {depth, x, y} = inPicture(point, canvas);
+      return [!isFirst, depth, labelOf([text], Math.round(x), Math.round(y))];
+    }).filter(([, depth]) => depth > 0).sort(([a, near], [b, far]) => a - b || near - far);
+    const isOn = (a, b) => a.x < b.right && b.x < a.right && a.y < b.bottom && b.y < a.bottom;
+    const placed = [];
+    for (const [, , label] of seen) {
+      const k = placed.findIndex(other => isOn(other, label)), other = placed[k];
+      if (!other) placed.push(label);
+      else if (Math.hypot(other.x - label.x, other.y - label.y) < 14) {
+        const grown = labelOf([...other.texts, ...label.texts], other.x, other.y);
+        if (placed.every((each, i) => i === k || !isOn(each, grown))) placed[k] = grown;
+      }
+    }
+    return placed;
   };
   let listed, names = {frames: [], bodies: []};
   const namesInScene = () => {
@@ -93,12 +137,10 @@ _SCRIPT = """<script>(() => {
     const found = [];
     for (let k = 0; k < Math.min(frames.count / 3, 20000); k++) {
       // The origin is where the cylinder of the first axis begins.
-      const [x, y, z] = [0, 1, 2].map(i => m[48 * k + 12 + i] - half * m[48 * k + 4 + i]);
-      const at = frames.position.clone().set(x, y, z).applyMatrix4(frames.matrixWorld);
-      at.project(camera);
-      const distance = Math.hypot((0.5 + 0.5 * at.x) * box.width + box.left - event.clientX,
-                                  (0.5 - 0.5 * at.y) * box.height + box.top - event.clientY);
-      if (at.z < 1 && distance < 12) found.push([distance, namesInScene().frames[k]]);
+      const {depth, x, y} = inPicture(
+        [0, 1, 2].map(i => m[48 * k + 12 + i] - half * m[48 * k + 4 + i]), event.target);
+      const distance = Math.hypot(x + box.left - event.clientX, y + box.top - event.clientY);
+      if (depth > 0 && distance < 12) found.push([distance, namesInScene().frames[k]]);
     }
     found.sort(([a], [b]) => a - b);
     return found.slice(0, 8).map(([, name]) => name).join('\\n')
@@ -150,6 +192,7 @@ _SCRIPT = """<script>(() => {
     shownInStrip = strip.innerHTML = text;
     strip.style.maxWidth = `${document.querySelector('canvas').clientWidth - 16}px`;
     document.body.append(strip);
+    if (frames?.parent) drawOver(document.querySelector('canvas'));
     const row = document.querySelector('.rows .selected'), rows = row?.parentElement;
     if (row) rows.scrollTop = row.offsetTop - rows.offsetTop - 0.5 * rows.clientHeight;
   }).observe(document, {childList: true, subtree: true});
@@ -177,13 +220,13 @@ _SCRIPT = """<script>(() => {
 })();</script>"""
 
 
-def page_with_script(page: str, title: str, names: str = '') -> str:
+def page_with_script(page: str, title: str, data: str = '') -> str:
     """
     Add the style and the script to a page of viser.
 
-    :param names: an element with the names in the scene.
+    :param data: elements with data for the script.
     """
-    added = f'<title>{html.escape(title)}</title>{names}{_STYLE}{_SCRIPT}'
+    added = f'<title>{html.escape(title)}</title>{data}{_STYLE}{_SCRIPT}'
     return page.replace(_TITLE, added, 1)
 
 

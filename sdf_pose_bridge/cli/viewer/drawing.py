@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 import viser
 
 from sdf_pose_bridge.cli.printing import kind_labels_of, Unit
-from sdf_pose_bridge.cli.viewer.labels import labels_from_names
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.cli.viewer.shown_scene import PosedScene, ShownScene
 from sdf_pose_bridge.cli.viewer.surfaces import (
@@ -172,31 +171,28 @@ class Drawing:
         self._lines.points = _lines(
             tree, self.frames if self._has_all_lines else _ancestry(tree, frame))
 
-    def texts(
-        self, posed: PosedScene, frame: int, pose: Pose | None, eye: Floats, look_at: Floats,
-    ) -> list[tuple[str, Floats]]:
+    def labels(self, posed: PosedScene, frame: int, pose: Pose | None) -> str:
         """
-        Return names of frames, of missing meshes, and a distance, with their points.
+        Return names of frames, of missing meshes, and a distance.
 
         :param frame: index of a frame whose name is always shown, or -1.
         :param pose: the pose of this frame in the root frame, if it is not the one in the scene.
-        :param eye: the position of the camera.
-        :param look_at: the point in the middle of the picture.
+        :return: in JSON, for each its text, whether names do not cover it, and x, y and z of the
+            point that it is right of and below.
         """
         scene, tree = posed
         frames = self.frames[:MOST_NAMES].tolist() if self._has_all_names else []
         if frame >= 0 and frame not in frames:
             frames.append(frame)
-        names = [
-            printable(shortened(tree.frame_ids[frame].rpartition('/')[2])) for frame in frames]
-        origins = tree.poses[frames, :3]
+        origins = tree.poses[:, :3].copy()
         if pose is not None:
-            origins[frames.index(frame)] = pose[:3]
-        points = np.concatenate([
-            *(point[None] for point in self._distances.values()),
-            scene.poses[list(self._missing), :3], origins])
-        first = [*self._distances, *self._missing.values()]
-        return labels_from_names([*first, *names], points, eye, look_at, len(first))
+            origins[frame] = pose[:3]
+        return json.dumps([
+            *([text, True, *point.tolist()] for text, point in self._distances.items()),
+            *([name, True, *scene.poses[element, :3].tolist()]
+              for element, name in self._missing.items()),
+            *([printable(shortened(tree.frame_ids[index].rpartition('/')[2])), index == frame,
+               *origins[index].tolist()] for index in frames)])
 
     def boxes(self, posed: PosedScene, is_in: NDArray[np.bool_]) -> Floats:
         """

@@ -22,7 +22,6 @@ from sdf_pose_bridge.cli.viewer.frame_texts import (
     html_of_reasons,
 )
 from sdf_pose_bridge.cli.viewer.joint_sliders import JointSliders
-from sdf_pose_bridge.cli.viewer.labels import Labels
 from sdf_pose_bridge.cli.viewer.meshes import MeshReader
 from sdf_pose_bridge.cli.viewer.pose_edit import EditedFrame, PoseEdit, SetPose
 from sdf_pose_bridge.cli.viewer.selected_frame import SelectedFrame
@@ -63,11 +62,12 @@ class Page:
     ) -> None:
         title = printable(Path(shown.loaded.path).name)
         self._server, self.address = server_for_its_owner(port, title)
-        gui, nodes = self._server.gui, self._server.scene
+        gui = self._server.gui
         self._shown, self._units, self._hidden = shown, units, set(hidden)
         self._events, self._meshes = Events(), meshes
         gui.set_panel_label(title)
-        self._strip, self._reasons, self._names = (gui.add_html('') for _ in range(3))
+        self._strip, self._reasons, self._names, self._labels = (
+            gui.add_html('') for _ in range(4))
         gui.add_html(html_of_data('path', str(Path(shown.loaded.path).resolve())))
         gui.add_html('<div class="asked"></div>')
         asked = gui.add_text('asked', '')
@@ -84,15 +84,15 @@ class Page:
         self._positions = dict(self._joints.positions)
         self._selected = SelectedFrame(
             gui, place_of_selected, self._posed.tree, self._events, self._show_frame)
-        self._labels, self._node_names = Labels(nodes), cycle(('/drawing', '/other drawing'))
+        self._node_names = cycle(('/drawing', '/other drawing'))
         self._drawing = self._new_drawing()
-        self._camera = camera = self._server.initial_camera
+        camera = self._server.initial_camera
         camera.position, camera.look_at = self._drawing.home
         camera.fov = FIELD_OF_VIEW_RAD
         camera.near, camera.far = 0.001 * self._drawing.size_m, 100.0 * self._drawing.size_m
         self._server.on_client_connect(
             lambda client: self._events.put(partial(self._add_client, client)))
-        self._show_names()
+        self._describe()
 
     @property
     def reasons(self) -> list[str]:
@@ -103,7 +103,7 @@ class Page:
         """Return the scene, without controls, as a page that needs no network."""
         page: str = self._server.get_scene_serializer().as_html()
         return page_with_script(
-            page, printable(title), html_of_data('names', self._drawing.names))
+            page, printable(title), self._names.content + self._labels.content)
 
     def close(self) -> None:
         """End the server."""
@@ -127,7 +127,6 @@ class Page:
             self._selected.list_frames(self._posed.tree)
             self._redraw()
             self.show_errors([])
-            self._show_names()
 
     def show_errors(self, lines: Iterable[str]) -> None:
         """Show the errors of a file, a line for each, over its last scene."""
@@ -147,8 +146,6 @@ class Page:
             # While a gizmo moves, there is no time to read a file.
             if not actions and self._edit is not None:
                 self._edit.look_ahead()
-            if actions:
-                self._show_names()
 
     # Drawing
 
@@ -207,24 +204,16 @@ class Page:
         self._drawing.mark(
             drawn.tree, frame, pose, None if reference == ROOT_IS_PARENT else origin,
             self._units.length)
+        self._labels.content = html_of_data('labels', self._drawing.labels(drawn, frame, pose))
         self._selected.describe(drawn, pose, self._units)
         self._strip.content = html_of_data(
             'strip', f'{html_of_lines("errors", self._errors)}{place}'
             f'{html_of_moved(tree, drawn.tree, frame)}'
             f'{"" if self._edit is None else self._edit.html}')
 
-    def _show_names(self) -> None:
-        self._labels.show(self._drawing.texts(
-            self._drawn, self._selected.frame, None if self._edit is None else self._edit.pose,
-            self._camera.position, self._camera.look_at))
-
     def _add_client(self, client: viser.ClientHandle) -> None:
-        self._events.when(client.camera.on_update, partial(self._look_from, client.camera))
         if client.camera.aspect < 1.0:
             self._turn(client, self._drawing.home)
-
-    def _look_from(self, camera: viser.CameraHandle) -> None:
-        self._camera = camera
 
     # Controls
 

@@ -5,7 +5,6 @@
 import json
 import math
 
-import numpy as np
 import pytest
 
 pytest.importorskip('trimesh', reason='needs trimesh')
@@ -19,7 +18,6 @@ from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.tf.tree import TfOptions
 
 BOX = '<geometry><box/></geometry>'
-EYE, MIDDLE = np.array((0.0, -10.0, 0.0)), np.zeros(3)
 
 
 @pytest.fixture(scope='module')
@@ -58,18 +56,17 @@ def test_names_of_bodies_are_in_the_order_of_the_nodes(drawing_of):
 def test_name_of_the_selected_frame_stands_at_its_new_pose(drawing_of):
     drawing, posed = drawing_of('<link name="a"/>')
     frame = posed.tree.frame_ids.index('a')
-    texts = drawing.texts(posed, frame, Pose(3.0, 0.0, 1.0), EYE, MIDDLE)
-    assert {text: point.tolist() for text, point in texts} == {
-        'm': [0.0, 0.0, 0.0], 'a': [3.0, 0.0, 1.0]}
+    assert json.loads(drawing.labels(posed, frame, Pose(3.0, 0.0, 1.0))) == [
+        ['m', False, 0.0, 0.0, 0.0], ['a', True, 3.0, 0.0, 1.0]]
 
 
-def test_name_of_a_missing_mesh_is_not_hidden_by_a_nearer_name(drawing_of):
+def test_name_of_a_missing_mesh_precedes_those_of_frames(drawing_of):
     mesh = '<geometry><mesh><uri>a.stl</uri></mesh></geometry>'
     drawing, posed = drawing_of(
         f'<link name="{"a" * 40}">'
         f'<visual name="v"><pose>0.2 1 0 0 0 0</pose>{mesh}</visual></link>')
-    ((text, _), *_) = drawing.texts(posed, -1, None, EYE, MIDDLE)
-    assert text == 'a.stl?'
+    assert [label[:2] for label in json.loads(drawing.labels(posed, -1, None))] == [
+        ['a.stl?', True], ['m', False], ['a' * 40, False]]
 
 
 @pytest.mark.parametrize(('size', 'ground_m'), [('1 1 1', -0.5), ('3 3 1', 0.0)])

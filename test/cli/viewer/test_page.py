@@ -2,6 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the page shows, without a browser; integration/test_view_page.py uses it in one."""
 
+import html
+import json
+import re
+
 import pytest
 
 pytest.importorskip('viser', reason='needs viser')
@@ -47,6 +51,11 @@ def nodes(page, *names):
     return [page._server.scene.get_handle_by_name(f'{prefix}/{name}') for name in names]
 
 
+def labels(page):
+    (data,) = re.findall('data-labels="([^"]*)"', page._labels.content)
+    return json.loads(html.unescape(data))
+
+
 def test_page_says_what_it_does_not_draw(page_of):
     page = page_of(f'<visual name="v">{MESH}</visual>')
     (reason,) = page.reasons
@@ -56,8 +65,7 @@ def test_page_says_what_it_does_not_draw(page_of):
 
 def test_name_of_a_mesh_stands_beside_the_box_that_is_drawn_for_it(page_of):
     page = page_of(f'<visual name="v"><pose>0 0 0.5 0 0 0</pose>{MESH}</visual>')
-    label = page._server.scene.get_handle_by_name('/names/0')
-    assert (label.text, label.position.tolist()) == ('<b>?', [0.0, 0.0, 0.5])
+    assert labels(page) == [['<b>?', True, 0.0, 0.0, 0.5]]
 
 
 def test_name_moves_with_its_frame_when_the_file_is_read_again(page_of):
@@ -65,8 +73,7 @@ def test_name_moves_with_its_frame_when_the_file_is_read_again(page_of):
     page = page_of(sensor.format(0))
     page._selected.select(page._posed.tree.frame_ids.index('l/s'))
     page.show(page_of(sensor.format(0.1))._shown)
-    label = page._server.scene.get_handle_by_name('/names/0')
-    assert (label.text, label.position.tolist()) == ('s', [0.0, 0.0, 0.1])
+    assert labels(page) == [['s', True, 0.0, 0.0, 0.1]]
 
 
 def test_what_is_switched_off_is_not_drawn(page_of):
@@ -111,9 +118,7 @@ def test_line_joins_the_frames_that_are_measured(page_of):
     page._selected._measure_from_here()
     page._selected.select(frames.index('l/s'))
     assert page._drawing._measured.points.tolist() == [[[0, 0, 0], [1, 2, 3]]]
-    page._show_names()
-    label = page._server.scene.get_handle_by_name('/names/0')
-    assert (label.text, label.position.tolist()) == ('3.7417 m', [0.5, 1.0, 1.5])
+    assert labels(page)[0] == ['3.7417 m', True, 0.5, 1.0, 1.5]
 
 
 def test_boxes_of_one_element(page_of):
