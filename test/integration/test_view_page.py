@@ -190,6 +190,20 @@ def test_names_do_not_overlap(tmp_path):
     assert sorted(texts) == sorted(['p0\np1\np2\np3\nand 2 more', long])
 
 
+def test_frame_is_folded_and_hidden_in_the_tree(page):
+    sign = "document.querySelector('.rows [data-ask^={}]:not(:empty)')"
+    x, y = point_on_screen(page, (0.1, -0.1, 0.09))
+    page.wait_for(f"{sign.format('fold')}.nextSibling.title === 'link'")
+    page.run(f"{sign.format('fold')}.click()")
+    page.wait_for(f'{ROWS}.length === 2')
+    page.run(f"{sign.format('hide')}.click()")
+    wait_for_name_at(page, x, y, '')
+    page.run(f"{sign.format('hide')}.click()")
+    wait_for_name_at(page, x, y, 'arm/base, visual v')
+    page.run(f"{sign.format('fold')}.click()")
+    page.wait_for(f'{ROWS}.length === 5')
+
+
 def test_arrow_keys_move_a_slider_and_nothing_else(page):
     page.run("window.keys = 0; window.addEventListener('keydown', () => { window.keys++; })")
     thumb = "document.querySelectorAll('[role=slider]')[1]"

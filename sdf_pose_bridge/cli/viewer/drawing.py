@@ -65,26 +65,29 @@ class Drawing:
     :param meshes: reads the meshes.
     :param shown: the scene.
     :param posed: the same at the positions of its joints.
-    :param hidden: the groups, kinds of frames and models that are not drawn.
+    :param hidden: the groups and kinds of frames that are not drawn.
+    :param hidden_ids: the ids of frames that are not drawn, with all that is in them.
     :param select: called with the clicked frame, an index into the TF tree.
     """
 
     def __init__(
         self, nodes: viser.SceneApi, name: str, meshes: MeshReader, shown: ShownScene,
-        posed: PosedScene, hidden: set[str], select: Callable[[int], None],
+        posed: PosedScene, hidden: set[str], hidden_ids: set[str], select: Callable[[int], None],
     ) -> None:
         scene, tree = posed
         self._nodes, self._name, self._select = nodes, name, select
         self._node = nodes.add_frame(name, show_axes=False)
         self._has_all_lines = 'all lines to parents' not in hidden
         self._has_all_names = 'all names' not in hidden
-        is_shown = shown.is_shown(hidden)
+        is_hidden = np.array([frame_id in hidden_ids for frame_id in tree.frame_ids], bool)
+        is_shown = shown.is_shown(tree.elements[is_hidden].tolist())
         # An optical frame is shown with its parent.
         elements = np.where(
             tree.elements < 0, tree.elements[np.maximum(tree.parents, 0)], tree.elements)
         self.frames = np.array([
             frame for frame, label in enumerate(kind_labels_of(scene, tree))
-            if label not in hidden and is_shown[elements[frame]]], int)
+            if label not in hidden and is_shown[elements[frame]]
+            and not is_hidden[frame]], int)
         """The frames that are drawn, indices into the TF tree."""
         origins = tree.poses[:, :3]
         bodies = [element for element in scene.shapes if is_shown[element]

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 import html
 import shlex
 from xml.sax.saxutils import quoteattr
@@ -17,6 +17,7 @@ from sdf_pose_bridge.geometry.formats import converted_poses
 from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.names import printable, quoted_names, SEPARATOR
 from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.sdformat.include.merge import is_name_of_proxy
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import TfTree
 
@@ -147,12 +148,15 @@ def html_of_reasons(lines: Sequence[str]) -> str:
             f'and {len(lines) - 1} more</summary>{html_of_lines("others", lines[1:])}</details>')
 
 
-def rows_of_tree(tree: TfTree, search: str) -> Iterator[tuple[int, int, str]]:
+def rows_of_tree(
+    tree: TfTree, search: str, folded: Container[str] = (),
+) -> Iterator[tuple[int, int, str, bool]]:
     """
-    List frames, each below its parent in TF.
+    List frames, each below its parent in TF, but not those that only a merge has named.
 
     :param search: a part of the ids of the frames to list; empty for all of them.
-    :return: the index, the depth in the tree and the text of each.
+    :param folded: the ids of frames whose children are not listed, unless they are searched.
+    :return: the index, the depth in the tree and the text of each, and whether it has children.
     """
     children: dict[int, list[int]] = {}
     for index, parent in enumerate(tree.parents.tolist()):
@@ -161,9 +165,12 @@ def rows_of_tree(tree: TfTree, search: str) -> Iterator[tuple[int, int, str]]:
                for index in reversed(children.get(other, ()))]
     while waiting:
         index, depth = waiting.pop()
-        frame_id = tree.frame_ids[index]
-        if not search:
-            yield index, min(depth, 20), frame_id.rpartition('/')[2]
-        elif search.lower() in frame_id.lower():
-            yield index, 0, frame_id
-        waiting += [(child, depth + 1) for child in reversed(children.get(index, ()))]
+        frame_id, below = tree.frame_ids[index], children.get(index, ())
+        name = frame_id.rpartition('/')[2]
+        if not is_name_of_proxy(name):
+            if not search:
+                yield index, min(depth, 20), name, bool(below)
+            elif search.lower() in frame_id.lower():
+                yield index, 0, frame_id, False
+        if search or frame_id not in folded:
+            waiting += [(child, depth + 1) for child in reversed(below)]

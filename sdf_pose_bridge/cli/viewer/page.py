@@ -40,7 +40,6 @@ from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.tf.joint_positions import scene_at_positions
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 
-_MOST_SWITCHES = 50
 _ANGLES = {unit.name: unit for unit in (RADIANS, DEGREES)}
 
 
@@ -53,7 +52,7 @@ class Page:
     :param units: the units of poses and sliders at first.
     :param meshes: reads the meshes.
     :param set_pose: writes a pose into the file; None if frames cannot be moved.
-    :param hidden: groups, kinds of frames and models that are hidden at first.
+    :param hidden: groups and kinds of frames that are hidden at first.
     """
 
     def __init__(
@@ -77,13 +76,12 @@ class Page:
             self._server, set_pose, self._events, self._describe)
         place_of_selected = gui.add_folder(None)
         self._add_view_controls()
-        self._place_of_switches, self._place_of_joints = (gui.add_folder(None) for _ in range(2))
         self._switches = self._add_switches()
         self._sliders, self._joints = self._add_joints({})
         self._posed = shown.at(self._joints.positions)
         self._positions = dict(self._joints.positions)
         self._selected = SelectedFrame(
-            gui, place_of_selected, self._posed.tree, self._events, self._show_frame)
+            gui, place_of_selected, self._posed, self._events, self._show_frame)
         self._node_names = cycle(('/drawing', '/other drawing'))
         self._drawing = self._new_drawing()
         camera = self._server.initial_camera
@@ -102,8 +100,7 @@ class Page:
     def html(self, title: str) -> str:
         """Return the scene, without controls, as a page that needs no network."""
         page: str = self._server.get_scene_serializer().as_html()
-        return page_with_script(
-            page, printable(title), self._names.content + self._labels.content)
+        return page_with_script(page, printable(title), self._names.content + self._labels.content)
 
     def close(self) -> None:
         """End the server."""
@@ -117,14 +114,14 @@ class Page:
         """
         with self._server.atomic():
             before, self._shown = self._shown, shown
-            if (shown.kinds, [*shown.models]) != (before.kinds, [*before.models]):
+            if shown.kinds != before.kinds:
                 self._switches.remove()
-                self._switches = self._add_switches()
+                self._switches = self._add_switches(self._switches.order)
             # Many sliders take a browser long.
             if shown.joints != before.joints:
                 self._replace_joints()
             self._move()
-            self._selected.list_frames(self._posed.tree)
+            self._selected.list_frames(self._posed)
             self._redraw()
             self.show_errors([])
 
@@ -156,7 +153,7 @@ class Page:
     def _new_drawing(self) -> Drawing:
         drawing = Drawing(
             self._server.scene, next(self._node_names), self._meshes, self._shown, self._posed,
-            self._hidden,
+            self._hidden, self._selected.hidden,
             lambda frame: self._events.put(partial(self._selected.select, frame)))
         self._drawn = self._posed
         self._reasons.content = html_of_reasons(drawing.reasons)
@@ -219,40 +216,37 @@ class Page:
 
     def _answer(self, ask: str) -> None:
         """Do what was clicked outside of the controls."""
-        if ask.isdecimal():
-            self._selected.select(int(ask))
+        verb, _, frame = ask.partition(' ')
+        if verb == 'select':
+            self._selected.select(int(frame))
+        elif verb in {'fold', 'hide'}:
+            self._selected.toggle(verb, int(frame))
+            if verb == 'hide':
+                self._redraw()
         elif self._edit is not None and ask in self._edit.actions:
             self._edit.actions[ask]()
 
-    def _add_switches(self) -> viser.GuiFolderHandle:
-        """Add the folders "Show" and "Models"."""
-        gui, shown = self._server.gui, self._shown
-        with self._place_of_switches:
-            switches = gui.add_folder(None)
+    def _add_switches(self, order: float | None = None) -> viser.GuiFolderHandle:
+        """Add the folder "Show"."""
+        switches = self._server.gui.add_folder('Show', expand_by_default=False, order=order)
         with switches:
-            with gui.add_folder('Show', expand_by_default=False):
-                for name in (*shown.kinds, *GROUPS):
-                    self._add_switch(name)
-            if 1 < len(shown.models) <= _MOST_SWITCHES:
-                with gui.add_folder('Models', expand_by_default=False):
-                    for name in shown.models:
-                        self._add_switch(name)
+            for name in (*self._shown.kinds, *GROUPS):
+                self._add_switch(name)
         return switches
 
     def _add_joints(
-        self, positions: Mapping[str, float],
+        self, positions: Mapping[str, float], order: float | None = None,
     ) -> tuple[viser.GuiFolderHandle, JointSliders]:
         """Add the folder "Joints"."""
-        gui = self._server.gui
-        with self._place_of_joints:
-            folder = gui.add_folder(None)
+        folder = self._server.gui.add_folder(None, order=order)
         with folder:
             return folder, JointSliders(
-                gui, self._shown.joints, positions, self._units, self._events)
+                self._server.gui, self._shown.joints, positions, self._units, self._events)
 
     def _replace_joints(self) -> None:
         self._sliders.remove()
-        self._sliders, self._joints = self._add_joints(self._joints.positions)
+        self._sliders, self._joints = self._add_joints(
+            self._joints.positions, self._sliders.order)
 
     def _add_switch(self, name: str) -> None:
         switch = self._server.gui.add_checkbox(printable(name), name not in self._hidden)

@@ -214,8 +214,8 @@ class PoseEdit:
         self._changed()
 
     def _write_pose(self) -> None:
-        assert self.pose is not None
-        assert self._frame is not None
+        assert self.pose
+        assert self._frame
         change = self._change(self.pose, dry_run=False)
         if isinstance(change, PoseChange):
             self._undone = change.file.undone

@@ -15,7 +15,6 @@ from sdf_pose_bridge.cli.viewer.joint_sliders import JointRange, range_of_dof
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.joint_positions import JointPositions, scene_at_positions
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT, tf_parents_from_scene
@@ -52,11 +51,6 @@ class ShownScene:
             np.where(loaded.parents[loaded.parents] < 0, -1, loaded.parents))
         self.kinds: tuple[str, ...] = tuple(dict.fromkeys(kind_labels_of(loaded, tree)))
         """The labels of the kinds of its frames."""
-        self.models: dict[str, int] = {
-            f'model {loaded.names[element]}': element
-            for element in np.unique(self._tops).tolist()
-            if loaded.kinds[element] == Kind.MODEL and self._is_in_model[element]}
-        """Its outermost models."""
         self.joints: dict[str, JointRange] = {
             name: range_of_dof(dof)
             for name, dof in zip(JointPositions(loaded, dofs).names, dofs, strict=True)
@@ -66,10 +60,11 @@ class ShownScene:
             self._tops, self._tops[[dof.joint.element for dof in dofs]])
         """Shape (n,): whether each element is in a model that moves."""
 
-    def is_shown(self, hidden: Iterable[str]) -> NDArray[np.bool_]:
-        """Return whether each element is in a model that is not hidden, shape (n,)."""
-        elements = [element for name, element in self.models.items() if name in hidden]
-        shown: NDArray[np.bool_] = self._is_in_model & ~np.isin(self._tops, elements)
+    def is_shown(self, hidden: Iterable[int]) -> NDArray[np.bool_]:
+        """Return whether each element is in none of the hidden elements, shape (n,)."""
+        shown: NDArray[np.bool_] = self._is_in_model.copy()
+        for element in hidden:
+            shown &= ~self.is_in(element)
         return shown
 
     def is_in(self, element: int) -> NDArray[np.bool_]:

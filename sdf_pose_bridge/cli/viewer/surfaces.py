@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -43,20 +43,9 @@ class Surface(NamedTuple):
     """The reason why this replaces a mesh; empty for the surface in the file."""
 
 
-class NotDrawn(NamedTuple):
-    """A visual or collision that cannot be drawn."""
-
-    mesh_uri: str
-    """URI of its mesh; empty for another shape."""
-    reason: str
-
-    def __str__(self) -> str:
-        return f'the mesh "{self.mesh_uri}": {self.reason}' if self.mesh_uri else self.reason
-
-
 def surfaces_from_scene(
     scene: Scene, elements: Sequence[int], size_m: float, meshes: MeshReader,
-) -> tuple[list[Surface], list[NotDrawn]]:
+) -> tuple[list[Surface], dict[str, list[str]]]:
     """
     Choose the surfaces of visuals and collisions.
 
@@ -65,7 +54,8 @@ def surfaces_from_scene(
     :param size_m: extent of the frames; it limits the sides of planes, and the box for an unknown
         mesh is a small part of it.
     :param meshes: reads meshes.
-    :return: the surfaces, and each element that cannot be drawn.
+    :return: the surfaces, and by the reason the elements that cannot be drawn: of each the URI of
+        its mesh, empty for another shape.
     """
     copies: dict[tuple[Kind, Shape, str, bool], list[int]] = {}
     for element in elements:
@@ -80,15 +70,15 @@ def surfaces_from_scene(
             has_texture = kind == Kind.VISUAL and shape.rgba is None and shape.opacity == 1.0
             copies.setdefault((kind, form, file, has_texture), []).append(element)
     surfaces: list[Surface] = []
-    not_drawn: list[NotDrawn] = []
+    not_drawn: dict[str, list[str]] = {}
     triangle_count = 0
     for (kind, form, file, has_texture), same in copies.items():
         mesh = meshes.mesh(form, file, size_m)
         if mesh.reason:
-            not_drawn += [NotDrawn(form.mesh_uri, mesh.reason)] * len(same)
+            not_drawn.setdefault(mesh.reason, []).extend([form.mesh_uri] * len(same))
         triangle_count += sum(len(part.faces) for part in mesh.parts)
         if len(surfaces) + len(mesh.parts) > MOST_SURFACES or triangle_count > MOST_TRIANGLES:
-            not_drawn += [NotDrawn('', 'there are too many surfaces')] * len(same)
+            not_drawn.setdefault('there are too many surfaces', []).extend([''] * len(same))
             continue
         shapes = [scene.shapes[element] for element in same]
         scales = np.array([
@@ -103,13 +93,10 @@ def surfaces_from_scene(
     return surfaces, not_drawn
 
 
-def lines_from_not_drawn(not_drawn: Sequence[NotDrawn]) -> list[str]:
+def lines_from_not_drawn(not_drawn: Mapping[str, Sequence[str]]) -> list[str]:
     """Say which shapes cannot be drawn, one line for each reason."""
-    meshes_of_reasons: dict[str, list[str]] = {}
-    for mesh_uri, reason in not_drawn:
-        meshes_of_reasons.setdefault(reason, []).append(mesh_uri)
     lines = []
-    for reason, uris in meshes_of_reasons.items():
+    for reason, uris in not_drawn.items():
         names = list(dict.fromkeys(filter(None, uris)))
         meshes = f'the mesh{"es" * (len(names) > 1)} {quoted_names(names, _MOST_LISTED)}: '
         lines.append(printable(

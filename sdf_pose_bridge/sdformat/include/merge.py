@@ -34,6 +34,7 @@ from sdf_pose_bridge.sdformat.xml_tree import (
 )
 
 _MOVED_TAGS = frozenset({'frame', 'gripper', 'include', 'joint', 'link', 'model', 'plugin'})
+_PROXY_START, _PROXY_END = '_merged__', '__model__'
 _NOT_IN_WORLDS = ('gripper', 'link')
 _FORMAT_ATTRIBUTES = ('degrees', 'rotation_format')
 
@@ -100,7 +101,7 @@ def _proxy_frame(
     proxy_pose.text = text_from_pose(known.pose)
     for attribute in set(_FORMAT_ATTRIBUTES) & set(proxy_pose.keys()):
         del proxy_pose.attrib[attribute]
-    name = f'_merged__{attribute_of(model, "name")}__model__'
+    name = f'{_PROXY_START}{attribute_of(model, "name")}{_PROXY_END}'
     canonical_link = attribute_of(model, 'canonical_link') or known.canonical_link
     proxy = etree.Element('frame', {'name': name, 'attached_to': canonical_link})
     placement = attribute_of(model, 'placement_frame')
@@ -111,6 +112,11 @@ def _proxy_frame(
         is_named_by_include=first_child(include, 'name') is not None,
         placement_frame=name if placement == MODEL_FRAME else placement)
     return proxy
+
+
+def is_name_of_proxy(name: str) -> bool:
+    """Return whether a merge may have made a name."""
+    return name.startswith(_PROXY_START) and name.endswith(_PROXY_END)
 
 
 def _fits_in(parent: XmlElement, model: XmlElement, sources: Sources) -> bool:

@@ -36,7 +36,7 @@ def drawing_of(nodes, mesh_reader):
         text = f'<sdf version="1.11"><model name="m">{content}</model></sdf>'
         shown = ShownScene(load_text(text.encode(), 'm.sdf', shapes=True), TfOptions())
         posed = shown.at({})
-        drawings.append(Drawing(nodes, '/drawing', mesh_reader, shown, posed, set(), print))
+        drawings.append(Drawing(nodes, '/drawing', mesh_reader, shown, posed, set(), set(), print))
         return drawings[-1], posed
     yield draw
     for drawing in drawings:

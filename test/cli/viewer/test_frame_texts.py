@@ -127,11 +127,25 @@ def test_name_is_text(scene):
 
 
 def test_rows_stand_below_their_parents(scene):
-    rows = [(depth, text) for _, depth, text in rows_of_tree(tf_tree_from_scene(scene), '')]
+    rows = [(depth, text) for _, depth, text, _ in rows_of_tree(tf_tree_from_scene(scene), '')]
     assert rows == [
         (0, 'l'), (1, 'm'), (1, 's'), (2, 's_optical'), (1, 'f'), (0, HOSTILE)]
 
 
+def test_children_of_a_folded_frame_are_not_listed(scene):
+    rows = [row[2:] for row in rows_of_tree(tf_tree_from_scene(scene), '', {'m/l/s'})]
+    assert rows == [('l', True), ('m', False), ('s', True), ('f', False), (HOSTILE, False)]
+
+
+def test_frame_that_only_a_merge_has_named_is_not_listed():
+    names = ('_merged__a__model__', '_merged__a', 'b')
+    frames = ''.join(f'<frame name="{name}"/>' for name in names)
+    tree = tf_tree_from_scene(load_text(
+        f'<sdf version="1.11"><world name="w">{frames}</world></sdf>'.encode(), 'cell.sdf'))
+    assert [text for _, _, text, _ in rows_of_tree(tree, '')] == ['_merged__a', 'b']
+
+
 def test_search(scene):
     tree = tf_tree_from_scene(scene)
-    assert [text for *_, text in rows_of_tree(tree, 'M/L/')] == ['m/l/s', 'm/l/s_optical']
+    assert [text for _, _, text, _ in rows_of_tree(tree, 'M/L/', {'m/l'})] == [
+        'm/l/s', 'm/l/s_optical']

@@ -32,7 +32,7 @@ POSED = posed_scene('a', 'b', 'c')
 def selected():
     server = viser.ViserServer('127.0.0.1', 0, verbose=False)
     place = server.gui.add_folder(None)
-    yield SelectedFrame(server.gui, place, POSED.tree, Events(), lambda: None)
+    yield SelectedFrame(server.gui, place, POSED, Events(), lambda: None)
     server.stop()
 
 
@@ -43,15 +43,15 @@ def test_frame_that_is_gone_is_not_selected(selected):
 
 def test_selected_frame_stays_where_others_are_listed(selected):
     selected.select(1)
-    selected.list_frames(posed_scene('b').tree)
+    selected.list_frames(posed_scene('b'))
     assert selected.frame == 0
-    selected.list_frames(posed_scene('a').tree)
+    selected.list_frames(posed_scene('a'))
     assert selected.frame == -1
 
 
 def test_more_frames_than_rows(selected, monkeypatch):
     monkeypatch.setattr(selected_frame, 'MOST_ROWS', 4)
-    selected.list_frames(posed_scene(*'abcdef').tree)
+    selected.list_frames(posed_scene(*'abcdef'))
     assert '2 more, to be found by the search' in selected._rows.content
 
 

@@ -13,7 +13,6 @@ from sdf_pose_bridge.cli.viewer import surfaces as surfaces_module
 from sdf_pose_bridge.cli.viewer.surfaces import (
     boxes_of_surfaces,
     lines_from_not_drawn,
-    NotDrawn,
     surfaces_from_scene,
 )
 
@@ -41,19 +40,19 @@ MESH = geometry('<mesh><uri>a.stl</uri><scale>1 1 -2</scale></mesh>')
 
 def test_shape_that_is_not_supported(drawn):
     _, surfaces, not_drawn = drawn(geometry('<heightmap/>'))
-    assert (surfaces, not_drawn) == ([], [('', 'a heightmap is not supported')])
+    assert (surfaces, not_drawn) == ([], {'a heightmap is not supported': ['']})
 
 
 def test_missing_mesh_is_a_small_box(drawn):
-    _, (surface,), (not_drawn,) = drawn(MESH)
+    _, (surface,), not_drawn = drawn(MESH)
     assert np.ptp(surface.part.points, axis=0) * surface.scales[0] == pytest.approx(0.06)
-    assert str(not_drawn).startswith('the mesh "a.stl": it is not in "')
-    assert surface.reason == not_drawn.reason
+    assert not_drawn == {surface.reason: ['a.stl']}
+    assert surface.reason.startswith('it is not in "')
 
 
 def test_meshes_that_are_missing_for_one_reason_have_one_line():
-    meshes, other = lines_from_not_drawn([
-        *(NotDrawn(f'{name}.dae', 'no') for name in 'abbcde'), NotDrawn('', 'too many')])
+    meshes, other = lines_from_not_drawn(
+        {'no': [f'{name}.dae' for name in 'abbcde'], 'too many': ['']})
     assert meshes == ('6 shapes cannot be drawn: '
                       'the meshes "a.dae", "b.dae", "c.dae" and 2 more: no')
     assert other == '1 shape cannot be drawn: too many'
@@ -63,7 +62,7 @@ def test_more_surfaces_than_are_drawn(drawn, monkeypatch):
     monkeypatch.setattr(surfaces_module, 'MOST_SURFACES', 1)
     _, (surface,), not_drawn = drawn(*[geometry('<sphere/>')] * 2, *[geometry('<cone/>')] * 3)
     assert len(surface.elements) == 2
-    assert not_drawn == [('', 'there are too many surfaces')] * 3
+    assert not_drawn == {'there are too many surfaces': [''] * 3}
 
 
 def test_more_triangles_than_are_drawn(drawn, monkeypatch):
@@ -86,7 +85,7 @@ def test_transparency_without_a_material(drawn):
 
 def test_what_is_transparent_is_not_drawn(drawn):
     material = '<material><diffuse>1 0 0 0</diffuse></material>' + geometry('<box/>')
-    assert drawn(material)[1:] == ([], [])
+    assert drawn(material)[1:] == ([], {})
 
 
 def test_mesh_with_its_scale(drawn, tmp_path):
