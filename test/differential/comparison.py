@@ -17,8 +17,8 @@ from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
 TOLERANCE = 1e-9
 """Metres, relative to the distance from the root where that is more than one; and radians."""
 
-URDF_TOLERANCE = 2e-5
-"""The same for a scene with URDF, in which libsdformat writes angles with few digits."""
+TOLERANCES = {'urdf': 2e-5, 'merge': 1e-6}
+"""The same for scenes in which libsdformat writes angles: with few digits, or near gimbal lock."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def difference_between(
         # and libsdformat by steps of loading.
         text = f'{", ".join(own.codes)} here, {reference.codes[0]} by libsdformat'
         return Difference('code', f'{text}: {reference.message}')
-    tolerance = URDF_TOLERANCE if 'urdf' in traits else TOLERANCE
+    tolerance = max([TOLERANCE, *(TOLERANCES.get(trait, 0.0) for trait in traits)])
     for key, expected in reference.poses.items():
         got = own.poses.get(key)
         if got is None:
