@@ -40,6 +40,8 @@ def with_pose_set(scene: SceneFiles, dice: Random) -> SceneFiles:
             *(dice.randint(-90, 90) / 10 for _ in range(3)), 0.0, 0.6, 0.0, 0.8)
         try:
             before = load({})
+            if not before.names:
+                return scene
             element = dice.randrange(len(before.names))
             change = pose_change(
                 before, element, pose, lambda scene, index: scene.pose_of(index), load)
