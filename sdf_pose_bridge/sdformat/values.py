@@ -33,7 +33,8 @@ _STREAM_INTEGERS = re.compile(r'([+-]?[0-9]+)(\s+[+-]?[0-9]+|[+-][0-9]+)', re.AS
 _PLAIN_NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,2})?')
 """A number that all of these read alike."""
 _NOT_IN_DECIMALS = re.compile(rf'[^-+.0-9{WHITE_SPACE}]')
-_SHORTEST_AXIS = 1e-6
+_SHORTEST_AXIS = 9.999999974752427e-07
+"""The float that is nearest to 1e-6, as libsdformat compares with it."""
 LONGEST_PLAIN = 200
 """
 A number with fewer characters, and an exponent of two digits at most, is in the range of a double.

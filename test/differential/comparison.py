@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import math
 from pathlib import Path
 
-from differential.reference import Answer, AxisValues, CRASH, JointValues, PoseValues
+from differential.reference import Answer, AxisValues, CRASH, EXCEPTION, JointValues, PoseValues
 import sdf_pose_bridge
 from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -97,7 +97,7 @@ def difference_between(
         return Difference('accepted', f'accepted here, refused by libsdformat: {said}')
     if reference.accepted and not own.accepted:
         return Difference('refused', f'accepted by libsdformat, refused here: {own.message}')
-    if not own.accepted and reference.codes[0] not in own.codes:
+    if not own.accepted and reference.codes[0] not in (EXCEPTION, *own.codes):
         # The first one there may be a later one here: the package lists errors by file and line,
         # and libsdformat by steps of loading.
         text = f'{", ".join(own.codes)} here, {reference.codes[0]} by libsdformat'

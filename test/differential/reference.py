@@ -18,6 +18,8 @@ RELEASES = ('sdformat14', 'sdformat15', 'sdformat')
 is found is used."""
 
 CRASH = 'CRASH'
+EXCEPTION = 'EXCEPTION'
+"""The code of an exception that leaves libsdformat."""
 
 Key: TypeAlias = tuple[str, str, str]
 """World, kind and scoped name of an element."""

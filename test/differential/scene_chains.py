@@ -100,7 +100,7 @@ def includes_anywhere(dice: Random) -> dict[str, Element]:
     actor = ElementTree.SubElement(world, 'actor', name='walker')
     ElementTree.SubElement(actor, 'link', name='l')
     for _ in range(dice.randint(1, 2)):
-        parents = [each for each in world.iter() if each.tag not in ('pose', 'include')]
+        parents = [each for each in world.iter() if each.tag not in ('pose', 'include', 'uri')]
         include = ElementTree.SubElement(dice.choice(parents), 'include')
         if dice.random() < 0.2:
             include.set('merge', 'true')
