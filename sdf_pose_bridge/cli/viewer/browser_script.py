@@ -47,8 +47,7 @@ _SCRIPT = """<script>(() => {
   window.__THREE_DEVTOOLS__ ??= new EventTarget();
   __THREE_DEVTOOLS__.addEventListener('observe', ({detail: observed}) => {
     if (observed.isScene) observed.onBeforeRender = (renderer, _, used) => {
-      const {frames: names} = namesInScene();
-      const opacity = Number(document.querySelector('[data-opacity]')?.dataset.opacity ?? 1);
+      const {frames: names} = namesInScene(), opacity = Number(given('opacity'));
       observed.traverse(node => {
         // viser has no opacity for bodies with a texture, and makes others anew for it.
         if (node.isInstancedMesh2) {
@@ -109,8 +108,7 @@ _SCRIPT = """<script>(() => {
   };
   // Names at one place are lines of one text; of others, those that would overlap are left out.
   const labelsWithoutOverlaps = canvas => {
-    const given = JSON.parse(document.querySelector('[data-labels]')?.dataset.labels ?? '[]');
-    const seen = given.map(([text, isFirst, ...point]) => {
+    const seen = JSON.parse(given('labels')).map(([text, isFirst, ...point]) => {
       const {depth, x, y} = inPicture(point, canvas);
       return [!isFirst, depth, labelOf([text], Math.round(x), Math.round(y))];
     }).filter(([, depth]) => depth > 0).sort(([a, near], [b, far]) => a - b || near - far);
@@ -126,10 +124,13 @@ _SCRIPT = """<script>(() => {
     }
     return placed;
   };
-  let listed, names = {frames: [], bodies: []};
+  // A folded panel gives nothing; what it gave before stays.
+  const last = {labels: '[]', opacity: '1', names: '{"frames": [], "bodies": []}'};
+  const given = name => (
+    last[name] = document.querySelector(`[data-${name}]`)?.dataset[name] || last[name]);
+  let listed, names;
   const namesInScene = () => {
-    const given = document.querySelector('[data-names]')?.dataset.names;
-    if (given && given !== listed) [listed, names] = [given, JSON.parse(given)];
+    if (given('names') !== listed) [listed, names] = [last.names, JSON.parse(last.names)];
     return names;
   };
   const namesOfFramesAt = (event, box) => {
@@ -192,7 +193,6 @@ _SCRIPT = """<script>(() => {
     shownInStrip = strip.innerHTML = text;
     strip.style.maxWidth = `${document.querySelector('canvas').clientWidth - 16}px`;
     document.body.append(strip);
-    if (frames?.parent) drawOver(document.querySelector('canvas'));
     const row = document.querySelector('.rows .selected'), rows = row?.parentElement;
     if (row) rows.scrollTop = row.offsetTop - rows.offsetTop - 0.5 * rows.clientHeight;
   }).observe(document, {childList: true, subtree: true});

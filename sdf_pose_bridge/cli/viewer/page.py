@@ -70,7 +70,7 @@ class Page:
         gui.add_html(html_of_data('path', str(Path(shown.loaded.path).resolve())))
         gui.add_html('<div class="asked"></div>')
         asked = gui.add_text('asked', '')
-        self._events.when(asked.on_update, lambda: self._answer(asked.value.split(maxsplit=1)[1]))
+        self._events.when(asked.on_update, lambda: self._answer(asked.value.partition(' ')[2]))
         self._errors: Iterable[str] = ()
         self._edit = None if set_pose is None else PoseEdit(
             self._server, set_pose, self._events, self._describe)
