@@ -77,7 +77,7 @@ class JointSliders:
             buttons = gui.add_button_group(
                 'all joints', ('home', 'middle'),
                 hint='home is zero, or the nearest limit; middle is between the limits')
-            move = gui.add_button('Move each joint through its range')
+            move = gui.add_button('Move each joint through its range', color='gray')
             for name, limits in ranges.items():
                 unit = units.angle if limits.is_angle else units.length
                 factor, short = unit.factor, name.rpartition('/')[2]

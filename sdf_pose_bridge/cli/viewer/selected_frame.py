@@ -57,7 +57,7 @@ class SelectedFrame:
             self._choice = gui.add_dropdown(
                 'relative to', (tree.root_frame,), hint='for the pose and the distance')
             measure = gui.add_button(
-                'measure from this frame', hint='to the frames that are selected next')
+                'measure from this frame', hint='to frames that are selected next', color='gray')
             self._description = gui.add_html('')
         events.when(self._search.on_update, self._show_rows)
         events.when(self._choice.on_update, changed)
