@@ -83,17 +83,17 @@ def server_for_its_owner(port: int, title: str) -> tuple[viser.ViserServer, str]
     with _requests_need(secret, title):
         server = viser.ViserServer(_ADDRESS, port, verbose=False)
     server.gui.configure_theme(show_logo=False, show_share_button=False)
-    # Beside the scene, not on it.
-    server.gui.main_panel.dock_right()
-    server.on_client_connect(_fit_panel)
+    server.on_client_connect(_dock_panel)
     # The environment map of viser makes every color pale.
     server.scene.configure_environment_map(None)
     server.scene.configure_default_lights(enabled=False)
     return server, f'http://{_ADDRESS}:{server.get_port()}/{secret}/'
 
 
-def _fit_panel(client: viser.ClientHandle) -> None:
+def _dock_panel(client: viser.ClientHandle) -> None:
+    # Until then, the scene is as wide as the window.
     panel, width = client.gui.main_panel, client.camera.image_width
+    panel.dock_right()
     panel.set_width(min(_PANEL_WIDTH, int(_PANEL_PART * width)))
     if width < _LEAST_WIDTH:
         panel.minimize()
