@@ -208,6 +208,7 @@ def test_frame_is_folded_and_hidden_in_the_tree(page):
     page.wait_for(f"{sign.format('fold')}.nextSibling.title === 'link'")
     page.run(f"{sign.format('fold')}.click()")
     page.wait_for(f'{ROWS}.length === 2')
+    wait_for_name_at(page, x, y, 'arm/base, visual v')
     page.run(f"{sign.format('hide')}.click()")
     wait_for_name_at(page, x, y, '')
     page.run(f"{sign.format('hide')}.click()")
