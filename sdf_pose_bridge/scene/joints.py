@@ -26,7 +26,7 @@ from sdf_pose_bridge.names import MODEL_FRAME, SEPARATOR, WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.name_scopes import NameScopes
 from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
-from sdf_pose_bridge.sdformat.joints import AXIS_TAGS, AxisDetails, Reference
+from sdf_pose_bridge.sdformat.joints import AXIS_TAGS, AxisDetails, DEFAULT_END, Reference
 
 
 class AxisReferences(NamedTuple):
@@ -141,12 +141,13 @@ class JointChecks:
             return True
         details = self._elements.joints[joint]
         parent, child = details.parent, details.child
-        if child_body == root:
+        if child_body != parent_body:
             msg = f'child "{child.name}" is attached to the world, so nothing can move it'
             self._report(JointChildError, msg, joint, child.line, 'child')
         else:
+            body = WORLD_FRAME if child_body == root else self._scopes.names[child_body]
             msg = (f'parent "{parent.name}" and child "{child.name}" are both attached to '
-                   f'"{self._scopes.names[child_body]}"; a joint joins two bodies')
+                   f'"{body}"; a joint joins two bodies')
             self._report(
                 JointSameLinkError, msg, joint, is_checked=parent.name == child.name)
         return False
@@ -155,8 +156,11 @@ class JointChecks:
         self, error_class: type[SdfError], joint: int, reference: Reference, what: str,
         part: str = '',
     ) -> None:
-        reason = self._scopes.reason_without_frame(self._scope_of[joint], reference.name)
-        msg = f'{what} "{reference.name}" {reason}'
+        if reference.name == DEFAULT_END:
+            msg = f'the joint has no <{what}>; it must name a frame'
+        else:
+            reason = self._scopes.reason_without_frame(self._scope_of[joint], reference.name)
+            msg = f'{what} "{reference.name}" {reason}'
         self._report(error_class, msg, joint, reference.line, part or what)
 
     def _report(

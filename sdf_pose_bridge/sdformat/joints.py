@@ -12,13 +12,7 @@ from collections.abc import Sequence
 import math
 from typing import NamedTuple
 
-from sdf_pose_bridge.errors import (
-    ElementMissingError,
-    JointChildError,
-    JointParentError,
-    MimicError,
-    ReservedNameError,
-)
+from sdf_pose_bridge.errors import ElementMissingError, MimicError, ReservedNameError
 from sdf_pose_bridge.names import ROOT_FRAME
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES, Motion
@@ -27,6 +21,9 @@ from sdf_pose_bridge.sdformat.xml_tree import attribute_of, first_child, value_o
 
 AXIS_TAGS = ('axis', 'axis2')
 """The tags of the axes of a joint."""
+
+DEFAULT_END = '__default__'
+"""The parent or child that a ball joint has without one; no frame has this name."""
 
 
 class Reference(NamedTuple):
@@ -141,12 +138,11 @@ def check_children_of_joint(xml: XmlElement, sources: Sources, tags: Sequence[st
 
 def _end(xml: XmlElement, tag: str, joint_type: str, sources: Sources) -> Reference:
     element = first_child(xml, tag)
+    if element is None and joint_type == 'ball':
+        return Reference(DEFAULT_END)
     if element is None:
-        # The parser of libsdformat gives a ball joint an end with a default name, which no frame
-        # has; it rejects any other joint.
-        error = ElementMissingError if joint_type != 'ball' else (
-            JointParentError if tag == 'parent' else JointChildError)
-        sources.error(error, xml, f'the joint has no <{tag}>; it must name a frame')
+        msg = f'the joint has no <{tag}>; it must name a frame'
+        sources.error(ElementMissingError, xml, msg)
         return _NO_REFERENCE
     name = value_of(element)
     if name == ROOT_FRAME:

@@ -16,9 +16,8 @@ import shutil
 import sys
 import time
 
-from differential.batches import compare_scenes, Tally, write_scene
+from differential.batches import compare_scenes, Tally
 from differential.reference import built_reference, ReferenceMissingError
-from differential.scene_parts import Feature, features_of_release
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / 'build' / 'differential'
@@ -30,29 +29,19 @@ def main() -> int:
         prog='differential', description='Compare the package with libsdformat on random scenes.')
     parser.add_argument('--scenes', type=int, default=10_000, help='how many (default: 10000)')
     parser.add_argument('--seed', type=int, default=0, help='another seed gives other scenes')
-    parser.add_argument('--without', action='append', default=[], metavar='FEATURE',
-                        choices=[feature.value for feature in Feature],
-                        help='leave out: ' + ', '.join(feature.value for feature in Feature))
-    parser.add_argument('--reference-only', action='store_true',
-                        help='only check the scenes themselves: libsdformat has to accept the '
-                        'valid ones and to refuse the broken ones')
     parser.add_argument('--folder', type=Path, default=FOLDER,
                         help='for the compiled program and for scenes that differ')
     arguments = parser.parse_args()
-    features = frozenset(f for f in Feature if f.value not in arguments.without)
     try:
         reference = built_reference(arguments.folder)
     except ReferenceMissingError as error:
         print(f'differential: {error}', file=sys.stderr)
         return 2
-    features &= features_of_release(reference.version)
-    print(f'libsdformat {reference.version}, {arguments.scenes} scenes, seed {arguments.seed}, '
-          f'with {", ".join(sorted(f.value for f in features)) or "nothing special"}')
+    print(f'libsdformat {reference.version}, {arguments.scenes} scenes, seed {arguments.seed}')
     started, told = time.monotonic(), time.monotonic()
     tally = Tally()
     with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C ends the drawing, not the report
-        for tally in compare_scenes(reference, arguments.scenes, arguments.seed, features,
-                                    reference_only=arguments.reference_only):
+        for tally in compare_scenes(reference, arguments.scenes, arguments.seed):
             if time.monotonic() - told > 10:
                 told = time.monotonic()
                 print(f'  {tally.scenes} scenes, {len(tally.differences)} differences', flush=True)
@@ -69,8 +58,8 @@ def report(tally: Tally, seconds: float) -> None:
           f'{", " + traits if traits else ""}), {tally.poses} poses, {tally.refused} refused, '
           f'{seconds:.0f} s')
     print(f'first error of libsdformat: also the first one here in {tally.same_first_code} '
-          f'refused scenes, a later one in {tally.later_first_code}; moments of inertia, which '
-          f'are not checked here, in {tally.wrong_moments}')
+          f'refused scenes, a later one in {tally.later_first_code}; not compared, as libsdformat '
+          f'ends or refuses moments of inertia: {tally.not_comparable}')
     print(f'{len(tally.differences)} differences')
 
 
@@ -78,8 +67,8 @@ def write_differences(tally: Tally, folder: Path) -> None:
     """Write all scenes that differ."""
     shutil.rmtree(folder, ignore_errors=True)
     for name, scene, difference in tally.differences:
-        path = write_scene(scene.files, folder, name)
-        text = f'{difference.kind} {scene.defect}\n{difference.text}\n'
+        path = scene.write(folder, name)
+        text = f'{difference.kind}\n{difference.text}\n'
         (path.parent / 'difference.txt').write_text(text, encoding='utf-8')
         print(f'{path}: {text}')
 

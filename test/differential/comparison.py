@@ -17,7 +17,7 @@ from sdf_pose_bridge.sdformat.joints import AXIS_TAGS
 TOLERANCE = 1e-9
 """Metres, relative to the distance from the root where that is more than one; and radians."""
 
-TOLERANCES = {'urdf': 2e-5, 'merge': 1e-6}
+TOLERANCES = {'URDF': 2e-5, 'merge': 1e-6}
 """The same for scenes in which libsdformat writes angles: with few digits, or near gimbal lock."""
 
 
@@ -86,11 +86,9 @@ def difference_between(
     :param traits: what is known of the scene.
     :return: the difference, or None.
     """
-    if CRASH in reference.codes:
-        return Difference('crash', f'libsdformat ends: {reference.message}')
     if CRASH in own.codes:
-        return Difference('crash', f'the package raises what is no SdfError: {own.message}')
-    if has_wrong_moments(reference):
+        return Difference('crash', f'it raises what is no SdfError: {own.message}')
+    if not is_comparable(reference):
         return None
     if own.accepted and not reference.accepted:
         said = f'{reference.codes[0]}: {reference.message}'
@@ -119,15 +117,16 @@ def difference_between(
     return None
 
 
-def has_wrong_moments(reference: Answer) -> bool:
+def is_comparable(reference: Answer) -> bool:
     """
-    Tell whether moments of inertia that do not fit together come first of what is refused.
+    Tell whether libsdformat has an answer, and one that the package wants to have.
 
-    The package does not check them: they move no frame. Those of an automatic inertial, whose
-    pose depends on the same numbers, are another error.
+    The package does not check whether moments of inertia fit together: they move no frame. Those
+    of an automatic inertial, whose pose depends on the same numbers, are another error.
     """
-    return (reference.codes[:1] == ('LINK_INERTIA_INVALID',)
-            and reference.message.startswith('A link named'))
+    return CRASH not in reference.codes and not (
+        reference.codes[:1] == ('LINK_INERTIA_INVALID',)
+        and reference.message.startswith('A link named'))
 
 
 def joint_difference(own: JointValues | None, expected: JointValues, tolerance: float) -> str:

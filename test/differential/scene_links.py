@@ -7,8 +7,9 @@ from __future__ import annotations
 from random import Random
 from xml.etree import ElementTree
 
-from differential.scene_parts import Feature
 from differential.scene_text import NAMES, new_pose
+
+Element = ElementTree.Element
 
 AXES = {
     'fixed': 0, 'ball': 0, 'revolute': 1, 'continuous': 1, 'prismatic': 1, 'screw': 1,
@@ -43,10 +44,10 @@ SHAPES = {
 UNKNOWN_FRAME = 'no such frame'
 
 
-def joint_body(dice: Random, name: str, parent: str, child: str) -> ElementTree.Element:
+def joint_body(dice: Random, name: str, parent: str, child: str) -> Element:
     """Draw a joint with its type and axes, but without its pose."""
     kind = dice.choice(sorted(AXES))
-    element = ElementTree.Element('joint', name=name, type=kind)
+    element = Element('joint', name=name, type=kind)
     ElementTree.SubElement(element, 'parent').text = parent
     ElementTree.SubElement(element, 'child').text = child
     if kind == 'gearbox':
@@ -63,117 +64,114 @@ def joint_body(dice: Random, name: str, parent: str, child: str) -> ElementTree.
     return element
 
 
-class LinkBuilder:
-    """Draws the children of links and joints; none of them can make a scene invalid."""
+def fill(dice: Random, element: Element, references: list[str]) -> None:
+    """
+    Draw the children of a link or joint.
 
-    def __init__(self, dice: Random, features: frozenset[Feature]) -> None:
-        self.dice = dice
-        self.features = features
-
-    def fill(self, element: ElementTree.Element, references: list[str]) -> None:
-        """
-        Draw the children of a link or joint.
-
-        :param element: the link or joint.
-        :param references: names of all frames of its scope.
-        """
-        if element.tag == 'joint':
-            for vector in element.iter('xyz'):
-                if self.dice.randint(0, 2) == 0:
-                    vector.set('expressed_in', self.dice.choice(references))
-            if self.dice.randint(0, 5) == 0:
-                self.posed(element, 'sensor', 'wrench', references).set('type', 'force_torque')
-            return
-        if self.dice.randint(0, 3) == 0:
-            inertial = ElementTree.SubElement(element, 'inertial')
-            pose = new_pose(self.dice)
-            if pose is not None:
-                inertial.append(pose)
-        kinds = self.dice.choices(LINK_CHILDREN, k=self.dice.randint(0, 3))
-        for number, kind in enumerate(kinds):
-            stem = self.dice.choice(NAMES)
-            name = f'{stem}_{number}' if kind in kinds[:number] else stem
-            child = self.posed(element, kind, name, references)
-            if kind == 'sensor':
-                sensor_type = self.dice.choice(SENSORS)
-                child.set('type', sensor_type)
-                if sensor_type == 'camera':
-                    # The optics' own offset is no frame.
-                    camera = ElementTree.SubElement(child, 'camera')
-                    ElementTree.SubElement(camera, 'pose').text = '1 2 3 0 0 0'
-            elif kind == 'light':
-                child.set('type', 'point')
-            elif kind == 'particle_emitter':
-                child.set('type', 'box')
-            else:
-                child.append(self.geometry())
-        if (Feature.AUTOMATIC_INERTIALS in self.features and element.find('inertial') is not None
-                and element.find('collision') is not None):
-            self.make_inertial_automatic(element)
-        if self.dice.randint(0, 15) == 0:
-            self.add_foreign(element)
-
-    def add_mimics(self, joints: list[ElementTree.Element]) -> None:
-        """Let some axes of joints follow others."""
-        leaders = [(joint, tag) for joint in joints for tag in ('axis', 'axis2')
-                   if joint.find(tag) is not None]
-        for joint, tag in leaders:
-            if self.dice.randint(0, 7) == 0 and len(leaders) > 1:
-                leader, leader_tag = self.dice.choice(
-                    [each for each in leaders if each != (joint, tag)])
-                mimic = ElementTree.Element('mimic', joint=leader.get('name', ''))
-                if leader_tag == 'axis2' or self.dice.random() < 0.5:
-                    mimic.set('axis', leader_tag)
-                for part in ('multiplier', 'offset', 'reference'):
-                    text = self.dice.choice(MIMIC_NUMBERS)
-                    if text is not None:
-                        ElementTree.SubElement(mimic, part).text = text
-                joint.find(tag).append(mimic)
-
-    def geometry(self) -> ElementTree.Element:
-        """Draw a shape."""
-        geometry = ElementTree.Element('geometry')
-        tag = self.dice.choice(sorted(SHAPES))
-        shape = ElementTree.SubElement(geometry, tag)
-        for child, count in SHAPES[tag].items():
-            sizes = [self.dice.randint(1, 50) for _ in range(count)]
-            ElementTree.SubElement(shape, child).text = ' '.join(str(size / 10) for size in sizes)
-        return geometry
-
-    def make_inertial_automatic(self, link: ElementTree.Element) -> None:
-        """Let the collisions of a link give the inertial, most of the time."""
-        inertial = link.find('inertial')
-        if inertial is None or self.dice.randint(0, 3) == 0:
-            return
-        inertial.set('auto', 'true')
-        for element in (inertial, *link.iterfind('collision')):
-            if self.dice.random() < 0.5:
-                density = self.dice.choice(('', str(self.dice.randint(1, 9000))))
-                ElementTree.SubElement(element, 'density').text = density
-        for pose in link.iterfind('collision/pose'):
-            # The collision has to be somewhere for its mass to count.
-            if pose.get('relative_to', '').strip() == UNKNOWN_FRAME:
-                del pose.attrib['relative_to']
-
-    def posed(self, element: ElementTree.Element, kind: str, name: str,
-              references: list[str]) -> ElementTree.Element:
-        """Add a child whose pose may name any frame, or one that does not exist."""
-        child = ElementTree.SubElement(element, kind, name=name)
-        reference = ''
-        choice = self.dice.randint(0, 20)
-        if choice == 0:
-            reference = UNKNOWN_FRAME
-        elif choice > 10:
-            reference = self.dice.choice(references)
-        pose = new_pose(self.dice, reference)
+    :param element: the link or joint.
+    :param references: names of all frames of its scope.
+    """
+    if element.tag == 'joint':
+        for vector in element.iter('xyz'):
+            if dice.randint(0, 2) == 0:
+                vector.set('expressed_in', dice.choice(references))
+        if dice.randint(0, 5) == 0:
+            _posed(dice, element, 'sensor', 'wrench', references).set('type', 'force_torque')
+        return
+    if dice.randint(0, 3) == 0:
+        inertial = ElementTree.SubElement(element, 'inertial')
+        pose = new_pose(dice)
         if pose is not None:
-            child.append(pose)
-        return child
+            inertial.append(pose)
+    kinds = dice.choices(LINK_CHILDREN, k=dice.randint(0, 3))
+    for number, kind in enumerate(kinds):
+        stem = dice.choice(NAMES)
+        name = f'{stem}_{number}' if kind in kinds[:number] else stem
+        child = _posed(dice, element, kind, name, references)
+        if kind == 'sensor':
+            sensor_type = dice.choice(SENSORS)
+            child.set('type', sensor_type)
+            if sensor_type == 'camera':
+                # The optics' own offset is no frame.
+                camera = ElementTree.SubElement(child, 'camera')
+                ElementTree.SubElement(camera, 'pose').text = '1 2 3 0 0 0'
+        elif kind == 'light':
+            child.set('type', 'point')
+        elif kind == 'particle_emitter':
+            child.set('type', 'box')
+        else:
+            child.append(_geometry(dice))
+    if element.find('inertial') is not None and element.find('collision') is not None:
+        _make_inertial_automatic(dice, element)
+    if dice.randint(0, 15) == 0:
+        _add_foreign(element)
 
-    def add_foreign(self, element: ElementTree.Element) -> None:
-        """Add what SDFormat has to pass over unread."""
-        plugin = ElementTree.SubElement(element, 'plugin', name='p', filename='libp.so')
-        ElementTree.SubElement(plugin, 'pose', relative_to='nothing').text = 'not a pose'
-        vendor = ElementTree.SubElement(element, 'vendor:thing', name='a::b')
-        ElementTree.SubElement(vendor, 'pose').text = '1 2'
-        ElementTree.SubElement(element, 'misspelt').text = 'unknown'
+
+def add_mimics(dice: Random, joints: list[Element]) -> None:
+    """Let some axes of joints follow others."""
+    leaders = [(joint, tag) for joint in joints for tag in ('axis', 'axis2')
+               if joint.find(tag) is not None]
+    for joint, tag in leaders:
+        if dice.randint(0, 7) == 0 and len(leaders) > 1:
+            leader, leader_tag = dice.choice(
+                [each for each in leaders if each != (joint, tag)])
+            mimic = Element('mimic', joint=leader.get('name', ''))
+            if leader_tag == 'axis2' or dice.random() < 0.5:
+                mimic.set('axis', leader_tag)
+            for part in ('multiplier', 'offset', 'reference'):
+                text = dice.choice(MIMIC_NUMBERS)
+                if text is not None:
+                    ElementTree.SubElement(mimic, part).text = text
+            joint.find(tag).append(mimic)
+
+
+def _geometry(dice: Random) -> Element:
+    """Draw a shape."""
+    geometry = Element('geometry')
+    tag = dice.choice(sorted(SHAPES))
+    shape = ElementTree.SubElement(geometry, tag)
+    for child, count in SHAPES[tag].items():
+        sizes = [dice.randint(1, 50) for _ in range(count)]
+        ElementTree.SubElement(shape, child).text = ' '.join(str(size / 10) for size in sizes)
+    return geometry
+
+
+def _make_inertial_automatic(dice: Random, link: Element) -> None:
+    """Let the collisions of a link give the inertial, most of the time."""
+    inertial = link.find('inertial')
+    if inertial is None or dice.randint(0, 3) == 0:
+        return
+    inertial.set('auto', 'true')
+    for element in (inertial, *link.iterfind('collision')):
+        if dice.random() < 0.5:
+            density = dice.choice(('', str(dice.randint(1, 9000))))
+            ElementTree.SubElement(element, 'density').text = density
+    for pose in link.iterfind('collision/pose'):
+        # The collision has to be somewhere for its mass to count.
+        if pose.get('relative_to', '').strip() == UNKNOWN_FRAME:
+            del pose.attrib['relative_to']
+
+
+def _posed(dice: Random, element: Element, kind: str, name: str,
+          references: list[str]) -> Element:
+    """Add a child whose pose may name any frame, or one that does not exist."""
+    child = ElementTree.SubElement(element, kind, name=name)
+    reference = ''
+    choice = dice.randint(0, 20)
+    if choice == 0:
+        reference = UNKNOWN_FRAME
+    elif choice > 10:
+        reference = dice.choice(references)
+    pose = new_pose(dice, reference)
+    if pose is not None:
+        child.append(pose)
+    return child
+
+
+def _add_foreign(element: Element) -> None:
+    """Add what SDFormat has to pass over unread."""
+    plugin = ElementTree.SubElement(element, 'plugin', name='p', filename='libp.so')
+    ElementTree.SubElement(plugin, 'pose', relative_to='nothing').text = 'not a pose'
+    vendor = ElementTree.SubElement(element, 'vendor:thing', name='a::b')
+    ElementTree.SubElement(vendor, 'pose').text = '1 2'
+    ElementTree.SubElement(element, 'misspelt').text = 'unknown'

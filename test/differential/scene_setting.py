@@ -5,12 +5,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from random import Random
 import tempfile
 
-from differential.scene_parts import SCENE, SceneFiles
+from differential.scene_builder import SCENE, SceneFiles
 import sdf_pose_bridge
 from sdf_pose_bridge.scene.pose_setting import pose_change
 from sdf_pose_bridge.scene.scene import Scene
@@ -27,14 +26,10 @@ def with_pose_set(scene: SceneFiles, dice: Random) -> SceneFiles:
     """
     with tempfile.TemporaryDirectory(prefix='differential-') as name:
         folder = Path(name).resolve()
-        for path, text in scene.files.items():
-            target = folder / 'scene' / path
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes(text.replace(SCENE, 'scene').encode(errors='surrogateescape'))
+        file = scene.write(folder, 'scene')
 
         def load(texts: Mapping[str, bytes]) -> Scene:
-            return sdf_pose_bridge.load(
-                folder / 'scene' / 'scene.sdf', resource_paths=[folder], texts=texts)
+            return sdf_pose_bridge.load(file, resource_paths=[folder], texts=texts)
 
         pose = sdf_pose_bridge.Pose(
             *(dice.randint(-90, 90) / 10 for _ in range(3)), 0.0, 0.6, 0.0, 0.8)
@@ -49,5 +44,4 @@ def with_pose_set(scene: SceneFiles, dice: Random) -> SceneFiles:
             return scene
         path = str(Path(change.file.path).resolve().relative_to(folder / 'scene'))
         text = change.file.new_text.decode(errors='surrogateescape').replace('scene/', f'{SCENE}/')
-    return replace(
-        scene, files={**scene.files, path: text}, traits=scene.traits | {'pose-set'})
+    return SceneFiles({**scene.files, path: text}, scene.traits | {'pose set'})

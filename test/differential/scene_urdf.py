@@ -7,7 +7,6 @@ from __future__ import annotations
 from random import Random
 from xml.etree import ElementTree
 
-from differential.scene_parts import Built, MODEL, OWN, Visible, WORLD
 from differential.scene_text import (
     LENGTHS,
     new_name,
@@ -17,12 +16,12 @@ from differential.scene_text import (
     TURNS,
 )
 
+Element = ElementTree.Element
+
 JOINT_TYPES = ('fixed', 'fixed', 'fixed', 'revolute', 'continuous', 'prismatic')
 MOVED = ('sensor', 'sensor', 'light', 'projector')
 SHAPES = {'box': {'size': '1 2 3'}, 'sphere': {'radius': '1'}, 'mesh': {'filename': 'm.dae'},
           'cylinder': {'radius': '1', 'length': '2'}}
-
-
 NUMBERED = {
     'origin': ('xyz', 'rpy'), 'axis': ('xyz',), 'limit': ('lower', 'upper', 'effort', 'velocity'),
     'mass': ('value',), 'inertia': ('ixx', 'ixy'), 'box': ('size',), 'sphere': ('radius',),
@@ -34,62 +33,42 @@ ODD_NUMBERS = (
 
 
 class RobotBuilder:
-    """Draws one robot: its file, and what can be said of the model that it becomes."""
+    """Draws one robot."""
 
-    def __init__(self, dice: Random, first_body: int) -> None:
+    def __init__(self, dice: Random) -> None:
         self.dice = dice
-        self.last_body = first_body
-        self.root = ElementTree.Element('robot')
-        self.bases: dict[str, str] = {}
-        """The link that each one is lumped into."""
-        self.is_odd = False
-        """Whether a number is odd, so that only libsdformat can say whether the robot is valid."""
+        self.root = Element('robot')
 
-    def robot(self, taken: set[str], *, merged: bool) -> Built:
+    def robot(
+        self, taken: set[str], names: set[str],
+    ) -> tuple[Element, str, list[str], list[str]]:
         """
         Draw a robot.
 
         :param taken: names that it must not have; its own is added.
-        :param merged: whether its content goes into the scope whose names are ``taken``.
-        :return: the model; its element is the ``robot``.
+        :param names: names that its links and joints must not have; theirs are added.
+        :return: the element, its name, and the frames and links that can be named in the model
+            that it becomes, if its fixed joints keep them.
         """
-        names = taken if merged else set()
         self.root.set('name', self.name(taken))
         links = [self.name(names) for _ in range(self.dice.randint(1, 6))]
         if self.dice.random() < 0.2 and 'world' not in names:
-            links.insert(0, 'world')
-            links += [] if len(links) > 1 else [self.name(names)]
-        bodies = {'world': WORLD}
-        children: dict[str, list[tuple[bytes, str]]] = {link: [] for link in links}
-        joints = []
+            links = ['world', *links]
         for number, link in enumerate(links):
-            joint = None
+            is_lumped = False
             if number:
                 parent = self.dice.choice(links[:number])
-                joint, is_lumped = self.joint(self.name(names), parent, link)
-                joints.append(Visible(joint.get('name', ''), 0))
-                children[parent].append((joint.get('name', '').encode(), link))
-            is_lumped = joint is not None and is_lumped and parent != 'world'
-            self.bases[link] = self.bases[parent] if is_lumped else link
-            if not is_lumped and link != 'world':
-                self.last_body += 1
-                bodies[link] = self.last_body
+                is_lumped = self.joint(self.name(names), parent, link)
             self.link(link, is_massless=link == 'world' or (
                 is_lumped and self.dice.random() < 0.3))
-        static = not merged and self.dice.random() < 0.2
-        self.extensions(links, [link for link in links if link != 'world'], names, static=static)
-        self.is_odd = self.dice.random() < 0.15 and self.write_odd_number()
-        order = self.in_order(links[0], children)
-        canonical = next(bodies[link] for link in order if link in bodies and link != 'world')
-        inner = [Visible(MODEL, OWN)]
-        inner += [Visible(link, bodies[self.bases[link]]) for link in links if link != 'world']
-        kept = [link for link in order if link in bodies and link != 'world']
-        self.last_body += 1
-        return Built(self.root, self.root.get('name', ''), static, canonical, self.last_body,
-                     inner, [Visible(link, bodies[link]) for link in kept])
+        links = [link for link in links if link != 'world']
+        self.extensions(links, names)
+        if self.dice.random() < 0.15:
+            self.write_odd_number()
+        return self.root, self.root.get('name', ''), ['__model__', *links], links
 
-    def write_odd_number(self) -> bool:
-        """Replace one number by what may be none; return whether there is a number."""
+    def write_odd_number(self) -> None:
+        """Replace one number by what may be none."""
         robot_origin = self.root.find('origin')  # an overflow there ends libsdformat
         places = [(element, name) for element in self.root.iter() for name in element.attrib
                   if element.tag in NUMBERED and name in NUMBERED[element.tag]
@@ -97,17 +76,11 @@ class RobotBuilder:
         if places:
             element, name = self.dice.choice(places)
             element.set(name, self.dice.choice(ODD_NUMBERS))
-        return bool(places)
 
     def name(self, taken: set[str]) -> str:
         """Draw a name on which libsdformat does not crash."""
         return next(name for name in iter(lambda: new_name(self.dice, taken), '')
                     if not set(name) & set('"\'&<'))
-
-    def in_order(self, link: str, children: dict[str, list[tuple[bytes, str]]]) -> list[str]:
-        """Return the links below one in the order in which libsdformat visits them."""
-        return [link, *(below for _, child in sorted(children[link])
-                        for below in self.in_order(child, children))]
 
     def numbers(self, often: tuple[float, ...], limit: float, count: int = 3) -> str:
         """Draw numbers as they are written."""
@@ -115,7 +88,7 @@ class RobotBuilder:
             text_from_number(self.dice, number_from(self.dice, often, limit))
             for _ in range(count))
 
-    def origin(self, parent: ElementTree.Element) -> None:
+    def origin(self, parent: Element) -> None:
         """Add an origin, whole, in part or none."""
         choice = self.dice.randrange(8)
         if choice:
@@ -125,8 +98,8 @@ class RobotBuilder:
             if choice != 2:
                 origin.set('rpy', self.numbers(TURNS, 7))
 
-    def joint(self, name: str, parent: str, child: str) -> tuple[ElementTree.Element, bool]:
-        """Add a joint; return whether it lumps its child into its parent."""
+    def joint(self, name: str, parent: str, child: str) -> bool:
+        """Add a joint; return whether it may lump its child into its parent."""
         kind = self.dice.choice(JOINT_TYPES)
         joint = ElementTree.SubElement(self.root, 'joint', name=name, type=kind)
         self.origin(joint)
@@ -137,14 +110,12 @@ class RobotBuilder:
             ElementTree.SubElement(joint, 'axis', xyz=axis)
         if kind in ('revolute', 'prismatic'):
             ElementTree.SubElement(joint, 'limit', lower='-1', upper='1', effort='1', velocity='1')
-        is_lumped = kind == 'fixed'
         for option in ('preserveFixedJoint', 'disableFixedJointLumping'):
             if self.dice.random() < 0.1:
                 gazebo = ElementTree.SubElement(self.root, 'gazebo', reference=name)
-                value = self.dice.choice(('true', 'YES', '1', 'false', 'no'))
-                ElementTree.SubElement(gazebo, option).text = value
-                is_lumped &= value in ('false', 'no')
-        return joint, is_lumped
+                ElementTree.SubElement(gazebo, option).text = self.dice.choice(
+                    ('true', 'YES', '1', 'false', 'no'))
+        return kind == 'fixed'
 
     def link(self, name: str, *, is_massless: bool) -> None:
         """Add a link."""
@@ -164,8 +135,7 @@ class RobotBuilder:
             tag = self.dice.choice(sorted(SHAPES))
             ElementTree.SubElement(ElementTree.SubElement(element, 'geometry'), tag, SHAPES[tag])
 
-    def extensions(self, links: list[str], references: list[str], names: set[str], *,
-                   static: bool) -> None:
+    def extensions(self, references: list[str], names: set[str]) -> None:
         """Add what is SDFormat in a URDF file."""
         for number in range(self.dice.randrange(5)):
             kind = self.dice.choice(MOVED)
@@ -190,9 +160,9 @@ class RobotBuilder:
             ElementTree.SubElement(
                 gazebo, 'frame', name=self.name(names),
                 attached_to=self.dice.choice(references))
-        if static or self.dice.random() < 0.1:
+        if self.dice.random() < 0.2:
             gazebo = ElementTree.SubElement(self.root, 'gazebo')
-            ElementTree.SubElement(gazebo, 'static').text = 'true' if static else 'no'
+            ElementTree.SubElement(gazebo, 'static').text = self.dice.choice(('true', 'no'))
         if self.dice.random() < 0.2:
             self.origin(self.root)
         if self.dice.random() < 0.1:
@@ -202,8 +172,6 @@ class RobotBuilder:
     def extra_joint(self, links: list[str], names: set[str]) -> None:
         """Add a joint of SDFormat, which may name links that are lumped."""
         parent, child = self.dice.choices(links, k=2)
-        if self.bases[parent] == self.bases[child]:
-            return
         gazebo = ElementTree.SubElement(self.root, 'gazebo')
         joint = ElementTree.SubElement(
             gazebo, 'joint', name=self.name(names), type='ball')
@@ -211,9 +179,3 @@ class RobotBuilder:
         ElementTree.SubElement(joint, 'child').text = child
         if self.dice.random() < 0.5:
             ElementTree.SubElement(joint, 'pose').text = self.numbers(LENGTHS, 5, 6)
-
-
-def text_from_robot(robot: ElementTree.Element) -> str:
-    """Write a robot as a file."""
-    ElementTree.indent(robot)
-    return ElementTree.tostring(robot, encoding='unicode')

@@ -12,11 +12,7 @@ from functools import cache
 from random import Random
 from xml.etree import ElementTree
 
-from differential.scene_parts import Feature, SceneFiles
 from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, ValueType
-
-ODD_VALUES = 'odd-values'
-"""The trait of a scene that nobody can say more of than libsdformat."""
 
 NUMBERS = (
     '', ' ', '1', '-1', '0', '0.5', '.5', '5.', '+2', '1e3', '1E-3', 'nan', 'NaN', 'inf', '-inf',
@@ -39,38 +35,23 @@ TYPES = {
     'atmosphere': 'adiabatic', 'physics': 'ode', 'shader': 'pixel', 'noise': 'none'}
 ENDS = {'parent': 'l', 'child': 'k'}
 NOT_READ = frozenset({
-    ('population', 'model'), ('noise', '@type')})
-"""What the package does not read as a part of its own, as no frame depends on it."""
-SINCE_1_12 = frozenset({
-    'model_state', 'link_state', 'light_state', 'joint_state', 'collision_state', 'frame_id',
-    'angular_velocity', 'linear_velocity', 'angular_acceleration', 'linear_acceleration', 'torque',
-    'force'})
-"""Elements that version 1.12 brought; some have others of that tag elsewhere."""
-UNTIL_1_11 = frozenset({'model', 'link', 'light', 'joint', 'collision'})
-"""Elements in a state that have other names since."""
+    ('population', 'model'), ('noise', '@type'), ('world', 'state'), ('model', 'model_state')})
+"""What the package does not read as a part of its own, as no frame depends on it; and states,
+whose elements have other names in later releases of libsdformat."""
 
-
-def odd_scene(dice: Random, features: frozenset[Feature]) -> SceneFiles:
-    """
-    Draw a file.
-
-    :param dice: what is drawn.
-    :param features: say which names of states there are.
-    :return: the file; its defect names the elements and their values.
-    """
+def odd_scene(dice: Random) -> str:
+    """Draw a file."""
     root = ElementTree.Element('sdf', version=dice.choice(('1.7', '1.9', '1.11')))
-    paths = [place for place in _paths() if _is_known(place[0], features)]
+    paths = _paths()
     place = dice.choice(paths)
-    defects = [_add_odd_value(dice, root, place)]
+    _add_odd_value(dice, root, place)
     if dice.random() < 0.3:
         # Two elements at the top of a file would exclude each other.
         places = [other for other in paths if other[0][0] == place[0][0]]
-        defects.append(_add_odd_value(dice, root, dice.choice(places)))
+        _add_odd_value(dice, root, dice.choice(places))
     _complete(root)
     ElementTree.indent(root)
-    return SceneFiles(
-        {'scene.sdf': ElementTree.tostring(root, encoding='unicode')},
-        frozenset({ODD_VALUES}), ' and '.join(defects))
+    return ElementTree.tostring(root, encoding='unicode')
 
 
 @cache
@@ -79,18 +60,6 @@ def _paths() -> list[tuple[tuple[str, ...], str]]:
     found: list[tuple[tuple[str, ...], str]] = []
     _add_paths(definition_of('sdf', has_frames=True), (), found)
     return found
-
-
-def _is_known(path: tuple[str, ...], features: frozenset[Feature]) -> bool:
-    is_of_state = 'state' in path
-    if Feature.STATES_OF_1_12 not in features and (
-            SINCE_1_12 & set(path) if is_of_state else 'model_state' in path):
-        return False
-    is_inserted = 'insertions' in path
-    if is_inserted and path[3:4] == ('joint',):
-        return Feature.STATES_OF_1_12 in features
-    return Feature.OLD_STATES in features or not is_of_state or is_inserted or not (
-        UNTIL_1_11 & set(path))
 
 
 def _add_paths(
@@ -109,7 +78,7 @@ def _add_paths(
 
 def _add_odd_value(
     dice: Random, root: ElementTree.Element, place: tuple[tuple[str, ...], str],
-) -> str:
+) -> None:
     path, attribute = place
     element, definition = root, definition_of('sdf', has_frames=True)
     for tag in path:
@@ -130,7 +99,6 @@ def _add_odd_value(
         element.set(attribute, value)
     else:
         element.text = value
-    return f'{"/".join(path)}{attribute and "@" + attribute}="{value}"'
 
 
 def _complete(element: ElementTree.Element, definition: Definition | None = None) -> None:

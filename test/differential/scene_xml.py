@@ -39,8 +39,8 @@ def with_oddities(dice: Random, text: str) -> str:
         text = ATTRIBUTE.sub(lambda match: match[0].replace('&lt;', '<'), text)
     if dice.random() < 0.3:
         text = re.sub(r'" (?=[a-z_]+=")', '"', text, count=dice.randint(1, 3))
-    if dice.random() < 0.5:
-        head, _, tail = text.rpartition('</sdf>')
+    head, end, tail = text.rpartition('</sdf>')
+    if end and dice.random() < 0.5:
         text = f'{head}{dice.choice(INSIDE)}</sdf>{tail}'
     if dice.random() < 0.5:
         text = dice.choice(OUTSIDE) + text

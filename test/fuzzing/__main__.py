@@ -27,8 +27,6 @@ with atheris.instrument_imports(include=['sdf_pose_bridge']):
 
 from differential.scene_builder import random_scene
 
-from fuzzing.hostile_files import files_from_choices
-
 ROOT = Path(__file__).resolve().parents[2]
 LONGEST_S = 2.0
 MEMORY = '/dev/shm' if Path('/dev/shm').is_dir() else None
@@ -71,28 +69,13 @@ def load_scene(data: bytes) -> None:
     """Load a scene of one or several files, some of which are wrong."""
     scene = random_scene(Dice(data))
     with tempfile.TemporaryDirectory(dir=MEMORY) as folder:
-        for name, text in scene.files.items():
-            path = Path(folder, name)
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(text.encode(errors='surrogateescape'))
+        path = scene.write(Path(folder), 'scene')
         with limited():
-            load(Path(folder, 'scene.sdf'), resource_paths=[folder])
+            tf_tree_from_scene(
+                load(path, resource_paths=[folder]), TfOptions(use_joint_states=True))
 
 
-def load_hostile(data: bytes) -> None:
-    """Load a file of any elements, which includes, merges and changes others."""
-    provider = atheris.FuzzedDataProvider(data)
-    files = files_from_choices(
-        lambda values: values[provider.ConsumeIntInRange(0, len(values) - 1)])
-    with tempfile.TemporaryDirectory(dir=MEMORY) as folder:
-        for name, text in files.items():
-            Path(folder, name).write_text(text, encoding='utf-8')
-        with limited():
-            tf_tree_from_scene(load(Path(folder, 'scene.sdf')), TfOptions(use_joint_states=True))
-
-
-TARGETS: dict[str, Callable[[bytes], object]] = {
-    'bytes': load_bytes, 'hostile': load_hostile, 'scenes': load_scene}
+TARGETS: dict[str, Callable[[bytes], object]] = {'bytes': load_bytes, 'scenes': load_scene}
 
 
 def main() -> None:

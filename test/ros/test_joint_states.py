@@ -82,13 +82,13 @@ class Following:
         self._publishers.opened(frames.transforms_topic)
         return frames
 
-    def connect(self, topic='/joint_states'):
-        """Send positions of the joint ``turn`` until they are published."""
+    def connect(self, topic='/joint_states', joints=('turn',)):
+        """Send positions of joints until they are published."""
         self._senders[topic] = self.listener.create_publisher(JointState, topic, 1000)
         sec = 0
         while not any(1 <= each <= sec for each in self.secs()):
             sec += 1
-            self.send(sec, {'turn': 0.0}, topic)
+            self.send(sec, dict.fromkeys(joints, 0.0), topic)
             self.spin(0.05)
         self.wait(lambda: sec in self.secs())
         self.found.clear()
@@ -107,7 +107,8 @@ class Following:
         for message in messages:
             self.send(*message)
         self.wait(lambda: messages[-1][0] in self.secs())
-        return [each for message in self.found for each in message if each[0] < NOW]
+        # All frames may be published once more after those of the messages to connect.
+        return [each for message in self.found for each in message if FIRST // 2 < each[0] < NOW]
 
     def wait(self, condition):
         """Run callbacks until a condition is true."""
@@ -135,9 +136,7 @@ def following(make_node, make_executor):
 def arm(following):
     """Return an arm that is connected, all joints of which are known."""
     following.start(unreported=UnreportedJoints.ZERO)
-    following.connect()
-    following.published((FIRST - 1, {'turn': 0.0, 'lift': 0.0, 'grip': 0.0}))
-    following.found.clear()
+    following.connect(joints=('turn', 'lift', 'grip'))
     return following
 
 

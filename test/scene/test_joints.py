@@ -198,10 +198,11 @@ def test_joint_can_be_the_parent_of_another():
         fixed_joint('j', 'a', 'b') + fixed_joint('k', 'j', 'n'))) == [('a', 'b'), ('j', 'n')]
 
 
-def test_frame_of_the_world_as_the_child_is_refused():
-    text = world_file(
-        '<model name="a"><link name="l"/></model><frame name="f"/>' + fixed_joint('j', 'a', 'f'))
-    assert codes_of(text) == ['JOINT_CHILD_LINK_INVALID']
+@pytest.mark.parametrize(('parent', 'code'), [
+    ('a', 'JOINT_CHILD_LINK_INVALID'), ('world', 'JOINT_PARENT_SAME_AS_CHILD')])
+def test_frame_of_the_world_as_the_child_is_refused(parent, code):
+    model = '<model name="a"><link name="l"/></model><frame name="f"/>'
+    assert codes_of(world_file(model + fixed_joint('j', parent, 'f'))) == [code]
 
 
 def test_frame_of_the_world_can_be_the_parent():
@@ -221,6 +222,7 @@ def test_static_model_can_be_the_child():
     (fixed_joint('j', 'zzz', 'a'), 'JOINT_PARENT_LINK_INVALID'),
     (fixed_joint('j', 'l', 'a'), 'JOINT_PARENT_LINK_INVALID'),
     (fixed_joint('j', 'j', 'a'), 'JOINT_PARENT_LINK_INVALID'),
+    ('<joint name="j" type="ball"><child>a</child></joint>', 'JOINT_PARENT_LINK_INVALID'),
     (fixed_joint('j', 'a', 'on_a'), 'JOINT_PARENT_SAME_AS_CHILD'),
     (fixed_joint('j', 'a', 'b', '<axis><xyz expressed_in="zzz">1 0 0</xyz></axis>'),
      'JOINT_AXIS_EXPRESSED_IN_INVALID'),

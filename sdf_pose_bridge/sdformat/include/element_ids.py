@@ -36,6 +36,7 @@ def element_by_id(top: XmlElement, element_id: str, tag: str = '') -> XmlElement
     :param tag: its tag, as written; empty for any.
     """
     start = longest = 0
+    wanted = element_id.encode()  # libsdformat counts bytes
     match: XmlElement | None = top
     while match is not None:
         children, match = child_elements(match), None
@@ -43,17 +44,17 @@ def element_by_id(top: XmlElement, element_id: str, tag: str = '') -> XmlElement
             written = child.get('name')
             if written is None:
                 continue
-            name = written.strip(WHITE_SPACE)
-            if not tag and name == element_id:
+            name = written.strip(WHITE_SPACE).encode()
+            if not tag and name == wanted:
                 return child
             last = start + len(name) - 1
-            if last <= longest or not element_id.startswith(name, start):
+            if last <= longest or not wanted.startswith(name, start):
                 continue
-            if element_id[start:] == name and tag in ('', written_tag(child)):
+            if wanted[start:] == name and tag in ('', written_tag(child)):
                 return child
             match, longest = child, last
         start = longest
-        if element_id.startswith(SEPARATOR, start + 1):
+        if wanted.startswith(SEPARATOR.encode(), start + 1):
             start += 1 + len(SEPARATOR)
     return None
 
@@ -70,7 +71,7 @@ def hint_for_id(top: XmlElement, element_id: str, tag: str, problems: Problems) 
     searched = islice(_ids(top, ''), _MOST_ELEMENTS_SEARCHED)
     ids = list(islice((found for found in searched if found[0]), _MOST_IDS_COMPARED))
     tags = [found_tag for found_id, found_tag in ids if found_id == element_id]
-    if tag in tags and len(element_id.split(SEPARATOR)[0]) == 1:
+    if tag in tags and len(element_id.split(SEPARATOR)[0].encode()) == 1:
         return '; libsdformat does not find names of one letter at the top of a model'
     if tag in tags:
         return f'; libsdformat finds only the <{tags[0]}> of that name, which comes before it'

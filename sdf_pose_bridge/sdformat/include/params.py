@@ -21,6 +21,7 @@ from sdf_pose_bridge.errors import (
 from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, STANDALONE_ELEMENTS
 from sdf_pose_bridge.sdformat.include.element_ids import element_by_id, hint_for_id
+from sdf_pose_bridge.sdformat.joints import DEFAULT_END
 from sdf_pose_bridge.sdformat.reader import is_valid_element
 from sdf_pose_bridge.sdformat.sources import PARAMS_TAG, Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
@@ -36,9 +37,6 @@ _ACTIONS = ('add', 'modify', 'remove', 'replace')
 _POSE_FORMAT_ATTRIBUTES = frozenset({'degrees', 'rotation_format'})
 _PARTS = ('pose', 'parent', 'child', 'axis', 'axis2')
 """Children that are in the file of their parent element."""
-
-_DEFAULT_JOINT_END = '__default__'
-"""The default value of a joint's parent or child."""
 
 
 def apply_params(include: XmlElement, top: XmlElement, sources: Sources) -> list[XmlElement]:
@@ -192,8 +190,7 @@ class _Changer:
                 # Without the element, its default applies.
                 target.remove(found)
                 return
-            self._change(
-                xml, found, _DEFAULT_JOINT_END if is_end else '', is_read_before=False)
+            self._change(xml, found, DEFAULT_END if is_end else '', is_read_before=False)
         else:
             msg = f'<{written_tag(xml)}> holds nothing, so it changes nothing'
             self._sources.warning(xml, msg)

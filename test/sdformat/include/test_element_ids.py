@@ -12,6 +12,7 @@ ARM = """<model name="arm">
 <pose>0 0 0 0 0 0</pose>
 <link name="base"><visual name="shape"/><collision name="shape"/><sensor name="eye"/></link>
 <link name="h"/>
+<link name="ö"/>
 <link name="hand"/>
 <link name="hand_left"><visual name="palm"/></link>
 <frame name="grip"/>
@@ -40,6 +41,7 @@ def test_unknown_id_is_not_found(arm, element_id, tag):
     ('base::eye', 'sensor', 'eye'), ('grip', 'frame', 'grip'), ('tool', 'model', 'tool'),
     ('tool::tip', '', 'tip'), ('tool::inner::end', 'frame', 'end'), ('thing', 'x:thing', 'thing'),
     ('hand_left::palm', 'visual', 'palm'), ('tool::p', 'link', 'p'), ('h', '', 'h'),
+    ('ö', 'link', 'ö'),  # two bytes
 ])
 def test_element_is_found(arm, element_id, tag, name):
     found = element_by_id(arm, element_id, tag)
