@@ -121,6 +121,10 @@ class JointChecks:
             self._report(JointChildError, msg, joint, child.line, 'child')
         elif child_index < 0 and child.name:
             self._report_unknown(JointChildError, joint, child, 'child')
+        if parent.name and parent.name == child.name:
+            msg = f'parent and child are both "{child.name}"; a joint joins two bodies'
+            self._report(JointSameLinkError, msg, joint, is_checked=True)
+            return False
         if parent_index < 0 and parent.name:
             # libsdformat looks for other parents before it resolves them.
             is_model_frame = parent.name.rpartition(SEPARATOR)[2] == MODEL_FRAME
@@ -148,8 +152,7 @@ class JointChecks:
             body = WORLD_FRAME if child_body == root else self._scopes.names[child_body]
             msg = (f'parent "{parent.name}" and child "{child.name}" are both attached to '
                    f'"{body}"; a joint joins two bodies')
-            self._report(
-                JointSameLinkError, msg, joint, is_checked=parent.name == child.name)
+            self._report(JointSameLinkError, msg, joint)
         return False
 
     def _report_unknown(

@@ -17,7 +17,7 @@ from differential.scene_text import new_pose
 Element = ElementTree.Element
 
 ACTIONS = ('add', 'modify', 'replace', 'remove')
-NAMES = ('no such frame', 'world', '__model__', '__root__', '__mine__', '', ' ', 'a::b')
+NAMES = ('no such frame', 'world', '__model__', '__root__', '__mine__', '', ' ')
 TEXTS = (
     *NAMES, '1 2 3', '1 2 3 4 5 6 7', '1 2 3 0 0 nan', 'inf 0 0 0 0 0', '1 x', '1,2,3,0,0,0',
     '1e999 0 0 0 0 0', '0 0 0 0 0 0 1', 'maybe', 'true', '2')

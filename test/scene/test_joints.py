@@ -241,8 +241,10 @@ def test_joint_without_two_ends_is_left_out():
     assert not scene.joints
 
 
-def test_same_name_at_both_ends_is_refused_in_a_model_in_a_model():
-    assert codes_of(in_nested_model(fixed_joint('j', 'a', 'a'))) == ['JOINT_PARENT_SAME_AS_CHILD']
+@pytest.mark.parametrize(('name', 'others'), [('a', []), ('zzz', ['JOINT_CHILD_LINK_INVALID'])])
+def test_same_name_at_both_ends_is_refused_in_a_model_in_a_model(name, others):
+    assert codes_of(in_nested_model(fixed_joint('j', name, name))) == [
+        *others, 'JOINT_PARENT_SAME_AS_CHILD']
 
 
 def test_errors_have_the_lines_of_both_ends():
