@@ -23,10 +23,11 @@ SUFFIX = SUFFIX.removeprefix('-jazzy')
 # The interpreter beneath this virtual environment, as the script would be given it.
 PYTHON = Path(sys.base_prefix, f'bin/python3.{sys.version_info.minor}')
 
-needs_x86 = pytest.mark.skipif(
-    platform.machine() != 'x86_64', reason='any other processor is refused before')
 needs_python_of_jazzy = pytest.mark.skipif(
     sys.version_info >= (3, 14), reason='this Python is refused before')
+needs_supported_machine = pytest.mark.skipif(
+    platform.machine() != 'x86_64' or sys.version_info >= (3, 14),
+    reason='this Python or processor is refused before')
 pytestmark = pytest.mark.skipif(
     sys.platform != 'linux' or not shutil.which('bash'), reason='needs bash on Linux')
 
@@ -80,51 +81,45 @@ def shell(script, **environment):
         capture_output=True, stdin=subprocess.DEVNULL, timeout=60, check=False)
 
 
-def test_python_that_does_not_run_is_refused_with_its_own_words(checkout, tools):
-    broken = command(tools, 'broken-python', 'echo "not here" >&2; exit 127')
-    result = make_underlay(checkout, PYTHON=str(broken))
-    assert_refused_with(result, 'does not run as a Python', 'not here')
+@pytest.mark.parametrize(('program', 'environment', 'words'), [
+    ('echo "not here" >&2; exit 127', {'PYTHON': 'program'}, ['does not run as a', 'not here']),
+    *(
+        (f'printf {version}', {'PYTHON': 'program'}, [f'Python {version} ', 'PYTHON='])
+        for version in ('2.7.18', '3.9.25', '3.14.0', '4.0.0')),
+    ('', {'PYTHON': 'python3.99'}, ["'python3.99'", 'no such']),
+    ('', {'PATH': 'tools'}, ['no Python 3', 'python3-venv']),
+    ('', {'ROS': 'humble'}, ["'humble'", 'jazzy, kilted and lyrical']),
+    ('', {'ROS': 'lyrical'}, ['ROS 2 Lyrical is not on PyPI', '/opt/ros/lyrical']),
+    ('', {'VERSIONS': 'jammy'}, ["'jammy'", 'only noble']),
+    ('', {'ROS': 'kilted', 'VERSIONS': 'noble'}, ["'noble'", 'only noble']),
+    ('printf 3.11.9', {'PYTHON': 'program', 'VERSIONS': 'noble'}, [
+        'Python 3.11.9 cannot be used: VERSIONS=noble needs Python 3.12;']),
+    pytest.param(
+        '', {'PATH': 'tools', 'PYTHON': str(PYTHON)}, ['no C compiler', 'build-essential'],
+        marks=needs_supported_machine),
+    pytest.param(
+        'echo "cannot find crt1.o" >&2; exit 1', {'PYTHON': str(PYTHON), 'CC': 'program'},
+        ['cannot find crt1.o'], marks=needs_supported_machine),
+    pytest.param(
+        '', {'PYTHON': str(PYTHON), 'CXX': 'c++-99'}, ["CXX names 'c++-99'"],
+        marks=needs_supported_machine),
+])
+def test_unusable_machine_is_refused_with_the_reason(
+        checkout, tools, program, environment, words):
+    paths = {'program': str(command(tools, 'program', program)), 'tools': str(tools)}
+    assert_refused_with(
+        make_underlay(checkout, **{
+            name: paths.get(value, value) for name, value in environment.items()}), *words)
 
 
-@pytest.mark.parametrize('version', ['2.7.18', '3.9.25', '3.14.0', '4.0.0'])
-def test_python_of_another_version_is_refused_with_its_version(checkout, tools, version):
-    old = command(tools, 'old-python', f'printf {version}')
-    assert_refused_with(make_underlay(checkout, PYTHON=str(old)), f'Python {version} ', 'PYTHON=')
+@pytest.mark.parametrize(('version', 'is_refused'), [('3.11.9', True), ('3.14.0', False)])
+def test_lyrical_has_its_own_range_of_pythons(checkout, tools, tmp_path, version, is_refused):
+    (tmp_path / 'setup.bash').touch()
+    python = command(tools, 'python', f'[[ $* == *-S* ]] && printf {version}')
+    result = make_underlay(
+        checkout, ROS='lyrical', PYTHON=str(python), SDF_POSE_BRIDGE_ROS_PREFIX=str(tmp_path))
+    assert ('ROS 2 Lyrical needs Python 3.12 to 3.14' in result.stderr) is is_refused
 
-
-def test_only_unusable_pythons_on_the_machine_are_refused_with_the_version(checkout, tools):
-    command(tools, 'python3', 'printf 3.9.25')
-    assert_refused_with(make_underlay(checkout, PATH=str(tools)), 'Python 3.9.25 ')
-
-
-@needs_x86
-@needs_python_of_jazzy
-def test_machine_without_compiler_is_refused(checkout, tools):
-    result = make_underlay(checkout, PATH=str(tools), PYTHON=str(PYTHON))
-    assert_refused_with(result, 'no C compiler', 'build-essential')
-
-
-@needs_x86
-@needs_python_of_jazzy
-def test_compiler_that_cannot_compile_is_refused_with_its_reason(checkout, tools):
-    broken = command(tools, 'broken-cc', 'echo "cannot find crt1.o" >&2; exit 1')
-    result = make_underlay(checkout, PYTHON=str(PYTHON), CC=str(broken))
-    assert_refused_with(result, 'cannot find crt1.o')
-
-
-def test_python_that_does_not_exist_is_refused(checkout):
-    assert_refused_with(make_underlay(checkout, PYTHON='python3.99'), "'python3.99'", 'no such')
-
-
-def test_machine_without_python_is_refused(checkout, tools):
-    assert_refused_with(make_underlay(checkout, PATH=str(tools)), 'no Python 3', 'python3-venv')
-
-
-@needs_x86
-@needs_python_of_jazzy
-def test_compiler_that_does_not_exist_is_refused_with_its_name(checkout):
-    result = make_underlay(checkout, PYTHON=str(PYTHON), CXX='c++-99')
-    assert_refused_with(result, "CXX names 'c++-99'")
 
 
 @needs_python_of_jazzy
@@ -220,40 +215,6 @@ def test_setup_bash_refuses_a_ros_that_is_not_supported(checkout):
     result = shell(f'. {checkout}/underlay/setup.bash', ROS='humble')
     assert (result.returncode, result.stderr.count('\n')) == (1, 1)
     assert 'humble' in result.stderr
-
-
-def test_a_ros_that_is_not_supported_is_refused(checkout):
-    assert_refused_with(
-        make_underlay(checkout, ROS='humble'), "'humble'", 'jazzy, kilted and lyrical')
-
-
-def test_lyrical_is_not_installed_from_pypi(checkout):
-    assert_refused_with(
-        make_underlay(checkout, ROS='lyrical'), 'ROS 2 Lyrical is not on PyPI', '/opt/ros/lyrical')
-
-
-@pytest.mark.parametrize(('version', 'is_refused'), [
-    ('3.11.9', True), ('3.12.3', False), ('3.14.0', False), ('3.15.0', True)])
-def test_lyrical_has_its_own_range_of_pythons(checkout, tools, tmp_path, version, is_refused):
-    (tmp_path / 'setup.bash').touch()
-    python = command(tools, 'python', f'[[ $* == *-S* ]] && printf {version}')
-    result = make_underlay(
-        checkout, ROS='lyrical', PYTHON=str(python), SDF_POSE_BRIDGE_ROS_PREFIX=str(tmp_path))
-    assert ('ROS 2 Lyrical needs Python 3.12 to 3.14' in result.stderr) is is_refused
-
-
-@pytest.mark.parametrize(('ros', 'versions'), [
-    ('jazzy', 'jammy'), ('kilted', 'noble'), ('lyrical', 'noble')])
-def test_versions_that_are_not_locked_are_refused(checkout, ros, versions):
-    assert_refused_with(
-        make_underlay(checkout, ROS=ros, VERSIONS=versions), f"'{versions}'", 'only noble')
-
-
-def test_versions_of_ubuntu_are_for_its_python(checkout, tools):
-    python = command(tools, 'python', 'printf 3.11.9')
-    assert_refused_with(
-        make_underlay(checkout, VERSIONS='noble', PYTHON=str(python)),
-        'Python 3.11.9 cannot be used: VERSIONS=noble needs Python 3.12;')
 
 
 def test_versions_of_ubuntu_come_with_ros_from_pypi(checkout, tools, tmp_path):

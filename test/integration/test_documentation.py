@@ -20,7 +20,7 @@ PAGES = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').g
 TESTED_ELSEWHERE = {
     'ros2 run sdf_pose_bridge bridge': 'test_readme.py starts the bridge in this way',
     'ros2 topic echo': 'test_readme.py compares the message',
-    'ros2 service call': 'test_readme.py and test_bridge_services.py make the calls',
+    'ros2 service call': 'test_readme.py and test_callers.py make the calls',
     'ros2 param set': 'test_readme.py and test_bridge_changes.py set parameters',
     'sdf_pose diff': 'test_diff.py compares files, also for git',
     'git difftool': 'test_diff.py has git compare two commits',

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A bridge that follows joint states, beside a process that publishes them and listens."""
 
-from math import isclose, nan, pi
+from math import isclose, pi
 import signal
 import sys
 
@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip('rclpy', reason='needs ROS 2')
 
 from bridge_process import LoggedProcess
-from changes import BRIDGE, listen_to_tf, pose_of, reload, replace, set_parameters, Waiting
+from changes import BRIDGE, listen_to_tf, pose_of, reload, replace, set_parameters
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from listener import latched
 from slow_file import SlowFile
@@ -19,7 +19,6 @@ from std_srvs.srv import Trigger
 
 from sdf_pose_bridge_interfaces.srv import LookupPose
 
-LONG_NAME = 'abcdefghijklmnopqrstuvwxyz' * 14
 ARM = """<sdf version="1.11"><model name="arm">
 <link name="base"/><link name="upper"><pose>0 0 1 0 0 0</pose></link>
 <link name="slide"><pose>0 0 2 0 0 0</pose></link><link name="finger"/>
@@ -159,25 +158,6 @@ def test_frames_follow_a_message(follow, joints, tf):
     assert pose_of(tf, 'slide').z == 2.25
 
 
-@pytest.mark.parametrize(('positions', 'sec', 'line'), [
-    ({'lift': 0.25}, -1, 'is ignored: it has the stamp sec=-1 nanosec=0, and'),
-    ({'lift': nan}, 1, 'not finite'),
-    ({'turns': 1.0}, 1, '"turns", not the name of one moving joint; did you mean "turn"?'),
-])
-def test_a_wrong_message_is_reported_and_the_next_one_taken(
-        start_bridge, file, joints, tf, positions, sec, line):
-    bridge = start_bridge(
-        '--ros-args', '-p', f'sdf_file:={file}', '-p', 'use_joint_states:=true', '-p',
-        'unreported_joints:=zero')
-    tf.listener.wait(lambda: tf.last, lambda: 'moving frames')
-    tf.listener.wait(
-        lambda: joints.send(positions, sec=sec) and any(line in each for each in bridge.lines),
-        lambda: bridge.lines)
-    assert pose_of(tf, 'slide').z == 2.0
-    assert tf.wait_for('slide', joints.send({'lift': 0.5}, sec=1000)).translation.z == 1.5
-    assert not [line for line in bridge.lines if 'internal error' in line]
-
-
 def test_a_flood_of_messages_does_not_keep_callers_waiting(follow, tf):
     bridge = follow()
     flooding = LoggedProcess([sys.executable, '-c', FLOODING])
@@ -248,25 +228,6 @@ def test_the_frame_of_poses_can_be_set_while_joints_move(follow, joints, tf):
     wait_for_z(tf, poses, 'upper', base=-1.0, tool=1.5)
 
 
-def test_listeners_get_poses_while_joints_move(follow, joints, tf):
-    follow()
-    listeners = {name: [] for name in ('transforms', 'poses/tool')}
-    tf.listener.node.create_subscription(
-        TransformStamped, f'{BRIDGE}/transforms', listeners['transforms'].append, latched(100))
-    tf.listener.node.create_subscription(
-        PoseStamped, f'{BRIDGE}/poses/tool', listeners['poses/tool'].append, latched(1))
-    stamps = set()
-
-    def are_followed():
-        # The next one comes before the joints are at rest.
-        stamps.add(joints.send({'lift': 0.001 * len(stamps)}))
-        return all(
-            len(stamps.intersection(each.header.stamp.sec for each in messages)) > 1
-            for messages in listeners.values())
-
-    tf.listener.wait(are_followed, lambda: listeners)
-
-
 def test_joints_move_while_the_file_is_read_again(follow, file, joints, tf):
     follow(watch=False)
     slow = SlowFile(file, ARM.format(tool=1))
@@ -317,19 +278,3 @@ def test_following_can_be_switched_off_and_on(follow, joints, tf):
     tf.listener.wait(lambda: 'base' in late, lambda: late)
     assert 'slide' not in late, 'it was fixed when it had this pose'
     assert tf.wait_for('slide', joints.send({'lift': 0.7})).translation.z == 1.7
-
-
-def test_new_unknown_names_in_each_message_keep_nobody_waiting(bridge, joints, tf, tmp_path):
-    text = ''.join(
-        f'<link name="l{i}"/><joint name="{LONG_NAME}{i}" type="revolute"><parent>base</parent>'
-        f'<child>l{i}</child><axis><xyz>0 0 1</xyz></axis></joint>' for i in range(10_000))
-    path = tmp_path / 'large.sdf'
-    path.write_text(
-        f'<sdf version="1.10"><model name="m"><link name="base"/>{text}</model></sdf>')
-    set_parameters(tf.listener, use_joint_states=True, sdf_file=str(path), pose_topics=[''])
-    waiting = Waiting(tf.listener, bridge.pid)
-    for number in range(12):
-        for row in range(5):
-            joints.send({f'{LONG_NAME}x{number}_{row}_{i}': 0.0 for i in range(2500)})
-        waiting.check()
-    bridge.wait_for_line('not the name of one moving joint')

@@ -224,13 +224,6 @@ def test_revolute_joint_in_place_of_a_fixed_one_has_the_axis_of_sdformat():
     assert joint_xml.findtext('axis/limit/upper') == '0'
 
 
-def test_only_fixed_joints_become_revolute():
-    option = '<disableFixedJointLumping>1</disableFixedJointLumping>'
-    limit = '<limit lower="0" upper="1" effort="1" velocity="1"/>'
-    text = robot(TWO + joint('j', 'a', 'b', 'prismatic', limit) + gazebo(option, 'j'))
-    assert model_from(text).find('joint').get('type') == 'prismatic'
-
-
 @pytest.mark.parametrize(('tag', 'expected'), [
     ('visual', ['a_visual', 'a_fixed_joint_lump__b_visual_1', 'a_fixed_joint_lump__v_visual_2']),
     ('collision', ['a_collision', 'a_fixed_joint_lump__b_collision_1',
@@ -431,11 +424,6 @@ def write(folder, text):
     include = '<include><uri>r.urdf</uri><name>n</name><pose>5 0 0 0 0 0</pose></include>'
     (folder / 'w.sdf').write_text(world_file(include))
     return folder / 'w.sdf'
-
-
-def test_robot_is_included(tmp_path):
-    scene = load(write(tmp_path, TWO + FIXED))
-    assert scene.pose('n::b').x == 6.0
 
 
 def test_robot_is_merged(tmp_path):
