@@ -169,10 +169,10 @@ def test_without_memory_for_what_was_read_the_bridge_goes_on_or_ends(start, file
     bridge = start(file)
     assert reload(listener).success
     _, hard = resource.prlimit(bridge.pid, resource.RLIMIT_AS)
-    limit = address_space(bridge.pid) + 12_000_000
+    limit = address_space(bridge.pid) + 4_000_000
     resource.prlimit(bridge.pid, resource.RLIMIT_AS, (limit, hard))
     replace(file, world(2, extra=''.join(
-        f'<model name="m{i}"><link name="l"/></model>' for i in range(30_000))))
+        f'<model name="m{i}"><link name="l"/></model>' for i in range(20_000))))
     try:
         bridge.wait_for_line('there is not enough memory to read the file')
     except AssertionError:
