@@ -4,11 +4,13 @@
 
 from __future__ import annotations
 
+import _thread
 from collections.abc import Awaitable, Callable
 import contextlib
 import os
 import threading
 import time
+import weakref
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.exceptions import InvalidHandle
@@ -37,22 +39,27 @@ def run_in_thread(node: Node, function: Callable[[], object]) -> Future:
 
     def run() -> None:
         try:
-            try:
-                future.set_result(function())
-            except MemoryError:
-                pass  # its traceback still references the objects of the function here
-            except Exception as error:  # noqa: BLE001 - raised where the future is awaited
-                future.set_exception(error)
-            if not future.done():
-                future.set_exception(MemoryError('out of memory'))
+            future.set_result(function())
         except MemoryError:
-            # Without a result, callbacks that wait for it would be blocked forever.
-            os._exit(1)
+            return  # its traceback still references the objects of the function here
+        except Exception as error:  # noqa: BLE001 - raised where the future is awaited
+            future.set_exception(error)
         # The executor resumes coroutines only when it wakes up.
         wake(executor)
 
+    def end() -> None:
+        try:
+            if not future.done():
+                future.set_exception(MemoryError('out of memory'))
+                wake(executor)
+        except MemoryError:
+            # Without a result, callbacks that wait for it would be blocked forever.
+            os._exit(1)
+
+    # Without memory a thread may end before it calls the function. Thread.start would wait for it.
+    weakref.finalize(run, end).atexit = False
     try:
-        threading.Thread(target=run, name='background', daemon=True).start()
+        _thread.start_new_thread(run, ())
     except RuntimeError as error:
         msg = 'no thread can be started'
         raise MemoryError(msg) from error

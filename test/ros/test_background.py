@@ -82,6 +82,17 @@ def test_a_thread_without_memory_has_a_result_that_keeps_nothing(node):
     assert finished(node, callback) is None
 
 
+def test_a_thread_that_ends_before_it_calls_the_function_is_without_memory(node, monkeypatch):
+    monkeypatch.setattr('_thread.start_new_thread', lambda *_: None)
+
+    async def callback():
+        with pytest.raises(MemoryError):
+            await run_in_thread(node, Large)
+        return 'answered'
+
+    assert finished(node, callback) == 'answered'
+
+
 def test_two_coroutines_alternate(node):
     seen = []
 
@@ -139,14 +150,12 @@ def test_a_lock_is_released_when_python_ends_after_the_executor(node):
 
 
 def test_a_thread_may_end_after_the_executor_was_shut_down(node):
-    threads = set(threading.enumerate())
-    goes_on = threading.Event()
+    goes_on, has_ended = threading.Event(), threading.Event()
     future = run_in_thread(node, goes_on.wait)
-    (thread,) = set(threading.enumerate()) - threads
+    future.add_done_callback(lambda _: has_ended.set())
     node.executor.shutdown()
     goes_on.set()
-    thread.join(SECONDS)
-    assert future.result()
+    assert has_ended.wait(SECONDS)
 
 
 @pytest.fixture
