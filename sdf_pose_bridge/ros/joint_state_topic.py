@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 import contextlib
-import threading
 import time
 from typing import NamedTuple
 
@@ -17,6 +16,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
+from sdf_pose_bridge.ros.background import run_in_thread
 from sdf_pose_bridge.ros.cdr import joint_state_from_bytes
 from sdf_pose_bridge.ros.joint_names import Meaning, Meanings
 from sdf_pose_bridge.ros.log_lines import names_in_line
@@ -113,8 +113,8 @@ class JointStateTopic:
                 f'moving joint{where}{positions.hint(names[0], self.model)}')
 
         # Finding the nearest name takes long if there are many.
-        with contextlib.suppress(RuntimeError):  # no memory for another thread
-            threading.Thread(target=warn, name='hint', daemon=True).start()
+        with contextlib.suppress(MemoryError):
+            run_in_thread(self._node, warn)
 
     def _may_warn(self, about: str) -> bool:
         """Return whether the last warning about something was long ago."""
