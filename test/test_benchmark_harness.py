@@ -13,7 +13,6 @@ from benchmarks.harness import (
     result_of,
     TimesAsFast,
     Took,
-    Unavailable,
     wait_until,
 )
 
@@ -32,16 +31,6 @@ def test_what_is_not_installed_is_skipped_and_named():
     result = result_of(missing)
     assert result.reached == 'skipped'
     assert result.ratio == 'skipped: no_such_library is not installed'
-
-
-def test_a_benchmark_may_say_why_it_cannot_run():
-    @benchmark('ours', counterpart='theirs', goal=AtMostTimes(2.0))
-    def without_server():
-        reason = 'there is no server'
-        raise Unavailable(reason)
-        yield
-
-    assert result_of(without_server).ratio == 'skipped: there is no server'
 
 
 def test_a_benchmark_does_not_wait_forever(monkeypatch):

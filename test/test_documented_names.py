@@ -35,14 +35,21 @@ def names_of_policy(tag):
     return {element.text for element in root.iter(tag)}
 
 
-COMMANDS = subcommands()
-SERVICES = sorted(
-    name for name in names_of_policy('service') if not re.search('parameter|type_desc', name))
-TOPICS = sorted(names_of_policy('topic') - {'/rosout', '/parameter_events', '/clock'})
-
-
 def all_errors(error):
     return {error.code}.union(*map(all_errors, error.__subclasses__()))
+
+
+COMMANDS = subcommands()
+NAMES = {
+    'ros_interface.md': sorted(
+        name.replace('*/', '<model>/').replace('*', '<frame>')
+        for name in names_of_policy('service') | names_of_policy('topic')
+        if not re.search('parameter|type_desc|^/(rosout|clock)$', name)),
+    'pose_formats.md': [*POSE_FORMATS, *ROTATION_FORMATS],
+    'joints.md': JOINT_TYPES,
+    'what_is_read.md': SHAPE_TYPES,
+    'errors.md': sorted(all_errors(SdfError) - {'ERROR'}),
+}
 
 
 @pytest.mark.parametrize('page', [
@@ -66,20 +73,10 @@ def test_option(command, option):
     assert option in text, f'{option} of {command}'
 
 
-@pytest.mark.parametrize('topic', TOPICS)
-def test_topic(topic):
-    topic = topic.replace('*/', '<model>/').replace('*', '<frame>')
-    assert topic in names_in('ros_interface.md')
-
-
-@pytest.mark.parametrize('service', SERVICES)
-def test_service(service):
-    assert service in names_in('ros_interface.md')
-
-
-@pytest.mark.parametrize('name', [*POSE_FORMATS, *ROTATION_FORMATS])
-def test_format(name):
-    assert name in names_in('pose_formats.md')
+@pytest.mark.parametrize(('page', 'name'), [
+    (page, name) for page, names in NAMES.items() for name in names])
+def test_name(page, name):
+    assert name in names_in(page)
 
 
 @pytest.mark.parametrize('name', POSE_FORMATS)
@@ -88,26 +85,11 @@ def test_format_of_the_service(name):
     assert re.search(rf'^#   {name} ', text, re.MULTILINE)
 
 
-@pytest.mark.parametrize('name', JOINT_TYPES)
-def test_joint_type(name):
-    assert name in names_in('joints.md')
-
-
-@pytest.mark.parametrize('name', SHAPE_TYPES)
-def test_shape_type(name):
-    assert name in names_in('what_is_read.md')
-
-
 @pytest.mark.parametrize('kind', [
     kind for kind in Kind if kind not in (Kind.ROOT, Kind.WORLD, Kind.ACTOR)])
 def test_kind(kind):
     text = (ROOT / 'docs/ros_interface.md').read_text(encoding='utf-8')
     assert kind.label in next(line for line in text.splitlines() if line.startswith('| `kinds`'))
-
-
-@pytest.mark.parametrize('code', sorted(all_errors(SdfError) - {'ERROR'}))
-def test_code_of_an_error(code):
-    assert code in names_in('errors.md')
 
 
 def test_parameter():

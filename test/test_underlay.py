@@ -121,7 +121,6 @@ def test_lyrical_has_its_own_range_of_pythons(checkout, tools, tmp_path, version
     assert ('ROS 2 Lyrical needs Python 3.12 to 3.14' in result.stderr) is is_refused
 
 
-
 @needs_python_of_jazzy
 def test_checkout_in_a_path_with_a_space_is_refused(checkout):
     moved = checkout.rename(checkout.with_name('check out'))
@@ -135,25 +134,6 @@ def test_ros_installation_that_lacks_packages_is_refused_with_their_names(checko
     result = make_underlay(
         checkout, PYTHON=str(PYTHON), SDF_POSE_BRIDGE_ROS_PREFIX=str(tmp_path / 'jazzy'))
     assert_refused_with(result, 'tf2_msgs', 'ros-jazzy-tf2-msgs')
-
-
-def test_processor_without_wheels_is_refused(monkeypatch):
-    monkeypatch.syspath_prepend(str(ROOT / 'underlay'))
-    import machine
-    from steps import RefusalError
-    monkeypatch.setattr(machine.platform, 'machine', lambda: 'aarch64')
-    with pytest.raises(RefusalError, match=r'this is aarch64 on .*; install ROS 2 .* in /opt'):
-        machine.check_pypi_platform()
-
-
-def test_python_without_venv_is_refused(monkeypatch):
-    monkeypatch.syspath_prepend(str(ROOT / 'underlay'))
-    import machine
-    from steps import RefusalError
-    monkeypatch.setattr(
-        machine.importlib.util, 'find_spec', lambda name: None if name == 'ensurepip' else name)
-    with pytest.raises(RefusalError, match=r'without venv; install it .*-venv'):
-        machine.check_python()
 
 
 def test_setup_bash_without_environment_says_so(checkout):
@@ -215,15 +195,6 @@ def test_setup_bash_refuses_a_ros_that_is_not_supported(checkout):
     result = shell(f'. {checkout}/underlay/setup.bash', ROS='humble')
     assert (result.returncode, result.stderr.count('\n')) == (1, 1)
     assert 'humble' in result.stderr
-
-
-def test_versions_of_ubuntu_come_with_ros_from_pypi(checkout, tools, tmp_path):
-    (tmp_path / 'setup.bash').touch()
-    # Prints what make_underlay.py would be called with.
-    python = command(tools, 'python', '[[ $* == *-S* ]] && printf 3.12.3 || echo "$@"')
-    result = make_underlay(
-        checkout, VERSIONS='noble', PYTHON=str(python), SDF_POSE_BRIDGE_ROS_PREFIX=str(tmp_path))
-    assert f'--ros-prefix {checkout}/.underlay-noble' in result.stdout
 
 
 def test_setup_bash_puts_a_given_rclpy_before_the_one_of_ros(built, tmp_path):

@@ -41,22 +41,16 @@ def arrows_to(name, dot):
             if labels[end] == name}
 
 
-def test_invalid_file_is_reported(run_main):
-    done = run_main('graph', 'bad.sdf')
-    assert (done.returncode, done.stdout) == (1, '')
-    assert done.stderr.startswith('bad.sdf:3: ELEMENT_INVALID: ')
-
-
-def test_unknown_model_is_an_error(run_main):
-    done = run_main('graph', '--model', 'n', 'good.sdf')
-    assert (done.returncode, done.stdout) == (1, '')
-    assert 'there is no model "n"' in done.stderr
-
-
-def test_unknown_format_is_an_error_that_lists_the_known_ones(run_main):
-    done = run_main('graph', 'good.sdf', '-o', 'graph.gif')
-    assert done.returncode == 2
-    assert '"graph.gif" must end with one of .svg, .png, .pdf, .dot' in done.stderr
+@pytest.mark.parametrize(('arguments', 'code', 'reason'), [
+    ('bad.sdf', 1, 'bad.sdf:3: ELEMENT_INVALID: '),
+    ('good.sdf --model n', 1, 'there is no model "n"'),
+    ('good.sdf -o nowhere/graph.dot', 1, 'sdf_pose graph: cannot write nowhere/graph.dot: '),
+    ('good.sdf -o graph.gif', 2, '"graph.gif" must end with one of .svg, .png, .pdf, .dot'),
+])
+def test_wrong_input_gives_one_error(run_main, arguments, code, reason):
+    done = run_main('graph', *arguments.split())
+    assert (done.returncode, done.stdout) == (code, '')
+    assert reason in done.stderr
 
 
 def test_missing_program_is_an_error_of_one_line(run_main, monkeypatch):
@@ -65,12 +59,6 @@ def test_missing_program_is_an_error_of_one_line(run_main, monkeypatch):
     assert done.returncode == 1
     assert done.stderr.startswith('sdf_pose graph: the program dot is not installed; ')
     assert len(done.stderr.splitlines()) == 1
-
-
-def test_folder_that_does_not_exist_is_an_error(run_main):
-    done = run_main('graph', 'good.sdf', '-o', 'nowhere/graph.dot')
-    assert done.returncode == 1
-    assert done.stderr.startswith('sdf_pose graph: cannot write nowhere/graph.dot: ')
 
 
 def test_names_are_escaped(run_main, files):

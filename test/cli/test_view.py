@@ -70,28 +70,16 @@ def test_missing_browser_is_an_error_of_one_line(run_main, monkeypatch):
     assert len(done.stderr.splitlines()) == 1
 
 
-def test_unknown_format_is_an_error(run_main):
-    done = run_main('view', 'good.sdf', '-o', 'page.svg')
-    assert done.returncode == 2
-    assert '"page.svg" must end with one of .html, .png' in done.stderr
-
-
-def test_invalid_file_is_reported(run_main):
-    done = run_main('view', 'bad.sdf', '-o', 'page.html')
-    assert done.returncode == 1
-    assert done.stderr.startswith('bad.sdf:3: ELEMENT_INVALID: ')
-
-
-def test_unknown_model_is_an_error(run_main):
-    done = run_main('view', 'good.sdf', '--model', 'n', '-o', 'page.html')
-    assert done.returncode == 1
-    assert 'there is no model "n"' in done.stderr
-
-
-def test_folder_that_does_not_exist_is_an_error(run_main):
-    done = run_main('view', 'good.sdf', '-o', 'nowhere/page.html')
-    assert done.returncode == 1
-    assert done.stderr.startswith('sdf_pose view: cannot write nowhere/page.html: ')
+@pytest.mark.parametrize(('arguments', 'code', 'reason'), [
+    ('bad.sdf -o page.html', 1, 'bad.sdf:3: ELEMENT_INVALID: '),
+    ('good.sdf -o page.html --model n', 1, 'there is no model "n"'),
+    ('good.sdf -o nowhere/page.html', 1, 'sdf_pose view: cannot write nowhere/page.html: '),
+    ('good.sdf -o page.svg', 2, '"page.svg" must end with one of .html, .png'),
+])
+def test_wrong_input_gives_one_error(run_main, arguments, code, reason):
+    done = run_main('view', *arguments.split())
+    assert (done.returncode, done.stdout) == (code, '')
+    assert reason in done.stderr
 
 
 def test_page_has_a_title_and_needs_no_network(run_main, files):

@@ -145,13 +145,6 @@ def test_roll_pitch_yaw_rotate_about_fixed_axes_in_this_order(rpy):
     assert np.allclose(through_quaternion, by_definition, rtol=0.0, atol=2e-15)
 
 
-def test_quaternions_are_x_y_z_w():
-    half = math.sqrt(0.5)
-    assert rotations.quaternion_from_rpy((math.pi / 2, 0, 0)) == pytest.approx((half, 0, 0, half))
-    assert rotations.quaternion_from_rpy((0, math.pi / 2, 0)) == pytest.approx((0, half, 0, half))
-    assert rotations.quaternion_from_rpy((0, 0, math.pi / 2)) == pytest.approx((0, 0, half, half))
-
-
 # Canonical results.
 
 @given(rpys)

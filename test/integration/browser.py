@@ -2,11 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A browser without a window, told what to do by the DevTools protocol of Chromium."""
 
-import base64
 import contextlib
 import itertools
 import json
-from pathlib import Path
 import shutil
 import subprocess
 import time
@@ -65,10 +63,6 @@ class Browser:
     def size(self, width, height, *, is_phone=False):
         self.call('Emulation.setDeviceMetricsOverride', width=width, height=height,
                   deviceScaleFactor=1, mobile=is_phone)
-
-    def screenshot(self, path):
-        data = self.call('Page.captureScreenshot')['data']
-        Path(path).write_bytes(base64.b64decode(data))
 
     def mouse(self, *steps):
         """Press at the first of some points, move over them, and release at the last one."""

@@ -65,22 +65,6 @@ def test_what_cannot_be_taken_is_answered_and_changes_nothing(bridge, listener):
     assert not [line for line in bridge.lines if line.startswith('[ERROR]')]
 
 
-def test_another_file_reaches_an_early_and_a_late_listener(listener, start_listener, tmp_path):
-    other = tmp_path / 'other.sdf'
-    other.write_text(world(5))
-    (result,) = set_parameters(listener, sdf_file=str(other))
-    assert result.successful, result.reason
-    wait_for_x(listener, 5.0)
-    late = start_listener()
-    late.listen_to_frames()
-    late.listen_to_poses(['/sdf_pose_bridge/poses/crate/body'])
-    wait_for_x(late, 5.0)
-    late.wait_for_keys(late.transforms, ['crate', 'crate/body'])
-    assert late.transforms['crate/body'].transform.translation.x == 5.0
-    late.wait_for_keys(late.poses, ['/sdf_pose_bridge/poses/crate/body'])
-    assert late.poses['/sdf_pose_bridge/poses/crate/body'].pose.position.x == 5.0
-
-
 def test_poses_are_given_in_the_frame_that_is_set(bridge, file, start_listener):
     file.write_text(world(1, extra='<frame name="desk"><pose>3 0 0 0 0 0</pose></frame>'))
     listener = start_listener()

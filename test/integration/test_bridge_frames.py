@@ -124,11 +124,6 @@ def test_tf_static_has_every_transform_in_one_message(listener):
     assert_expected_transforms(message.transforms)
 
 
-def test_transforms_arrive_one_by_one(listener):
-    listener.wait_for_keys(listener.transforms, PARENTS_AND_POSES)
-    assert_expected_transforms(listener.transforms.values())
-
-
 def test_they_are_those_of_the_one_message_with_its_stamp(listener):
     listener.wait(lambda: listener.tf_messages, lambda: '/tf_static')
     listener.wait_for_keys(listener.transforms, PARENTS_AND_POSES)

@@ -11,7 +11,6 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 from bridge_process import STARTED
 from changes import (
     BRIDGE,
-    last_x,
     listen_to_tf,
     Monitor,
     reload,
@@ -68,10 +67,6 @@ def listen_to_transforms(listener, quality):
         lambda message: found.append((message.child_frame_id, message.transform.translation.x)),
         quality)
     return found
-
-
-def error_lines(bridge):
-    return [line for line in bridge.lines if line.startswith('[ERROR]')]
 
 
 # What was published is really replaced
@@ -197,22 +192,6 @@ def test_simulated_time_that_stands_still_keeps_no_change_from_being_noticed(fil
 
 
 # What is kept when something is wrong
-
-
-def test_a_failure_is_reported_until_a_load_succeeds(bridge, file, listener):
-    monitor = Monitor(listener)
-    monitor.wait_for(DiagnosticStatus.OK)
-    replace(file, 'not XML')
-    monitor.wait_for(DiagnosticStatus.ERROR)
-    assert not reload(listener).success
-    assert not reload(listener).success
-    assert len(error_lines(bridge)) == 2, 'the announcement and one error'
-    assert last_x(listener) == 1.0
-    replace(file, world(2))
-    assert reload(listener).success
-    monitor.wait_for(DiagnosticStatus.OK)
-    replace(file, 'not XML')
-    bridge.wait_for_line('the frames published before stay', 2)
 
 
 @pytest.mark.parametrize('service', [SetParameters, SetParametersAtomically])

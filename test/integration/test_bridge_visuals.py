@@ -76,10 +76,3 @@ def test_visuals_follow_a_reload(listener, file):
     assert reload(listener).success
     array = wait_for_types(listener, arrays, Marker.SPHERE)
     assert array.markers[0].action == Marker.DELETEALL
-
-
-def test_visual_that_cannot_be_shown_is_reported(bridge, listener, file):
-    replace(file, crate(('part', '<mesh><uri>none.stl</uri></mesh>'), BOX))
-    assert reload(listener).success
-    wait_for_types(listener, arrays_of(listener), Marker.CUBE)
-    bridge.wait_for_line('"crate::body::part" is not shown: the mesh "none.stl" is not found')

@@ -94,19 +94,6 @@ def test_each_robot_follows_its_own_topic_also_after_a_reload(file, joints, tf):
 
 
 @pytest.mark.usefixtures('bridge')
-def test_both_topics_of_a_robot_move_it(joints, tf):
-    set_parameters(tf.listener, use_joint_states=True)
-    move(joints, tf, 'r1/joint_states', 'r1', 0.1, 0.5)
-    stamps = {joints.send({'r1/turn': 0.75})}
-    tf.listener.wait(
-        lambda: tf.last['r1/arm'].header.stamp.sec in stamps or (
-            stamps.add(joints.send({'r1/turn': 0.75}))), lambda: tf.last)
-    check_poses(tf, r1=(10, 0.75, 0.5))
-    move(joints, tf, 'r1/joint_states', 'r1', 0.25, 0.5)
-    check_poses(tf, r1=(10, 0.25, 0.5))
-
-
-@pytest.mark.usefixtures('bridge')
 def test_topics_of_gazebo_can_be_followed_and_changed(joints, tf):
     set_parameters(
         tf.listener, use_joint_states=True, model='r2',

@@ -16,7 +16,6 @@ pytest.importorskip('rclpy', reason='needs ROS 2')
 pytest.importorskip('tf2_ros', reason='needs tf2_ros, which is not installed')
 
 from rclpy.time import Time
-from std_srvs.srv import Trigger
 from tf2_ros import Buffer, TransformListener
 
 import sdf_pose_bridge
@@ -25,17 +24,6 @@ from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 EXAMPLES = Path(__file__).resolve().parents[2] / 'examples'
-FILE = """\
-<sdf version="1.10">
-  <world name="hall">
-    <model name="cell">
-      <link name="table"><pose>2 0 0 0 0 0</pose></link>
-      <link name="shelf"><pose>0 0 5 0 0 0</pose></link>
-      <frame name="mark" attached_to="{parent}"><pose relative_to="{parent}">{pose}</pose></frame>
-    </model>
-  </world>
-</sdf>
-"""
 
 
 @pytest.fixture
@@ -91,22 +79,3 @@ def test_every_frame_can_be_looked_up_from_every_other(
             found_pose(buffer, frame_id, reference),
             matrix_from_pose(expected.pose(frame_id, reference).pose),
             name=f'{frame_id} in {reference}')
-
-
-def test_a_frame_that_moved_has_moved_for_a_listener_that_was_there(
-        start_bridge, start_buffer, tmp_path):
-    def write(parent, pose):
-        path.write_text(FILE.format(parent=parent, pose=pose), encoding='utf-8')
-
-    path = tmp_path / 'cell.sdf'
-    write('table', '0 1 0 0 0 0')
-    start_bridge('--ros-args', '-p', f'sdf_file:={path}', '-p', 'watch:=false')
-    buffer, listener = start_buffer()
-    wait_for_frames(buffer, listener, ['cell/mark'], 'world')
-    assert found_pose(buffer, 'cell/mark', 'world')[:3] == (2.0, 1.0, 0.0)
-    write('shelf', '3 0 0 0 0 0')
-    assert listener.call(Trigger, '/sdf_pose_bridge/reload', Trigger.Request()).success
-    listener.wait(
-        lambda: found_pose(buffer, 'cell/mark', 'world')[:3] != (2.0, 1.0, 0.0),
-        lambda: 'the new pose of cell/mark')
-    assert found_pose(buffer, 'cell/mark', 'world')[:3] == (3.0, 0.0, 5.0)

@@ -58,9 +58,10 @@ def joint_state(sec=5, nanosec=0, **positions):
 @pytest.mark.parametrize(('data', 'line'), [
     (b'', 'not plain CDR'),
     (joint_state(turn=0.5)[:30], 'it ends too early'),
+    (serialize_message(JointState(name=['turn'])), 'it has 1 names and 0 positions'),
     (joint_state(sec=-1, turn=0.5), 'it has the stamp sec=-1 nanosec=0, and sec must not be'),
     (joint_state(nanosec=10**9, turn=0.5), 'it has the stamp sec=5 nanosec=1000000000, and sec'),
-], ids=['empty', 'short', 'sec', 'nanosec'])
+], ids=['empty', 'short', 'positions', 'sec', 'nanosec'])
 def test_a_message_that_cannot_be_used_is_reported(read, capfd, data, line):
     assert read(data) is None
     assert read(data) is None

@@ -150,14 +150,6 @@ def make_slow_arm(following):
     return start
 
 
-def test_messages_with_another_number_of_positions_are_ignored(arm, capfd):
-    wrong = JointState(header=Header(stamp=Time(sec=FIRST)), name=['turn'], position=[])
-    for _ in range(2):
-        arm._senders['/joint_states'].publish(wrong)
-    assert arm.published((FIRST + 1, {'turn': 0.0})) == [(FIRST + 1, {'upper'})]
-    assert capfd.readouterr().err.count('has 1 names and 0 positions') == 1, 'not at a high rate'
-
-
 def test_publishers_that_are_best_effort_are_heard(following):
     following.start()
     subscription, = following.node.subscriptions

@@ -235,34 +235,10 @@ def test_angles_in_degrees(value):
     assert_at(scene, 'm::l', (1, 0, 0, 1, 0, 0, 0))
 
 
-def test_quaternion_that_is_not_in_degrees():
-    scene = load_text(link_with(
-        '<pose rotation_format="quat_xyzw" degrees="false">0 0 0 1 0 0 0</pose>'))
-    assert_at(scene, 'm::l', (0, 0, 0, 1, 0, 0, 0))
-
-
-def test_empty_pose_has_a_reference():
-    scene = load_text(model_file(
-        posed('link', 'a', '1 2 3 0 0 0') + posed('link', 'b', '', 'a')))
-    assert_at(scene, 'm::b', (1, 2, 3))
-
-
 def test_only_the_first_pose_counts():
     scene = load_text(link_with(
         '<pose>1 0 0 0 0 0</pose><pose relative_to="x">2 0 0 0 0 0</pose>'))
     assert_at(scene, 'm::l', (1, 0, 0))
-
-
-@pytest.mark.parametrize('content', [
-    '<!-- c -->1 2 3 0 0 0', '<![CDATA[1 2 3 0 0 0]]>', '1 2 3 0 0 0<x/>', '1\r\n2\t3 0 0 0'])
-def test_forms_of_the_text_of_a_pose(content):
-    assert_at(load_text(model_file(posed('link', 'l', content))), 'm::l', (1, 2, 3))
-
-
-def test_reference_is_stripped():
-    scene = load_text(model_file(
-        posed('link', 'a', '1 0 0 0 0 0') + posed('link', 'b', '1 0 0 0 0 0', '\ta ')))
-    assert_at(scene, 'm::b', (2, 0, 0))
 
 
 # References that have no effect

@@ -38,24 +38,10 @@ def make_change(tmp_path):
     return change
 
 
-def test_a_change_has_its_line_and_the_frames_that_move(change):
-    found = change('mark', Pose(3.0))
-    assert found.file.new_text.decode() == ARM.replace('2 0 0 0 0 0', '3 0 0 0 0 0')
-    assert (found.line, found.moved_frames) == (1, ('on_mark',))
-    assert found.diff == found.file.diff
-
-
 def test_a_pose_is_taken_where_its_reference_has_moved_to(change):
     text = change('mark', Pose(0.5), 'tool', np.pi / 2).file.new_text
     np.testing.assert_allclose(
         load_text(text).pose('m::mark')[:3], (0.0, 1.5, 0.0), atol=1e-9)
-
-
-@pytest.mark.parametrize(('frame', 'reference', 'message'), [
-    ('marc', '', 'did you mean "mark"'), ('mark', 'tol', 'did you mean "tool"')])
-def test_names_that_do_not_exist(change, frame, reference, message):
-    with pytest.raises(SdfError, match=message):
-        change(frame, Pose(), reference)
 
 
 def test_a_file_that_is_not_what_is_published(change):
