@@ -29,10 +29,9 @@ from sdf_pose_bridge.ros.cdr import StampedRecords, Stamps
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.publishers import NANOSECONDS, Publishers, Stamp, Topic
 from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns, PoseTopics
-from sdf_pose_bridge.tf.joint_motion import NO_DOF
+from sdf_pose_bridge.tf.joint_motion import MovingFrames, NO_DOF
 from sdf_pose_bridge.tf.joint_positions import JointPositions, NEVER
 from sdf_pose_bridge.tf.loaded_scene import LoadedScene
-from sdf_pose_bridge.tf.moving_frames import MovingFrames
 from sdf_pose_bridge.tf.tree import TfTree
 
 TF_STATIC = Topic('/tf_static', TFMessage, is_overridable=True)

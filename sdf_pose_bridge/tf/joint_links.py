@@ -10,11 +10,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from sdf_pose_bridge.geometry.poses import Pose, relative_pose
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
 from sdf_pose_bridge.tf.frames import Frame, Frames
 from sdf_pose_bridge.tf.joint_motion import JointMotion
 from sdf_pose_bridge.tf.joint_positions import SLIDE_SUFFIX
@@ -33,8 +30,8 @@ def is_same_place(pose: Pose) -> bool:
 
 
 def frames_at_joints(
-    frames: Frames, scene: Scene, motion: JointMotion, tf_parents: TfParents,
-    frame_names: FrameNames, prefix: str, root_frame: str,
+    frames: Frames, scene: Scene, motion: JointMotion, tf_parents: TfParents, prefix: str,
+    root_frame: str,
 ) -> list[Frame]:
     """
     Make the frames between degrees of freedom, and those of joints away from their links.
@@ -47,10 +44,9 @@ def frames_at_joints(
     """
     rows = {owner: row for row, owner in enumerate(frames.owners.tolist())}
     used = {root_frame, *frames.ids}
-    joints = np.array([dof.joint.element for dof in motion.dofs], np.int32)
-    names = FrameNaming(frame_names).frame_ids_from_scene(scene, joints)
     found = []
-    for index, (dof, body) in enumerate(zip(motion.dofs, motion.moved_bodies, strict=True)):
+    for index, (dof, body) in enumerate(
+            zip(motion.dofs, motion.moved_bodies.tolist(), strict=True)):
         pose = scene.pose_of(dof.joint.element)
         is_last = motion.last_dofs[body] == index
         if is_last and is_same_place(relative_pose(pose, scene.pose_of(body))):
@@ -59,8 +55,8 @@ def frames_at_joints(
         is_published = body in rows and (
             parent_body in rows or scene.parents[parent_body] < 0)
         parent = frames.parents.item(rows[body]) if is_published else NO_PARENT
-        slide = SLIDE_SUFFIX if dof.rad_per_unit and dof.m_per_unit else ''
-        frame_id = f'{prefix}{names[index]}{dof.suffix}{slide}{LINK_SUFFIX}'
+        slide = SLIDE_SUFFIX if dof.is_screw else ''
+        frame_id = f'{prefix}{dof.name}{slide}{LINK_SUFFIX}'
         if parent != NO_PARENT and frame_id not in used:
             used.add(frame_id)
             found.append(Frame(frame_id, len(scene.kinds) + index, parent, pose))

@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Move the elements of a scene by the positions of its joints.
+Move the elements of a scene, and its frames in TF, by the positions of its joints.
 
 Poses in the root are products of exponentials: each degree of freedom between the root and an
 element displaces it by a rotation about, and a translation along, the axis where the file puts it.
@@ -18,13 +18,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices, poses_along_chains
-from sdf_pose_bridge.geometry.poses import Pose, pose_products, PoseArray, transformed_points
+from sdf_pose_bridge.geometry.poses import (
+    canonical_relative_poses,
+    Pose,
+    pose_products,
+    PoseArray,
+    relative_poses,
+    transformed_points,
+)
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion, Floats
 from sdf_pose_bridge.geometry.screws import ScrewMotions
 from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.joints import JointAxis
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES, Motion
-from sdf_pose_bridge.tf.parents import TfParents
+from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
+from sdf_pose_bridge.tf.parents import NO_PARENT, TfParents
 
 NO_DOF = -1
 """Index for no degree of freedom."""
@@ -38,8 +46,10 @@ class DegreeOfFreedom(NamedTuple):
     joint: Joint
     number: int | None
     """The axis of the joint, 0 or 1; None for a ball joint."""
+    name: str
+    """Its name in ``joint_states``."""
     suffix: str
-    """Appended to the name of the joint for its name in ``joint_states``."""
+    """The end of this name, after the name of the joint."""
     axis: JointAxis
     """The axis with its limits; of a ball joint a fixed direction without limits."""
     rad_per_unit: float
@@ -47,11 +57,17 @@ class DegreeOfFreedom(NamedTuple):
     m_per_unit: float
     """Distance along the axis for a position of 1."""
 
+    @property
+    def is_screw(self) -> bool:
+        """Whether it both turns and slides."""
+        return bool(self.rad_per_unit and self.m_per_unit)
 
-def dofs_from_joint(joint: Joint) -> list[DegreeOfFreedom]:
+
+def dofs_from_joint(joint: Joint, name: str = '') -> list[DegreeOfFreedom]:
     """
     List the degrees of freedom of a joint.
 
+    :param name: the name of the joint in ``joint_states``.
     :return: in order from its parent to its child; none for a fixed joint. A ball joint has yaw,
         pitch and roll of its child in its parent.
     :raises KeyError: if :data:`JOINT_TYPES` does not have the type of the joint.
@@ -60,9 +76,10 @@ def dofs_from_joint(joint: Joint) -> list[DegreeOfFreedom]:
         Motion.TURN: (1.0, 0.0), Motion.SLIDE: (0.0, 1.0),
         Motion.SCREW: (1.0, joint.screw_pitch_m / _TURN_RAD)}
     return [
-        DegreeOfFreedom(joint, axis, suffix, joint.axes[axis], *rad_and_m_per_unit[motion])
-        if isinstance(axis, int) else
-        DegreeOfFreedom(joint, None, suffix, JointAxis(axis), *rad_and_m_per_unit[motion])
+        DegreeOfFreedom(
+            joint, axis if isinstance(axis, int) else None, name + suffix, suffix,
+            joint.axes[axis] if isinstance(axis, int) else JointAxis(axis),
+            *rad_and_m_per_unit[motion])
         for motion, axis, suffix in JOINT_TYPES[joint.type].dofs]
 
 
@@ -71,48 +88,54 @@ class JointMotion:
     The degrees of freedom of a scene, and the elements that they move.
 
     Joints that close a loop move nothing, and nothing moves a link of a static model.
+
+    :param frame_names: the part of a scoped name that the name of a joint contains.
     """
 
-    def __init__(self, scene: Scene, tf_parents: TfParents) -> None:
+    def __init__(
+        self, scene: Scene, tf_parents: TfParents, frame_names: FrameNames = FrameNames.AUTO,
+    ) -> None:
+        joints = np.array([joint.element for joint in tf_parents.joints.values()], np.int32)
+        names = FrameNaming(frame_names).frame_ids_from_scene(scene, joints)
         dofs: list[DegreeOfFreedom] = []
-        signs: list[float] = []
-        ranges: dict[int, range] = {}
-        for body, joint in tf_parents.joints.items():
-            path = dofs_from_joint(joint)
-            if path and scene.static_models.isdisjoint(scene.with_ancestors(body)):
-                ranges[body] = range(len(dofs), len(dofs) + len(path))
-                is_reversed = body in tf_parents.reversed_bodies
-                dofs += reversed(path) if is_reversed else path
-                signs += [-1.0 if is_reversed else 1.0] * len(path)
+        bodies: list[int] = []
+        for (body, joint), name in zip(tf_parents.joints.items(), names, strict=True):
+            if scene.static_models.isdisjoint(scene.with_ancestors(body)):
+                path = dofs_from_joint(joint, name)
+                dofs += map(_reversed, reversed(path)) if (
+                    body in tf_parents.reversed_bodies) else path
+                bodies += [body] * len(path)
+        self.joint_names = dict(zip(joints.tolist(), names, strict=True))
+        """The name of each joint, also of a fixed one, by its element."""
         self.dofs = tuple(dofs)
-        """All degrees of freedom; the ones of a joint are adjacent."""
-        bodies = list(ranges)
-        last_of_bodies = np.full(len(scene.kinds), NO_DOF, np.int32)
-        last_of_bodies[bodies] = [each[-1] for each in ranges.values()]
-        last_of_elements = last_of_bodies[
-            ends_from_pointers(np.where(last_of_bodies != NO_DOF, -1, tf_parents.parents))]
-        self.last_dofs: Indices = np.append(
-            last_of_elements, np.arange(len(dofs), dtype=np.int32))
+        """All degrees of freedom; the ones of a joint are adjacent, in order from the root. The
+        axis is reversed if the moved body is the parent of the joint."""
+        self.moved_bodies: Indices = np.array(bodies, np.int32)
+        """The body at the end of the joint of each degree of freedom."""
+        indices = np.arange(len(dofs), dtype=np.int32)
+        last_of_elements = np.full(len(scene.kinds), NO_DOF, np.int32)
+        # Of several degrees of freedom of a joint, the last one stays.
+        last_of_elements[bodies] = indices
+        last_of_elements = last_of_elements[
+            ends_from_pointers(np.where(last_of_elements != NO_DOF, -1, tf_parents.parents))]
+        self.last_dofs: Indices = np.append(last_of_elements, indices)
         """For each element the last degree of freedom between the root and it; -1 for none. Then
         each degree of freedom itself, for frames between it and the next one."""
-        self.moved_bodies = tuple(body for body, each in ranges.items() for _ in each)
-        """The body at the end of the joint of each degree of freedom."""
-        self.previous: Indices = np.arange(-1, len(dofs) - 1, dtype=np.int32)
+        self.previous: Indices = np.where(
+            np.diff(self.moved_bodies, prepend=-1), last_of_elements[tf_parents.parents[bodies]],
+            indices - 1)
         """For each degree of freedom the previous one on the path from the root; -1 for none."""
-        self.previous[[each[0] for each in ranges.values()]] = last_of_elements[
-            tf_parents.parents[bodies]]
         poses = scene.poses[[each.joint.element for each in dofs]]
         directions = np.reshape([each.axis.xyz for each in dofs], (-1, 3))
         self._points = poses[:, :3]
         self._axes = transformed_points(poses, directions) - self._points
-        self._rad_per_unit = np.array([each.rad_per_unit for each in dofs]) * signs
-        self._m_per_unit = np.array([each.m_per_unit for each in dofs]) * signs
+        self._rad_per_unit = np.array([each.rad_per_unit for each in dofs])
+        self._m_per_unit = np.array([each.m_per_unit for each in dofs])
         identities = np.tile(Pose(), (len(dofs), 1))
-        self._displacements = self.screw_motions(
-            identities, np.arange(len(dofs)), identities)
+        self._displacements = self.screw_motions(identities, indices, identities)
 
     def screw_motions(
-        self, before: PoseArray, dofs: NDArray[np.intp], after: PoseArray,
+        self, before: PoseArray, dofs: Indices, after: PoseArray,
     ) -> ScrewMotions:
         """
         Prepare products of a pose, the displacement by a degree of freedom, and a pose.
@@ -146,3 +169,134 @@ class JointMotion:
             moved[rows] = pose_products(displacements[last[rows]], poses[rows])
             moved[rows, 3:] = canonical_quaternion(moved[rows, 3:])
         return moved
+
+    def last_chosen(self, is_chosen: NDArray[np.bool_]) -> Indices:
+        """
+        Find the last of some chosen degrees of freedom on the path from the root to each one.
+
+        It is the same for two ends of paths if no chosen one moves one end in the other.
+
+        :param is_chosen: whether each degree of freedom is chosen.
+        :return: shape (n + 1,), the last chosen one up to each, itself included; -1 for none. The
+            last entry is for the root.
+        """
+        ends = ends_from_pointers(np.where(is_chosen, NO_DOF, self.previous))
+        return np.append(np.where(is_chosen[ends], ends, NO_DOF), NO_DOF)
+
+
+class MovingFrames:
+    """
+    The frames whose transforms depend on the positions of joints.
+
+    The path from the parent of a frame to the frame crosses degrees of freedom: most often one,
+    more for joints with several, or if frames between both are not published. Methods take the
+    position of each degree of freedom, shape (n,), in radians or metres.
+
+    :param poses: shape (n, 7): pose of each frame in the root.
+    :param parents: index of the parent of each frame, or :data:`ROOT_IS_PARENT`, or
+        :data:`NO_PARENT`.
+    :param elements: the element that each frame moves with.
+    :param pose_frame: index of the frame that :meth:`poses` are given in; -1 for the root frame.
+    """
+
+    def __init__(
+        self, motion: JointMotion, poses: PoseArray, parents: Indices, elements: Indices,
+        pose_frame: int = -1,
+    ) -> None:
+        self.motion = motion
+        self.dofs = motion.dofs
+        """The degrees of freedom, in the order of positions."""
+        self.elements = elements
+        """The element that each frame, also one that does not move, moves with."""
+        last = motion.last_dofs[elements]
+        # The last two entries are for ROOT_IS_PARENT and NO_PARENT, which are negative.
+        last_of_parents = np.append(last, [NO_DOF, NO_DOF])[parents]
+        self.indices = np.flatnonzero((last != last_of_parents) & (parents != NO_PARENT))
+        """Shape (m,), the frames that move in their parents."""
+        self.last_dofs = last[self.indices]
+        """The last degree of freedom between the root and each of :attr:`indices`."""
+        self.last_dof_of_pose_frame = NO_DOF if pose_frame < 0 else int(last[pose_frame])
+        self.posed_indices = np.flatnonzero(last != self.last_dof_of_pose_frame)
+        """The frames that move in the frame that poses are given in."""
+        self.posed_last_dofs = last[self.posed_indices]
+        """The last degree of freedom before each of :attr:`posed_indices`; -1 for none."""
+        self._poses, self._pose_frame = poses, pose_frame
+        self._last_dofs_of_parents = last_of_parents[self.indices]
+        identities = np.tile(Pose(), (len(self.indices), 1))
+        # The last pose is for ROOT_IS_PARENT.
+        before = relative_poses(
+            np.concatenate([poses, [Pose()]])[parents[self.indices]], identities)
+        after = poses[self.indices]
+        # The first part has the last degree of freedom before each frame, the second the one
+        # before that, for frames that cross two, ...
+        self._parts = []
+        rows, dofs = np.arange(len(self.indices)), self.last_dofs
+        while len(rows):
+            previous = motion.previous[dofs]
+            is_first = previous == self._last_dofs_of_parents[rows]
+            self._parts.append((rows, dofs, motion.screw_motions(
+                np.where(is_first[:, np.newaxis], before[rows], identities[rows]), dofs,
+                after[rows])))
+            rows, dofs, after = rows[~is_first], previous[~is_first], identities
+
+    def transforms(self, positions: NDArray[np.float64]) -> PoseArray:
+        """
+        Return the transforms of the frames that move in their parents.
+
+        :return: shape (m, 7), pose of each frame in its parent; unit quaternions with w >= 0.
+        """
+        transforms = np.empty((0, 7))
+        for number, (rows, dofs, motions) in enumerate(self._parts):
+            poses = motions.poses(positions[dofs])
+            if number:
+                transforms[rows] = pose_products(poses, transforms[rows])
+            else:
+                transforms = poses
+        # They are unit quaternions already. Only the sign has to be made canonical.
+        quaternions = transforms[:, 3:]
+        quaternions *= np.copysign(1.0, quaternions[:, 3:])
+        return transforms
+
+    def poses(self, positions: NDArray[np.float64]) -> PoseArray:
+        """
+        Return the poses of the frames that move in the frame that poses are given in.
+
+        :return: shape (k, 7), pose of each of :attr:`posed_indices` in that frame; unit
+            quaternions with w >= 0.
+        """
+        poses = self._moved(self.posed_indices, positions)
+        if self._pose_frame < 0:
+            return poses
+        return canonical_relative_poses(
+            self._moved(np.array([self._pose_frame]), positions)[0], poses)
+
+    def _moved(self, frames: NDArray[np.intp], positions: NDArray[np.float64]) -> PoseArray:
+        return self.motion.moved_poses(self._poses[frames], self.elements[frames], positions)
+
+    def depends_on(self, is_chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """
+        Return which of :meth:`transforms` depend on some degrees of freedom.
+
+        :param is_chosen: whether each degree of freedom is one of these.
+        :return: shape (m,).
+        """
+        last = self.motion.last_chosen(is_chosen)
+        found: NDArray[np.bool_] = last[self.last_dofs] != last[self._last_dofs_of_parents]
+        return found
+
+    def has_pose(self, is_known: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """
+        Return which of :meth:`poses` follow from known positions.
+
+        :param is_known: whether the position of each degree of freedom is known.
+        :return: shape (k,).
+        """
+        last = self.motion.last_chosen(~is_known)
+        found: NDArray[np.bool_] = (
+            last[self.posed_last_dofs] == last[self.last_dof_of_pose_frame])
+        return found
+
+
+def _reversed(dof: DegreeOfFreedom) -> DegreeOfFreedom:
+    x, y, z = dof.axis.xyz
+    return dof._replace(axis=dof.axis._replace(xyz=(-x, -y, -z)))

@@ -23,7 +23,6 @@ from sdf_pose_bridge.names import hint_from_names, JOINT_SUFFIX, quoted_names, S
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.joints import Mimic
-from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming
 from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom, JointMotion
 from sdf_pose_bridge.tf.parents import tf_parents_from_scene
 
@@ -91,46 +90,36 @@ class JointPositions:
     """
     The positions of the degrees of freedom of a scene; all are zero at first.
 
-    :param frame_names: the part of a scoped name that the name of a joint contains.
     :param model: the scoped name of the only model whose joints have names; empty for all.
     :param unreported: whether joints without a reported position count as being at zero.
     """
 
     def __init__(
-        self, scene: Scene, dofs: Sequence[DegreeOfFreedom],
-        frame_names: FrameNames = FrameNames.AUTO, model: str = '',
+        self, scene: Scene, dofs: Sequence[DegreeOfFreedom], model: str = '',
         unreported: UnreportedJoints = UnreportedJoints.NONE,
     ) -> None:
+        self.dofs = tuple(dofs)
+        self.names = tuple(each.name for each in dofs)
+        """The name of each degree of freedom."""
         self.values = np.zeros(len(dofs))
         """The position of each degree of freedom, in radians or metres. A change is another array,
         so that another thread has all values of one time."""
         self.is_reported = np.zeros(len(dofs), np.bool_)
         """Whether each has a reported position, or follows from one that has."""
-        self.unreported_count = len(dofs)
-        """Number of those that have none."""
         self.stamps_ns = np.full(len(dofs), NEVER)
         """The newest stamp of a message about the top-level model of each."""
         self._stamps_of_values_ns = np.full(len(dofs), NEVER)
-        self._newest_stamp_ns = NEVER
         self._unreported = unreported
-        self.dofs = tuple(dofs)
-        joints = np.array([each.joint.element for each in dofs], np.int32)
-        names = FrameNaming(frame_names).frame_ids_from_scene(scene, joints)
-        self.names = tuple(
-            name + each.suffix for name, each in zip(names, dofs, strict=True))
-        """The name of each degree of freedom."""
+        self._joints = [each.joint.element for each in dofs]
         self._top_level_elements = np.array(
-            [scene.top_level_element(joint) for joint in joints.tolist()], np.intp)
+            [scene.top_level_element(joint) for joint in self._joints], np.intp)
         self._indices = _indices_from_names(
-            self.names, scene, dofs, self._top_level_elements.tolist(), model)
+            scene, dofs, self._top_level_elements.tolist(), model)
         self._followers = _followers(dofs)
         # Followers have the position of their leader.
         self._is_free = np.ones(len(dofs), np.bool_)
         self._is_free[[each.dof for found in self._followers.values() for each in found]] = False
-        self._joints = joints
-        self._slides = frozenset(
-            name + SLIDE_SUFFIX for name, each in zip(self.names, dofs, strict=True)
-            if each.rad_per_unit and each.m_per_unit)
+        self._slides = frozenset(each.name + SLIDE_SUFFIX for each in dofs if each.is_screw)
 
     @property
     def models(self) -> tuple[str, ...]:
@@ -144,12 +133,17 @@ class JointPositions:
             return self.is_reported
         return np.ones(len(self.dofs), np.bool_)
 
+    @property
+    def unreported_count(self) -> int:
+        """Number of degrees of freedom without a reported position."""
+        return int(np.count_nonzero(~self.is_reported))
+
     def unreported(self) -> UnreportedDofs | None:
         """Find the free degrees of freedom without a known position; None if there are none."""
         dofs = np.flatnonzero(self._is_free & ~self.is_known)
         if not len(dofs):
             return None
-        return UnreportedDofs(len(np.unique(self._joints[dofs])), int(dofs[0]))
+        return UnreportedDofs(len({self._joints[dof] for dof in dofs}), int(dofs[0]))
 
     def selection(self, names: Sequence[str], model: str = '') -> Selection:
         """
@@ -205,43 +199,27 @@ class JointPositions:
         :return: the names whose values are not finite or too large; their positions stay.
         """
         dofs, new = selection.dofs, values[selection.rows]
-        invalid: list[str] = []
-        sizes = np.abs(new)
-        # NaN is the largest.
-        if not sizes.max(initial=0.0) <= LARGEST_POSITION:
-            is_valid = sizes <= LARGEST_POSITION
-            invalid = [self.names[dof] for dof in dofs[~is_valid].tolist()]
-            dofs, new = dofs[is_valid], new[is_valid]
-        stamps_ns, newest_of_models_ns = self._stamps_of_values_ns, stamp_ns
-        if stamp_ns < self._newest_stamp_ns:
-            newest_of_models_ns = np.maximum(self.stamps_ns[selection.beside], stamp_ns)
-            if not ignore_stamps:
-                is_newer = stamps_ns[dofs] <= stamp_ns
-                dofs, new = dofs[is_newer], new[is_newer]
-        self.stamps_ns[selection.beside] = newest_of_models_ns
-        self._newest_stamp_ns = max(self._newest_stamp_ns, stamp_ns)
-        changed = self.values.copy()
-        changed[dofs] = new
-        stamps_ns[dofs] = stamp_ns
-        if self.unreported_count:
-            self.is_reported[dofs] = True
-        found = set(dofs.tolist()) if selection.followers else set()
+        is_taken = np.abs(new) <= LARGEST_POSITION  # NaN is not
+        invalid = [self.names[dof] for dof in dofs[~is_taken].tolist()]
+        if not ignore_stamps:
+            is_taken &= self._stamps_of_values_ns[dofs] <= stamp_ns
+        self.stamps_ns[selection.beside] = np.maximum(self.stamps_ns[selection.beside], stamp_ns)
+        changed, is_changed = self.values.copy(), np.zeros(len(self.dofs), np.bool_)
+        changed[dofs[is_taken]] = new[is_taken]
+        is_changed[dofs[is_taken]] = True
         for dof, leader, mimic in selection.followers:
             value = mimic.multiplier * (changed[leader] - mimic.reference) + mimic.offset
-            if leader in found and abs(value) <= LARGEST_POSITION:
+            if is_changed[leader] and abs(value) <= LARGEST_POSITION:
                 changed[dof] = value
-                stamps_ns[dof] = stamp_ns
-                self.is_reported[dof] = True
-                found.add(dof)
+                is_changed[dof] = True
+        self._stamps_of_values_ns[is_changed] = stamp_ns
+        self.is_reported |= is_changed
         self.values = changed
-        if self.unreported_count:
-            self.unreported_count = int(np.count_nonzero(~self.is_reported))
         return invalid
 
     def forget_stamps(self) -> None:
         """Accept any time next, after time has jumped back."""
         self.stamps_ns[:] = self._stamps_of_values_ns[:] = NEVER
-        self._newest_stamp_ns = NEVER
 
     def take_over(self, before: JointPositions) -> None:
         """
@@ -250,16 +228,15 @@ class JointPositions:
         :param before: the positions in the scene that is replaced.
         """
         rows = {name: row for row, name in enumerate(before.names)}
-        pairs = [(dof, rows[name]) for dof, name in enumerate(self.names) if name in rows]
-        here, there = np.reshape(np.array(pairs, np.intp), (-1, 2)).T
-        values = self.values.copy()
-        values[here] = before.values[there]
-        self.values = values
-        self.is_reported[here] = before.is_reported[there]
-        self.unreported_count = int(np.count_nonzero(~self.is_reported))
-        self.stamps_ns[here] = before.stamps_ns[there]
-        self._stamps_of_values_ns[here] = before._stamps_of_values_ns[there]
-        self._newest_stamp_ns = before._newest_stamp_ns
+        here = [dof for dof, name in enumerate(self.names) if name in rows]
+        there = [rows[self.names[dof]] for dof in here]
+        self.values = self.values.copy()
+        for new, old in (
+            (self.values, before.values), (self.is_reported, before.is_reported),
+            (self.stamps_ns, before.stamps_ns),
+            (self._stamps_of_values_ns, before._stamps_of_values_ns),
+        ):
+            new[here] = old[there]
 
 
 def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
@@ -299,8 +276,7 @@ def scene_at_positions(scene: Scene, positions: Mapping[str, float]) -> Scene:
 
 
 def _indices_from_names(
-    names: Sequence[str], scene: Scene, dofs: Sequence[DegreeOfFreedom],
-    top_level_elements: Sequence[int], model: str,
+    scene: Scene, dofs: Sequence[DegreeOfFreedom], top_level_elements: Sequence[int], model: str,
 ) -> dict[str, dict[str, int]]:
     """
     Return all names of the degrees of freedom, with their indices.
@@ -311,39 +287,30 @@ def _indices_from_names(
     :return: the names for ``''``, and for each top-level model of a world those that mean its own
         degrees of freedom, whatever other models have.
     """
-    aliases: dict[int, set[str]] = {}
-    members: dict[str, list[int]] = {'': []}
+    own: dict[str, dict[str, int]] = {'': {}}
+    aliases: dict[str, dict[str, set[int]]] = {'': {}}
     for index, (dof, top) in enumerate(zip(dofs, top_level_elements, strict=True)):
         scoped = scene.names[dof.joint.element]
         if scene.roots[dof.joint.element] or (
                 model and not scoped.startswith(model + SEPARATOR)):
             continue
         before = scoped.removesuffix(JOINT_SUFFIX)
-        found = aliases[index] = set()
+        shorter = set()
         for each in {scoped, before} if scene.has(before) else {scoped}:
             steps = each.split(SEPARATOR)
             # All endings of deeply nested names would take the square of their memory.
             for count in {0, *range(max(len(steps) - _MOST_STEPS, 0), len(steps))}:
                 for separator in (SEPARATOR, '/'):
-                    found.add(separator.join(steps[count:]) + dof.suffix)
-        members[''].append(index)
-        if scene.world_names and scene.kinds[top] == Kind.MODEL:
-            members.setdefault(scene.names[top], []).append(index)
+                    shorter.add(separator.join(steps[count:]) + dof.suffix)
+        is_in_model = scene.world_names and scene.kinds[top] == Kind.MODEL
+        for scope in ('', scene.names[top]) if is_in_model else ('',):
+            own.setdefault(scope, {}).setdefault(dof.name, index)
+            names = aliases.setdefault(scope, {})
+            for alias in shorter:
+                names.setdefault(alias, set()).add(index)
     return {
-        each: _unambiguous_names(names, aliases, indices) for each, indices in members.items()}
-
-
-def _unambiguous_names(
-    names: Sequence[str], aliases: Mapping[int, set[str]], indices: Sequence[int],
-) -> dict[str, int]:
-    """Return the names of some degrees of freedom, and those aliases that mean one of them."""
-    own: dict[str, int] = {}
-    shorter: dict[str, set[int]] = {}
-    for index in indices:
-        own.setdefault(names[index], index)
-        for alias in aliases[index]:
-            shorter.setdefault(alias, set()).add(index)
-    return {name: min(found) for name, found in shorter.items() if len(found) == 1} | own
+        scope: {name: min(found) for name, found in names.items() if len(found) == 1} | own[scope]
+        for scope, names in aliases.items()}
 
 
 def _followers(dofs: Sequence[DegreeOfFreedom]) -> Mapping[int, list[Follower]]:

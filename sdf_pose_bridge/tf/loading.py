@@ -42,7 +42,7 @@ def loaded_scene_from_request(
     options = request.tf_options
     tree = tf_tree_from_scene(scene, options)
     joint_positions = None if tree.moving is None else JointPositions(
-        scene, tree.moving.dofs, options.frame_names, options.model, request.unreported_joints)
+        scene, tree.moving.dofs, options.model, request.unreported_joints)
     description = '' if tree.world else unicode_text(text)
     warnings_of_urdf: tuple[SdfWarning, ...] = ()
     if is_made_urdf and scene.urdf_root is None:

@@ -7,11 +7,12 @@ from __future__ import annotations
 from functools import cached_property
 from typing import NamedTuple
 
+import numpy as np
+
 from sdf_pose_bridge.errors import JointPositionError, Place, UnknownFrameError
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose, Pose
 from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.scene.scene import Scene
-from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.tree import TfTree
 
@@ -23,6 +24,17 @@ class FoundPose(NamedTuple):
     """Pose of the frame in the reference frame; unit quaternion with w >= 0."""
     frame_id: str
     """The reference frame, by its TF name if it has one."""
+
+
+class _Found(NamedTuple):
+    """A frame or an element that was found by a name."""
+
+    owner: int
+    """The element that it moves with, if joints move anything."""
+    pose: Pose
+    """Pose in the root frame where the file puts it."""
+    frame_id: str
+    """Its TF name, or else the name."""
 
 
 class PoseLookup:
@@ -55,13 +67,9 @@ class PoseLookup:
         :raises UnknownFrameError: if a name is unknown or ambiguous.
         :raises JointPositionError: if it depends on a joint without a position.
         """
-        pose, _, last = self._pose_in_root(frame)
-        if not relative_to:
-            self._check_positions(last, NO_DOF)
-            return FoundPose(pose, self._tree.root_frame)
-        reference, frame_id, last_of_reference = self._pose_in_root(relative_to)
-        self._check_positions(last, last_of_reference)
-        return FoundPose(canonical_relative_pose(reference, pose), frame_id)
+        found = self._found(frame)
+        reference = self._found(relative_to or self._tree.root_frame)
+        return FoundPose(self._relative_pose(reference, found), reference.frame_id)
 
     def is_frame_id(self, name: str) -> bool:
         """Return whether a frame of TF other than the root frame has a name."""
@@ -79,12 +87,8 @@ class PoseLookup:
         :raises UnknownFrameError: if the name is unknown or ambiguous.
         :raises JointPositionError: as for :meth:`pose`.
         """
-        reference, last_of_reference = Pose(), NO_DOF
-        if relative_to:
-            reference, _, last_of_reference = self._pose_in_root(relative_to)
-        pose, last = self._pose_of(element)
-        self._check_positions(last, last_of_reference)
-        return canonical_relative_pose(reference, pose)
+        found = _Found(element, self._scene.pose_of(element), '')
+        return self._relative_pose(self._found(relative_to or self._tree.root_frame), found)
 
     def element(self, name: str) -> tuple[int, Pose]:
         """
@@ -114,42 +118,39 @@ class PoseLookup:
         """All names, sorted when a name is not found for the first time."""
         return NameIndex([*self._indices, *self._scene.names])
 
-    def _check_positions(self, first: int, second: int) -> None:
-        """
-        Refuse a pose that depends on a joint without a position.
+    def _found(self, name: str) -> _Found:
+        scene, tree = self._scene, self._tree
+        if name == tree.root_frame:
+            return _Found(0, Pose(), name)
+        if not scene.has(name) and name in self._indices:
+            index = self._indices[name]
+            owner = 0 if tree.moving is None else int(tree.moving.elements[index])
+            return _Found(owner, Pose(*tree.poses[index].tolist()), name)
+        element = self._element(name)
+        frame_id = tree.root_frame if element == 0 else self._frame_ids.get(element, name)
+        return _Found(element, scene.pose_of(element), frame_id)
 
-        :param first: the last degree of freedom between the root and the one frame.
-        :param second: likewise for the other one.
+    def _relative_pose(self, reference: _Found, found: _Found) -> Pose:
         """
-        moving, joints = self._tree.moving, self._joints
-        if moving is None or joints is None or joints.is_known.all():
-            return
-        for dof in moving.dofs_between(first, second):
-            if not joints.is_known[dof]:
+        Return the pose of a frame in another one, at the current positions.
+
+        :raises JointPositionError: if it depends on a joint without a position.
+        """
+        poses, joints, moving = [reference.pose, found.pose], self._joints, self._tree.moving
+        if joints is not None and moving is not None:
+            motion, owners = moving.motion, np.array([reference.owner, found.owner])
+            end, start = motion.last_dofs[owners]
+            unknown, other = motion.last_chosen(~joints.is_known)[[start, end]].tolist()
+            if unknown != other:
+                # One that both depend on moves neither in the other.
+                is_unknown = np.arange(len(joints.names)) == unknown
+                dof = other if motion.last_chosen(is_unknown)[end] == unknown else unknown
                 msg = (f'the pose depends on joint "{joints.names[dof]}", which has not been '
                        'reported yet')
                 raise JointPositionError(msg, Place(self._scene.path))
-
-    def _pose_in_root(self, name: str) -> tuple[Pose, str, int]:
-        """
-        Return the pose of a frame in the root frame.
-
-        :return: the pose, its frame id or else its name, and the last degree of freedom between
-            the root and it.
-        """
-        scene, tree = self._scene, self._tree
-        if name == tree.root_frame:
-            return Pose(), name, NO_DOF
-        if not scene.has(name) and name in self._indices:
-            index = self._indices[name]
-            if self._joints is not None and tree.moving is not None:
-                pose = tree.moving.pose_of_frame(index, self._joints.values)
-                return pose, name, tree.moving.last_dof_of_frame(index)
-            return Pose(*tree.poses[index].tolist()), name, NO_DOF
-        element = self._element(name)
-        frame_id = tree.root_frame if element == 0 else self._frame_ids.get(element, name)
-        pose, last = self._pose_of(element)
-        return pose, frame_id, last
+            moved = motion.moved_poses(np.array(poses), owners, joints.values)
+            poses = [Pose(*pose) for pose in moved.tolist()]
+        return canonical_relative_pose(*poses)
 
     def _element(self, name: str) -> int:
         """Find an element by its name in SDF."""
@@ -162,11 +163,3 @@ class PoseLookup:
             msg = f'"{name}" is in world "{scene.world_of(element)}", which is not published'
             raise UnknownFrameError(msg, Place(scene.path))
         return element
-
-    def _pose_of(self, element: int) -> tuple[Pose, int]:
-        """Return the pose of an element in the root frame, and its last degree of freedom."""
-        pose, moving = self._scene.pose_of(element), self._tree.moving
-        if element and self._joints is not None and moving is not None:
-            moved = moving.pose_of_element(element, pose, self._joints.values)
-            return moved, moving.last_dof_of_element(element)
-        return pose, NO_DOF

@@ -34,8 +34,7 @@ from sdf_pose_bridge.tf.frame_ids import (
 )
 from sdf_pose_bridge.tf.frames import Frames
 from sdf_pose_bridge.tf.joint_links import frames_at_joints
-from sdf_pose_bridge.tf.joint_motion import JointMotion
-from sdf_pose_bridge.tf.moving_frames import MovingFrames
+from sdf_pose_bridge.tf.joint_motion import JointMotion, MovingFrames
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT, tf_parents_from_scene, TfParents
 
 DEFAULT_KINDS = frozenset({Kind.MODEL, Kind.LINK, Kind.FRAME, Kind.SENSOR})
@@ -173,11 +172,11 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     problems.raise_errors()
     _warn_of_loops(scene, tf_parents, problems)
     motion = JointMotion(
-        scene, tf_parents) if options.use_joint_states or options.has_joint_links else None
+        scene, tf_parents, options.frame_names,
+    ) if options.use_joint_states or options.has_joint_links else None
     if motion is not None and options.has_joint_links:
         frames = frames.with_frames(frames_at_joints(
-            frames, scene, motion, tf_parents, options.frame_names, options.frame_prefix,
-            options.root_frame))
+            frames, scene, motion, tf_parents, options.frame_prefix, options.root_frame))
     pose_frame = options.pose_frame or options.root_frame
     reference = _index_of_pose_frame(pose_frame, frames.ids, options.root_frame, scene)
     moving = MovingFrames(

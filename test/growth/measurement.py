@@ -15,7 +15,7 @@ from sdf_pose_bridge import load, SdfError
 from sdf_pose_bridge.ros.cdr import StampedRecords
 from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.lookup import PoseLookup
-from sdf_pose_bridge.tf.tree import FrameNames, tf_tree_from_scene, TfOptions
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 
 def outcome_of_load(path: str) -> str:
@@ -24,7 +24,7 @@ def outcome_of_load(path: str) -> str:
         scene = load(path)
         tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
         if tree.moving is not None:
-            JointPositions(scene, tree.moving.dofs, FrameNames.AUTO, '')
+            JointPositions(scene, tree.moving.dofs)
         fixed = tree.fixed_indices
         StampedRecords(tree.ids_of_transforms(fixed), tree.transforms[fixed]).tf_message()
         PoseLookup(scene, tree)

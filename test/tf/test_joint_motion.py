@@ -1,21 +1,26 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Poses of elements at positions of joints, against matrix exponentials."""
+"""Poses of elements at positions of joints, against matrix exponentials; frames that move."""
 
 from joint_trees import link_matrices, model_text, pose_text, POSES, POSITIONS, random_joints
 from matrices import assert_same_pose, matrix_from_degrees, matrix_from_pose
 import numpy as np
 import pytest
-from sdf_texts import model_file, world_file
+from sdf_texts import fixed_joint, joint, model_file, world_file
 
 pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sdf_pose_bridge import Kind
+from sdf_pose_bridge.geometry.poses import pose_products
 from sdf_pose_bridge.scene.loading import load_text
+from sdf_pose_bridge.tf.anchors import AnchorModels
 from sdf_pose_bridge.tf.joint_motion import JointMotion
-from sdf_pose_bridge.tf.joint_positions import JointPositions
-from sdf_pose_bridge.tf.parents import tf_parents_from_scene
+from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
+from sdf_pose_bridge.tf.lookup import PoseLookup
+from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT, tf_parents_from_scene
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
 
 def motion_of(text):
@@ -99,3 +104,144 @@ def test_random_trees_move_as_products_of_matrix_exponentials(data, count):
     expected = link_matrices(link_poses, joints, positions)
     for number, matrix in enumerate(expected):
         assert_same_pose(poses[f'm::l{number}'], matrix, name=f'l{number}')
+
+
+# Frames
+
+CAMERA = '<sensor name="s" type="camera"><pose>1 0 0 0 0 0</pose></sensor>'
+ARM = (
+    f'<link name="a"/><link name="b">{CAMERA}</link><link name="c"><pose>0 1 0 0 0 0</pose></link>'
+    + joint('<parent>a</parent><child>b</child>', 'j', 'revolute')
+    + joint('<parent>b</parent><child>c</child>', 'k', 'revolute'))
+
+
+def moving_tree(text, **options):
+    return tf_tree_from_scene(load_text(text), TfOptions(use_joint_states=True, **options))
+
+
+def known_positions(scene, tree, values):
+    joints = JointPositions(scene, tree.moving.dofs, unreported=UnreportedJoints.ZERO)
+    joints.values[:] = values
+    return joints
+
+
+def moving_ids(tree):
+    return [tree.frame_ids[index] for index in tree.moving.indices]
+
+
+def test_nothing_moves_unless_it_is_asked_for():
+    assert tf_tree_from_scene(load_text(model_file(ARM))).moving is None
+
+
+def test_only_links_behind_joints_move_in_their_parents():
+    tree = moving_tree(model_file(ARM))
+    assert moving_ids(tree) == ['b', 'c']
+    assert [tree.frame_ids[index] for index in tree.moving.posed_indices] == [
+        'b', 'b/s', 'c', 'b/s_optical']
+
+
+def test_a_frame_moves_by_all_joints_up_to_the_next_published_frame():
+    tree = moving_tree(
+        model_file(ARM), kinds=frozenset({Kind.MODEL, Kind.SENSOR}),
+        anchor_models=AnchorModels.ALL)
+    assert moving_ids(tree) == ['b/s']
+    text = model_file(ARM.replace(CAMERA, '') + '<frame name="f" attached_to="c"/>')
+    tree = moving_tree(text, kinds=frozenset({Kind.FRAME}), anchor_models=AnchorModels.ALL)
+    transform, = tree.moving.transforms(np.array([np.pi / 2, np.pi / 2]))
+    np.testing.assert_allclose(transform, [-1, 0, 0, 0, 0, 1, 0], atol=1e-15)
+
+
+def test_a_model_that_is_not_anchored_has_no_transform_to_move():
+    text = model_file('<link name="a"/>' + joint(
+        '<parent>world</parent><child>a</child>', 'j', 'revolute'))
+    assert moving_ids(moving_tree(text)) == ['a']
+    assert not moving_ids(moving_tree(text, anchor_models=AnchorModels.NONE))
+
+
+def test_a_single_frame_that_is_not_anchored():
+    tree = moving_tree(model_file('<link name="a"/>'), anchor_models=AnchorModels.NONE,
+                       kinds=frozenset({Kind.LINK}))
+    assert (tree.frame_ids, tree.parents.tolist(), moving_ids(tree)) == (('a',), [NO_PARENT], [])
+
+
+def test_fixed_joints_move_nothing():
+    links = '<link name="a"/><link name="b"/>'
+    assert not moving_ids(moving_tree(model_file(links + fixed_joint('j', 'a', 'b'))))
+
+
+def test_quaternions_have_the_canonical_sign():
+    moving = moving_tree(model_file(ARM)).moving
+    positions = np.array([4.0, -4.0])
+    assert (moving.transforms(positions)[:, 6] > 0.0).all()
+    assert (moving.poses(positions)[:, 6] >= 0.0).all()
+
+
+def test_frames_that_move_with_the_pose_frame_stay_in_it():
+    tree = moving_tree(model_file(ARM), pose_frame='b')
+    posed = [tree.frame_ids[index] for index in tree.moving.posed_indices]
+    assert posed == ['m', 'a', 'c']
+    assert tree.pose_frame == 'b'
+
+
+@pytest.mark.parametrize('pose_frame', ['m', 'b', 'b/s', 'c'])
+def test_poses_in_the_pose_frame_are_those_that_a_lookup_finds(pose_frame):
+    scene = load_text(model_file(ARM))
+    tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True, pose_frame=pose_frame))
+    for positions in (np.zeros(2), np.array([0.5, -1.2])):
+        poses = tree.poses_in_pose_frame.copy()
+        poses[tree.moving.posed_indices] = tree.moving.poses(positions)
+        lookup = PoseLookup(scene, tree, known_positions(scene, tree, positions))
+        expected = [lookup.pose(frame_id, pose_frame).pose for frame_id in tree.frame_ids]
+        np.testing.assert_allclose(poses, expected, atol=1e-15)
+
+
+def test_transforms_depend_on_what_they_cross():
+    moving = moving_tree(
+        model_file(ARM + '<frame name="f" attached_to="c"/>'),
+        kinds=frozenset({Kind.FRAME, Kind.SENSOR}), anchor_models=AnchorModels.ALL).moving
+    # The sensor is behind the first joint, the frame behind both.
+    for chosen, expected in (
+            ([True, True], [True, True]), ([False, True], [False, True]),
+            ([True, False], [True, True]), ([False, False], [False, False])):
+        assert moving.depends_on(np.array(chosen)).tolist() == expected
+
+
+@given(st.data(), st.integers(2, 7))
+def test_poses_need_the_positions_between_them_and_the_pose_frame(data, count):
+    joints = data.draw(random_joints(count))
+    text = model_text([data.draw(POSES) for _ in range(count)], joints)
+    ids = tf_tree_from_scene(load_text(text)).frame_ids
+    moving = moving_tree(text, pose_frame=data.draw(st.sampled_from(['', *ids]))).moving
+    is_known = np.array([data.draw(st.booleans()) for _ in moving.dofs], np.bool_)
+
+    def unknown_before(dof):
+        found = set()
+        while dof >= 0:
+            found.update({dof} - set(np.flatnonzero(is_known)))
+            dof = moving.motion.previous[dof]
+        return found
+
+    reference = unknown_before(moving.last_dof_of_pose_frame)
+    assert moving.has_pose(is_known).tolist() == [
+        unknown_before(dof) == reference for dof in moving.posed_last_dofs]
+
+
+@given(st.data(), st.integers(2, 7))
+def test_transforms_along_the_tree_give_the_poses(data, count):
+    joints = data.draw(random_joints(count))
+    text = model_text([data.draw(POSES) for _ in range(count)], joints)
+    kinds = data.draw(st.sampled_from([
+        {Kind.LINK}, {Kind.JOINT}, {Kind.MODEL, Kind.LINK, Kind.JOINT}]))
+    tree = moving_tree(text, kinds=frozenset(kinds), anchor_models=AnchorModels.ALL)
+    positions = np.array([data.draw(POSITIONS) for _ in tree.moving.dofs])
+    transforms = tree.transforms.copy()
+    transforms[tree.moving.indices] = tree.moving.transforms(positions)
+    poses = tree.poses.copy()
+    poses[tree.moving.posed_indices] = tree.moving.poses(positions)
+    for pose, parent, transform in zip(poses, tree.parents.tolist(), transforms, strict=True):
+        assert parent != NO_PARENT
+        if parent != ROOT_IS_PARENT:
+            transform = pose_products(poses[[parent]], transform[np.newaxis])[0]
+        sign = 1.0 if transform[3:] @ pose[3:] > 0.0 else -1.0
+        np.testing.assert_allclose(
+            [*transform[:3], *sign * transform[3:]], pose, rtol=0.0, atol=1e-12)

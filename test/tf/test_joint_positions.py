@@ -8,7 +8,6 @@ from sdf_texts import joint, model_file, world_file
 
 from sdf_pose_bridge.errors import JointPositionError
 from sdf_pose_bridge.scene.loading import load_text
-from sdf_pose_bridge.tf.frame_ids import FrameNames
 from sdf_pose_bridge.tf.joint_positions import JointPositions, scene_at_positions
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 
@@ -23,10 +22,10 @@ def model(name, content=''):
     return f'<model name="{name}">{LINKS}{joint(ENDS, "j", "revolute")}{content}</model>'
 
 
-def positions_of(text, frame_names=FrameNames.AUTO, model=''):
+def positions_of(text, model=''):
     scene = load_text(text)
     tree = tf_tree_from_scene(scene, TfOptions(use_joint_states=True))
-    return JointPositions(scene, tree.moving.dofs, frame_names, model)
+    return JointPositions(scene, tree.moving.dofs, model)
 
 
 def update(positions, stamp_ns=0, **values):

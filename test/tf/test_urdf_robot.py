@@ -18,7 +18,8 @@ from random_scenes import random_scenes
 from sdf_pose_bridge import Kind, load_text, scene_at_positions, SdfError, UnknownFrameError
 from sdf_pose_bridge.errors import UrdfNotMadeError
 from sdf_pose_bridge.tf.anchors import AnchorModels
-from sdf_pose_bridge.tf.joint_positions import JointPositions
+from sdf_pose_bridge.tf.joint_positions import JointPositions, UnreportedJoints
+from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
 from sdf_pose_bridge.tf.urdf_robot import robot_from_scene
 from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
@@ -265,12 +266,13 @@ def poses_of_joint_links(scene, positions, options):
     """Return the poses of the frames that TF has at joints for URDF."""
     tree = tf_tree_from_scene(scene, TfOptions(
         anchor_models=AnchorModels.ALL, use_joint_states=True, has_joint_links=True, **options))
-    state = JointPositions(scene, tree.moving.dofs)
+    state = JointPositions(scene, tree.moving.dofs, unreported=UnreportedJoints.ZERO)
     selection = state.selection(list(positions))
     state.update(selection, np.array(list(positions.values()), float))
+    lookup = PoseLookup(scene, tree, state)
     return {
-        frame_id: tree.moving.pose_of_frame(index, state.values)
-        for index, frame_id in enumerate(tree.frame_ids) if frame_id.endswith('_frame')}
+        frame_id: lookup.pose(frame_id).pose
+        for frame_id in tree.frame_ids if frame_id.endswith('_frame')}
 
 
 def assert_same_frames(text, positions, joints=(), **options):

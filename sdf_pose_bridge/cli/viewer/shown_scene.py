@@ -16,7 +16,7 @@ from sdf_pose_bridge.geometry.chains import ends_from_pointers
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.tf.joint_motion import JointMotion
-from sdf_pose_bridge.tf.joint_positions import JointPositions, scene_at_positions
+from sdf_pose_bridge.tf.joint_positions import scene_at_positions
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT, tf_parents_from_scene
 from sdf_pose_bridge.tf.tree import elements_in_model, tf_tree_from_scene, TfOptions, TfTree
 
@@ -52,8 +52,7 @@ class ShownScene:
         self.kinds: tuple[str, ...] = tuple(dict.fromkeys(kind_labels_of(loaded, tree)))
         """The labels of the kinds of its frames."""
         self.joints: dict[str, JointRange] = {
-            name: range_of_dof(dof)
-            for name, dof in zip(JointPositions(loaded, dofs).names, dofs, strict=True)
+            dof.name: range_of_dof(dof) for dof in dofs
             if self._is_in_model[dof.joint.element] and dof.axis.mimic is None}
         """The range of each degree of freedom that does not follow another one."""
         self.is_in_robot: NDArray[np.bool_] = np.isin(
