@@ -21,12 +21,9 @@ from typing import NamedTuple
 import numpy as np
 
 from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
-from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.names import scoped_name, SEPARATOR
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.tf.frames import Frame, Frames
-from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 
 _LABELLED_KINDS = [
     kind for kind in Kind if kind.has_name and not kind.is_frame and kind is not Kind.SENSOR]
@@ -91,80 +88,29 @@ class FrameNaming(NamedTuple):
         return list(map(self.frame_id_from_name, names))
 
 
-OPTICAL_SUFFIX = '_optical'
-"""Appended to a camera's frame id for its optical frame, unless the file names that frame."""
-
-OPTICAL_POSE = Pose(0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
-"""Pose of an optical frame (REP 103: z forward, x right, y down) in its camera (x forward)."""
-
-
 def with_ids_of_sensors(
-    elements: Indices, frame_ids: list[str], scene: Scene, naming: FrameNaming, root_frame: str,
-) -> tuple[Indices, list[str], dict[int, str]]:
+    frame_ids: Mapping[int, str], scene: Scene, naming: FrameNaming, root_frame: str,
+) -> tuple[dict[int, str], dict[int, str]]:
     """
     Use the frame ids that the file sets for sensors.
 
-    :param elements: the published elements.
-    :param frame_ids: the frame id of each, made of its name.
-    :return: the elements and frame ids without sensors whose id belongs to another kind
-        of element, or of a sensor in the same place; and the frame id of each published sensor.
+    :param frame_ids: the frame id of each published element, made of its name.
+    :return: the frame ids without those of sensors whose id belongs to another kind of element, or
+        of a sensor in the same place; and the frame id of each published sensor.
     """
-    sensor_ids = {
-        int(elements[index]): frame_ids[index]
-        for index in np.flatnonzero(scene.kinds[elements] == Kind.SENSOR).tolist()}
-    names = {sensor: scene.sensors[sensor].frame_id for sensor in sensor_ids}
-    if not any(names.values()):
-        return elements, frame_ids, sensor_ids
-    pairs = list(zip(elements.tolist(), frame_ids, strict=True))
-    other_ids = {frame_id for element, frame_id in pairs if element not in sensor_ids}
-    other_ids.add(root_frame)
+    frame_ids = dict(frame_ids)
+    sensor_ids = {each: frame_ids[each] for each in frame_ids if each in scene.sensors}
+    other_ids = {root_frame, *(
+        frame_id for element, frame_id in frame_ids.items() if element not in sensor_ids)}
     first_sensors: dict[str, int] = {}
-    without_frame: set[int] = set()
-    for sensor, name in names.items():
-        if name:
-            frame_id = sensor_ids[sensor] = naming.frame_id_from_name(name)
+    for sensor in sensor_ids:
+        if name := scene.sensors[sensor].frame_id:
+            frame_ids[sensor] = sensor_ids[sensor] = frame_id = naming.frame_id_from_name(name)
             first = first_sensors.get(frame_id)
             if frame_id in other_ids or (
                     first is not None and scene.parents[first] == scene.parents[sensor]
                     and scene.pose_of(first) == scene.pose_of(sensor)):
-                without_frame.add(sensor)
+                del frame_ids[sensor]
                 continue
         first_sensors.setdefault(sensor_ids[sensor], sensor)
-    return (
-        elements[~np.isin(elements, list(without_frame))],
-        [sensor_ids.get(element, frame_id) for element, frame_id in pairs
-         if element not in without_frame],
-        sensor_ids)
-
-
-def optical_frames_of_cameras(
-    frames: Frames, sensor_ids: Mapping[int, str], scene: Scene, naming: FrameNaming,
-) -> list[Frame]:
-    """
-    Make the optical frames of cameras.
-
-    :param frames: the frames of elements.
-    :param sensor_ids: the frame id of each published sensor.
-    :return: the optical frames, without those that the file has already.
-    """
-    cameras = [sensor for sensor in sensor_ids if scene.sensors[sensor].is_camera]
-    if not cameras:
-        return []
-    indices: dict[str, int] = {}
-    for index, frame_id in enumerate(frames.ids):
-        indices.setdefault(frame_id, index)
-    poses: dict[str, Pose] = {}
-    optical_frames = []
-    for camera in cameras:
-        name = scene.sensors[camera].optical_frame_id
-        frame_id = naming.frame_id_from_name(name) if name else sensor_ids[camera] + OPTICAL_SUFFIX
-        pose = pose_product(scene.pose_of(camera), OPTICAL_POSE)
-        other = frames.owners.item(indices[frame_id]) if frame_id in indices else None
-        if name and other is not None and other not in scene.sensors:
-            continue
-        if pose != (poses.get(frame_id) if other is None else scene.pose_of(other)):
-            poses.setdefault(frame_id, pose)
-            # A camera without a frame of its own uses the root frame.
-            parent = indices.get(sensor_ids[camera], ROOT_IS_PARENT)
-            optical_frames.append(Frame(frame_id, camera, parent, pose))
-    return optical_frames
+    return frame_ids, sensor_ids

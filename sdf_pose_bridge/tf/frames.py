@@ -1,17 +1,45 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""The frames of TF while their tree is made."""
+"""
+The frames of TF while their tree is made, and those that no element of the file has.
+
+These are the optical frames of cameras, and frames at joints for which URDF needs links that
+SDFormat does not have. In URDF a joint is where its child link is, and has one axis.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from sdf_pose_bridge.geometry.chains import Indices
-from sdf_pose_bridge.geometry.poses import canonical_relative_poses, Pose, PoseArray
-from sdf_pose_bridge.tf.parents import NO_PARENT
+from sdf_pose_bridge.geometry.poses import (
+    canonical_relative_poses,
+    Pose,
+    pose_product,
+    PoseArray,
+    relative_pose,
+)
+from sdf_pose_bridge.scene.scene import Scene
+from sdf_pose_bridge.tf.frame_ids import FrameNaming
+from sdf_pose_bridge.tf.joint_motion import JointMotion
+from sdf_pose_bridge.tf.joint_positions import SLIDE_SUFFIX
+from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT, TfParents
+
+OPTICAL_SUFFIX = '_optical'
+"""Appended to a camera's frame id for its optical frame, unless the file names that frame."""
+
+OPTICAL_POSE = Pose(0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
+"""Pose of an optical frame (REP 103: z forward, x right, y down) in its camera (x forward)."""
+
+LINK_SUFFIX = '_frame'
+"""Appended to the name of a joint for the name of such a link."""
+
+_SAME_PLACE = 1e-12
+"""Frames that differ by less, in metres and halves of radians, are the same."""
 
 
 class Frame(NamedTuple):
@@ -55,3 +83,73 @@ class Frames(NamedTuple):
             np.concatenate([self.poses, [Pose(), Pose()]])[self.parents], self.poses)
         transforms[self.parents == NO_PARENT] = Pose()
         return transforms
+
+
+def optical_frames_of_cameras(
+    frames: Frames, sensor_ids: Mapping[int, str], scene: Scene, naming: FrameNaming,
+) -> list[Frame]:
+    """
+    Make the optical frames of cameras.
+
+    :param frames: the frames of elements.
+    :param sensor_ids: the frame id of each published sensor.
+    :return: the optical frames, without those that the file has already.
+    """
+    indices: dict[str, int] = {}
+    for index, frame_id in enumerate(frames.ids):
+        indices.setdefault(frame_id, index)
+    poses: dict[str, Pose] = {}
+    optical_frames = []
+    cameras = [sensor for sensor in sensor_ids if scene.sensors[sensor].is_camera]
+    for camera in cameras:
+        name = scene.sensors[camera].optical_frame_id
+        frame_id = naming.frame_id_from_name(name) if name else sensor_ids[camera] + OPTICAL_SUFFIX
+        pose = pose_product(scene.pose_of(camera), OPTICAL_POSE)
+        other = frames.owners.item(indices[frame_id]) if frame_id in indices else None
+        if name and other is not None and other not in scene.sensors:
+            continue
+        if pose != (poses.get(frame_id) if other is None else scene.pose_of(other)):
+            poses.setdefault(frame_id, pose)
+            # A camera without a frame of its own uses the root frame.
+            parent = indices.get(sensor_ids[camera], ROOT_IS_PARENT)
+            optical_frames.append(Frame(frame_id, camera, parent, pose))
+    return optical_frames
+
+
+def is_same_place(pose: Pose) -> bool:
+    """Return whether a pose is the identity, except for rounding errors."""
+    return math.dist(pose[:6], Pose()[:6]) < _SAME_PLACE
+
+
+def frames_at_joints(
+    frames: Frames, scene: Scene, motion: JointMotion, tf_parents: TfParents, prefix: str,
+    root_frame: str,
+) -> list[Frame]:
+    """
+    Make the frames between degrees of freedom, and those of joints away from their links.
+
+    The frame between the turning and the sliding of a screw joint is left out, and so are those of
+    joints to links that are not published, which are not in the URDF.
+
+    :param frames: all other frames, which keep their ids.
+    :param prefix: precedes the names of joints in frame ids.
+    """
+    rows = {owner: row for row, owner in enumerate(frames.owners.tolist())}
+    used = {root_frame, *frames.ids}
+    found = []
+    for index, (dof, body) in enumerate(
+            zip(motion.dofs, motion.moved_bodies.tolist(), strict=True)):
+        pose = scene.pose_of(dof.joint.element)
+        is_last = motion.last_dofs[body] == index
+        if is_last and is_same_place(relative_pose(pose, scene.pose_of(body))):
+            continue
+        parent_body = tf_parents.parents.item(body)
+        is_published = body in rows and (
+            parent_body in rows or scene.parents[parent_body] < 0)
+        parent = frames.parents.item(rows[body]) if is_published else NO_PARENT
+        slide = SLIDE_SUFFIX if dof.is_screw else ''
+        frame_id = f'{prefix}{dof.name}{slide}{LINK_SUFFIX}'
+        if parent != NO_PARENT and frame_id not in used:
+            used.add(frame_id)
+            found.append(Frame(frame_id, len(scene.kinds) + index, parent, pose))
+    return found

@@ -26,14 +26,8 @@ from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.anchors import AnchorModels, AnchorPatterns, detached_bodies
-from sdf_pose_bridge.tf.frame_ids import (
-    FrameNames,
-    FrameNaming,
-    optical_frames_of_cameras,
-    with_ids_of_sensors,
-)
-from sdf_pose_bridge.tf.frames import Frames
-from sdf_pose_bridge.tf.joint_links import frames_at_joints
+from sdf_pose_bridge.tf.frame_ids import FrameNames, FrameNaming, with_ids_of_sensors
+from sdf_pose_bridge.tf.frames import Frames, frames_at_joints, optical_frames_of_cameras
 from sdf_pose_bridge.tf.joint_motion import JointMotion, MovingFrames
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT, tf_parents_from_scene, TfParents
 
@@ -157,15 +151,20 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     problems = Problems(scene.files)
     tf_parents = tf_parents_from_scene(scene)
     elements = _published_elements(scene, options, problems)
-    elements, frame_ids, sensor_ids = with_ids_of_sensors(
-        elements, _frame_ids(naming, scene, elements, problems), scene, naming,
-        options.root_frame)
-    elements, frame_ids = _with_link_world(elements, frame_ids, scene, options)
+    frame_ids, sensor_ids = with_ids_of_sensors(
+        dict(zip(elements.tolist(), _frame_ids(naming, scene, elements, problems), strict=True)),
+        scene, naming, options.root_frame)
+    # The implicit root of a URDF is its link "world", unless the root frame has its frame id.
+    world_link = options.frame_prefix + WORLD_FRAME
+    if (scene.urdf_root == WORLD_FRAME and world_link != options.root_frame
+            and Kind.LINK in _kinds(scene, options)):
+        frame_ids = {0: world_link, **frame_ids}
+    elements = np.array(list(frame_ids), np.int32)
     nearest_frames, parents = _nearest_frames_and_parents(
         scene, tf_parents, elements,
         detached_bodies(scene, tf_parents, options.anchor_models, problems),
         is_world_anchored=options.anchor_models is AnchorModels.ALL)
-    frames = Frames(frame_ids, elements, parents, scene.poses[elements])
+    frames = Frames(list(frame_ids.values()), elements, parents, scene.poses[elements])
     if options.optical_frames:
         frames = frames.with_frames(optical_frames_of_cameras(frames, sensor_ids, scene, naming))
     _check_frame_ids(frames, scene, options.root_frame, problems)
@@ -227,21 +226,6 @@ def _kinds(scene: Scene, options: TfOptions) -> frozenset[Kind]:
         return DEFAULT_KINDS if options.kinds is None else options.kinds
     # Robots of one type have the same name, and a frame has one parent.
     return (frozenset({Kind.LINK}) if options.kinds is None else options.kinds) - {Kind.MODEL}
-
-
-def _with_link_world(
-    elements: Indices, frame_ids: list[str], scene: Scene, options: TfOptions,
-) -> tuple[Indices, list[str]]:
-    """
-    Add the link ``world`` at the root of a URDF, unless the root frame has its frame id.
-
-    :return: the elements, with the implicit root for that link, and their frame ids.
-    """
-    frame_id = options.frame_prefix + WORLD_FRAME
-    if (scene.urdf_root != WORLD_FRAME or frame_id == options.root_frame
-            or Kind.LINK not in _kinds(scene, options)):
-        return elements, frame_ids
-    return np.concatenate([[0], elements]).astype(np.int32), [frame_id, *frame_ids]
 
 
 def elements_in_model(scene: Scene, name: str) -> NDArray[np.bool_]:

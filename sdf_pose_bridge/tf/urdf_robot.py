@@ -26,9 +26,8 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.joints import JointAxis, Mimic
 from sdf_pose_bridge.tf.anchors import AnchorModels
-from sdf_pose_bridge.tf.frame_ids import FrameNaming
-from sdf_pose_bridge.tf.joint_links import is_same_place, LINK_SUFFIX
-from sdf_pose_bridge.tf.joint_motion import dofs_from_joint
+from sdf_pose_bridge.tf.frames import is_same_place, LINK_SUFFIX
+from sdf_pose_bridge.tf.joint_motion import DegreeOfFreedom, JointMotion
 from sdf_pose_bridge.tf.joint_positions import SLIDE_SUFFIX
 from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT, tf_parents_from_scene
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, elements_in_model, tf_tree_from_scene, TfOptions
@@ -115,26 +114,12 @@ def _model(scene: Scene, name: str) -> int:
     return int(models[0])
 
 
-class _Names:
-    """Unique names."""
-
-    def __init__(self, used: set[str]) -> None:
-        self._used = used
-
-    def new(self, name: str) -> str:
-        """Return a name, with a number if it is used already."""
-        candidates = (f'{name}_{number}' if number else name for number in count())
-        unused = next(each for each in candidates if each not in self._used)
-        self._used.add(unused)
-        return unused
-
-
-class _Step(NamedTuple):
-    """A joint of URDF that is made from a degree of freedom."""
-
-    name: str
-    type: str
-    axis: JointAxis
+def _new_name(name: str, used: set[str]) -> str:
+    """Return a name, with a number if it is used already, and add it to the used ones."""
+    candidates = (f'{name}_{number}' if number else name for number in count())
+    unused = next(each for each in candidates if each not in used)
+    used.add(unused)
+    return unused
 
 
 class _RobotMaker:
@@ -144,12 +129,15 @@ class _RobotMaker:
         self._model = model
         self._problems = Problems(scene.files)
         self._tree = tf_tree_from_scene(scene, options)
-        self._elements: list[int] = self._tree.elements.tolist()
-        self._published = frozenset(self._elements)
+        elements = self._tree.elements
+        self._elements: list[int] = elements.tolist()
+        # The last entry is for the root frame.
+        self._links: list[int] = [
+            *np.where(scene.kinds[elements] == Kind.LINK, elements, -1).tolist(), -1]
         self._tf_parents = tf_parents_from_scene(scene)
-        self._names_of_joints = _names_of_joints(scene, FrameNaming(options.frame_names))
-        self._link_names = _Names({self._tree.root_frame, *self._tree.frame_ids})
-        self._joint_names = _Names(set())
+        self._motion = JointMotion(scene, self._tf_parents, options.frame_names)
+        self._link_names = {self._tree.root_frame, *self._tree.frame_ids}
+        self._joint_names: set[str] = set()
         self._dofs: dict[tuple[int, int | None], tuple[str, Mimic | None]] = {}
         """For each degree of freedom the name of its joint, and the joint that it follows."""
         self._leaders: dict[str, UrdfMimic | str] = {}
@@ -161,7 +149,13 @@ class _RobotMaker:
         scene, tree = self._scene, self._tree
         first, root = self._first_link()
         # The joints that move are named first, since joint_states has these names too.
-        steps = [self._steps(element) for element in self._elements]
+        dofs: defaultdict[int, list[DegreeOfFreedom]] = defaultdict(list)
+        for dof, body in zip(self._motion.dofs, self._motion.moved_bodies.tolist(), strict=True):
+            dofs[body].append(dof)
+        bodies = {*self._elements, *np.flatnonzero(scene.parents < 0).tolist()}
+        steps = [
+            self._steps(dofs[element] if parent in bodies else ())
+            for element in self._elements for parent in [self._tf_parents.parents.item(element)]]
         ids = (*tree.frame_ids, '', first)
         for frame, parent in enumerate(tree.parents.tolist()):
             if frame != root:
@@ -169,14 +163,19 @@ class _RobotMaker:
         return UrdfRobot(
             scene.own_name(self._model),
             frozenset(np.flatnonzero(elements_in_model(scene, scene.names[self._model])).tolist()),
-            tuple(self._in_order(UrdfLink(first, self._link_of(root), None))),
+            tuple(self._in_order(UrdfLink(first, self._links[root], None))),
             (*tree.warnings, *self._problems.warnings))
 
     def _first_link(self) -> tuple[str, int]:
         """Return the name of the link that has no parent, and its frame; -1 for the root."""
-        scene, tree = self._scene, self._tree
+        scene, tree, tf_parents = self._scene, self._tree, self._tf_parents
         tops = np.flatnonzero(tree.parents == ROOT_IS_PARENT).tolist()
-        free = [frame for frame in tops if not self._is_anchored(self._elements[frame])]
+        # All but static ones, and those that a joint connects to the world.
+        free = [
+            frame for frame in tops for element in [self._elements[frame]]
+            if scene.static_models.isdisjoint(scene.with_ancestors(element))
+            and (element not in tf_parents.joints
+                 or scene.parents[tf_parents.parents[element]] >= 0)]
         if len(tops) == 1 and free:
             return tree.frame_ids[tops[0]], tops[0]
         for frame in free:
@@ -185,20 +184,6 @@ class _RobotMaker:
                 f'"{name}" is fixed to "{tree.root_frame}" in URDF, since nothing else holds it '
                 'and URDF has only one tree', scene.place(self._elements[frame]))
         return tree.root_frame, -1
-
-    def _is_anchored(self, element: int) -> bool:
-        """Return whether a top-level element is static, or a joint connects it to the world."""
-        parent = self._tf_parents.parents[element]
-        return self._is_static(element) or (
-            element in self._tf_parents.joints and self._scene.parents.item(parent) < 0)
-
-    def _is_static(self, element: int) -> bool:
-        scene = self._scene
-        return not scene.static_models.isdisjoint(scene.with_ancestors(element))
-
-    def _link_of(self, frame: int) -> int:
-        element = -1 if frame < 0 else self._elements[frame]
-        return element if element >= 0 and self._scene.kinds[element] == Kind.LINK else -1
 
     def _in_order(self, first: UrdfLink) -> Iterator[UrdfLink]:
         waiting = [first]
@@ -209,70 +194,60 @@ class _RobotMaker:
 
     # Joints
 
-    def _steps(self, element: int) -> list[_Step]:
-        """List the joints with one degree of freedom each that lead to an element."""
-        joint = self._tf_parents.joints.get(element)
-        if joint is None or self._is_static(element):
-            return []
-        parent = int(self._tf_parents.parents[element])
-        if parent not in self._published and self._scene.parents[parent] >= 0:
-            return []
-        is_reversed = element in self._tf_parents.reversed_bodies
-        dofs = dofs_from_joint(joint)
-        steps: list[_Step] = []
-        for dof in reversed(dofs) if is_reversed else dofs:
-            x, y, z = dof.axis.xyz
-            axis = dof.axis._replace(xyz=(-x, -y, -z)) if is_reversed else dof.axis
-            name = self._joint_names.new(self._names_of_joints[joint.element] + dof.suffix)
-            self._dofs[joint.element, dof.number] = name, axis.mimic
+    def _steps(self, dofs: Sequence[DegreeOfFreedom]) -> list[tuple[str, str, JointAxis]]:
+        """Return the names, types and axes of joints with one degree of freedom each."""
+        steps = []
+        for dof in dofs:
+            name, axis = _new_name(dof.name, self._joint_names), dof.axis
+            self._dofs[dof.joint.element, dof.number] = name, axis.mimic
             if dof.rad_per_unit:
                 has_limit = axis.lower > -NO_LIMIT or axis.upper < NO_LIMIT
-                steps.append(_Step(name, 'revolute' if has_limit else 'continuous', axis))
-            if dof.m_per_unit and not dof.rad_per_unit:
-                steps.append(_Step(name, 'prismatic', axis))
-            elif dof.m_per_unit and dof.number is not None:
+                steps.append((name, 'revolute' if has_limit else 'continuous', axis))
+            else:
+                steps.append((name, 'prismatic', axis))
+            if dof.is_screw and dof.number is not None:
                 # A screw joint slides too.
-                follows = Mimic(joint.element, dof.number, dof.m_per_unit, 0.0, 0.0)
-                steps.append(_Step(
-                    self._joint_names.new(f'{name}{SLIDE_SUFFIX}'), 'prismatic',
+                follows = Mimic(dof.joint.element, dof.number, dof.m_per_unit, 0.0, 0.0)
+                steps.append((
+                    _new_name(f'{name}{SLIDE_SUFFIX}', self._joint_names), 'prismatic',
                     JointAxis(axis.xyz, mimic=follows)))
         return steps
 
-    def _add_frame(self, frame: int, parent: str, steps: Sequence[_Step]) -> None:
-        tree, name = self._tree, self._tree.frame_ids[frame]
-        link, transform = self._link_of(frame), Pose(*tree.transforms[frame].tolist())
-        if not steps:
-            joint = self._tf_parents.joints.get(self._elements[frame])
+    def _add_frame(
+        self, frame: int, parent: str, steps: Sequence[tuple[str, str, JointAxis]],
+    ) -> None:
+        tree, name, link = self._tree, self._tree.frame_ids[frame], self._links[frame]
+        joint = self._tf_parents.joints.get(self._elements[frame])
+        transform = Pose(*tree.transforms[frame].tolist())
+        if joint is None or not steps:
+            fixed = f'{name}_fixed' if joint is None else self._motion.joint_names[joint.element]
             self._add(name, link, UrdfJoint(
-                self._joint_names.new(
-                    f'{name}_fixed' if joint is None else self._names_of_joints[joint.element]),
-                'fixed', parent, transform))
+                _new_name(fixed, self._joint_names), 'fixed', parent, transform))
             return
-        element = self._elements[frame]
-        joint_pose = self._scene.pose_of(self._tf_parents.joints[element].element)
-        in_joint = relative_pose(joint_pose, Pose(*tree.poses[frame].tolist()))
+        in_joint = relative_pose(
+            self._scene.pose_of(joint.element), Pose(*tree.poses[frame].tolist()))
         is_at_joint = is_same_place(in_joint)
         origin = transform if is_at_joint else pose_product(transform, pose_inverse(in_joint))
-        for step in steps:
-            is_last = is_at_joint and step is steps[-1]
-            child = name if is_last else self._link_names.new(f'{step.name}{LINK_SUFFIX}')
+        for number, (step, joint_type, axis) in enumerate(steps, 1):
+            is_last = is_at_joint and number == len(steps)
+            child = name if is_last else _new_name(f'{step}{LINK_SUFFIX}', self._link_names)
             self._add(child, link if is_last else -1, UrdfJoint(
-                step.name, step.type, parent, origin, step.axis, self._mimic(step, element)))
+                step, joint_type, parent, origin, axis,
+                self._mimic(step, axis.mimic, joint.element)))
             parent, origin = child, Pose()
         if not is_at_joint:
             self._add(name, link, UrdfJoint(
-                self._joint_names.new(f'{name}_fixed'), 'fixed', parent, in_joint))
+                _new_name(f'{name}_fixed', self._joint_names), 'fixed', parent, in_joint))
 
     def _add(self, name: str, element: int, joint: UrdfJoint) -> None:
         self._children[joint.parent].append(UrdfLink(name, element, joint))
 
-    def _mimic(self, step: _Step, element: int) -> UrdfMimic | None:
+    def _mimic(self, name: str, follows: Mimic | None, element: int) -> UrdfMimic | None:
         """Return the joint that a joint follows in the end, as not all readers follow several."""
-        found = None if step.axis.mimic is None else self._leader(step.name, step.axis.mimic)
+        found = None if follows is None else self._leader(name, follows)
         if isinstance(found, str):
             self._problems.warning(
-                f'joint "{step.name}" mimics nothing in URDF: {found}',
-                self._scene.place(self._tf_parents.joints[element].element))
+                f'joint "{name}" mimics nothing in URDF: {found}', self._scene.place(element))
             return None
         return found
 
@@ -299,9 +274,3 @@ class _RobotMaker:
                     mimic.multiplier * (found.offset - mimic.reference) + mimic.offset)
             self._leaders[passed_name] = found
         return found
-
-
-def _names_of_joints(scene: Scene, naming: FrameNaming) -> dict[int, str]:
-    elements = [joint.element for joint in scene.joints]
-    names = naming.frame_ids_from_scene(scene, np.array(elements, np.int32))
-    return dict(zip(elements, names, strict=True))

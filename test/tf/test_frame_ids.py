@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frame ids made of scoped names."""
 
-from matrices import assert_same_pose, matrix_from_pose, matrix_from_rpy
 import numpy as np
 import pytest
-from sdf_texts import element, fixed_joint, model_file, posed, TWO_LINKS, world_file
+from sdf_texts import element, fixed_joint, model_file, TWO_LINKS, world_file
 from tf_checks import model, only_tree_error, parents_of, pose_of, tree_of
 
 import sdf_pose_bridge
@@ -107,14 +106,6 @@ def test_a_leading_slash_goes_before_a_prefix_comes():
     assert FrameNaming(prefix='r/').frame_id_from_name('/a') == 'r/a'
 
 
-OPTICAL = matrix_from_rpy(0, 0, 0, -np.pi / 2, 0, -np.pi / 2)
-
-
-def camera(name='cam', children='', inside='', pose='1 0 0 0 0 0'):
-    return (f'<sensor name="{name}" type="camera"><pose>{pose}</pose>{children}'
-            f'<camera>{inside}</camera></sensor>')
-
-
 def lidar(name, frame_id='', pose='1 0 0 0 0 0'):
     frame_id = f'<gz_frame_id>{frame_id}</gz_frame_id>' if frame_id else ''
     return f'<sensor name="{name}" type="gpu_lidar"><pose>{pose}</pose>{frame_id}</sensor>'
@@ -181,79 +172,3 @@ def test_sensors_of_many_robots_share_a_frame_id():
 def test_two_sensors_in_one_place_share_a_frame_id():
     text = model_file(f'<link name="l">{lidar("s", "laser")}{lidar("t", "laser")}</link>')
     assert tree_of(text).frame_ids == ('m', 'l', 'laser')
-
-
-# Cameras
-
-def test_a_camera_has_an_optical_frame():
-    tree = tree_of(model_file(f'<link name="l">{camera()}</link>'))
-    parents = dict(zip(tree.frame_ids, tree.parent_ids, strict=True))
-    assert parents['l/cam_optical'] == 'l/cam'
-    assert_same_pose(
-        tree.transforms[tree.frame_ids.index('l/cam_optical')].tolist(), OPTICAL, 1e-12)
-
-
-def test_z_of_an_optical_frame_is_ahead_and_y_down():
-    tree = tree_of(model_file(f'<link name="l">{camera()}</link>'))
-    matrix = matrix_from_pose(pose_of(tree, 'l/cam_optical'))
-    np.testing.assert_allclose(matrix[:3, 2], (1, 0, 0), atol=1e-15)
-    np.testing.assert_allclose(matrix[:3, 1], (0, 0, -1), atol=1e-15)
-
-
-@pytest.mark.parametrize('kind', [
-    'camera', 'depth_camera', 'rgbd_camera', 'thermal_camera', 'segmentation_camera',
-    'boundingbox_camera', 'wide_angle_camera', 'wideanglecamera', 'multicamera', 'thermal'])
-def test_every_type_of_camera(kind):
-    text = model_file(f'<link name="l"><sensor name="cam" type="{kind}"/></link>')
-    assert 'l/cam_optical' in tree_of(text).frame_ids
-
-
-def test_what_is_no_camera_has_no_optical_frame():
-    assert tree_of(model_file(f'<link name="l">{lidar("s")}</link>')).frame_ids == (
-        'm', 'l', 'l/s')
-
-
-def test_optical_frames_can_be_left_out():
-    text = model_file(f'<link name="l">{camera()}</link>')
-    assert tree_of(text, optical_frames=False).frame_ids == ('m', 'l', 'l/cam')
-
-
-def test_a_camera_names_its_optical_frame():
-    text = model_file('<link name="l">' + camera(
-        inside='<optical_frame_id>eye</optical_frame_id>') + '</link>')
-    assert parents_of(text) == {'m': 'l', 'l': '', 'l/cam': 'l', 'eye': 'l/cam'}
-
-
-def test_the_optical_frame_of_a_camera_with_a_frame_id():
-    text = model_file(f'<link name="l">{camera(children="<gz_frame_id>eye</gz_frame_id>")}</link>')
-    assert parents_of(text) == {'m': 'l', 'l': '', 'eye': 'l', 'eye_optical': 'eye'}
-
-
-def test_the_optical_frame_of_a_camera_with_the_frame_id_of_a_link():
-    tree = tree_of(model_file(
-        f'<link name="l">{camera(children="<gz_frame_id>l</gz_frame_id>")}</link>'))
-    assert tree.frame_ids == ('m', 'l', 'l_optical')
-    assert pose_of(tree, 'l_optical')[:3] == [1, 0, 0]
-
-
-def test_an_optical_frame_that_the_file_has_is_left_alone():
-    text = model_file(
-        '<link name="l">' + camera(inside='<optical_frame_id>eye</optical_frame_id>')
-        + '</link>' + posed('frame', 'eye', '0 0 5 0 0 0'))
-    tree = tree_of(text)
-    assert sorted(tree.frame_ids) == ['eye', 'l', 'l/cam', 'm']
-    assert pose_of(tree, 'eye')[:3] == [0, 0, 5]
-
-
-def test_two_cameras_elsewhere_name_one_optical_frame():
-    inside = '<optical_frame_id>eye</optical_frame_id>'
-    text = model_file(
-        f'<link name="l">{camera("c", "", inside)}{camera("d", "", inside, "2 0 0 0 0 0")}</link>')
-    error = only_tree_error(text)
-    assert error.code == 'DUPLICATE_NAME'
-    assert '"eye"' in error.message
-
-
-def test_an_optical_frame_would_take_the_id_of_a_link():
-    text = model_file(f'<link name="l">{camera()}</link><link name="l/cam_optical"/>')
-    assert only_tree_error(text).code == 'DUPLICATE_NAME'

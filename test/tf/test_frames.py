@@ -1,13 +1,19 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Frames are added after others, and have transforms."""
+"""Frames of cameras and at joints; test_urdf_robot.py compares the poses of the latter."""
 
+from matrices import assert_same_pose, matrix_from_pose, matrix_from_rpy
 import numpy as np
 import pytest
+from sdf_texts import joint, model_file, posed, world_file
+from tf_checks import only_tree_error, parents_of, pose_of, tree_of
 
-from sdf_pose_bridge import Pose
+from sdf_pose_bridge import load_text, Pose
 from sdf_pose_bridge.tf.frames import Frame, Frames
 from sdf_pose_bridge.tf.parents import NO_PARENT, ROOT_IS_PARENT
+from sdf_pose_bridge.tf.tree import tf_tree_from_scene, TfOptions
+
+OPTICAL = matrix_from_rpy(0, 0, 0, -np.pi / 2, 0, -np.pi / 2)
 
 
 @pytest.fixture
@@ -31,3 +37,134 @@ def test_no_frames_follow_others(frames):
 
 def test_transforms(frames):
     assert frames.transforms().tolist() == [list(Pose()), list(Pose(1)), list(Pose(0, 3))]
+
+
+# Cameras
+
+def camera(name='cam', children='', inside='', pose='1 0 0 0 0 0'):
+    return (f'<sensor name="{name}" type="camera"><pose>{pose}</pose>{children}'
+            f'<camera>{inside}</camera></sensor>')
+
+
+def test_a_camera_has_an_optical_frame():
+    tree = tree_of(model_file(f'<link name="l">{camera()}</link>'))
+    parents = dict(zip(tree.frame_ids, tree.parent_ids, strict=True))
+    assert parents['l/cam_optical'] == 'l/cam'
+    assert_same_pose(
+        tree.transforms[tree.frame_ids.index('l/cam_optical')].tolist(), OPTICAL, 1e-12)
+
+
+def test_z_of_an_optical_frame_is_ahead_and_y_down():
+    tree = tree_of(model_file(f'<link name="l">{camera()}</link>'))
+    matrix = matrix_from_pose(pose_of(tree, 'l/cam_optical'))
+    np.testing.assert_allclose(matrix[:3, 2], (1, 0, 0), atol=1e-15)
+    np.testing.assert_allclose(matrix[:3, 1], (0, 0, -1), atol=1e-15)
+
+
+@pytest.mark.parametrize('kind', [
+    'camera', 'depth_camera', 'rgbd_camera', 'thermal_camera', 'segmentation_camera',
+    'boundingbox_camera', 'wide_angle_camera', 'wideanglecamera', 'multicamera', 'thermal'])
+def test_every_type_of_camera(kind):
+    text = model_file(f'<link name="l"><sensor name="cam" type="{kind}"/></link>')
+    assert 'l/cam_optical' in tree_of(text).frame_ids
+
+
+def test_what_is_no_camera_has_no_optical_frame():
+    text = model_file('<link name="l"><sensor name="s" type="gpu_lidar"/></link>')
+    assert tree_of(text).frame_ids == ('m', 'l', 'l/s')
+
+
+def test_optical_frames_can_be_left_out():
+    text = model_file(f'<link name="l">{camera()}</link>')
+    assert tree_of(text, optical_frames=False).frame_ids == ('m', 'l', 'l/cam')
+
+
+def test_a_camera_names_its_optical_frame():
+    text = model_file('<link name="l">' + camera(
+        inside='<optical_frame_id>eye</optical_frame_id>') + '</link>')
+    assert parents_of(text) == {'m': 'l', 'l': '', 'l/cam': 'l', 'eye': 'l/cam'}
+
+
+def test_the_optical_frame_of_a_camera_with_a_frame_id():
+    text = model_file(f'<link name="l">{camera(children="<gz_frame_id>eye</gz_frame_id>")}</link>')
+    assert parents_of(text) == {'m': 'l', 'l': '', 'eye': 'l', 'eye_optical': 'eye'}
+
+
+def test_the_optical_frame_of_a_camera_with_the_frame_id_of_a_link():
+    tree = tree_of(model_file(
+        f'<link name="l">{camera(children="<gz_frame_id>l</gz_frame_id>")}</link>'))
+    assert tree.frame_ids == ('m', 'l', 'l_optical')
+    assert pose_of(tree, 'l_optical')[:3] == [1, 0, 0]
+
+
+def test_an_optical_frame_that_the_file_has_is_left_alone():
+    text = model_file(
+        '<link name="l">' + camera(inside='<optical_frame_id>eye</optical_frame_id>')
+        + '</link>' + posed('frame', 'eye', '0 0 5 0 0 0'))
+    tree = tree_of(text)
+    assert sorted(tree.frame_ids) == ['eye', 'l', 'l/cam', 'm']
+    assert pose_of(tree, 'eye')[:3] == [0, 0, 5]
+
+
+def test_two_cameras_elsewhere_name_one_optical_frame():
+    inside = '<optical_frame_id>eye</optical_frame_id>'
+    text = model_file(
+        f'<link name="l">{camera("c", "", inside)}{camera("d", "", inside, "2 0 0 0 0 0")}</link>')
+    error = only_tree_error(text)
+    assert error.code == 'DUPLICATE_NAME'
+    assert '"eye"' in error.message
+
+
+def test_an_optical_frame_would_take_the_id_of_a_link():
+    text = model_file(f'<link name="l">{camera()}</link><link name="l/cam_optical"/>')
+    assert only_tree_error(text).code == 'DUPLICATE_NAME'
+
+
+# Joints
+
+ENDS = '<parent>a</parent><child>b</child>'
+AWAY = f'<pose>0 1 0 0 0 0</pose>{ENDS}'
+AXES = '<axis><xyz>0 0 1</xyz></axis><axis2><xyz>0 1 0</xyz></axis2>'
+
+
+def parents_of_links(content, joint_type, **options):
+    """Return the parents of all frames but those of the file."""
+    text = model_file(
+        '<link name="a"/><link name="b"><pose>1 0 0 0 0 0</pose></link>'
+        + joint(content, 'j', joint_type))
+    tree = tf_tree_from_scene(load_text(text), TfOptions(has_joint_links=True, **options))
+    parents = dict(zip(tree.frame_ids, tree.parent_ids, strict=True))
+    return {name: parent for name, parent in parents.items() if name.endswith('frame')}
+
+
+@pytest.mark.parametrize(('content', 'joint_type', 'parents'), [
+    (ENDS, 'revolute', {}),
+    (AWAY, 'fixed', {}),
+    (AWAY, 'revolute', {'j_frame': 'a'}),
+    (ENDS + AXES, 'universal', {'j_frame': 'a'}),
+    (AWAY + AXES, 'universal', {'j_frame': 'a', 'j_axis2_frame': 'a'}),
+    (ENDS, 'ball', {'j_yaw_frame': 'a', 'j_pitch_frame': 'a'}),
+    (AWAY, 'screw', {'j_slide_frame': 'a'}),
+])
+def test_frames_at_joints(content, joint_type, parents):
+    assert parents_of_links(content, joint_type) == parents
+
+
+def test_frames_at_joints_have_the_prefix():
+    assert parents_of_links(AWAY, 'revolute', frame_prefix='r/') == {'r/j_frame': 'r/a'}
+
+
+def test_there_are_none_unless_they_are_asked_for():
+    assert 'j_frame' not in tf_tree_from_scene(load_text(model_file(
+        '<link name="a"/><link name="b"/>' + joint(AWAY, 'j', 'revolute')))).frame_ids
+
+
+def test_a_joint_to_a_model_that_is_not_published_has_none():
+    text = world_file(
+        '<model name="base"><link name="l"/></model><model name="arm"><link name="l"/></model>'
+        '<joint name="j" type="revolute"><pose>0 1 0 0 0 0</pose><parent>base</parent>'
+        '<child>arm</child><axis><xyz>0 0 1</xyz></axis></joint>')
+    options = TfOptions(has_joint_links=True)
+    assert 'j_frame' in tf_tree_from_scene(load_text(text), options).frame_ids
+    assert 'j_frame' not in tf_tree_from_scene(
+        load_text(text), options._replace(model='arm')).frame_ids
