@@ -74,28 +74,25 @@ def detached_bodies(
         anchors = AnchorModels.ALL if 0 in scene.world_names else AnchorModels.STATIC
     if anchors is AnchorModels.ALL:
         return is_detached
-    keeps_static, anchored = anchors is AnchorModels.STATIC, frozenset[int]()
-    if isinstance(anchors, AnchorPatterns):
-        keeps_static, anchored = anchors.has_static, _matching_models(
-            scene, anchors.patterns, problems)
+    if not isinstance(anchors, AnchorPatterns):
+        anchors = AnchorPatterns((), anchors is AnchorModels.STATIC)
+    anchored = _matching_models(scene, anchors.patterns, problems)
     is_body = np.isin(scene.kinds, (Kind.LINK, Kind.MODEL))
     for body in np.flatnonzero(is_body & (scene.parents < 0)[tf_parents.parents]).tolist():
         model = scene.top_level_element(body)
         is_static = body not in tf_parents.free_bodies or model in scene.static_models
         # Children of the link "world" of a URDF keep their parent.
         is_detached[body] = not (
-            model in anchored or (keeps_static and is_static)
+            model in anchored or (anchors.has_static and is_static)
             or (is_static and scene.urdf_root == WORLD_FRAME))
     return is_detached
 
 
 def _matching_models(
-    scene: Scene, patterns: tuple[str, ...], problems: Problems,
-) -> frozenset[int]:
+    scene: Scene, patterns: tuple[str, ...], problems: Problems) -> set[int]:
     """Return the top-level models whose names match a pattern."""
-    is_model = (scene.kinds == Kind.MODEL) & (scene.parents >= 0)
-    is_top_level = is_model & (scene.parents[scene.parents] < 0)
-    models: list[int] = np.flatnonzero(is_top_level).tolist()
+    models: list[int] = np.flatnonzero(
+        (scene.kinds == Kind.MODEL) & (scene.parents == scene.roots)).tolist()
     matching: set[int] = set()
     for pattern in patterns:
         found = [model for model in models if fnmatchcase(scene.own_name(model), pattern)]
@@ -105,4 +102,4 @@ def _matching_models(
             hint = hint_from_names(pattern, [*words, *map(scene.own_name, models)])
             msg = f'anchor_models: no top-level model has a name like "{pattern}"{hint}'
             problems.warning(msg, scene.place(0))
-    return frozenset(matching)
+    return matching

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
-from sdf_pose_bridge.names import scoped_name, SEPARATOR
+from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 
@@ -69,20 +69,18 @@ class FrameNaming(NamedTuple):
         :return: a frame id for each element; empty if its name consists of slashes only.
         """
         names = [scene.names[element] for element in elements.tolist()]
-        kinds, parents = scene.kinds[elements], scene.parents[elements]
+        kinds = scene.kinds[elements]
         for position in np.flatnonzero(np.isin(kinds, _LABELLED_KINDS)).tolist():
-            parent = parents[position]
-            scope = '' if scene.parents[parent] < 0 else scene.names[parent]
             own_name = scene.own_name(int(elements[position]))
-            label = Kind(kinds[position]).label
-            names[position] = scoped_name(scope, f'{label}{SEPARATOR}{own_name}')
+            scope, label = names[position].removesuffix(own_name), Kind(kinds[position]).label
+            names[position] = f'{scope}{label}{SEPARATOR}{own_name}'
         is_in_model_file = (scene.kinds[scene.roots[elements[:1]]] == Kind.ROOT).any()
         if self.names is FrameNames.RELATIVE or (
                 self.names is FrameNames.AUTO and is_in_model_file):
             is_top_level = scene.parents[scene.parents] < 0
             models = ends_from_pointers(np.where(is_top_level, -1, scene.parents))[elements]
             names = [
-                name if model == element else name[len(scoped_name(scene.names[model], '')):]
+                name if model == element else name.removeprefix(scene.names[model] + SEPARATOR)
                 for name, element, model in zip(
                     names, elements.tolist(), models.tolist(), strict=True)]
         return list(map(self.frame_id_from_name, names))

@@ -14,7 +14,7 @@ has no parent.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Container, Iterable, Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -62,40 +62,41 @@ def tf_parents_from_scene(scene: Scene) -> TfParents:
     parents = np.select(
         [kinds == Kind.FRAME, kinds == Kind.MODEL, kinds == Kind.JOINT, is_sensor_of_joint],
         [scene.attachments, scene.canonical_links, bodies, bodies[scene.parents]], scene.parents)
-    bodies_of_frames = bodies.tolist()
-    ends = [
-        (bodies_of_frames[joint.parent], bodies_of_frames[joint.child]) for joint in scene.joints]
-    starts = representatives[_elements_by_rank(scene, [child for _, child in ends])].tolist()
-    loop_joints = _joints_that_close_loops(ends)
-    joints = _joints_from_bodies(ends, starts, frozenset(loop_joints))
-    joint_parents = {
-        body: parent if body == child else child
-        for body, joint in joints.items() for parent, child in [ends[joint]]}
-    parents[list(joint_parents)] = list(joint_parents.values())
-    free_parents = _parents_of_free_bodies(scene, joint_parents)
-    free_bodies = np.array(list(free_parents), np.int32)
-    parents[free_bodies] = list(free_parents.values())
+    children = bodies[[joint.child for joint in scene.joints]]
+    starts = representatives[_elements_by_rank(scene, children)].tolist()
+    neighbors, loop_joints = _neighbors_along_joints(scene.joints, bodies.tolist())
+    joints: dict[int, Joint] = {}
+    for start in starts:
+        waiting = [start]
+        while waiting:
+            body = waiting.pop()
+            for neighbor, joint in neighbors.pop(body, ()):
+                # Without loops, only one joint leads to a body, from its other end.
+                if neighbor in neighbors:
+                    joints[neighbor], parents[neighbor] = joint, body
+                    waiting.append(neighbor)
+    free_parents = _parents_of_free_bodies(scene, joints)
+    parents[list(free_parents)] = list(free_parents.values())
     return TfParents(
         parents=parents,
-        free_bodies=frozenset(free_bodies[scene.parents[parents[free_bodies]] < 0].tolist()),
-        joints={body: scene.joints[joint] for body, joint in joints.items()},
+        free_bodies=frozenset(
+            body for body, parent in free_parents.items() if scene.parents[parent] < 0),
+        joints=joints,
         reversed_bodies=frozenset(
-            body for body, joint in joints.items() if body == ends[joint][0]),
-        loop_joints=tuple(scene.joints[joint] for joint in loop_joints))
+            body for body, joint in joints.items() if body == bodies[joint.parent]),
+        loop_joints=loop_joints)
 
 
-def _elements_by_rank(scene: Scene, children: Sequence[int]) -> Indices:
+def _elements_by_rank(scene: Scene, children: Indices) -> Indices:
     """
-    Order elements by their preference as roots of trees of joints.
+    Order roots, models and links by their preference as roots of trees of joints.
 
     :param children: the bodies that are the child of a joint.
-    :return: all roots, models and links.
     """
     kinds, has_link = scene.kinds, scene.canonical_links >= 0
     is_root, is_model, is_link = scene.parents < 0, kinds == Kind.MODEL, kinds == Kind.LINK
-    is_static, is_child = np.zeros((2, len(kinds)), np.bool_)
-    is_static[list(scene.static_models)] = True
-    is_child[children] = True
+    is_static, is_child = (
+        np.isin(np.arange(len(kinds)), each) for each in (list(scene.static_models), children))
     is_top_level = is_model & (scene.parents == scene.roots)
     ranks = np.select([
         is_root | (is_top_level & is_static),
@@ -107,38 +108,16 @@ def _elements_by_rank(scene: Scene, children: Sequence[int]) -> Indices:
     return elements[np.argsort(ranks[elements], kind='stable')]
 
 
-def _joints_from_bodies(
-    ends: Sequence[tuple[int, int]], starts: Sequence[int], left_out: Container[int],
-) -> dict[int, int]:
+def _neighbors_along_joints(
+    joints: Sequence[Joint], bodies: Sequence[int],
+) -> tuple[defaultdict[int, list[tuple[int, Joint]]], tuple[Joint, ...]]:
     """
-    Follow joints, in both directions, from one start after the other.
+    Return the bodies that joints connect with each body, and the joints that are left out.
 
-    :param ends: the two bodies that each joint connects, parent and child.
-    :param left_out: the joints that close loops.
-    :return: for each body the joint on the way to it.
+    These are the joints whose ends are connected by earlier joints already (union-find).
+
+    :param bodies: the body of each frame.
     """
-    joints_of_bodies = defaultdict[int, list[int]](list)
-    for joint, (parent, child) in enumerate(ends):
-        if joint not in left_out:
-            joints_of_bodies[parent].append(joint)
-            joints_of_bodies[child].append(joint)
-    joints: dict[int, int] = {}
-    for start in starts:
-        waiting = [start] if start in joints_of_bodies else []
-        while waiting:
-            body = waiting.pop()
-            for joint in joints_of_bodies.pop(body):
-                parent, child = ends[joint]
-                neighbour = parent if body == child else child
-                # Without loops, only one joint leads to a body, from its other end.
-                if neighbour in joints_of_bodies:
-                    joints[neighbour] = joint
-                    waiting.append(neighbour)
-    return joints
-
-
-def _joints_that_close_loops(ends: Iterable[tuple[int, int]]) -> list[int]:
-    """Return the joints whose ends are connected by earlier joints already (union-find)."""
     leaders: dict[int, int] = {}
 
     def leader(body: int) -> int:
@@ -146,13 +125,18 @@ def _joints_that_close_loops(ends: Iterable[tuple[int, int]]) -> list[int]:
             leaders[body] = body = leaders[above]
         return body
 
-    found = []
-    for joint, (parent, child) in enumerate(ends):
+    neighbors = defaultdict[int, list[tuple[int, Joint]]](list)
+    loop_joints = []
+    for joint in joints:
+        parent, child = bodies[joint.parent], bodies[joint.child]
         first, second = leader(parent), leader(child)
         if first == second:
-            found.append(joint)
-        leaders[second] = first
-    return found
+            loop_joints.append(joint)
+        else:
+            leaders[second] = first
+            neighbors[parent].append((child, joint))
+            neighbors[child].append((parent, joint))
+    return neighbors, tuple(loop_joints)
 
 
 def _parents_of_free_bodies(scene: Scene, connected: Container[int]) -> dict[int, int]:
@@ -165,8 +149,7 @@ def _parents_of_free_bodies(scene: Scene, connected: Container[int]) -> dict[int
     parents, canonical_links = scene.parents.tolist(), scene.canonical_links.tolist()
     is_link, is_model = scene.kinds == Kind.LINK, scene.kinds == Kind.MODEL
     if scene.urdf_root is not None:
-        return dict.fromkeys(
-            (link for link in np.flatnonzero(is_link).tolist() if link not in connected), 0)
+        return {link: 0 for link in np.flatnonzero(is_link).tolist() if link not in connected}
     common_parents = {root: root for root in np.flatnonzero(scene.parents < 0).tolist()}
     outermost_models: dict[int, int] = {}
     for model in np.flatnonzero(is_model).tolist():

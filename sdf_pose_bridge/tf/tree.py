@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -169,7 +169,11 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         frames = frames.with_frames(optical_frames_of_cameras(frames, sensor_ids, scene, naming))
     _check_frame_ids(frames, scene, options.root_frame, problems)
     problems.raise_errors()
-    _warn_of_loops(scene, tf_parents, problems)
+    for joint in tf_parents.loop_joints:
+        msg = (f'joint "{scene.names[joint.element]}" closes a loop between '
+               f'"{scene.names[joint.parent]}" and "{scene.names[joint.child]}"; TF is a tree, so '
+               'it moves nothing there')
+        problems.warning(msg, scene.place(joint.element))
     motion = JointMotion(
         scene, tf_parents, options.frame_names,
     ) if options.use_joint_states or options.has_joint_links else None
@@ -177,7 +181,12 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
         frames = frames.with_frames(frames_at_joints(
             frames, scene, motion, tf_parents, options.frame_prefix, options.root_frame))
     pose_frame = options.pose_frame or options.root_frame
-    reference = _index_of_pose_frame(pose_frame, frames.ids, options.root_frame, scene)
+    ids = [options.root_frame, *frames.ids]
+    if pose_frame not in ids:
+        hint = hint_from_names(pose_frame, ids)
+        msg = f'there is no frame "{pose_frame}" to be the pose_frame{hint}'
+        raise UnknownFrameError(msg, Place(scene.path))
+    reference = ids.index(pose_frame) - 1
     moving = MovingFrames(
         motion, frames.poses, frames.parents, frames.owners, reference,
     ) if motion is not None and options.use_joint_states else None
@@ -212,14 +221,6 @@ def _published_elements(scene: Scene, options: TfOptions, problems: Problems) ->
     return np.flatnonzero(is_inside & is_wanted & ~is_root).astype(np.int32)
 
 
-def _warn_of_loops(scene: Scene, tf_parents: TfParents, problems: Problems) -> None:
-    for joint in tf_parents.loop_joints:
-        msg = (f'joint "{scene.names[joint.element]}" closes a loop between '
-               f'"{scene.names[joint.parent]}" and "{scene.names[joint.child]}"; TF is a tree, so '
-               'it moves nothing there')
-        problems.warning(msg, scene.place(joint.element))
-
-
 def _kinds(scene: Scene, options: TfOptions) -> frozenset[Kind]:
     """Return the kinds of element that become frames."""
     if scene.urdf_root is None:
@@ -238,14 +239,13 @@ def elements_in_model(scene: Scene, name: str) -> NDArray[np.bool_]:
     """
     if not name:
         return np.ones(len(scene.names), np.bool_)
-    # Of several models of that name, the first one counts.
-    models = {
-        scene.names[model]: model
-        for model in np.flatnonzero(scene.kinds == Kind.MODEL)[::-1].tolist()}
-    if name not in models:
-        msg = f'there is no model "{name}" to publish{hint_from_names(name, models)}'
+    models = np.flatnonzero(scene.kinds == Kind.MODEL).tolist()
+    names = [scene.names[model] for model in models]
+    if name not in names:
+        msg = f'there is no model "{name}" to publish{hint_from_names(name, names)}'
         raise UnknownFrameError(msg, Place(scene.path))
-    is_model = np.arange(len(scene.names)) == models[name]
+    # Of several models of that name, the first one counts.
+    is_model = np.arange(len(scene.names)) == models[names.index(name)]
     is_inside: NDArray[np.bool_] = is_model[
         ends_from_pointers(np.where(is_model, -1, scene.parents))]
     return is_inside
@@ -293,13 +293,12 @@ def _frame_ids(
         return frame_ids
     model = scene.top_level_element(int(elements[0]))
     name = naming.frame_id_from_name(scene.names[model])
-    scoped = naming._replace(names=FrameNames.SCOPED)
     if frame_ids.count(name) < 2 or scene.world_names:
         return frame_ids
     msg = (f'a frame in the model has the name of the model, "{name}", so frame ids begin with '
            'it, as with frame_names "scoped"')
     problems.warning(msg, scene.place(model))
-    return scoped.frame_ids_from_scene(scene, elements)
+    return naming._replace(names=FrameNames.SCOPED).frame_ids_from_scene(scene, elements)
 
 
 def _cure_of_clash(scene: Scene, element: int) -> str:
@@ -308,18 +307,6 @@ def _cure_of_clash(scene: Scene, element: int) -> str:
         return 'frame_names "scoped", or another frame_separator, can tell them apart'
     return ('the file sets it, for example by <gz_frame_id>; sensors without one have the names '
             'of their models in their ids, and "kinds" can leave sensors out')
-
-
-def _index_of_pose_frame(
-    pose_frame: str, frame_ids: Sequence[str], root_frame: str, scene: Scene,
-) -> int:
-    if pose_frame == root_frame:
-        return ROOT_IS_PARENT
-    if pose_frame not in frame_ids:
-        hint = hint_from_names(pose_frame, [root_frame, *frame_ids])
-        msg = f'there is no frame "{pose_frame}" to be the pose_frame{hint}'
-        raise UnknownFrameError(msg, Place(scene.path))
-    return frame_ids.index(pose_frame)
 
 
 def _description(scene: Scene, element: int) -> str:
@@ -331,19 +318,14 @@ def _nearest_frames_and_parents(
     is_world_anchored: bool,
 ) -> tuple[Indices, Indices]:
     """
-    Find the frame that each element is in, and the parent of each frame.
+    Find the frame that each element is in, as in :class:`TfTree`, and the parent of each frame.
 
     The parent is the nearest TF ancestor of the frame's element that has a frame.
 
     :param elements: the elements that have a frame.
-    :param is_detached: for each element whether it has no parent, although that is the root.
     :param is_world_anchored: whether the link "world" of a URDF gets a transform.
-    :return: for each element of the scene the index of the frame of the nearest element, itself
-        included, that has one; for each frame the index of its parent. Instead of an index both
-        may be :data:`ROOT_IS_PARENT` or :data:`NO_PARENT`.
     """
     is_root = scene.parents < 0
-    is_world_link = (elements == 0)
     frames = np.full(len(is_root), NO_PARENT, np.int32)
     frames[is_root] = ROOT_IS_PARENT
     frames[elements] = np.arange(len(elements))
@@ -353,5 +335,5 @@ def _nearest_frames_and_parents(
         np.where(ends_here, -1, tf_parents.parents))]
     parents: Indices = nearest_frames[tf_parents.parents[elements]]
     parents[is_detached[elements]] = NO_PARENT
-    parents[is_world_link] = ROOT_IS_PARENT if is_world_anchored else NO_PARENT
+    parents[elements == 0] = ROOT_IS_PARENT if is_world_anchored else NO_PARENT
     return nearest_frames, parents

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Sequence
 import os
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from lxml import etree
 
@@ -42,13 +42,9 @@ class Urdf(NamedTuple):
         return self.text
 
 
-class _Geometry(NamedTuple):
-    """A shape in URDF."""
-
-    tag: str
-    attributes: dict[str, str]
-    z_m: float = 0.0
-    """Its position on the z axis of the shape that it is part of."""
+_Geometry: TypeAlias = tuple[str, dict[str, str], float]
+"""The tag and the attributes of a shape in URDF, and its position on the z axis of the shape that
+it is part of."""
 
 
 def urdf_from_scene(
@@ -165,7 +161,8 @@ class _Writer:
         if limits or min(effort, velocity) < NO_LIMIT:
             limits |= {'effort': effort, 'velocity': velocity}
             etree.SubElement(xml, 'limit', {
-                name: _numbers([_limited(limit)]) for name, limit in limits.items()})
+                name: _numbers([max(-NO_LIMIT, min(limit, NO_LIMIT))])
+                for name, limit in limits.items()})
         if damping or friction:
             etree.SubElement(
                 xml, 'dynamics', damping=_numbers([damping]), friction=_numbers([friction]))
@@ -206,12 +203,10 @@ class _Writer:
             self._warn(element, f'the {kind}', f'is left out: {geometries}')
             return
         name = self._scene.own_name(element)
-        for number, geometry in enumerate(geometries):
+        for number, (tag, attributes, z_m) in enumerate(geometries):
             xml = etree.SubElement(link, kind, name=f'{name}_{number}' if number else name)
-            _add_origin(
-                xml, pose_product(pose, Pose(z=geometry.z_m)) if geometry.z_m else pose)
-            etree.SubElement(
-                etree.SubElement(xml, 'geometry'), geometry.tag, geometry.attributes)
+            _add_origin(xml, pose_product(pose, Pose(z=z_m)) if z_m else pose)
+            etree.SubElement(etree.SubElement(xml, 'geometry'), tag, attributes)
             if kind == Kind.VISUAL.label and shape.drawn_rgba is not None:
                 text = _numbers(shape.drawn_rgba)
                 material = etree.SubElement(
@@ -226,11 +221,9 @@ class _Writer:
             return shape.reason_without_surface
         if shape.type == 'capsule' and self._has_capsules and len(shape.parts) > 1:
             radius, length = shape.sizes_m
-            return [_Geometry(
-                'capsule', {'radius': _numbers([radius]), 'length': _numbers([length])})]
-        geometries = [_geometry_from_part(part) for part in shape.parts]
-        found = [geometry for geometry in geometries if geometry is not None]
-        return found if found and len(found) == len(geometries) else f'URDF has no {shape.type}'
+            return [('capsule', {'radius': _numbers([radius]), 'length': _numbers([length])}, 0.0)]
+        found = [each for part in shape.parts for each in _geometry_from_part(part)]
+        return found if found and len(found) == len(shape.parts) else f'URDF has no {shape.type}'
 
     def _mesh(self, shape: Shape, element: int) -> list[_Geometry] | str:
         uri = self._finder.uri_for_others(shape.mesh_uri, self._scene.place(element).file)
@@ -243,19 +236,18 @@ class _Writer:
                 self._scene.place(element))
         has_scale = shape.mesh_scale != (1.0, 1.0, 1.0)
         scale = {'scale': _numbers(shape.mesh_scale)} if has_scale else {}
-        return [_Geometry('mesh', {'filename': uri, **scale})]
+        return [('mesh', {'filename': uri, **scale}, 0.0)]
 
 
-def _geometry_from_part(part: Part) -> _Geometry | None:
-    """Return a body in URDF; None for an ellipsoid that is no sphere."""
+def _geometry_from_part(part: Part) -> list[_Geometry]:
+    """Return a body in URDF; nothing for an ellipsoid that is no sphere."""
     x_m, y_m, z_m = part.extent_m
-    if part.primitive is Primitive.BOX:
-        return _Geometry('box', {'size': _numbers(part.extent_m)}, part.z_m)
     radius = {'radius': _numbers([0.5 * x_m])}
+    if part.primitive is Primitive.BOX:
+        return [('box', {'size': _numbers(part.extent_m)}, part.z_m)]
     if part.primitive is Primitive.CYLINDER:
-        return _Geometry('cylinder', {**radius, 'length': _numbers([z_m])}, part.z_m)
-    is_sphere = part.primitive is Primitive.ELLIPSOID and x_m == y_m == z_m
-    return _Geometry('sphere', radius, part.z_m) if is_sphere else None
+        return [('cylinder', {**radius, 'length': _numbers([z_m])}, part.z_m)]
+    return [('sphere', radius, part.z_m)] if x_m == y_m == z_m else []
 
 
 def _add_origin(xml: etree._Element, pose: Pose) -> None:
@@ -265,10 +257,6 @@ def _add_origin(xml: etree._Element, pose: Pose) -> None:
     numbers = _rounded((*pose[:3], *rpy_from_quaternion(pose[3:])))
     if any(numbers):
         etree.SubElement(xml, 'origin', xyz=_numbers(numbers[:3]), rpy=_numbers(numbers[3:]))
-
-
-def _limited(limit: float) -> float:
-    return max(-NO_LIMIT, min(limit, NO_LIMIT))
 
 
 def _rounded(numbers: Sequence[float]) -> list[float]:

@@ -93,10 +93,10 @@ def visual_markers_from_scene(
         frame = int(tree.nearest_frames[link])
         place = scene.place(element)
         forms = _forms_from_shape(shape, place.file, finder)
-        if isinstance(forms, str) or frame == NO_PARENT:
-            reason = forms if isinstance(forms, str) else (
-                'neither its link nor a frame above that in TF is published')
-            hidden.setdefault((place.file, place.line, reason), []).append(element)
+        if frame == NO_PARENT and not isinstance(forms, str):
+            forms = 'neither its link nor a frame above that in TF is published'
+        if isinstance(forms, str):
+            hidden.setdefault((place.file, place.line, forms), []).append(element)
             continue
         point_count += sum(len(form.points) for form in forms)
         if len(markers) + len(forms) > MOST_MARKERS or point_count > MOST_POINTS:
@@ -155,20 +155,15 @@ def _forms_from_shape(
 ) -> tuple[Form, ...] | str:
     """Return the markers of a shape, or the reason why it cannot be shown."""
     if shape.type == 'mesh':
-        return _form_of_mesh(shape, file, finder)
+        uri = finder.uri_for_others(shape.mesh_uri, file)
+        if uri is None:
+            return (f'the mesh "{shortened(shape.mesh_uri)}" is not found: '
+                    f'{finder.reason_not_found(shape.mesh_uri, file)}')
+        return (Form('MESH_RESOURCE', shape.mesh_scale, mesh_resource=uri),)
     if shape.reason_without_surface:
         return shape.reason_without_surface
-    parts = shape.parts
-    if not parts:
-        points_m, faces = shape.surface
-        return (Form('TRIANGLE_LIST', points=points_m[faces.reshape(-1)]),)
-    return tuple(
-        Form(_MARKER_TYPES[part.primitive], part.extent_m, part.z_m) for part in parts)
-
-
-def _form_of_mesh(shape: Shape, file: str, finder: ResourceFinder) -> tuple[Form] | str:
-    uri = finder.uri_for_others(shape.mesh_uri, file)
-    if uri is None:
-        return (f'the mesh "{shortened(shape.mesh_uri)}" is not found: '
-                f'{finder.reason_not_found(shape.mesh_uri, file)}')
-    return (Form('MESH_RESOURCE', shape.mesh_scale, mesh_resource=uri),)
+    if shape.parts:
+        return tuple(
+            Form(_MARKER_TYPES[part.primitive], part.extent_m, part.z_m) for part in shape.parts)
+    points_m, faces = shape.surface
+    return (Form('TRIANGLE_LIST', points=points_m[faces.reshape(-1)]),)
