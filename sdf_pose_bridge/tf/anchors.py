@@ -80,7 +80,7 @@ def detached_bodies(
     is_body = np.isin(scene.kinds, (Kind.LINK, Kind.MODEL))
     for body in np.flatnonzero(is_body & (scene.parents < 0)[tf_parents.parents]).tolist():
         model = scene.top_level_element(body)
-        is_static = body not in tf_parents.free_bodies or model in scene.static_models
+        is_static = body in tf_parents.joints or model in scene.static_models
         # Children of the link "world" of a URDF keep their parent.
         is_detached[body] = not (
             model in anchored or (anchors.has_static and is_static)

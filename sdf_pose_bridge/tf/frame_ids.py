@@ -51,12 +51,7 @@ class FrameNaming(NamedTuple):
     """Precedes every frame id."""
 
     def frame_id_from_name(self, name: str) -> str:
-        """
-        Make a frame id of a name.
-
-        :param name: a name as in SDF, its parts separated by ``::``.
-        :return: the frame id; empty if the name consists of slashes only.
-        """
+        """Make a frame id of a name as in SDF; an empty one if it consists of slashes only."""
         rest = name.replace(SEPARATOR, self.separator).lstrip('/')
         return self.prefix + rest if rest else ''
 

@@ -102,8 +102,8 @@ class JointMotion:
         for (body, joint), name in zip(tf_parents.joints.items(), names, strict=True):
             if scene.static_models.isdisjoint(scene.with_ancestors(body)):
                 path = dofs_from_joint(joint, name)
-                dofs += map(_reversed, reversed(path)) if (
-                    body in tf_parents.reversed_bodies) else path
+                is_reversed = scene.bodies[joint.parent] == body
+                dofs += map(_reversed, reversed(path)) if is_reversed else path
                 bodies += [body] * len(path)
         self.joint_names = dict(zip(joints.tolist(), names, strict=True))
         """The name of each joint, also of a fixed one, by its element."""
@@ -126,28 +126,18 @@ class JointMotion:
             indices - 1)
         """For each degree of freedom the previous one on the path from the root; -1 for none."""
         poses = scene.poses[[each.joint.element for each in dofs]]
-        directions = np.reshape([each.axis.xyz for each in dofs], (-1, 3))
-        self._points = poses[:, :3]
-        self._axes = transformed_points(poses, directions) - self._points
-        self._rad_per_unit = np.array([each.rad_per_unit for each in dofs])
-        self._m_per_unit = np.array([each.m_per_unit for each in dofs])
+        values = np.reshape(
+            [(*each.axis.xyz, each.rad_per_unit, each.m_per_unit) for each in dofs], (-1, 5))
+        axes = transformed_points(poses, values[:, :3]) - poses[:, :3]
+        self._screws = axes, poses[:, :3], values[:, 3], values[:, 4]
         identities = np.tile(Pose(), (len(dofs), 1))
         self._displacements = self.screw_motions(identities, indices, identities)
 
     def screw_motions(
-        self, before: PoseArray, dofs: Indices, after: PoseArray,
-    ) -> ScrewMotions:
-        """
-        Prepare products of a pose, the displacement by a degree of freedom, and a pose.
-
-        :param before: shape (n, 7), poses of the root in frames.
-        :param dofs: shape (n,), indices of degrees of freedom.
-        :param after: shape (n, 7), poses of frames in the root.
-        :return: the products, which take the positions of these degrees of freedom.
-        """
-        return ScrewMotions(
-            before, self._axes[dofs], self._points[dofs], self._rad_per_unit[dofs],
-            self._m_per_unit[dofs], after)
+        self, before: PoseArray, dofs: Indices, after: PoseArray) -> ScrewMotions:
+        """Return the motions by some degrees of freedom, as :class:`ScrewMotions` does."""
+        axes, points, rad_per_unit, m_per_unit = (each[dofs] for each in self._screws)
+        return ScrewMotions(before, axes, points, rad_per_unit, m_per_unit, after)
 
     def moved_poses(self, poses: PoseArray, elements: Indices, positions: Floats) -> PoseArray:
         """
@@ -274,23 +264,13 @@ class MovingFrames:
         return self.motion.moved_poses(self._poses[frames], self.elements[frames], positions)
 
     def depends_on(self, is_chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """
-        Return which of :meth:`transforms` depend on some degrees of freedom.
-
-        :param is_chosen: whether each degree of freedom is one of these.
-        :return: shape (m,).
-        """
+        """Return which of :meth:`transforms` depend on chosen degrees of freedom, shape (m,)."""
         last = self.motion.last_chosen(is_chosen)
         found: NDArray[np.bool_] = last[self.last_dofs] != last[self._last_dofs_of_parents]
         return found
 
     def has_pose(self, is_known: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """
-        Return which of :meth:`poses` follow from known positions.
-
-        :param is_known: whether the position of each degree of freedom is known.
-        :return: shape (k,).
-        """
+        """Return which of :meth:`poses` follow from the known positions, shape (k,)."""
         last = self.motion.last_chosen(~is_known)
         found: NDArray[np.bool_] = (
             last[self.posed_last_dofs] == last[self.last_dof_of_pose_frame])

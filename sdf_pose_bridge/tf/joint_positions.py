@@ -98,7 +98,6 @@ class JointPositions:
         self, scene: Scene, dofs: Sequence[DegreeOfFreedom], model: str = '',
         unreported: UnreportedJoints = UnreportedJoints.NONE,
     ) -> None:
-        self.dofs = tuple(dofs)
         self.names = tuple(each.name for each in dofs)
         """The name of each degree of freedom."""
         self.values = np.zeros(len(dofs))
@@ -131,7 +130,7 @@ class JointPositions:
         """Whether the position of each is known."""
         if self._unreported is UnreportedJoints.NONE:
             return self.is_reported
-        return np.ones(len(self.dofs), np.bool_)
+        return np.ones(len(self.names), np.bool_)
 
     @property
     def unreported_count(self) -> int:
@@ -168,21 +167,12 @@ class JointPositions:
             np.flatnonzero(np.isin(self._top_level_elements, top_level)))
 
     def unknown(self, names: Iterable[str], model: str = '') -> list[str]:
-        """
-        Find names that are unknown or ambiguous.
-
-        :param model: as for :meth:`selection`.
-        """
+        """Find names that are unknown or ambiguous, in a model as for :meth:`selection`."""
         indices = self._indices[model]
         return [name for name in names if name not in indices and name not in self._slides]
 
     def hint(self, name: str, model: str = '') -> str:
-        """
-        Return the end of a message about an unknown or ambiguous name.
-
-        :param model: as for :meth:`selection`.
-        :return: the nearest name, or the possible names; else an empty string.
-        """
+        """Return the end of a message about such a name, with the nearest one if there is one."""
         return hint_from_names(name, self._indices[model])
 
     def update(
@@ -204,7 +194,7 @@ class JointPositions:
         if not ignore_stamps:
             is_taken &= self._stamps_of_values_ns[dofs] <= stamp_ns
         self.stamps_ns[selection.beside] = np.maximum(self.stamps_ns[selection.beside], stamp_ns)
-        changed, is_changed = self.values.copy(), np.zeros(len(self.dofs), np.bool_)
+        changed, is_changed = self.values.copy(), np.zeros(len(self.names), np.bool_)
         changed[dofs[is_taken]] = new[is_taken]
         is_changed[dofs[is_taken]] = True
         for dof, leader, mimic in selection.followers:
@@ -222,11 +212,7 @@ class JointPositions:
         self.stamps_ns[:] = self._stamps_of_values_ns[:] = NEVER
 
     def take_over(self, before: JointPositions) -> None:
-        """
-        Continue with the positions of joints that have the same names.
-
-        :param before: the positions in the scene that is replaced.
-        """
+        """Continue with the positions that joints of the same names had before."""
         rows = {name: row for row, name in enumerate(before.names)}
         here = [dof for dof, name in enumerate(self.names) if name in rows]
         there = [rows[self.names[dof]] for dof in here]

@@ -86,10 +86,6 @@ def fingerprint_of_scene(scene: Scene) -> bytes:
 
 
 def may_pass(error: Exception) -> bool:
-    """
-    Return whether reading the same files again may succeed.
-
-    :param error: the exception of :func:`~sdf_pose_bridge.tf.loading.loaded_scene_from_request`.
-    """
+    """Return whether reading the same files again may succeed after an error of a load."""
     errors = error.errors if isinstance(error, SdfError) else (error,)
     return any(isinstance(each, MemoryError | PassingReadError) for each in errors)

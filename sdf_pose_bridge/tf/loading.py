@@ -38,7 +38,9 @@ def loaded_scene_from_request(
     path, manifests, warnings = _file_from_request(request)
     text = bytes_from_file(str(path), Usage()) if request.sdf_file else request.robot_description
     is_made_urdf = request.description_format is DescriptionFormat.URDF
-    scene = scene_from_text(text, path, request, shapes=is_made_urdf, texts=texts)
+    scene = load_text(
+        text, str(path), resource_paths=request.resource_paths,
+        on_missing_include=request.on_missing_include, shapes=is_made_urdf, texts=texts)
     options = request.tf_options
     tree = tf_tree_from_scene(scene, options)
     joint_positions = None if tree.moving is None else JointPositions(
@@ -83,36 +85,13 @@ def _urdf(scene: Scene, request: LoadRequest) -> tuple[str, tuple[SdfWarning, ..
 
 
 def unicode_text(text: str | bytes) -> str:
-    """
-    Return XML as text.
-
-    :param text: XML; bytes are in the encoding that they declare.
-    :return: the text; for bytes in another encoding than UTF-8 without their declaration.
-    """
+    """Return XML as text, without its declaration if that names another encoding than UTF-8."""
     if isinstance(text, str):
         return text
     try:
         return text.decode('utf-8-sig')
     except UnicodeDecodeError:
         return str(etree.tostring(xml_from_bytes(text, '').root, encoding='unicode'))
-
-
-def scene_from_text(
-    text: str | bytes, path: Path, request: LoadRequest, *, shapes: bool = False,
-    texts: Mapping[str, bytes] | None = None,
-) -> Scene:
-    """
-    Resolve every pose in a text.
-
-    :param path: path of its file; for a text without one, the name of its parameter.
-    :param request: the settings of the load.
-    :param shapes: whether to read the shapes of visuals and collisions too.
-    :param texts: texts to read instead of some files, by their paths.
-    :raises SdfError: if it is not valid.
-    """
-    return load_text(
-        text, str(path), resource_paths=request.resource_paths,
-        on_missing_include=request.on_missing_include, shapes=shapes, texts=texts)
 
 
 def files_behind_error(error: Exception, request: LoadRequest) -> list[str]:
@@ -136,11 +115,7 @@ def files_behind_error(error: Exception, request: LoadRequest) -> list[str]:
 def _file_from_request(
     request: LoadRequest,
 ) -> tuple[Path, tuple[str, ...], tuple[SdfWarning, ...]]:
-    """
-    Return the path of the file, and the manifests and warnings on the way to it.
-
-    A text has the name of its parameter for a path.
-    """
+    """Return the path as in :class:`LoadedScene`, and manifests and warnings on the way to it."""
     if not request.sdf_file:
         return Path(request.source), (), ()
     finder = resource_finder(request.resource_paths, os.environ)

@@ -80,13 +80,7 @@ class PoseLookup:
         return name == self._tree.root_frame or name in self._indices or self._scene.has(name)
 
     def pose_of_element(self, element: int, relative_to: str = '') -> Pose:
-        """
-        Look up the pose of an element of the scene in a frame.
-
-        :param relative_to: as for :meth:`pose`.
-        :raises UnknownFrameError: if the name is unknown or ambiguous.
-        :raises JointPositionError: as for :meth:`pose`.
-        """
+        """Look up the pose of an element of the scene in a frame, as :meth:`pose` does."""
         found = _Found(element, self._scene.pose_of(element), '')
         return self._relative_pose(self._found(relative_to or self._tree.root_frame), found)
 

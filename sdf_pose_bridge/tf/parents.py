@@ -14,12 +14,12 @@ has no parent.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.chains import Indices
+from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices
 from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 
@@ -34,12 +34,8 @@ class TfParents(NamedTuple):
 
     parents: Indices
     """Index of the parent of each element; -1 for worlds and implicit roots."""
-    free_bodies: frozenset[int]
-    """Links and models whose parent is the root, although no joint connects them to it."""
     joints: Mapping[int, Joint]
     """The joint of each body that a joint connects to its parent."""
-    reversed_bodies: frozenset[int]
-    """Those of these bodies that are at the parent's end of their joint."""
     loop_joints: tuple[Joint, ...]
     """Joints that close a loop, which a tree cannot have; in file order."""
 
@@ -75,24 +71,16 @@ def tf_parents_from_scene(scene: Scene) -> TfParents:
                 if neighbor in neighbors:
                     joints[neighbor], parents[neighbor] = joint, body
                     waiting.append(neighbor)
-    free_parents = _parents_of_free_bodies(scene, joints)
-    parents[list(free_parents)] = list(free_parents.values())
-    return TfParents(
-        parents=parents,
-        free_bodies=frozenset(
-            body for body, parent in free_parents.items() if scene.parents[parent] < 0),
-        joints=joints,
-        reversed_bodies=frozenset(
-            body for body, joint in joints.items() if body == bodies[joint.parent]),
-        loop_joints=loop_joints)
+    is_urdf = scene.urdf_root is not None
+    is_model_alone = (kinds == Kind.MODEL) & (scene.canonical_links < 0) & (not is_urdf)
+    is_free = (kinds == Kind.LINK) | is_model_alone
+    is_free[list(joints)] = False
+    parents[is_free] = 0 if is_urdf else _parents_of_free_bodies(scene, representatives)[is_free]
+    return TfParents(parents, joints, loop_joints)
 
 
 def _elements_by_rank(scene: Scene, children: Indices) -> Indices:
-    """
-    Order roots, models and links by their preference as roots of trees of joints.
-
-    :param children: the bodies that are the child of a joint.
-    """
+    """Order roots, models and links by their preference as roots; children of joints are last."""
     kinds, has_link = scene.kinds, scene.canonical_links >= 0
     is_root, is_model, is_link = scene.parents < 0, kinds == Kind.MODEL, kinds == Kind.LINK
     is_static, is_child = (
@@ -112,11 +100,9 @@ def _neighbors_along_joints(
     joints: Sequence[Joint], bodies: Sequence[int],
 ) -> tuple[defaultdict[int, list[tuple[int, Joint]]], tuple[Joint, ...]]:
     """
-    Return the bodies that joints connect with each body, and the joints that are left out.
+    Return the neighbors of each body, and the joints that are left out.
 
     These are the joints whose ends are connected by earlier joints already (union-find).
-
-    :param bodies: the body of each frame.
     """
     leaders: dict[int, int] = {}
 
@@ -139,24 +125,19 @@ def _neighbors_along_joints(
     return neighbors, tuple(loop_joints)
 
 
-def _parents_of_free_bodies(scene: Scene, connected: Container[int]) -> dict[int, int]:
+def _parents_of_free_bodies(scene: Scene, representatives: Indices) -> Indices:
     """
     Choose the parents of links, and of models without links, that have no parent along joints.
 
-    It is the canonical link of their model; for a canonical link, the next outer one; in
-    URDF the root.
+    It is the canonical link of their model; for a canonical link, the next outer one. A model
+    without links leaves it to the model around it.
     """
-    parents, canonical_links = scene.parents.tolist(), scene.canonical_links.tolist()
-    is_link, is_model = scene.kinds == Kind.LINK, scene.kinds == Kind.MODEL
-    if scene.urdf_root is not None:
-        return {link: 0 for link in np.flatnonzero(is_link).tolist() if link not in connected}
-    common_parents = {root: root for root in np.flatnonzero(scene.parents < 0).tolist()}
-    outermost_models: dict[int, int] = {}
-    for model in np.flatnonzero(is_model).tolist():
-        link = canonical_links[model]
-        common_parents[model] = link if link >= 0 else common_parents[parents[model]]
-        outermost_models.setdefault(link, model)
-    return {
-        body: common_parents[parents[outermost_models.get(body, body)]]
-        for body in np.flatnonzero(is_link | (is_model & (scene.canonical_links < 0))).tolist()
-        if body not in connected}
+    canonical_links = scene.canonical_links
+    scopes = ends_from_pointers(
+        np.where((scene.parents < 0) | (canonical_links >= 0), -1, scene.parents))
+    # Of the models that have the same canonical link, the outermost one comes first in the file.
+    outermost = np.arange(len(canonical_links), dtype=np.int32)
+    models = np.flatnonzero(canonical_links >= 0)[::-1]
+    outermost[canonical_links[models]] = models
+    found: Indices = representatives[scopes[scene.parents[outermost]]]
+    return found

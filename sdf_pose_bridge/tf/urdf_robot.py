@@ -200,11 +200,9 @@ class _RobotMaker:
         for dof in dofs:
             name, axis = _new_name(dof.name, self._joint_names), dof.axis
             self._dofs[dof.joint.element, dof.number] = name, axis.mimic
-            if dof.rad_per_unit:
-                has_limit = axis.lower > -NO_LIMIT or axis.upper < NO_LIMIT
-                steps.append((name, 'revolute' if has_limit else 'continuous', axis))
-            else:
-                steps.append((name, 'prismatic', axis))
+            has_limit = axis.lower > -NO_LIMIT or axis.upper < NO_LIMIT
+            turning = 'revolute' if has_limit else 'continuous'
+            steps.append((name, turning if dof.rad_per_unit else 'prismatic', axis))
             if dof.is_screw and dof.number is not None:
                 # A screw joint slides too.
                 follows = Mimic(dof.joint.element, dof.number, dof.m_per_unit, 0.0, 0.0)

@@ -15,13 +15,13 @@ from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.geometry.rotations import Floats
 from sdf_pose_bridge.names import shortened
 from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.scene.loading import load_text
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.include.uris import resource_finder, ResourceFinder
 from sdf_pose_bridge.sdformat.shape_types import Primitive
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadRequest
-from sdf_pose_bridge.tf.loading import scene_from_text
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import elements_in_model, tf_tree_from_scene, TfTree
 
@@ -139,7 +139,9 @@ def markers_from_text(
         includes has changed, so that it is not valid or has other elements or poses.
     """
     try:
-        scene = scene_from_text(text, path, request, shapes=True)
+        scene = load_text(
+            text, str(path), resource_paths=request.resource_paths,
+            on_missing_include=request.on_missing_include, shapes=True)
     except SdfError:
         return None
     if fingerprint_of_scene(scene) != fingerprint:

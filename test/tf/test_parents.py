@@ -26,12 +26,9 @@ def parents_of(text):
     }
 
 
-def names_of(text, part):
+def loops_of(text):
     scene = sdf_pose_bridge.load_text(text)
-    answer = tf_parents_from_scene(scene)
-    if part == 'free':
-        return {scene.names[index] for index in answer.free_bodies}
-    return [scene.names[joint.element] for joint in answer.loop_joints]
+    return [scene.names[joint.element] for joint in tf_parents_from_scene(scene).loop_joints]
 
 
 def model(name, children):
@@ -205,12 +202,12 @@ def test_a_chain_of_models_starts_at_the_one_that_is_joined_to_the_world():
     assert (parents['r::r'], parents['q::q'], parents['p::p']) == ('world', 'r::r', 'q::q')
 
 
-def test_what_is_free():
-    text = world_file(
+def test_the_bodies_that_a_joint_connects_to_their_parents():
+    scene = sdf_pose_bridge.load_text(world_file(
         model('free', LINKS) + model('bolted', LINKS + joints(('world', 'a'), ('a', 'b')))
-        + model('fixed', '<static>1</static><link name="l"/>') + '<frame name="f"/>')
-    assert {'free::a'} <= names_of(text, 'free')
-    assert not {'bolted::a', 'bolted::b'} & names_of(text, 'free')
+        + model('fixed', '<static>1</static><link name="l"/>') + '<frame name="f"/>'))
+    assert [scene.names[body] for body in tf_parents_from_scene(scene).joints] == [
+        'bolted::a', 'bolted::b']
 
 
 # Loops
@@ -221,7 +218,7 @@ def test_what_is_free():
 def test_the_joint_that_closes_a_loop_is_left_out(pairs):
     text = model_file(LINKS + joints(*pairs))
     last = '_'.join(pairs[-1])
-    assert names_of(text, 'loops') == [f'm::{last}']
+    assert loops_of(text) == [f'm::{last}']
     parents = parents_of(text)
     assert (parents['m::b'], parents['m::c']) == ('m::a', 'm::b')
     assert parents[f'm::{last}'] == f'm::{pairs[-1][1]}'
@@ -229,7 +226,7 @@ def test_the_joint_that_closes_a_loop_is_left_out(pairs):
 
 def test_a_loop_through_the_world():
     text = model_file(LINKS + joints(('world', 'a'), ('a', 'b'), ('b', 'c'), ('world', 'c')))
-    assert names_of(text, 'loops') == ['m::world_c']
+    assert loops_of(text) == ['m::world_c']
 
 
 # Any joints
@@ -243,7 +240,7 @@ def test_a_joint_connects_a_child_to_its_parent_or_closes_a_loop(pairs):
     text = world_file(
         ''.join(model(name, LINKS) for name in 'pqr')
         + ''.join(fixed_joint(f'j{i}', *pair) for i, pair in enumerate(pairs)))
-    parents, loops = parents_of(text), names_of(text, 'loops')
+    parents, loops = parents_of(text), loops_of(text)
     connected = {body: {body} for body in ['world', *BODIES]}
     for i, (parent, child) in enumerate(pairs):
         assert (f'j{i}' in loops) == (child in connected[parent])
