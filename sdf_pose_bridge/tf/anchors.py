@@ -67,7 +67,8 @@ def detached_bodies(
     Find the bodies that get no transform although their parent is the root.
 
     :param problems: takes warnings of patterns that no top-level model matches.
-    :return: for each element whether it is such a body.
+    :return: for each element whether it is such a body; for the root, whether the link "world" of
+        a URDF gets none.
     """
     is_detached = np.zeros(len(scene.names), np.bool_)
     if anchors is AnchorModels.AUTO:
@@ -77,14 +78,14 @@ def detached_bodies(
     if not isinstance(anchors, AnchorPatterns):
         anchors = AnchorPatterns((), anchors is AnchorModels.STATIC)
     anchored = _matching_models(scene, anchors.patterns, problems)
+    # Children of the link "world" of a URDF keep their parent.
+    keeps_static = anchors.has_static or scene.urdf_root == WORLD_FRAME
+    is_detached[:1] = True  # a file may have no elements
     is_body = np.isin(scene.kinds, (Kind.LINK, Kind.MODEL))
     for body in np.flatnonzero(is_body & (scene.parents < 0)[tf_parents.parents]).tolist():
         model = scene.top_level_element(body)
         is_static = body in tf_parents.joints or model in scene.static_models
-        # Children of the link "world" of a URDF keep their parent.
-        is_detached[body] = not (
-            model in anchored or (anchors.has_static and is_static)
-            or (is_static and scene.urdf_root == WORLD_FRAME))
+        is_detached[body] = not (model in anchored or (is_static and keeps_static))
     return is_detached
 
 

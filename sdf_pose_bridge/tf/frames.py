@@ -43,15 +43,12 @@ _SAME_PLACE = 1e-12
 
 
 class Frame(NamedTuple):
-    """A frame that is added to the frames of the elements."""
+    """A frame that is added to those of the elements; its fields are as in :class:`Frames`."""
 
     frame_id: str
     owner: int
-    """As in :class:`Frames`."""
     parent: int
-    """As in :class:`Frames`."""
     pose: Pose
-    """Pose in the root frame."""
 
 
 class Frames(NamedTuple):

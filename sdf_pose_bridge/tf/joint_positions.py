@@ -114,11 +114,16 @@ class JointPositions:
             [scene.top_level_element(joint) for joint in self._joints], np.intp)
         self._indices = _indices_from_names(
             scene, dofs, self._top_level_elements.tolist(), model)
-        self._followers = _followers(dofs)
-        # Followers have the position of their leader.
-        self._is_free = np.ones(len(dofs), np.bool_)
-        self._is_free[[each.dof for found in self._followers.values() for each in found]] = False
         self._slides = frozenset(each.name + SLIDE_SUFFIX for each in dofs if each.is_screw)
+        self._followers: dict[int, list[Follower]] = {}
+        self._is_free = np.ones(len(dofs), np.bool_)
+        leaders = {(each.joint.element, each.number): dof for dof, each in enumerate(dofs)}
+        for dof, each in enumerate(dofs):
+            mimic = each.axis.mimic
+            if mimic is not None and (mimic.joint, mimic.axis) in leaders:
+                leader = leaders[mimic.joint, mimic.axis]
+                self._followers.setdefault(leader, []).append(Follower(dof, leader, mimic))
+                self._is_free[dof] = False
 
     @property
     def models(self) -> tuple[str, ...]:
@@ -297,15 +302,3 @@ def _indices_from_names(
     return {
         scope: {name: min(found) for name, found in names.items() if len(found) == 1} | own[scope]
         for scope, names in aliases.items()}
-
-
-def _followers(dofs: Sequence[DegreeOfFreedom]) -> Mapping[int, list[Follower]]:
-    """Return the degrees of freedom that mimic each one."""
-    indices = {(each.joint.element, each.number): index for index, each in enumerate(dofs)}
-    followers: dict[int, list[Follower]] = {}
-    for index, dof in enumerate(dofs):
-        mimic = dof.axis.mimic
-        if mimic is not None and (mimic.joint, mimic.axis) in indices:
-            leader = indices[mimic.joint, mimic.axis]
-            followers.setdefault(leader, []).append(Follower(index, leader, mimic))
-    return followers

@@ -21,6 +21,7 @@ from sdf_pose_bridge.tf.joint_positions import JointPositions
 from sdf_pose_bridge.tf.loaded_scene import DescriptionFormat, LoadedScene, LoadRequest
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
+from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
 
 
 def loaded_scene_from_request(
@@ -70,8 +71,6 @@ def loaded_scene_from_request(
 
 def _urdf(scene: Scene, request: LoadRequest) -> tuple[str, tuple[SdfWarning, ...]]:
     """Return URDF with warnings, or an empty text with a warning that says why there is none."""
-    # Imported here because it takes 2 ms, and most nodes make no URDF.
-    from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
     options = request.tf_options
     try:
         return urdf_from_scene(

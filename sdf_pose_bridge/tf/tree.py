@@ -162,8 +162,7 @@ def tf_tree_from_scene(scene: Scene, options: TfOptions | None = None) -> TfTree
     elements = np.array(list(frame_ids), np.int32)
     nearest_frames, parents = _nearest_frames_and_parents(
         scene, tf_parents, elements,
-        detached_bodies(scene, tf_parents, options.anchor_models, problems),
-        is_world_anchored=options.anchor_models is AnchorModels.ALL)
+        detached_bodies(scene, tf_parents, options.anchor_models, problems))
     frames = Frames(list(frame_ids.values()), elements, parents, scene.poses[elements])
     if options.optical_frames:
         frames = frames.with_frames(optical_frames_of_cameras(frames, sensor_ids, scene, naming))
@@ -314,16 +313,12 @@ def _description(scene: Scene, element: int) -> str:
 
 
 def _nearest_frames_and_parents(
-    scene: Scene, tf_parents: TfParents, elements: Indices, is_detached: NDArray[np.bool_], *,
-    is_world_anchored: bool,
+    scene: Scene, tf_parents: TfParents, elements: Indices, is_detached: NDArray[np.bool_],
 ) -> tuple[Indices, Indices]:
     """
     Find the frame that each element is in, as in :class:`TfTree`, and the parent of each frame.
 
     The parent is the nearest TF ancestor of the frame's element that has a frame.
-
-    :param elements: the elements that have a frame.
-    :param is_world_anchored: whether the link "world" of a URDF gets a transform.
     """
     is_root = scene.parents < 0
     frames = np.full(len(is_root), NO_PARENT, np.int32)
@@ -334,6 +329,7 @@ def _nearest_frames_and_parents(
     nearest_frames: Indices = frames[ends_from_pointers(
         np.where(ends_here, -1, tf_parents.parents))]
     parents: Indices = nearest_frames[tf_parents.parents[elements]]
+    # Element 0 is the link "world" of a URDF.
+    parents[elements == 0] = ROOT_IS_PARENT
     parents[is_detached[elements]] = NO_PARENT
-    parents[elements == 0] = ROOT_IS_PARENT if is_world_anchored else NO_PARENT
     return nearest_frames, parents

@@ -12,7 +12,7 @@ one each.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import count
 from typing import NamedTuple
 
@@ -160,11 +160,14 @@ class _RobotMaker:
         for frame, parent in enumerate(tree.parents.tolist()):
             if frame != root:
                 self._add_frame(frame, ids[parent], steps[frame])
+        links, waiting = [], [UrdfLink(first, self._links[root], None)]
+        while waiting:
+            links.append(waiting.pop())
+            waiting += reversed(self._children[links[-1].name])
         return UrdfRobot(
             scene.own_name(self._model),
             frozenset(np.flatnonzero(elements_in_model(scene, scene.names[self._model])).tolist()),
-            tuple(self._in_order(UrdfLink(first, self._links[root], None))),
-            (*tree.warnings, *self._problems.warnings))
+            tuple(links), (*tree.warnings, *self._problems.warnings))
 
     def _first_link(self) -> tuple[str, int]:
         """Return the name of the link that has no parent, and its frame; -1 for the root."""
@@ -184,13 +187,6 @@ class _RobotMaker:
                 f'"{name}" is fixed to "{tree.root_frame}" in URDF, since nothing else holds it '
                 'and URDF has only one tree', scene.place(self._elements[frame]))
         return tree.root_frame, -1
-
-    def _in_order(self, first: UrdfLink) -> Iterator[UrdfLink]:
-        waiting = [first]
-        while waiting:
-            link = waiting.pop()
-            yield link
-            waiting += reversed(self._children[link.name])
 
     # Joints
 
