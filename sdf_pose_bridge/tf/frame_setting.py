@@ -38,8 +38,7 @@ def frame_change_from_request(
     """
     Find the change of a file that moves a frame to a measured pose. Nothing is written.
 
-    :param request: the request of the published scene.
-    :param fingerprint: the fingerprint of the published scene.
+    :param request: the request of the published scene, which has this fingerprint.
     :param asked: the measured pose of the frame.
     :param reference: the name of the frame in which it was measured; empty for the root frame.
     :param positions: the positions of the joints at that time; None if they do not move.

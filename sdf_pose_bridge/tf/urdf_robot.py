@@ -248,19 +248,17 @@ class _RobotMaker:
     def _leader(self, name: str, follows: Mimic | None) -> UrdfMimic | str:
         """Return the joint that a joint follows in the end, or the reason why there is none."""
         passed: dict[str, Mimic] = {}
-        found: UrdfMimic | str | None = None
-        while found is None:
-            if follows is None:
-                found = UrdfMimic(name, 1.0, 0.0)
-            elif name in self._leaders:
-                found = self._leaders[name]
-            else:
-                passed[name] = follows
-                leader, next_follows = self._dofs.get((follows.joint, follows.axis), ('', None))
-                if not leader or leader in passed:
-                    found = (f'"{self._scene.names[follows.joint]}" '
-                             f'{"follows it in turn" if leader else "does not move"}')
-                name, follows = leader, next_follows
+        found: UrdfMimic | str
+        while follows is not None and name not in self._leaders:
+            passed[name] = follows
+            name, next_follows = self._dofs.get((follows.joint, follows.axis), ('', None))
+            if not name or name in passed:
+                found = (f'"{self._scene.names[follows.joint]}" '
+                         f'{"follows it in turn" if name else "does not move"}')
+                break
+            follows = next_follows
+        else:
+            found = self._leaders.get(name, UrdfMimic(name, 1.0, 0.0))
         for passed_name, mimic in reversed(passed.items()):
             if isinstance(found, UrdfMimic):
                 found = UrdfMimic(

@@ -12,7 +12,7 @@ from typing import NamedTuple, TypeAlias
 from lxml import etree
 
 from sdf_pose_bridge.errors import SdfWarning
-from sdf_pose_bridge.geometry.poses import canonical_relative_poses, Pose, pose_product
+from sdf_pose_bridge.geometry.poses import Pose, pose_product
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
 from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.problems import Problems
@@ -101,13 +101,10 @@ class _Writer:
         self._finder = resource_finder(resource_paths, os.environ)
         self._has_capsules = has_capsules
         self._problems = Problems(scene.files)
-        self._parts: defaultdict[int, list[tuple[int, Pose]]] = defaultdict(list)
-        """For each link its inertial, visuals and collisions, with their poses in it."""
-        elements = sorted({*scene.shapes, *scene.inertials} & robot.elements)
-        links = scene.parents[elements]
-        poses = canonical_relative_poses(scene.poses[links], scene.poses[elements])
-        for element, link, pose in zip(elements, links.tolist(), poses.tolist(), strict=True):
-            self._parts[link].append((element, Pose(*pose)))
+        self._parts: defaultdict[int, list[int]] = defaultdict(list)
+        """The inertial, visuals and collisions of each link."""
+        for element in sorted({*scene.shapes, *scene.inertials} & robot.elements):
+            self._parts[scene.parents.item(element)].append(element)
         self._root = etree.Element('robot', name=robot.name)
         if has_capsules:
             self._root.set('version', '1.2')
@@ -138,10 +135,10 @@ class _Writer:
         # XML allows no two hyphens in a row, nor one at the end, in a comment.
         self._root.append(etree.Comment(f' {text.replace("--", "- -")} '))
 
-    def _warn(self, element: int, what: str, reason: str) -> None:
-        name = self._scene.names[element]
+    def _leave_out(self, element: int, reason: str) -> None:
+        kind, name = Kind(self._scene.kinds[element]).label, self._scene.names[element]
         self._problems.warning(
-            f'{what} "{name}" {reason}', self._scene.place(element))
+            f'the {kind} "{name}" is left out: {reason}', self._scene.place(element))
 
     # Joints
 
@@ -155,9 +152,7 @@ class _Writer:
             return
         etree.SubElement(xml, 'axis', xyz=_numbers(_rounded(axis.xyz)))
         effort, velocity, damping, friction = axis.dynamics
-        limits = {'lower': axis.lower, 'upper': axis.upper}
-        if joint.type == 'continuous':
-            limits = {}
+        limits = {} if joint.type == 'continuous' else {'lower': axis.lower, 'upper': axis.upper}
         if limits or min(effort, velocity) < NO_LIMIT:
             limits |= {'effort': effort, 'velocity': velocity}
             etree.SubElement(xml, 'limit', {
@@ -176,7 +171,8 @@ class _Writer:
 
     def _add_link(self, name: str, element: int) -> None:
         xml = etree.SubElement(self._root, 'link', name=name)
-        for part, pose in self._parts[element]:
+        for part in self._parts[element]:
+            pose = self._scene.relative_pose_of(part, element)
             if part in self._scene.inertials:
                 self._add_inertial(xml, part, pose)
             else:
@@ -185,7 +181,7 @@ class _Writer:
     def _add_inertial(self, link: etree._Element, element: int, pose: Pose) -> None:
         inertial = self._scene.inertials[element]
         if not inertial.is_valid:
-            self._warn(element, 'the inertial', 'is left out: no body can have its moments')
+            self._leave_out(element, 'no body can have its moments')
             return
         xml = etree.SubElement(link, 'inertial')
         _add_origin(xml, pose)
@@ -200,7 +196,7 @@ class _Writer:
         shape = self._scene.shapes[element]
         geometries = self._geometries(shape, element)
         if isinstance(geometries, str):
-            self._warn(element, f'the {kind}', f'is left out: {geometries}')
+            self._leave_out(element, geometries)
             return
         name = self._scene.own_name(element)
         for number, (tag, attributes, z_m) in enumerate(geometries):
