@@ -68,13 +68,10 @@ class Selection(NamedTuple):
     """The degree of freedom of each of these entries."""
     followers: tuple[Follower, ...]
     """Other degrees of freedom that follow these; each after its leader."""
+    changed: list[int]
+    """All of these, which get a position."""
     beside: NDArray[np.intp]
     """All degrees of freedom in the same top-level models."""
-
-    @property
-    def changed(self) -> list[int]:
-        """All degrees of freedom that get a position."""
-        return [*self.dofs.tolist(), *(follower.dof for follower in self.followers)]
 
 
 class UnreportedDofs(NamedTuple):
@@ -158,18 +155,17 @@ class JointPositions:
         indices = self._indices[model]
         rows = [row for row, name in enumerate(names) if name in indices]
         dofs = [indices[names[row]] for row in rows]
-        reached = dict.fromkeys(dofs)
-        followers: list[Follower] = []
-        for leader in (waiting := list(reached)):
+        reached: dict[int, Follower | None] = dict.fromkeys(dofs)
+        for leader in (changed := list(reached)):
             for follower in self._followers.get(leader, ()):
                 if follower.dof not in reached:
-                    reached[follower.dof] = None
-                    followers.append(follower)
-                    waiting.append(follower.dof)
-        top_level = self._top_level_elements[list(reached)]
+                    reached[follower.dof] = follower
+                    changed.append(follower.dof)
+        top_level = self._top_level_elements
         return Selection(
-            np.array(rows, np.intp), np.array(dofs, np.intp), tuple(followers),
-            np.flatnonzero(np.isin(self._top_level_elements, top_level)))
+            np.array(rows, np.intp), np.array(dofs, np.intp),
+            tuple(filter(None, reached.values())), changed,
+            np.flatnonzero(np.isin(top_level, top_level[changed])))
 
     def unknown(self, names: Iterable[str], model: str = '') -> list[str]:
         """Find names that are unknown or ambiguous, in a model as for :meth:`selection`."""
