@@ -1,25 +1,80 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Add the mass of the child link of a fixed joint to the mass of the parent link.
+Lump links into their parents with their masses, as Gazebo does at fixed joints.
 
 Source: ``ReduceInertialToParent`` of libsdformat's ``parser_urdf.cc``.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.poses import relative_pose
+from sdf_pose_bridge.geometry.poses import Pose, pose_product, relative_pose
 from sdf_pose_bridge.geometry.rotations import matrix_from_quaternion
+from sdf_pose_bridge.names import WORLD_FRAME
 from sdf_pose_bridge.sdformat.inertials import (
     matrix_from_moments,
     moments_from_matrix,
     moved_moments,
 )
-from sdf_pose_bridge.sdformat.urdf.robot import Inertial
+from sdf_pose_bridge.sdformat.urdf.robot import Inertial, Joint, Link, Robot
+from sdf_pose_bridge.sdformat.urdf.values import pose_from_xyz_rpy, rpy_by_urdfdom
+
+
+class Base(NamedTuple):
+    """The link that another one is lumped into; for other links, the link itself."""
+
+    link: Link
+    pose: Pose
+    """Pose of the lumped link in it."""
+    members: list[Link]
+    """The link itself and those that are lumped into it."""
+
+
+def bases_of_links(robot: Robot, is_reducible: Callable[[Joint], bool]) -> dict[str, Base]:
+    """
+    Find the link that each link is lumped into.
+
+    :param is_reducible: whether libsdformat removes a joint.
+    """
+    bases: dict[str, Base] = {}
+    for link in robot.links:
+        joint = robot.parent_joints.get(link.name)
+        if joint is None or joint.parent == WORLD_FRAME or not is_reducible(joint):
+            base = Base(link, Pose(), [])
+        else:
+            base = bases[joint.parent]
+            base = base._replace(pose=pose_product(base.pose, joint.origin))
+        base.members.append(link)
+        bases[link.name] = base
+    return bases
+
+
+def lumped_inertials(
+    robot: Robot, bases: Mapping[str, Base], *, skips_massless: bool,
+) -> dict[str, Inertial | None]:
+    """
+    Add the inertials of lumped links to those of their parents.
+
+    :param skips_massless: whether two without a mass have no sum, instead of one that is NaN.
+    """
+    inertials = {link.name: link.inertial for link in robot.links}
+    for link in reversed(robot.links):
+        inertial = inertials[link.name]
+        if inertial is None or bases[link.name].link is link:
+            continue
+        joint = robot.parent_joints[link.name]
+        parent = inertials[joint.parent] or Inertial()
+        place = pose_from_xyz_rpy(joint.origin[:3], rpy_by_urdfdom(joint.origin))
+        if parent.mass + inertial.mass or not skips_massless:
+            inertials[joint.parent] = lumped_inertial(
+                parent, inertial._replace(origin=pose_product(place, inertial.origin)))
+    return inertials
 
 
 def lumped_inertial(parent: Inertial, lumped: Inertial) -> Inertial:
