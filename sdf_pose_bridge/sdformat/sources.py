@@ -106,7 +106,7 @@ class Sources:
         """The errors and warnings of these files."""
         self._origins: dict[XmlElement, Origin] = {}
         self._parsed_lines: dict[XmlElement, int] = {}
-        self._places: dict[XmlElement, Place] | None = None
+        self._places: dict[XmlElement | None, Place] | None = None
 
     def with_own_problems(self) -> Sources:
         """Return the same sources with separate problems, which are added to the load later."""
@@ -209,27 +209,17 @@ class Sources:
 
     def place(self, xml: XmlElement) -> Place:
         """Return the file and the line of an element, and its path in the tree."""
-        parent = xml.getparent()
-        outer = Place('') if parent is None else self._place_in_tree(parent)
-        origin = self.origin(xml)
-        file = outer.file if origin.file is None else origin.file
-        return Place(
-            file if origin.pose is None else origin.pose.file, self.line(xml),
-            f'{outer.element}/{_step(xml)}')
-
-    def _place_in_tree(self, xml: XmlElement) -> Place:
-        """Return the file and the path of an ancestor of an element."""
         known = {} if self._places is None else self._places
+        unknown = list(takewhile(lambda each: each not in known, with_ancestors(xml)))
+        for each in reversed(unknown):
+            outer = known.get(each.getparent(), Place(''))
+            known[each] = Place(
+                self.origin(each).file or outer.file, element=f'{outer.element}/{_step(each)}')
+        place, pose = known[xml], self.origin(xml).pose
         if len(known) > _MOST_PLACES_REMEMBERED:
             known.clear()
-        unknown = list(takewhile(lambda each: each not in known, with_ancestors(xml)))
-        for element in reversed(unknown):
-            parent = element.getparent()
-            outer = Place('') if parent is None else known[parent]
-            known[element] = Place(
-                self.origin(element).file or outer.file,
-                element=f'{outer.element}/{_step(element)}')
-        return known[xml]
+        return place._replace(
+            file=place.file if pose is None else pose.file, line=self.line(xml))
 
     def copy_of(self, xml: XmlElement, user: XmlElement) -> XmlElement:
         """

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 import contextlib
 import errno
-from itertools import chain, islice
+from itertools import chain
 import os
 import re
 import stat
@@ -20,7 +20,6 @@ from xml.parsers import expat
 
 from lxml import etree
 import numpy as np
-from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import FileReadError, PassingReadError, Place, SdfWarning
 from sdf_pose_bridge.names import shortened_message
@@ -77,7 +76,8 @@ _BREAK_IN_TAG = re.compile(rb'<[^/!?<>][^<>\t\n]*[\t\n]')
 _NAME_SPACE = re.compile(rb'"[^"]*"|\'[^\']*\'|(?<=\s)(xmlns)(?=[\s:=])')
 """A declaration of a name space in a start tag, as group 1, or a value that may look like one."""
 
-_NAME = re.compile(rb'(?<=\s)name\s*=\s*("[^"]*"|\'[^\']*\')')
+_BROKEN_NAME = re.compile(
+    rb'(?<=\s)name\s*=\s*("[^"\t\n]*[\t\n][^"]*"|\'[^\'\t\n]*[\t\n][^\']*\')')
 _BREAKS = {'\n': 'a line break', '\t': 'a tab'}
 
 
@@ -309,25 +309,13 @@ def _lines_and_warnings(
     has_break = has_break or rest.count(b'<') != rest.count(b'>')
     if not has_break and text.count(b'\n') < _LAST_LINE:
         return {}, []
-    first_lines = _lines_of_start_tags(text)
-    tags = (tag[1] for tag in START_TAG.finditer(text) if tag[1]) if has_break else ()
-    broken = {index: tag for index, tag in enumerate(tags) if b'\n' in tag or b'\t' in tag}
-    late = int(np.searchsorted(first_lines, _LAST_LINE))
-    start = min(late, next(iter(broken), late))
     # Nothing after the outermost element belongs to the tree.
-    elements = list(islice(root.iter(etree.Element), start, None))
-    end = start + len(elements)
-    chosen = [*(index for index in broken if index < min(late, end)), *range(late, end)]
-    lines = {
-        elements[index - start]: line
-        for index, line in zip(chosen, first_lines[chosen].tolist(), strict=True)}
+    lines = dict(zip(root.iter(etree.Element), _lines_of_start_tags(text), strict=False))
     warnings = []
-    for index, tag in broken.items():
-        if index >= end:
-            break
-        element, line = elements[index - start], int(first_lines[index])
-        name = _NAME.search(tag)
-        value = name[1][1:-1].strip(WHITE_SPACE.encode()).decode() if name else ''
+    tags = (tag[1] for tag in START_TAG.finditer(text) if tag[1]) if has_break else ()
+    for (element, line), tag in zip(lines.items(), tags, strict=False):
+        name = _BROKEN_NAME.search(tag)
+        value = name[1][1:-1].decode().strip(WHITE_SPACE) if name else ''
         found = [label for character, label in _BREAKS.items() if character in value]
         if found and not is_foreign(element):
             msg = (f'the name "{value}" holds {found[0]}, which XML reads as a blank; Gazebo '
@@ -336,12 +324,12 @@ def _lines_and_warnings(
     return lines, warnings
 
 
-def _lines_of_start_tags(text: bytes) -> NDArray[np.int64]:
+def _lines_of_start_tags(text: bytes) -> list[int]:
     """Return the line of each start tag, from 1."""
     without_others = _OTHER_PART.sub(lambda part: b'\n' * part[0].count(b'\n'), text)
     characters = np.frombuffer(without_others + b'/', np.uint8)
     begins = np.flatnonzero(characters == ord('<'))
     begins = begins[characters[begins + 1] != ord('/')]
-    lines: NDArray[np.int64] = np.searchsorted(
-        np.flatnonzero(characters == ord('\n')), begins) + 1
+    lines: list[int] = (
+        np.searchsorted(np.flatnonzero(characters == ord('\n')), begins) + 1).tolist()
     return lines
