@@ -3,8 +3,8 @@
 """
 Change a pose in the text of a file, and no other byte.
 
-The reader gives the place of a pose by the line in which its start tag begins. Several tags can
-begin in one line, so the reader gets the same text with one line per tag.
+The reader gives the place of a pose by the line in which its start tag begins, so it gets the same
+text with other line breaks, in which each line has one start tag.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from itertools import count
 import re
 
 from lxml import etree
-import numpy as np
 
 from sdf_pose_bridge.errors import Place, PoseNotSetError
 from sdf_pose_bridge.geometry.formulas import degrees_from_radians
@@ -36,6 +35,7 @@ _TEXT_AFTER_COMMENTS = re.compile(rb'(?:\s*<!--.*?-->)*([^<]*)', re.DOTALL)
 _WORD = re.compile(rb'[^ \t\n\r,]+')
 _INDENTATION = re.compile(rb'\s*?(\r?\n[ \t]*)?(?=<)')
 _SAME_ROTATION = 1e-12
+_NO_BREAKS = bytes.maketrans(b'\r\n', b'  ')
 
 
 class PoseText:
@@ -74,14 +74,14 @@ class PoseText:
             raise PoseNotSetError(msg, Place(path))
 
     def with_a_line_for_each_tag(self) -> bytes:
-        """Return a text of the same meaning with at most one start tag per line."""
-        parts = []
+        """Return a text of the same meaning, in which each line has one start tag."""
+        lines = []
         position = 0
         for _, end in self._tags:
             cut = end - self._is_closed(end)
-            parts.append(self._text[position:cut])
+            lines.append(self._text[position:cut].translate(_NO_BREAKS))
             position = cut
-        return self._encoded(b'\n'.join([*parts, self._text[position:]]))
+        return self._encoded(b'\n'.join([*lines, self._text[position:]]))
 
     def element_at_line(self, line: int) -> int:
         """
@@ -89,16 +89,12 @@ class PoseText:
 
         :param line: its line in :meth:`with_a_line_for_each_tag`.
         :return: the number of the element.
-        :raises PoseNotSetError: if no start tag begins there.
+        :raises PoseNotSetError: if there is none.
         """
-        breaks = np.flatnonzero(np.frombuffer(self._text, np.uint8) == ord('\n'))
-        starts = np.array([start for start, _ in self._tags])
-        lines = np.searchsorted(breaks, starts) + np.arange(len(starts)) + 1
-        element = int(np.searchsorted(lines, line))
-        if element == len(lines) or lines[element] != line:
+        if not 0 < line <= len(self._tags):
             msg = 'the file alone does not place this element'
             raise PoseNotSetError(msg, Place(self._path))
-        return element
+        return line - 1
 
     def line(self, element: int) -> int:
         """Return the line in which the start tag of an element begins, in the unchanged text."""
