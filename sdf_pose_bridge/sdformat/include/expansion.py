@@ -10,7 +10,6 @@ is not found or not valid is reported and stays in the tree, so that no error fo
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import takewhile
 import os
 from pathlib import Path
 
@@ -32,9 +31,9 @@ from sdf_pose_bridge.errors import (
 )
 from sdf_pose_bridge.names import ROOT_FRAME, shortened
 from sdf_pose_bridge.sdformat.documents import Document, document_from_file
-from sdf_pose_bridge.sdformat.grammar import Definition, definition_of
+from sdf_pose_bridge.sdformat.grammar import definition_of
 from sdf_pose_bridge.sdformat.include.merge import merge, ModelByItself
-from sdf_pose_bridge.sdformat.include.params import apply_params
+from sdf_pose_bridge.sdformat.include.params import apply_params, definition_in_tree, TOP_TAGS
 from sdf_pose_bridge.sdformat.include.uris import (
     model_file_from_directory,
     ModelFile,
@@ -50,7 +49,6 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     described,
     first_child,
     value_of,
-    with_ancestors,
     written_tag,
     XmlElement,
 )
@@ -58,8 +56,6 @@ from sdf_pose_bridge.sdformat.xml_tree import (
 _MOST_TOPS_SHOWN = 5
 """Largest number of elements at the top of a file that an error names."""
 
-_TOP_TAGS = ('model', 'actor', 'light')
-"""The tags of elements that can be included, in the order of preference."""
 
 class IncludeExpansion:
     """
@@ -86,8 +82,6 @@ class IncludeExpansion:
         self._model_files: dict[str, ModelFile | str] = {}
         self._missing: set[str] = set()
         self._merged_models: dict[tuple[XmlElement, str, bytes], ModelByItself | None] = {}
-        self._definitions: dict[XmlElement, Definition | None] = {}
-        """The definitions of the elements around includes."""
 
     def expand(self, document: Document) -> None:
         """
@@ -101,28 +95,12 @@ class IncludeExpansion:
         """Replace the includes in a tree; ``files`` led to it, each included by the one before."""
         for include in list(root.iter('include')):
             parent = include.getparent()
-            if parent is not None and self._definition_in_tree(parent) is not None:
+            definition = None if parent is None else definition_in_tree(parent)
+            if definition is not None and definition.value_type is None and (
+                    not definition.takes_any_children):
                 self._expand_include(include, files)
                 if include.getparent() is not None:
                     self._mark_missing(include)
-
-    def _definition_in_tree(self, xml: XmlElement) -> Definition | None:
-        """Return the definition of an element with children; None if it is not read."""
-        known = self._definitions
-        unknown = list(takewhile(lambda each: each not in known, with_ancestors(xml)))
-        for each in reversed(unknown):
-            parent = each.getparent()
-            if parent is None:
-                # The copy of an included element has no <sdf> around it yet.
-                is_top = each.tag in ('sdf', *_TOP_TAGS)
-                known[each] = definition_of(str(each.tag), has_frames=True) if is_top else None
-                continue
-            outer = known[parent]
-            definition = None if outer is None else outer.children.get(each.tag)
-            is_read = definition is not None and definition.value_type is None and (
-                not definition.takes_any_children)
-            known[each] = definition if is_read else None
-        return known[xml]
 
     def _mark_missing(self, include: XmlElement) -> None:
         """Record the URI of an include that is not replaced, by the names that it may have."""
@@ -239,7 +217,7 @@ class IncludeExpansion:
 
     def _top(self, include: XmlElement, document: Document) -> XmlElement | None:
         """Return the model, actor or light at the top of an included file."""
-        tops = [xml for xml in child_elements(document.root) if xml.tag in _TOP_TAGS]
+        tops = [xml for xml in child_elements(document.root) if xml.tag in TOP_TAGS]
         if len(tops) > 1:
             names = ', '.join(map(described, tops[:_MOST_TOPS_SHOWN]))
             rest = len(tops) - _MOST_TOPS_SHOWN
@@ -247,7 +225,7 @@ class IncludeExpansion:
                    f'{f" and {rest} more" if rest > 0 else ""}')
             self._sources.error(ElementIncorrectTypeError, include, msg)
         if tops:
-            return min(tops, key=lambda xml: _TOP_TAGS.index(str(xml.tag)))
+            return min(tops, key=lambda xml: TOP_TAGS.index(str(xml.tag)))
         # An include at its top that was not found is reported already.
         if first_child(document.root, 'include') is None:
             msg = f'{document.path} cannot be included: no model, light or actor is at its top'
@@ -273,7 +251,7 @@ class IncludeExpansion:
     def _insert(self, include: XmlElement, top: XmlElement) -> None:
         parent = include.getparent()
         assert parent is not None
-        definition = self._definition_in_tree(parent)
+        definition = definition_in_tree(parent)
         if definition is None or top.tag not in definition.children:
             msg = (f'the included {written_tag(top)} is left out; a <{written_tag(parent)}> '
                    'cannot hold one')

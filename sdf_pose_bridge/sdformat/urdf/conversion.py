@@ -31,7 +31,12 @@ from sdf_pose_bridge.sdformat.inertials import Inertial as SdfInertial
 from sdf_pose_bridge.sdformat.inertials import MOMENTS, warn_of_inertial
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES, URDF_JOINT_TYPES
-from sdf_pose_bridge.sdformat.urdf.lumping import bases_of_links, lumped_inertials
+from sdf_pose_bridge.sdformat.urdf.lumping import (
+    Base,
+    bases_of_links,
+    is_reducible,
+    lumped_inertials,
+)
 from sdf_pose_bridge.sdformat.urdf.robot import (
     Inertial,
     Joint,
@@ -41,7 +46,6 @@ from sdf_pose_bridge.sdformat.urdf.robot import (
     SHAPES,
 )
 from sdf_pose_bridge.sdformat.urdf.values import (
-    is_true,
     leading_numbers,
     numbers_of,
     pose_from_xyz_rpy,
@@ -63,15 +67,6 @@ _GAZEBO_TAGS = ('include', 'joint', 'link', 'model')
 
 _MOVED_TAGS = ('light', 'projector', 'sensor')
 """Children of ``<gazebo>`` whose poses change when their link is lumped."""
-
-_SETTINGS = frozenset({
-    'canonicalBody', 'cfmDamping', 'collision', 'dampingFactor', 'disableFixedJointLumping',
-    'fdir1', 'fudgeFactor', 'implicitSpringDamper', 'kd', 'kp', 'laserRetro', 'material',
-    'maxContacts', 'maxVel', 'minDepth', 'mu1', 'mu2', 'preserveFixedJoint', 'provideFeedback',
-    'selfCollide', 'springReference', 'springStiffness', 'static', 'stopCfm', 'stopErp',
-    'turnGravityOff', 'visual',
-})
-"""Children of ``<gazebo>`` that are not SDFormat."""
 
 _LUMP_PREFIX = '_fixed_joint_lump__'
 
@@ -109,24 +104,20 @@ class _Conversion:
         self._joint_names = {
             joint.xml.get('name'): joint.name for joint in robot.parent_joints.values()}
         self._model = self._add(self._sdf, 'model', root, name=robot.name)
-        self._static: str | None = None
-        self._kept: dict[str, str] = {}
-        """Names of fixed joints that remain joints, and the types that they get."""
-        self._extensions: dict[str, list[XmlElement]] = {}
-        """Elements of SDFormat by the name of their link or joint; the model has no name."""
-        self._read_gazebo_elements()
-        self._bases = bases_of_links(robot, self._is_reducible)
+        self._extensions = dict(robot.extensions)
+        self._bases = bases_of_links(robot)
         self._inertials = lumped_inertials(robot, self._bases, skips_massless=for_ros)
         self._left_out = self._links_left_out()
         if for_ros:
             # Gazebo's view of the robot is for warnings alone.
-            self._bases = bases_of_links(robot, lambda _: False)
+            self._bases = {link.name: Base(link, Pose(), [link]) for link in robot.links}
             self._inertials = {link.name: link.inertial for link in robot.links}
+            self._leave_out_trees()
 
     def result(self) -> XmlElement:
         self._replace_lumped_ends_of_joints()
         self._add_links()
-        static = self._static
+        static = self._robot.static
         if self._for_ros:
             # Its joints move. A model without links, as of the link "world" alone, has to be
             # static.
@@ -142,42 +133,31 @@ class _Conversion:
                 'converted model has no link or joint of that name', is_for_gazebo=self._for_ros)
         return self._sdf
 
-    # Reading
+    # What Gazebo leaves out
 
-    def _read_gazebo_elements(self) -> None:
-        for gazebo in child_elements(self._root, 'gazebo'):
-            reference = gazebo.get('reference', '')
-            for child in child_elements(gazebo):
-                if self._for_ros and not reference and child.tag in _GAZEBO_TAGS:
-                    self._sources.warning(
-                        child, f'<{written_tag(child)}> is for Gazebo alone, as ROS has only the '
-                        'tree of the robot', is_for_gazebo=True)
-                elif child.tag not in _SETTINGS:
-                    self._extensions.setdefault(reference, []).append(child)
-                elif child.tag == 'static' and not reference:
-                    self._static = str(is_true(child)).lower()
-                elif child.tag == 'preserveFixedJoint' and is_true(child):
-                    self._kept[reference] = 'fixed'
-                elif child.tag == 'disableFixedJointLumping' and is_true(child):
-                    self._kept.setdefault(reference, 'revolute')
-
-    def _is_reducible(self, joint: Joint) -> bool:
-        return joint.type == 'fixed' and joint.name not in self._kept
+    def _leave_out_trees(self) -> None:
+        extensions = self._extensions.pop('', [])
+        self._extensions[''] = [xml for xml in extensions if xml.tag not in _GAZEBO_TAGS]
+        for xml in extensions:
+            if xml.tag in _GAZEBO_TAGS:
+                self._sources.warning(
+                    xml, f'<{written_tag(xml)}> is for Gazebo alone, as ROS has only the tree of '
+                    'the robot', is_for_gazebo=True)
 
     def _is_lumped(self, link: Link) -> bool:
         return self._bases[link.name].link is not link
 
     def _links_left_out(self) -> set[str]:
         """Return the links that Gazebo leaves out; warn of these, and of inertials it rejects."""
-        left_out = set()
-        for link in self._robot.links:
-            joint = self._robot.parent_joints.get(link.name)
+        left_out, robot = set(), self._robot
+        for link in robot.links:
+            joint = robot.parent_joints.get(link.name)
             inertial = self._inertials[link.name]
             if joint is not None and joint.parent in left_out:
                 left_out.add(link.name)
             elif inertial is None or inertial.mass <= 0.0:
                 if link.name != WORLD_FRAME and (
-                        joint is None or not self._is_reducible(joint)):
+                        joint is None or not is_reducible(joint, robot)):
                     left_out.add(link.name)
                     self._sources.warning(
                         link.xml, f'link "{link.name}" has no mass, so Gazebo leaves it out with '
@@ -264,7 +244,7 @@ class _Conversion:
             self._sources.warning(joint.xml, f'{msg}; it is fixed here')
             joint_type = 'fixed'
         elif joint.type == 'fixed' and not self._for_ros:
-            joint_type = self._kept.get(joint.name, joint_type)
+            joint_type = self._robot.kept_joints.get(joint.name, joint_type)
         base = self._bases[joint.parent]
         parent = base.link.name
         xml = self._add(self._model, 'joint', joint.xml, name=joint.name, type=joint_type)
@@ -274,7 +254,7 @@ class _Conversion:
         self._add(xml, 'child', joint.xml, joint.child)
         if JOINT_TYPES[joint_type].dofs:
             self._add_axis(xml, joint)
-        elif joint.name in self._kept and not self._for_ros:
+        elif joint.name in self._robot.kept_joints and not self._for_ros:
             # Other joints may mimic it, as libsdformat gives it the axis of a default.
             self._add(xml, 'axis', joint.xml)
         self._add_extensions(xml, joint.name)

@@ -8,7 +8,7 @@ Source: ``ReduceInertialToParent`` of libsdformat's ``parser_urdf.cc``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 import math
 from typing import NamedTuple
 
@@ -36,16 +36,17 @@ class Base(NamedTuple):
     """The link itself and those that are lumped into it."""
 
 
-def bases_of_links(robot: Robot, is_reducible: Callable[[Joint], bool]) -> dict[str, Base]:
-    """
-    Find the link that each link is lumped into.
+def is_reducible(joint: Joint, robot: Robot) -> bool:
+    """Return whether libsdformat removes a joint."""
+    return joint.type == 'fixed' and joint.name not in robot.kept_joints
 
-    :param is_reducible: whether libsdformat removes a joint.
-    """
+
+def bases_of_links(robot: Robot) -> dict[str, Base]:
+    """Find the link that each link is lumped into."""
     bases: dict[str, Base] = {}
     for link in robot.links:
         joint = robot.parent_joints.get(link.name)
-        if joint is None or joint.parent == WORLD_FRAME or not is_reducible(joint):
+        if joint is None or joint.parent == WORLD_FRAME or not is_reducible(joint, robot):
             base = Base(link, Pose(), [])
         else:
             base = bases[joint.parent]

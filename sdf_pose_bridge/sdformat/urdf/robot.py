@@ -1,7 +1,7 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
 """
-Read the robot of a URDF file: its links and joints.
+Read the robot of a URDF file: links, joints and the content of ``<gazebo>`` elements.
 
 Values that poses do not need are not read.
 
@@ -21,7 +21,12 @@ from sdf_pose_bridge.names import JOINT_SUFFIX
 from sdf_pose_bridge.sdformat.inertials import MOMENTS
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
-from sdf_pose_bridge.sdformat.urdf.values import NotFiniteError, numbers_of, pose_from_xyz_rpy
+from sdf_pose_bridge.sdformat.urdf.values import (
+    is_true,
+    NotFiniteError,
+    numbers_of,
+    pose_from_xyz_rpy,
+)
 from sdf_pose_bridge.sdformat.xml_tree import child_elements, first_child, written_tag, XmlElement
 
 _JOINT_PARTS = {
@@ -37,6 +42,15 @@ _JOINT_PARTS = {
 SHAPES = {
     'box': 'size:3!', 'cylinder': 'length! radius!', 'mesh': 'scale:3', 'sphere': 'radius!'}
 """Shapes, and their attributes that are numbers."""
+
+_SETTINGS = frozenset({
+    'canonicalBody', 'cfmDamping', 'collision', 'dampingFactor', 'disableFixedJointLumping',
+    'fdir1', 'fudgeFactor', 'implicitSpringDamper', 'kd', 'kp', 'laserRetro', 'material',
+    'maxContacts', 'maxVel', 'minDepth', 'mu1', 'mu2', 'preserveFixedJoint', 'provideFeedback',
+    'selfCollide', 'springReference', 'springStiffness', 'static', 'stopCfm', 'stopErp',
+    'turnGravityOff', 'visual',
+})
+"""Children of ``<gazebo>`` that are not SDFormat."""
 
 _INERTIA = ' '.join(f'{name}!' for name in MOMENTS)
 
@@ -95,6 +109,13 @@ class Robot(NamedTuple):
     """The links in the tree, each before its children, which are in the order of their joints."""
     parent_joints: Mapping[str, Joint]
     """By the name of the child link, ordered by their own names in the file."""
+    static: str | None
+    """The text of ``<static>`` of the model in ``<gazebo>``; None if there is none."""
+    kept_joints: Mapping[str, str]
+    """Names of fixed joints that remain joints for Gazebo, and the types that they get."""
+    extensions: Mapping[str, list[XmlElement]]
+    """The elements of SDFormat in ``<gazebo>`` by the name of their link or joint; the name is
+    empty for the model."""
 
 
 def robot_from_tree(root: XmlElement, sources: Sources, *, is_included: bool) -> Robot:
@@ -156,7 +177,28 @@ def robot_from_tree(root: XmlElement, sources: Sources, *, is_included: bool) ->
                 parent_joints[child] = joint._replace(name=new_name)
         if name in used:
             name = _unused_name(f'{name}_model', used)
-    return Robot(name, origin, list(in_order.values()), parent_joints)
+    return Robot(
+        name, origin, list(in_order.values()), parent_joints, *_gazebo_elements_of(root))
+
+
+def _gazebo_elements_of(
+    root: XmlElement,
+) -> tuple[str | None, dict[str, str], dict[str, list[XmlElement]]]:
+    static = None
+    kept_joints: dict[str, str] = {}
+    extensions: dict[str, list[XmlElement]] = {}
+    for gazebo in child_elements(root, 'gazebo'):
+        reference = gazebo.get('reference', '')
+        for child in child_elements(gazebo):
+            if child.tag not in _SETTINGS:
+                extensions.setdefault(reference, []).append(child)
+            elif child.tag == 'static' and not reference:
+                static = str(is_true(child)).lower()
+            elif child.tag == 'preserveFixedJoint' and is_true(child):
+                kept_joints[reference] = 'fixed'
+            elif child.tag == 'disableFixedJointLumping' and is_true(child):
+                kept_joints.setdefault(reference, 'revolute')
+    return static, kept_joints, extensions
 
 
 def _unused_name(name: str, used: set[str]) -> str:
