@@ -30,28 +30,26 @@ class FileChange(NamedTuple):
 
     path: str
     """The file."""
-    old_text: bytes
-    """Its whole content."""
     encoding: str
     """Python's name of its encoding."""
-    begin: int
-    """The first byte of the range."""
-    end: int
-    """The byte behind it."""
+    before: bytes
+    """Its content before the range."""
+    old: bytes
+    """The old content of the range."""
     new: bytes
     """The new content of the range."""
+    behind: bytes
+    """Its content behind the range."""
 
     @property
     def new_text(self) -> bytes:
         """The whole new content of the file."""
-        return b''.join([self.old_text[:self.begin], self.new, self.old_text[self.end:]])
+        return self.before + self.new + self.behind
 
     @property
     def undone(self) -> FileChange:
         """The change that restores the old content of the range after this one was written."""
-        return FileChange(
-            self.path, self.new_text, self.encoding, self.begin, self.begin + len(self.new),
-            self.old_text[self.begin:self.end])
+        return self._replace(old=self.new, new=self.old)
 
     def write(self) -> None:
         """
@@ -60,8 +58,8 @@ class FileChange(NamedTuple):
         :raises FileWriteError: if it cannot be written, or has changed since it was read; it is
             unchanged then.
         """
-        if self.new != self.old_text[self.begin:self.end]:
-            replace_file(self.path, self.old_text, self.new_text)
+        if self.new != self.old:
+            replace_file(self.path, self.before + self.old + self.behind, self.new_text)
 
     @property
     def diff(self) -> str:
@@ -71,9 +69,7 @@ class FileChange(NamedTuple):
         Characters that cannot be printed are escaped; very long lines are shortened to the part
         around the change.
         """
-        before, old, behind, new = (text.decode(self.encoding) for text in (
-            self.old_text[:self.begin], self.old_text[self.begin:self.end],
-            self.old_text[self.end:], self.new))
+        before, old, new, behind = (text.decode(self.encoding) for text in self[2:])
         *above, head = before.split('\n')
         tail, line_break, below = behind.partition('\n')
         if len(head) > _LONGEST_PART:

@@ -50,7 +50,7 @@ class PoseText:
     """
 
     def __init__(self, content: bytes, path: str) -> None:
-        self._path, self._content = path, content
+        self._path = path
         file = xml_from_bytes(content, path)
         root = file.root
         for warning in file.warnings:
@@ -181,11 +181,8 @@ class PoseText:
 
     def _change(self, begin: int, end: int, new: bytes) -> FileChange:
         """Return a change of the file, by its range in the text in UTF-8."""
-        begin_in_file = len(self._encoded(self._text[:begin]))
-        end_in_file = begin_in_file + len(self._encoded(self._text[begin:end]))
-        return FileChange(
-            self._path, self._content, self._encoding, begin_in_file, end_in_file,
-            self._encoded(new))
+        parts = self._text[:begin], self._text[begin:end], new, self._text[end:]
+        return FileChange(self._path, self._encoding, *map(self._encoded, parts))
 
     def _format(self, element: int) -> PoseFormat:
         xml = self._elements[element]

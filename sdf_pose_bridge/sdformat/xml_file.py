@@ -8,6 +8,7 @@ Depth and sizes are limited as libxml2 does without its option ``huge``.
 
 from __future__ import annotations
 
+import codecs
 from collections.abc import Mapping
 import contextlib
 import errno
@@ -25,7 +26,7 @@ from sdf_pose_bridge.errors import FileReadError, PassingReadError, Place, SdfWa
 from sdf_pose_bridge.names import shortened_message
 from sdf_pose_bridge.process_limits import raise_limits
 from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.xml_text import DecodedText, repaired, text_from_bytes
+from sdf_pose_bridge.sdformat.xml_text import repaired, text_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import is_foreign, WHITE_SPACE, XmlElement
 
 _PASSING = frozenset({
@@ -153,38 +154,36 @@ def xml_from_file(path: str, usage: Usage, text: bytes | str | None = None) -> X
     :raises FileReadError: as :func:`bytes_from_file` and :func:`xml_from_bytes`.
     :raises LimitError: if it is too large.
     """
-    encoding = 'utf-8' if isinstance(text, str) else None
     if text is None:
-        content = bytes_from_file(path, usage)
+        text = bytes_from_file(path, usage)
     else:
-        content = text.encode(errors='surrogatepass') if isinstance(text, str) else text
-        usage.add('bytes_read', len(content), Place(path))
+        if isinstance(text, str):  # whatever encoding it declares
+            text = codecs.BOM_UTF8 + text.encode(errors='surrogatepass')
+        usage.add('bytes_read', len(text), Place(path))
     # Counted before they are parsed, which takes many times the memory; with comments.
-    raise_limits(len(content))
-    usage.add('elements', content.count(b'<') - content.count(b'</'), Place(path))
-    return xml_from_bytes(content, path, encoding)
+    raise_limits(len(text))
+    usage.add('elements', text.count(b'<') - text.count(b'</'), Place(path))
+    return xml_from_bytes(text, path)
 
 
-def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFile:
+def xml_from_bytes(content: bytes, path: str) -> XmlFile:
     """
     Parse XML.
 
     :param path: the name to use in errors.
-    :param encoding: ``utf-8`` for text in UTF-8 with any declaration; else None.
     :raises FileReadError: if it is not well-formed and libsdformat does not accept it, or its
         encoding is not supported.
     """
-    decoded = text_from_bytes(text, path) if encoding is None else DecodedText(text, encoding)
-    text = decoded.utf8
-    faults = [(1, decoded.fault)] if decoded.fault else []
+    text, encoding, fault = text_from_bytes(content, path)
+    faults = [(1, fault)] if fault else []
     try:
         root = _parsed(text, path)
     except FileReadError:
         repair = repaired(text)
         if repair is None:
             raise
-        text = repair.text
-        faults += repair.faults
+        text, more_faults = repair
+        faults += more_faults
         root = _parsed(text, path)
     if root.getroottree().docinfo.internalDTD is not None:
         _check_with_expat(text, path)
@@ -195,7 +194,7 @@ def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFi
     warnings += [
         SdfWarning('WARNING', f'this is not well-formed XML: {fault}', Place(path, line))
         for line, fault in faults]
-    return XmlFile(root, tuple(warnings), lines, text, decoded.encoding)
+    return XmlFile(root, tuple(warnings), lines, text, encoding)
 
 
 def _parsed(text: bytes, path: str) -> XmlElement:

@@ -22,7 +22,7 @@ from collections.abc import Callable
 import contextlib
 import re
 import sys
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from sdf_pose_bridge.errors import FileReadError, Place
 
@@ -79,22 +79,13 @@ _ESCAPED_BYTES = _Replacement(
 """Results of the error handler ``surrogateescape`` for bytes that are not UTF-8."""
 
 
-class DecodedText(NamedTuple):
-    """The text of a file."""
-
-    utf8: bytes
-    """In UTF-8, without a byte order mark."""
-    encoding: str
-    """Python's name of the encoding that the file is in."""
-    fault: str = ''
-    """A fault of the encoding; the bytes are unchanged, and may not be UTF-8."""
-
-
-def text_from_bytes(content: bytes, path: str) -> DecodedText:
+def text_from_bytes(content: bytes, path: str) -> tuple[bytes, str, str]:
     """
     Decode XML by its first bytes or the encoding that it declares.
 
     :param path: the name to use in errors.
+    :return: the text in UTF-8 without a byte order mark; Python's name of its encoding; and a
+        fault of the encoding, with which the bytes are unchanged and may not be UTF-8.
     :raises FileReadError: for an encoding that is not supported.
     """
     encoding = next((name for mark, name in _MARKS if content.startswith(mark)), '')
@@ -106,32 +97,27 @@ def text_from_bytes(content: bytes, path: str) -> DecodedText:
         with contextlib.suppress(LookupError, UnicodeDecodeError):
             name = codecs.lookup(encoding or 'utf-8').name
             if name == 'utf-8':
-                return DecodedText(content.removeprefix(codecs.BOM_UTF8), name)
+                return content.removeprefix(codecs.BOM_UTF8), name, ''
             if _ALLOWED.fullmatch(name) is not None:
-                return DecodedText(content.decode(name).removeprefix('\ufeff').encode(), name)
+                return content.decode(name).removeprefix('\ufeff').encode(), name, ''
             msg = (f'the encoding "{encoding}" is not supported; UTF-8, UTF-16, UTF-32, ASCII, '
                    'ISO-8859 and windows-125x are')
             raise FileReadError(msg, Place(path, 1))
     fault = f'the text is not in the encoding "{encoding}"; UTF-8 is used'
-    return DecodedText(content, 'utf-8', fault)
+    return content, 'utf-8', fault
 
 
-class Repair(NamedTuple):
-    """Well-formed XML with the meaning of a text that is not well-formed."""
-
-    text: bytes
-    """In UTF-8, without a declaration."""
-    faults: list[tuple[int, str]]
-    """The first line and a message for each sort of fault."""
+_Repair: TypeAlias = tuple[bytes, list[tuple[int, str]]]
 
 
-def repaired(text: bytes) -> Repair | None:
+def repaired(text: bytes) -> _Repair | None:
     """
-    Rewrite text.
+    Rewrite text as well-formed XML of the same meaning.
 
     :param text: text that is not well-formed XML; it should be UTF-8.
-    :return: the repair; None if TinyXML-2 rejects the text too. Nesting and names of end tags are
-        not checked.
+    :return: the XML in UTF-8 without a declaration, and the first line and a message for each sort
+        of fault; None if TinyXML-2 rejects the text too. Nesting and names of end tags are not
+        checked.
     """
     return _Repairer().repaired(text)
 
@@ -147,7 +133,7 @@ class _Repairer:
         """The tags of open elements behind the outermost one."""
         self._may_declare = True
 
-    def repaired(self, text: bytes) -> Repair | None:
+    def repaired(self, text: bytes) -> _Repair | None:
         escaped = text.decode('utf-8', errors='surrogateescape')
         decoded = self._replaced(escaped, _ESCAPED_BYTES).partition('\0')[0]
         parts = []
@@ -175,7 +161,7 @@ class _Repairer:
             parts.append(
                 self._repaired_tag(token, rest) if token['tag'] else self._repaired_token(token))
             self._line += decoded.count('\n', begin, position)
-        return None if self._open_after_root or not self._has_root else Repair(
+        return None if self._open_after_root or not self._has_root else (
             ''.join(parts).encode(errors='replace'),
             sorted((line, fault) for fault, line in self._faults.items()))
 

@@ -24,9 +24,9 @@ from sdf_pose_bridge.sdformat.file_change import FileChange, replace_file
 
 
 def change_of(text, old, new, encoding='utf-8', path='cell.sdf'):
-    begin = len(text[:text.index(old)].encode(encoding))
-    return FileChange(path, text.encode(encoding), encoding, begin,
-                      begin + len(old.encode(encoding)), new.encode(encoding))
+    before, _, behind = text.partition(old)
+    return FileChange(path, encoding, *(
+        part.encode(encoding) for part in (before, old, new, behind)))
 
 
 LINES = ''.join(f'line {number}\n' for number in range(1, 10))
@@ -48,15 +48,16 @@ def test_the_change_is_shown_as_difflib_would(text, old, new):
 
 def test_a_change_that_is_undone():
     change = change_of(LINES, '5', 'other')
-    assert change.undone.old_text == change.new_text
     assert change.undone.new_text == LINES.encode()
+    assert change.undone.undone == change
 
 
 @given(st.text('ab\n', min_size=1), st.data())
 def test_the_new_text_is_the_old_one_with_the_range_replaced(text, data):
     begin = data.draw(st.integers(0, len(text)))
     end = data.draw(st.integers(begin, len(text)))
-    change = FileChange('f', text.encode(), 'utf-8', begin, end, b'new')
+    change = FileChange(
+        'f', 'utf-8', text[:begin].encode(), text[begin:end].encode(), b'new', text[end:].encode())
     assert change.new_text.decode() == f'{text[:begin]}new{text[end:]}'
     removed = [line for line in change.diff.splitlines()[3:] if line[0] in '- ']
     assert set(''.join(line[1:] for line in removed)) <= set(text)

@@ -11,7 +11,7 @@ proxy frame. Source: ``insertIncludedElement`` in libsdformat's ``parser.cc``.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from lxml import etree
@@ -37,6 +37,17 @@ _MOVED_TAGS = frozenset({'frame', 'gripper', 'include', 'joint', 'link', 'model'
 _PROXY_START, _PROXY_END = '_merged__', '__model__'
 _NOT_IN_WORLDS = ('gripper', 'link')
 _FORMAT_ATTRIBUTES = ('degrees', 'rotation_format')
+_WRITTEN = (MODEL_FRAME,)
+_WRITTEN_OR_EMPTY = (MODEL_FRAME, '')
+_REFERENCES: Mapping[str, list[tuple[str, str, tuple[str, ...]]]] = {
+    'link': [('pose', 'relative_to', _WRITTEN_OR_EMPTY)],
+    'model': [('pose', 'relative_to', _WRITTEN_OR_EMPTY)],
+    'frame': [('pose', 'relative_to', _WRITTEN), ('.', 'attached_to', _WRITTEN_OR_EMPTY)],
+    'joint': [('pose', 'relative_to', _WRITTEN), ('axis/xyz', 'expressed_in', _WRITTEN),
+              ('axis2/xyz', 'expressed_in', _WRITTEN)],
+}
+"""The references to frames in a child of a model: path, attribute, and the values that mean the
+model frame."""
 
 
 class ModelByItself(NamedTuple):
@@ -140,33 +151,16 @@ def _move_children(include: XmlElement, model: XmlElement, proxy: str, sources: 
 
 def _replace_model_frame(xml: XmlElement, proxy: str) -> None:
     """Let references to the model frame refer to the proxy frame."""
-    pose = first_child(xml, 'pose')
-    if xml.tag in ('link', 'model'):
-        if pose is None:
-            pose = etree.Element('pose')
-            xml.insert(0, pose)
-        _replace_reference(pose, 'relative_to', proxy, replaces_empty=True)
-        return
-    if pose is not None and xml.tag in ('frame', 'joint'):
-        _replace_reference(pose, 'relative_to', proxy)
-    if xml.tag == 'frame':
-        _replace_reference(xml, 'attached_to', proxy, replaces_empty=True)
-    elif xml.tag == 'joint':
-        for end in child_elements(xml, 'parent', 'child'):
-            if value_of(end) == MODEL_FRAME:
-                end[:] = []
-                end.text = proxy
-        for axis in child_elements(xml, 'axis', 'axis2'):
-            for xyz in child_elements(axis, 'xyz'):
-                _replace_reference(xyz, 'expressed_in', proxy)
-
-
-def _replace_reference(
-    xml: XmlElement, attribute: str, proxy: str, *, replaces_empty: bool = False,
-) -> None:
-    name = attribute_of(xml, attribute)
-    if name == MODEL_FRAME or (replaces_empty and not name):
-        xml.set(attribute, proxy)
+    if xml.tag in ('link', 'model') and first_child(xml, 'pose') is None:
+        xml.insert(0, etree.Element('pose'))
+    for path, attribute, meaning_model_frame in _REFERENCES.get(str(xml.tag), ()):
+        for element in xml.iterfind(path):
+            if attribute_of(element, attribute) in meaning_model_frame:
+                element.set(attribute, proxy)
+    for end in child_elements(xml, 'parent', 'child') if xml.tag == 'joint' else ():
+        if value_of(end) == MODEL_FRAME:
+            end[:] = []
+            end.text = proxy
 
 
 def _warn_of_model_frame_in(xml: XmlElement, sources: Sources) -> None:
