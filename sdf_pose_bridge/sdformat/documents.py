@@ -70,19 +70,15 @@ def document_from_file(
     sources.problems.extend(file.warnings)
     if b'$' in file.text or b'xacro' in file.text:
         _check_is_expanded(root, path, sources)
-    gazebo_elements: list[XmlElement] = []
-    urdf_root = None
+    has_gazebo_elements, urdf_root = False, None
     if root.tag == 'robot':
         # Most files are not URDF and do not need this import.
         from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
-        gazebo_elements = root.findall('gazebo')
-        for element in gazebo_elements:
-            if gazebo_faults is None:
-                root.remove(element)
-                continue
-            for child in list(child_elements(element)) if gazebo_faults else ():
-                if not gazebo_faults.isdisjoint(map(sources.line, child.iter(etree.Element))):
-                    element.remove(child)
+        has_gazebo_elements = first_child(root, 'gazebo') is not None
+        for child in root.xpath('gazebo/*'):
+            if gazebo_faults is None or not gazebo_faults.isdisjoint(
+                    map(sources.line, child.iter(etree.Element))):
+                child.getparent().remove(child)
         root, root_link = sdf_from_urdf(root, sources, is_included=is_included)
         if not is_included:
             urdf_root = root_link
@@ -97,7 +93,7 @@ def document_from_file(
         b':' in file.text and SEPARATOR.encode() in file.text)
     convert(root, version, sources)
     _check_top_model(root, sources)
-    return Document(path, root, bool(gazebo_elements), urdf_root)
+    return Document(path, root, has_gazebo_elements, urdf_root)
 
 
 def _declared_version(root: XmlElement, place: Place) -> Version:
@@ -114,13 +110,10 @@ def _declared_version(root: XmlElement, place: Place) -> Version:
 
 def _check_top_model(root: XmlElement, sources: Sources) -> None:
     """Refuse ``relative_to`` in the pose of a file's top model (``checkXmlFromRoot``)."""
-    model = first_child(root, 'model')
-    pose = None if model is None else first_child(model, 'pose')
     # Blanks count here, unlike elsewhere.
-    relative_to = '' if pose is None else pose.get('relative_to', '')
-    if pose is not None and relative_to:
-        msg = (f'relative_to="{relative_to}": a model at the top of a file is placed in the '
-               'implicit root, which has no frames')
+    for pose in root.xpath('model[1]/pose[1][@relative_to!=""]'):
+        msg = (f'relative_to="{pose.get("relative_to")}": a model at the top of a file is placed '
+               'in the implicit root, which has no frames')
         sources.error(AttributeInvalidError, pose, msg)
         del pose.attrib['relative_to']
 

@@ -10,7 +10,6 @@ version: ``getModelFilePath`` and ``getBestSupportedModelVersion`` of libsdforma
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from functools import lru_cache
 import os
 from pathlib import Path
 import re
@@ -200,8 +199,10 @@ class ResourceFinder(NamedTuple):
         steps = [unquote(part) for part in parts.path.split('/') if part]
         if steps and re.fullmatch(r'[0-9]+\.[0-9]+', steps[0]):
             steps = steps[1:]
-        if len(steps) < 3 or steps[1] != 'models' or not all(
-                map(_is_file_name, (parts.netloc, *steps))):
+        # Without its per cent escapes, each step must be the name of one file.
+        if len(steps) < 3 or steps[1] != 'models' or any(
+                step in ('', '.', '..') or '/' in step or '\0' in step
+                for step in (parts.netloc, *steps)):
             return
         version, rest = (steps[3] if len(steps) > 3 else 'tip'), steps[4:]
         model = f'{self.fuel_cache}/{parts.netloc}'
@@ -253,29 +254,18 @@ def _is_package(directory: Path, name: str) -> bool:
 
 def _entry_in_any_case(directory: str, name: str) -> str:
     """Return the entry of a name; Gazebo writes owners and models in lower case."""
-    plain = f'{directory}/{name}'
-    if os.path.exists(plain):  # noqa: PTH110
-        return plain
-    return f'{directory}/{_entries(directory).get(name.lower(), name)}'
+    if not os.path.exists(f'{directory}/{name}'):  # noqa: PTH110
+        entries = _entries(directory)
+        name = next((entry for entry in entries if entry.lower() == name.lower()), name)
+    return f'{directory}/{name}'
 
 
-def _entries(directory: str) -> Mapping[str, str]:
-    """Return the names in a directory by their lower case; empty if it cannot be read."""
+def _entries(directory: str) -> list[str]:
+    """Return the names in a directory; none if it cannot be read."""
     try:
-        return _entries_of_state(directory, os.stat(directory).st_mtime_ns)  # noqa: PTH116
-    except (OSError, ValueError):  # ValueError: a zero character
-        return {}
-
-
-@lru_cache(maxsize=64)
-def _entries_of_state(directory: str, _changed_ns: int) -> Mapping[str, str]:
-    # If names differ in case only, the first one counts.
-    return {name.lower(): name for name in reversed(os.listdir(directory))}  # noqa: PTH208
-
-
-def _is_file_name(name: str) -> bool:
-    """Return whether a part of a URI, without its per cent escapes, is the name of one file."""
-    return name not in ('', '.', '..') and not {'/', '\0'}.intersection(name)
+        return os.listdir(directory)  # noqa: PTH208
+    except OSError:
+        return []
 
 
 # Directories of models

@@ -261,16 +261,15 @@ class _Conversion:
         return True
 
     def _add_axis(self, xml: XmlElement, joint: Joint) -> None:
-        values = {tag: dict(part) for tag, part in joint.values.items()}
-        xyz = values.get('axis', {'xyz': [1.0, 0.0, 0.0]}).get('xyz', [0.0, 0.0, 0.0])
-        limit = values.get('limit', {})
-        if joint.type == 'fixed':
-            # It has the axis of SDFormat, as URDF gives it none.
-            xyz, values, limit = [0.0, 0.0, 1.0], {}, {'lower': [0.0], 'upper': [0.0]}
-        elif 'limit' in values:
-            ends = sorted((*limit.pop('lower', [0.0]), *limit.pop('upper', [0.0])))
-            if URDF_JOINT_TYPES[joint.type].has_limit:
-                limit.update({'lower': ends[:1], 'upper': ends[1:]})
+        # A fixed joint has the axis of SDFormat, as URDF gives it none.
+        is_fixed = joint.type == 'fixed'
+        values = {} if is_fixed else joint.values
+        xyz = values.get('axis', {'xyz': [0.0, 0.0, 1.0] if is_fixed else [1.0, 0.0, 0.0]}).get(
+            'xyz', [0.0, 0.0, 0.0])
+        limit = dict(values.get('limit', {}))
+        ends = sorted((*limit.pop('lower', [0.0]), *limit.pop('upper', [0.0])))
+        if is_fixed or URDF_JOINT_TYPES[joint.type].has_limit:
+            limit.update(lower=ends[:1], upper=ends[1:])
         axis = self._add(xml, 'axis', joint.xml)
         self._add(axis, 'xyz', joint.xml, text_from_numbers(xyz))
         self._add(axis, 'limit', joint.xml, numbers=limit)
