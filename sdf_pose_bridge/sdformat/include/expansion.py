@@ -273,49 +273,33 @@ def _name_from_uri(uri: str) -> str:
 
 def _override(include: XmlElement, top: XmlElement, sources: Sources) -> None:
     """Write the name, the pose and other children of an include into its element."""
-    name = _override_value(include, 'name', sources)
-    if name:
-        top.set('name', name)
+    tags = ('static', 'pose', 'name', 'placement_frame') if top.tag == 'model' else (
+        'pose', 'name')
+    own = {tag: xml for tag in tags if (xml := first_child(include, tag)) is not None}
+    values = {tag: value_of(xml) for tag, xml in own.items() if tag != 'pose'}
+    for tag, value in values.items():
+        if not value:
+            sources.error(ElementInvalidError, own[tag], f'<{tag}> of the include is empty')
+    if values.get('name'):
+        top.set('name', values['name'])
         sources.set_origin(top, is_named_by_include=True)
-    if top.tag == 'model':
-        if _override_value(include, 'static', sources):
-            _override_element(include, top, 'static', sources)
-        placement = _placement_frame(include, sources)
-        if placement:
-            top.set('placement_frame', placement)
-    if first_child(include, 'pose') is not None:
-        _override_element(include, top, 'pose', sources)
+    placement = values.get('placement_frame')
+    if placement:
+        top.set('placement_frame', placement)
+        if 'pose' not in own:
+            msg = (f'<placement_frame> "{placement}" needs a <pose> in the same include, which '
+                   'says where that frame is')
+            sources.error(PlacementFrameError, include, msg)
+        elif placement == ROOT_FRAME:
+            msg = f'"{placement}" is reserved; it cannot be a placement frame'
+            sources.error(ReservedNameError, include, msg)
+    for tag, new in own.items():
+        if tag in ('static', 'pose'):
+            replacement, old = copy_of(new), first_child(top, tag)
+            if old is None:
+                top.insert(0, replacement)
+            else:
+                top.replace(old, replacement)
+            sources.set_source(replacement, new)
+    if 'pose' in own:
         sources.set_origin(top, pose=Place(sources.path(include), sources.line(include)))
-
-
-def _override_value(include: XmlElement, tag: str, sources: Sources) -> str:
-    element = first_child(include, tag)
-    value = '' if element is None else value_of(element)
-    if element is not None and not value:
-        sources.error(ElementInvalidError, element, f'<{tag}> of the include is empty')
-    return value
-
-
-def _override_element(
-    include: XmlElement, top: XmlElement, tag: str, sources: Sources,
-) -> None:
-    new, old = first_child(include, tag), first_child(top, tag)
-    assert new is not None
-    replacement = copy_of(new)
-    if old is None:
-        top.insert(0, replacement)
-    else:
-        top.replace(old, replacement)
-    sources.set_source(replacement, new)
-
-
-def _placement_frame(include: XmlElement, sources: Sources) -> str:
-    placement = _override_value(include, 'placement_frame', sources)
-    if placement and first_child(include, 'pose') is None:
-        msg = (f'<placement_frame> "{placement}" needs a <pose> in the same include, which '
-               'says where that frame is')
-        sources.error(PlacementFrameError, include, msg)
-    elif placement == ROOT_FRAME:
-        msg = f'"{placement}" is reserved; it cannot be a placement frame'
-        sources.error(ReservedNameError, include, msg)
-    return placement
