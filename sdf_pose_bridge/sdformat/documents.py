@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Set
+from collections.abc import Set
 from pathlib import Path
 import re
 import shlex
@@ -17,15 +17,12 @@ from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.versions import convert, Version, version_from_text
 from sdf_pose_bridge.sdformat.xml_file import xml_from_file
-from sdf_pose_bridge.sdformat.xml_tree import (
-    child_elements,
-    first_child,
-    text_of,
-    written_tag,
-    XmlElement,
-)
+from sdf_pose_bridge.sdformat.xml_tree import first_child, text_of, written_tag, XmlElement
 
-_XACRO_DECLARATIONS = ('xacro:arg', 'xacro:property')
+_EXPANDED_PARTS = etree.XPath(
+    'descendant-or-self::*[not(ancestor-or-self::*[name()="plugin" or name()="xacro:arg" or '
+    'name()="xacro:property"])]')
+"""The elements in which xacro leaves no expression that would change a frame."""
 _XACRO_EXPRESSION = re.compile(r'\$[({]')
 _LOCATIONS = ('uri', 'filename', '_map')
 """Ends of tags whose text is a location on which no frame depends, except in an include."""
@@ -127,42 +124,30 @@ def _check_is_expanded(root: XmlElement, path: str, sources: Sources) -> None:
     locations of meshes, change no frame; such locations cause one warning.
     """
     name = Path(path).name
-    locations = []
-    for xml, found in _unexpanded(root):
-        if root.tag == 'sdf' and not name.endswith('.xacro') and _is_location(xml, found):
-            locations.append((xml, found))
-            continue
-        target = name.removesuffix('.xacro') if name.endswith('.xacro') else f'expanded_{name}'
-        if not Path(target).suffix:
-            target += '.sdf' if root.tag == 'sdf' else '.urdf'
-        command = f': xacro {shlex.quote(name)} -o {shlex.quote(target)}' if '.' in name else ''
-        msg = f'{found} is for xacro; run xacro first, and read the file that it writes{command}'
-        raise ParsingError(msg, Place(path, sources.line(xml)))
-    for xml, found in locations[:1]:
-        msg = (f'{found} is for xacro or launch files and is not expanded, so the file there is '
-               'not found; no frame depends on it')
-        sources.warning(xml, msg)
-
-
-def _is_location(xml: XmlElement, found: str) -> bool:
-    """Return whether an expression in an element is part of the location of a file."""
-    parent = xml.getparent()
-    return found.startswith('"') and written_tag(xml).endswith(_LOCATIONS) and (
-        parent is not None and parent.tag != 'include')
-
-
-def _unexpanded(xml: XmlElement) -> Iterator[tuple[XmlElement, str]]:
-    """Find unexpanded macros and expressions; return each element with its first one."""
-    tag = written_tag(xml)
-    if tag == 'plugin' or tag in _XACRO_DECLARATIONS:
-        return
-    if tag.startswith('xacro:'):
-        yield xml, f'<{tag}>'
-    for name, value in xml.items():
-        if _XACRO_EXPRESSION.search(value):
-            yield xml, f'{name}="{value}" of <{tag}>'
-    text = text_of(xml)
-    if _XACRO_EXPRESSION.search(text) and not tag.endswith('topic'):
-        yield xml, f'"{text.strip()}" in <{tag}>'
-    for child in child_elements(xml):
-        yield from _unexpanded(child)
+    is_xacro, is_sdf = name.endswith('.xacro'), root.tag == 'sdf'
+    location = None
+    for xml in _EXPANDED_PARTS(root):
+        tag, text, parent = written_tag(xml), text_of(xml), xml.getparent()
+        found = [f'<{tag}>'] if tag.startswith('xacro:') else []
+        found += [
+            f'{attribute}="{value}" of <{tag}>' for attribute, value in xml.items()
+            if _XACRO_EXPRESSION.search(value)]
+        if _XACRO_EXPRESSION.search(text) and not tag.endswith('topic'):
+            part = f'"{text.strip()}" in <{tag}>'
+            if is_sdf and not is_xacro and tag.endswith(_LOCATIONS) and (
+                    parent is not None and parent.tag != 'include'):
+                location = location or (xml, part)
+            else:
+                found.append(part)
+        if found:
+            target = name.removesuffix('.xacro') if is_xacro else f'expanded_{name}'
+            if not Path(target).suffix:
+                target += '.sdf' if is_sdf else '.urdf'
+            command = f': xacro {shlex.quote(name)} -o {shlex.quote(target)}'
+            msg = (f'{found[0]} is for xacro; run xacro first, and read the file that it writes'
+                   f'{command if "." in name else ""}')
+            raise ParsingError(msg, Place(path, sources.line(xml)))
+    if location is not None:
+        msg = (f'{location[1]} is for xacro or launch files and is not expanded, so the file '
+               'there is not found; no frame depends on it')
+        sources.warning(location[0], msg)

@@ -61,10 +61,8 @@ class FileWatcher:
 
         Other threads use :meth:`differs`.
         """
-        now = _signatures(self._signatures)
-        has_changed = now != self._signatures
-        self._signatures = now
-        return has_changed
+        before, self._signatures = self._signatures, _signatures(self._signatures)
+        return before != self._signatures
 
     def differs(self) -> bool:
         """

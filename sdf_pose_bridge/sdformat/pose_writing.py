@@ -220,21 +220,17 @@ def _words_from_pose(
     keeps_rotation: bool = False,
 ) -> list[str]:
     """Write a pose in the shortest numbers; numbers that are right already stay."""
-    numbers = [*pose[:3]]
     # Together, the errors of all numbers stay within the tolerance.
-    tolerances = [tolerance / 2.0] * 3
+    numbers = [(metres, tolerance / 2.0) for metres in pose[:3]]
     if pose_format.is_quaternion:
-        numbers += pose[3:]
-        tolerances += [tolerance / 8.0] * 4
+        numbers += [(component, tolerance / 8.0) for component in pose[3:]]
     else:
-        rpy = rpy_from_quaternion(pose[3:])
         unit = degrees_from_radians(1.0) if pose_format.is_degrees else 1.0
-        numbers += [angle * unit for angle in rpy]
-        tolerances += [tolerance / 4.0 * unit] * 3
-    words = [_shortest(number, each) for number, each in zip(numbers, tolerances, strict=True)]
-    for index, old in enumerate(old_words):
-        if abs(float(old) - numbers[index]) <= tolerances[index] or (
-                keeps_rotation and index >= 3):
+        numbers += [
+            (angle * unit, tolerance / 4.0 * unit) for angle in rpy_from_quaternion(pose[3:])]
+    words = [_shortest(*each) for each in numbers]
+    for index, (old, (number, most)) in enumerate(zip(old_words, numbers, strict=False)):
+        if abs(float(old) - number) <= most or (keeps_rotation and index >= 3):
             words[index] = old
     return words
 

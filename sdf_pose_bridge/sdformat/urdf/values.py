@@ -52,29 +52,25 @@ def numbers_of(xml: XmlElement, attributes: str) -> dict[str, list[float]]:
     """
     tag = written_tag(xml)
     result = {}
-    for word in attributes.split():
-        name, _, count = word.rstrip('!').partition(':')
+    for item in attributes.split():
+        name, _, count = item.rstrip('!').partition(':')
         text = xml.get(name)
-        if text is not None:
-            result[name] = _numbers_from_text(text, int(count or 1), f'{name} of <{tag}>')
-        elif word.endswith('!'):
-            msg = f'<{tag}> has no {name}'
+        if text is None:
+            if item.endswith('!'):
+                msg = f'<{tag}> has no {name}'
+                raise ValueError(msg)
+            continue
+        # Text behind a single number is ignored.
+        words = text.split() if count else [text.lstrip(WHITE_SPACE)]
+        result[name] = [number for word in words for number in number_from_word(word)]
+        msg = f'{name} of <{tag}> is "{text[:80]}"'
+        if not len(result[name]) == len(words) == int(count or 1):
+            msg += f', which is not {f"{count} numbers" if count else "a number"}'
             raise ValueError(msg)
+        if count and not all(map(math.isfinite, result[name])):
+            msg += '; the numbers must be finite'
+            raise NotFiniteError(msg)
     return result
-
-
-def _numbers_from_text(text: str, count: int, what: str) -> list[float]:
-    # Text behind a single number is ignored.
-    words = [text.lstrip(WHITE_SPACE)] if count == 1 else text.split()
-    numbers = [number for word in words for number in number_from_word(word)]
-    if not len(numbers) == len(words) == count:
-        type_name = 'a number' if count == 1 else f'{count} numbers'
-        msg = f'{what} is "{text[:80]}", which is not {type_name}'
-        raise ValueError(msg)
-    if count > 1 and not all(map(math.isfinite, numbers)):
-        msg = f'{what} is "{text[:80]}"; the numbers must be finite'
-        raise NotFiniteError(msg)
-    return numbers
 
 
 def pose_from_xyz_rpy(
