@@ -250,26 +250,24 @@ def _check_with_expat(text: bytes, path: str) -> None:
     :raises FileReadError: for these, and if the text up to the end of the outermost element is not
         well-formed.
     """
-    stripped = text.lstrip(WHITE_SPACE.encode())
-    skipped = text.count(b'\n', 0, len(text) - len(stripped))
     parser = expat.ParserCreate('utf-8')
 
     def check_document_type(
         _name: str, _system: str | None, _public: str | None, has_declarations: int,
     ) -> None:
         if has_declarations:
-            begin = stripped.rfind(b'<!DOCTYPE', 0, parser.CurrentByteIndex)
+            begin = text.rfind(b'<!DOCTYPE', 0, parser.CurrentByteIndex)
             msg = 'the document type has declarations of its own, which SDFormat does not have'
-            raise FileReadError(msg, Place(path, 1 + skipped + stripped.count(b'\n', 0, begin)))
+            raise FileReadError(msg, Place(path, 1 + text.count(b'\n', 0, begin)))
 
     parser.StartDoctypeDeclHandler = check_document_type
     try:
-        parser.Parse(stripped, True)
+        parser.Parse(text, True)
     except expat.ExpatError as error:
         message = expat.ErrorString(error.code)
         if message != expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
             msg = f'this is not well-formed XML: {message}'
-            raise FileReadError(msg, Place(path, skipped + error.lineno)) from error
+            raise FileReadError(msg, Place(path, error.lineno)) from error
 
 
 def _without_name_spaces(text: bytes) -> bytes:

@@ -25,7 +25,6 @@ from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
     child_elements,
-    copy_of,
     described,
     first_child,
     value_of,
@@ -36,7 +35,6 @@ from sdf_pose_bridge.sdformat.xml_tree import (
 _MOVED_TAGS = frozenset({'frame', 'gripper', 'include', 'joint', 'link', 'model', 'plugin'})
 _PROXY_START, _PROXY_END = '_merged__', '__model__'
 _NOT_IN_WORLDS = ('gripper', 'link')
-_FORMAT_ATTRIBUTES = ('degrees', 'rotation_format')
 _WRITTEN = (MODEL_FRAME,)
 _WRITTEN_OR_EMPTY = (MODEL_FRAME, '')
 _REFERENCES: Mapping[str, list[tuple[str, str, tuple[str, ...]]]] = {
@@ -91,18 +89,17 @@ def _proxy_frame(
 ) -> XmlElement | None:
     """Return the frame that takes the place of the model frame; None for an invalid model."""
     pose = first_child(model, 'pose')
-    proxy_pose = etree.Element('pose')
+    relative_to = '' if pose is None else attribute_of(pose, 'relative_to')
+    proxy_pose = etree.Element('pose', relative_to=relative_to or (
+        MODEL_FRAME if parent.tag == 'model' else WORLD_FRAME))
     if pose is not None:
-        proxy_pose = copy_of(pose)
         sources.set_source(proxy_pose, pose)
         # By itself, the model cannot be relative to a frame.
         pose.attrib.pop('relative_to', None)
-    if attribute_of(proxy_pose, 'relative_to') == ROOT_FRAME:
+    if relative_to == ROOT_FRAME:
         msg = f'relative_to="{ROOT_FRAME}" is not {ValueType.FRAME.description}'
         sources.error(AttributeInvalidError, proxy_pose, msg)
         return None
-    if not attribute_of(proxy_pose, 'relative_to'):
-        proxy_pose.set('relative_to', MODEL_FRAME if parent.tag == 'model' else WORLD_FRAME)
     root = etree.Element('sdf')
     root.append(model)
     sources.set_source(root, include)
@@ -110,8 +107,6 @@ def _proxy_frame(
     if known is None:
         return None
     proxy_pose.text = text_from_pose(known.pose)
-    for attribute in set(_FORMAT_ATTRIBUTES) & set(proxy_pose.keys()):
-        del proxy_pose.attrib[attribute]
     name = f'{_PROXY_START}{attribute_of(model, "name")}{_PROXY_END}'
     canonical_link = attribute_of(model, 'canonical_link') or known.canonical_link
     proxy = etree.Element('frame', {'name': name, 'attached_to': canonical_link})

@@ -136,13 +136,15 @@ class _Conversion:
     # What Gazebo leaves out
 
     def _leave_out_trees(self) -> None:
-        extensions = self._extensions.pop('', [])
-        self._extensions[''] = [xml for xml in extensions if xml.tag not in _GAZEBO_TAGS]
-        for xml in extensions:
-            if xml.tag in _GAZEBO_TAGS:
-                self._sources.warning(
-                    xml, f'<{written_tag(xml)}> is for Gazebo alone, as ROS has only the tree of '
-                    'the robot', is_for_gazebo=True)
+        kept = []
+        for xml in self._extensions.pop('', ()):
+            if xml.tag not in _GAZEBO_TAGS:
+                kept.append(xml)
+                continue
+            self._sources.warning(
+                xml, f'<{written_tag(xml)}> is for Gazebo alone, as ROS has only the tree of the '
+                'robot', is_for_gazebo=True)
+        self._extensions[''] = kept
 
     def _is_lumped(self, link: Link) -> bool:
         return self._bases[link.name].link is not link
