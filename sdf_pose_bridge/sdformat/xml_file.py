@@ -187,7 +187,10 @@ def xml_from_bytes(content: bytes, path: str) -> XmlFile:
         root = _parsed(text, path)
     if root.getroottree().docinfo.internalDTD is not None:
         _check_with_expat(text, path)
-    _check_instructions(root, path)
+    # TinyXML-2 refuses them in and after the outermost element.
+    for instruction in chain(root.iter(etree.PI), root.itersiblings(etree.PI)):
+        msg = f'the processing instruction <?{instruction.text}?> can only stand before <sdf>'
+        raise FileReadError(msg, Place(path, instruction.sourceline or 0))
     if b'xmlns' in text:
         root = _parsed(_without_name_spaces(text), path)
     lines, warnings = _lines_and_warnings(root, text, path)
@@ -215,7 +218,10 @@ def _parsed(text: bytes, path: str) -> XmlElement:
     if any(entry.type_name == 'ERR_NO_MEMORY' for entry in errors):
         raise MemoryError
     if errors:
-        msg = f'this is not well-formed XML: {_fault_from_message(errors[0].message.strip())}'
+        fault = errors[0].message.strip()
+        for pattern, replacement in _FAULTS.items():
+            fault = re.sub(rf'\A{pattern}\Z', replacement, fault)
+        msg = f'this is not well-formed XML: {fault}'
         # libxml2 reports a missing end behind the last line break.
         last_line = text.count(b'\n') + (not text.endswith(b'\n'))
         raise FileReadError(msg, Place(path, min(errors[0].line, last_line)))
@@ -225,22 +231,6 @@ def _parsed(text: bytes, path: str) -> XmlElement:
     if len(parser.error_log) >= _MOST_ERRORS:
         _check_with_expat(text, path)
     return root
-
-
-def _fault_from_message(message: str) -> str:
-    """Return a message of libxml2 in plain words."""
-    for pattern, fault in _FAULTS.items():
-        match = re.fullmatch(pattern, message)
-        if match:
-            return match.expand(fault)
-    return message
-
-
-def _check_instructions(root: XmlElement, path: str) -> None:
-    """Refuse processing instructions in and after the outermost element, as TinyXML-2 does."""
-    for instruction in chain(root.iter(etree.PI), root.itersiblings(etree.PI)):
-        msg = f'the processing instruction <?{instruction.text}?> can only stand before <sdf>'
-        raise FileReadError(msg, Place(path, instruction.sourceline or 0))
 
 
 def _check_with_expat(text: bytes, path: str) -> None:

@@ -43,11 +43,9 @@ from sdf_pose_bridge.sdformat.urdf.robot import (
     Link,
     Robot,
     robot_from_tree,
-    SHAPES,
 )
 from sdf_pose_bridge.sdformat.urdf.values import (
     leading_numbers,
-    numbers_of,
     pose_from_xyz_rpy,
     rpy_by_gz_math,
     rpy_by_urdfdom,
@@ -221,11 +219,10 @@ class _Conversion:
             element = self._add(xml, tag, geometry, name=name)
             pose = pose_product(self._bases[member].pose, shape.origin)
             self._add_pose(element, geometry, pose, rpy_by_urdfdom)
-            shape_tag = str(geometry.tag)
             new = self._add(
-                self._add(element, 'geometry', geometry), shape_tag, geometry,
-                numbers=numbers_of(geometry, SHAPES[shape_tag]))
-            if shape_tag == 'mesh':
+                self._add(element, 'geometry', geometry), str(geometry.tag), geometry,
+                numbers=shape.numbers)
+            if new.tag == 'mesh':
                 # Gazebo reads package:// as model://. Here meshes of packages are found in both
                 # ways.
                 self._add(new, 'uri', geometry, geometry.get('filename', ''))

@@ -39,7 +39,7 @@ _JOINT_PARTS = {
 }
 """Elements in a joint, and their attributes that are numbers; see :func:`numbers_of`."""
 
-SHAPES = {
+_SHAPES = {
     'box': 'size:3!', 'cylinder': 'length! radius!', 'mesh': 'scale:3', 'sphere': 'radius!'}
 """Shapes, and their attributes that are numbers."""
 
@@ -73,6 +73,8 @@ class Shape(NamedTuple):
     """Its pose in its link."""
     geometry: XmlElement
     """The shape, such as ``<box>``."""
+    numbers: Mapping[str, Sequence[float]]
+    """Its dimensions."""
 
 
 class Link(NamedTuple):
@@ -310,10 +312,10 @@ def _origin(xml: XmlElement) -> Pose:
 def _shape(xml: XmlElement) -> Shape:
     origin = _origin(xml)
     geometry = next(child_elements(_required_child(xml, 'geometry')), None)
-    if geometry is None or geometry.tag not in SHAPES:
-        msg = f'the <geometry> of <{written_tag(xml)}> must hold one of {", ".join(SHAPES)}'
+    if geometry is None or geometry.tag not in _SHAPES:
+        msg = f'the <geometry> of <{written_tag(xml)}> must hold one of {", ".join(_SHAPES)}'
         raise ValueError(msg)
-    numbers_of(geometry, SHAPES[str(geometry.tag)])
+    numbers = numbers_of(geometry, _SHAPES[str(geometry.tag)])
     if geometry.tag == 'mesh' and geometry.get('filename') is None:
         msg = '<mesh> has no filename'
         raise ValueError(msg)
@@ -321,4 +323,4 @@ def _shape(xml: XmlElement) -> Shape:
     if xml.tag == 'visual' and material is not None and material.get('name') is None:
         msg = '<material> has no name'
         raise ValueError(msg)
-    return Shape(xml, origin, geometry)
+    return Shape(xml, origin, geometry, numbers)
