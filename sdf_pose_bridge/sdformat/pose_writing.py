@@ -85,10 +85,8 @@ class PoseText:
 
     def element_at_line(self, line: int) -> int:
         """
-        Find an element.
+        Return the number of an element by its line in :meth:`with_a_line_for_each_tag`.
 
-        :param line: its line in :meth:`with_a_line_for_each_tag`.
-        :return: the number of the element.
         :raises PoseNotSetError: if there is none.
         """
         if not 0 < line <= len(self._tags):
@@ -102,10 +100,8 @@ class PoseText:
 
     def pose(self, element: int) -> Pose:
         """
-        Read a pose.
+        Read a pose as written.
 
-        :param element: the number of a ``<pose>``.
-        :return: the pose as written.
         :raises PoseNotSetError: if it is not a ``<pose>``, or does not consist of plain numbers.
         """
         try:
@@ -117,12 +113,10 @@ class PoseText:
 
     def with_pose(self, element: int, pose: Pose, tolerance: float) -> FileChange:
         """
-        Change a pose.
+        Change the numbers of a pose.
 
-        :param element: the number of a ``<pose>``.
         :param pose: the new pose, in the frame that this pose is relative to.
         :param tolerance: largest difference of the written pose, in metres and radians.
-        :return: the change of the file: other numbers in this pose.
         :raises PoseNotSetError: as :meth:`pose`.
         """
         turn = relative_pose(self.pose(element), pose)
@@ -135,22 +129,18 @@ class PoseText:
             return self._with_content(element, ' '.join(new_words).encode())
         changed = [
             index for index, new in enumerate(new_words) if words[index][0] != new.encode()] or [0]
-        begin, end = words[changed[0]].start(), words[changed[-1]].end()
-        text, position = b'', begin
-        for word, new in zip(words, new_words, strict=True):
-            if begin <= word.start() < end:
-                text += self._text[position:word.start()] + new.encode()
-                position = word.end()
-        return self._change(begin, end, text)
+        text, begin = b'', words[changed[0]].start()
+        position = begin
+        for index in range(changed[0], changed[-1] + 1):
+            text += self._text[position:words[index].start()] + new_words[index].encode()
+            position = words[index].end()
+        return self._change(begin, position, text)
 
     def with_new_pose(self, element: int, pose: Pose, tolerance: float) -> FileChange:
         """
         Insert a pose, indented like the next line, or one step deeper than the end tag.
 
         :param element: the number of the element that it places.
-        :param pose: as for :meth:`with_pose`.
-        :param tolerance: as for :meth:`with_pose`.
-        :return: the change of the file: one more ``<pose>``.
         """
         words = _words_from_pose(pose, PoseFormat(), tolerance)
         new = b'<pose>%s</pose>' % ' '.join(words).encode()
@@ -172,7 +162,6 @@ class PoseText:
         return own.removeprefix(outer) or b'  '
 
     def _with_content(self, element: int, content: bytes) -> FileChange:
-        """Return a change that puts content behind the start tag of an element."""
         end = self._tags[element][1]
         if not self._is_closed(end):
             return self._change(end + 1, end + 1, content)

@@ -135,29 +135,16 @@ class Sources:
     def warning(
         self, xml: XmlElement, message: str, code: str = 'WARNING', *, is_for_gazebo: bool = False,
     ) -> None:
-        """
-        Add a warning about an element to the problems.
-
-        See :meth:`Problems.warning` for the parameters.
-        """
+        """Add a warning about an element, as :meth:`Problems.warning`."""
         self.problems.warning(message, self.place(xml), code, is_for_gazebo=is_for_gazebo)
 
     def check_depth(self, depth: int, xml: XmlElement) -> None:
-        """
-        Compare the depth of an element with the limit.
-
-        :raises LimitError: if it is greater.
-        """
+        """Raise a LimitError if the depth of an element exceeds the limit."""
         if depth > self.usage.limits.depth:
             self.usage.check('depth', depth, self.place(xml))
 
     def count_copy(self, xml: XmlElement, user: XmlElement) -> None:
-        """
-        Count the elements in a copy.
-
-        :param user: the element that requests the copy.
-        :raises LimitError: if the load has copied too many.
-        """
+        """Count the elements in a copy for ``user``; raise a LimitError if there are too many."""
         self.usage.add('copied_elements', int(_NUMBER_OF_ELEMENTS(xml)), self.place(user))
 
     def add_path(self, path: str) -> None:
@@ -167,11 +154,7 @@ class Sources:
             self.paths.append(path)
 
     def add_tree(self, path: str, root: XmlElement, lines: Mapping[XmlElement, int]) -> None:
-        """
-        Add the tree of a file.
-
-        :param lines: the lines of the elements whose lines lxml does not know.
-        """
+        """Add the tree of a file, and the lines of elements that lxml does not know."""
         self.set_origin(root, file=path)
         self._parsed_lines.update(lines)
         if lines:
@@ -222,12 +205,7 @@ class Sources:
             file=place.file if pose is None else pose.file, line=self.line(xml))
 
     def copy_of(self, xml: XmlElement, user: XmlElement) -> XmlElement:
-        """
-        Copy an element with its content and its places into a separate tree.
-
-        :param user: the element that requests it.
-        :raises LimitError: if the load has copied too many elements.
-        """
+        """Copy an element with its content and its places, counted as :meth:`count_copy`."""
         self.count_copy(xml, user)
         result = copy_of(xml)
         if xml.getroottree().getroot() in self.composed_trees:

@@ -88,7 +88,6 @@ class XmlFile(NamedTuple):
     root: XmlElement
     """The outermost element. Elements have their written tags, independently of ``xmlns``."""
     warnings: tuple[SdfWarning, ...]
-    """Warnings about accepted faults."""
     lines: Mapping[XmlElement, int]
     """The lines of start tags, of the elements for which lxml has another line."""
     text: bytes
@@ -147,10 +146,9 @@ def _descriptor_without_waiting(path: str, flags: int) -> int:
 
 def xml_from_file(path: str, usage: Usage, text: bytes | str | None = None) -> XmlFile:
     """
-    Read and parse a file.
+    Read and parse a file, or a text instead of it.
 
     :param usage: counts its bytes and its elements.
-    :param text: a text to read instead of the file.
     :raises FileReadError: as :func:`bytes_from_file` and :func:`xml_from_bytes`.
     :raises LimitError: if it is too large.
     """
@@ -201,13 +199,6 @@ def xml_from_bytes(content: bytes, path: str) -> XmlFile:
 
 
 def _parsed(text: bytes, path: str) -> XmlElement:
-    """
-    Parse text.
-
-    :return: the outermost element.
-    :raises FileReadError: for the first error that is not ignored.
-    :raises MemoryError: if libxml2 has not enough memory.
-    """
     parser = etree.XMLParser(
         encoding='utf-8', recover=True, resolve_entities=False, no_network=True, load_dtd=False,
         huge_tree=False, remove_blank_text=True)
@@ -234,12 +225,7 @@ def _parsed(text: bytes, path: str) -> XmlElement:
 
 
 def _check_with_expat(text: bytes, path: str) -> None:
-    """
-    Reject declarations in the document type, and faults that libxml2 did not report.
-
-    :raises FileReadError: for these, and if the text up to the end of the outermost element is not
-        well-formed.
-    """
+    """Reject declarations in the document type, and faults that libxml2 did not report."""
     parser = expat.ParserCreate('utf-8')
 
     def check_document_type(
@@ -261,34 +247,21 @@ def _check_with_expat(text: bytes, path: str) -> None:
 
 
 def _without_name_spaces(text: bytes) -> bytes:
-    """
-    Return text of the same length and meaning, in which no prefix has a name space.
-
-    SDFormat has none, and libxml2 searches all of them when it copies an element with a prefix.
-
-    :param text: well-formed XML.
-    """
-    last = text.rfind(b'xmlns')
-    parts, position = [], 0
+    # SDFormat has none, and libxml2 searches all of them when it copies an element with a prefix.
+    result, last = bytearray(text), text.rfind(b'xmlns')
     for tag in START_TAG.finditer(text):
         if tag.start() > last:
             break
-        if tag[1] and b'xmlns' in tag[1]:
-            parts += [text[position:tag.start()], _NAME_SPACE.sub(
-                lambda match: match[0] if match[1] is None else b'xm:ns', tag[0])]
-            position = tag.end()
-    return b''.join([*parts, text[position:]])
+        for match in _NAME_SPACE.finditer(text, *tag.span(1)) if tag[1] else ():
+            if match[1]:
+                result[slice(*match.span(1))] = b'xm:ns'
+    return bytes(result)
 
 
 def _lines_and_warnings(
     root: XmlElement, text: bytes, path: str,
 ) -> tuple[dict[XmlElement, int], list[SdfWarning]]:
-    """
-    Return the facts about start tags that only the text has.
-
-    :return: the lines of the start tags for which libxml2 has another line, and warnings about
-        names with a line break or a tab.
-    """
+    """Return lines that libxml2 has not, and warnings about names with a line break or a tab."""
     # Most texts have no such tag, which this finds in a fraction of the time of the search.
     rest = text.translate(None, _NOT_TAGS_AND_BREAKS)
     has_break = (b'<\n' in rest or b'<\t' in rest) and _BREAK_IN_TAG.search(text) is not None
@@ -312,7 +285,6 @@ def _lines_and_warnings(
 
 
 def _lines_of_start_tags(text: bytes) -> list[int]:
-    """Return the line of each start tag, from 1."""
     without_others = _OTHER_PART.sub(lambda part: b'\n' * part[0].count(b'\n'), text)
     characters = np.frombuffer(without_others + b'/', np.uint8)
     begins = np.flatnonzero(characters == ord('<'))

@@ -127,10 +127,9 @@ class _Repairer:
     def __init__(self) -> None:
         self._faults: dict[str, int] = {}
         self._line = 1
-        self._depth = 0
-        self._has_root = False
-        self._open_after_root: list[str] = []
-        """The tags of open elements behind the outermost one."""
+        self._open: list[str] = []
+        """The tags of the open elements."""
+        self._is_after_root = False
         self._may_declare = True
 
     def repaired(self, text: bytes) -> _Repair | None:
@@ -146,31 +145,32 @@ class _Repairer:
             begin, position = position, rest.end()
             is_last_text = position == len(decoded) and bool((token['text'] or '').strip())
             if (token['instruction'] and not self._may_declare) or (
-                    self._is_after_root() and is_last_text):
+                    self._is_after_root and is_last_text):
                 return None
-            if token['tag'] and self._is_after_root() and not rest['empty']:
-                if not token['end']:
-                    self._open_after_root.append(token['tag'])
-                elif not self._open_after_root:
-                    self._note('an end tag without a start tag; the text behind it is not read')
-                    break
-                elif self._open_after_root.pop() != token['tag']:
-                    return None
             self._may_declare &= bool(token['instruction']) or (
                 not (token['text'] or 'x').strip('\ufeff \t\r\n'))
-            parts.append(
-                self._repaired_tag(token, rest) if token['tag'] else self._repaired_token(token))
+            if not token['tag']:
+                parts.append(self._repaired_token(token))
+            elif self._is_after_root and token['end'] and not self._open:
+                self._note('an end tag without a start tag; the text behind it is not read')
+                break
+            else:
+                parts.append(self._repaired_tag(token, rest))
+                if not token['end'] and not rest['empty']:
+                    self._open.append(token['tag'])
+                elif token['end'] and self._open and (
+                        self._open.pop() != token['tag'] and self._is_after_root):
+                    return None
+                self._is_after_root |= not self._open
             self._line += decoded.count('\n', begin, position)
-        return None if self._open_after_root or not self._has_root else (
+        # There is no element, or one behind the outermost element has no end.
+        return None if self._is_after_root is bool(self._open) else (
             ''.join(parts).encode(errors='replace'),
             sorted((line, fault) for fault, line in self._faults.items()))
 
-    def _is_after_root(self) -> bool:
-        return self._has_root and not self._depth
-
     def _repaired_token(self, token: re.Match[str]) -> str:
         whole = token[0]
-        is_outside = not self._depth
+        is_outside = self._is_after_root or not self._open
         if token['comment']:
             whole = self._replaced(whole, _CHARACTERS)
             inside = whole[4:-3]
@@ -182,7 +182,8 @@ class _Repairer:
             if not is_outside:
                 return self._repaired_text(whole)
             if whole.strip('\ufeff \t\r\n'):
-                self._note(f'text {"after" if self._has_root else "before"} the outermost element')
+                where = 'after' if self._is_after_root else 'before'
+                self._note(f'text {where} the outermost element')
             return _blank(whole)
         if token['instruction']:
             if token.start():
@@ -190,19 +191,14 @@ class _Repairer:
             return _blank(whole)
         if token['verbatim']:
             whole = self._replaced(self._replaced(whole, _SPACES), _CHARACTERS)
-        if (token['verbatim'] and is_outside) or (token['other'] and self._is_after_root()):
+        if (token['verbatim'] and is_outside) or (token['other'] and self._is_after_root):
             return _blank(whole)
         return whole
 
     def _repaired_tag(self, token: re.Match[str], rest: re.Match[str]) -> str:
-        if self._is_after_root():
+        if self._is_after_root:
             self._note('elements after the outermost element')
             return _blank(token.string[token.start():rest.end()])
-        if token['end']:
-            self._depth -= 1
-        elif not rest['empty']:
-            self._depth += 1
-        self._has_root = True
         # White space behind the name is allowed.
         parts = [f'<{token["end"]}{token["tag"]}{_blank(token["space"])}']
         if token['space']:

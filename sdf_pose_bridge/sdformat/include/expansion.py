@@ -61,8 +61,6 @@ class IncludeExpansion:
     """
     Replaces includes, and reads each included file once.
 
-    :param finder: finds the files that URIs name.
-    :param sources: takes the files, the places of elements, and problems.
     :param skips_missing: whether includes that are not found are warnings.
     :param model_by_itself: checks a model file by itself, given its ``sdf`` element. If the file
         is not valid, it reports that and returns None. Merged files have to be valid by
@@ -84,11 +82,7 @@ class IncludeExpansion:
         self._merged_models: dict[tuple[XmlElement, str, bytes], ModelByItself | None] = {}
 
     def expand(self, document: Document) -> None:
-        """
-        Replace the includes of a file.
-
-        :param document: the file, in the newest version; it is changed in place.
-        """
+        """Replace the includes of a file, in place."""
         self._expand_in(document.root, (os.path.realpath(document.path),))
 
     def _expand_in(self, root: XmlElement, files: tuple[str, ...]) -> None:
@@ -216,7 +210,6 @@ class IncludeExpansion:
             self._sources.problems.error(UriLookupError(msg, place))
 
     def _top(self, include: XmlElement, document: Document) -> XmlElement | None:
-        """Return the model, actor or light at the top of an included file."""
         tops = [xml for xml in child_elements(document.root) if xml.tag in TOP_TAGS]
         if len(tops) > 1:
             names = ', '.join(map(described, tops[:_MOST_TOPS_SHOWN]))
@@ -262,7 +255,6 @@ class IncludeExpansion:
 
 
 def _name_from_uri(uri: str) -> str:
-    """Return the likely name of a model that was not found: the name of its directory."""
     steps = [part for part in uri.split('/') if part]
     if len(steps) > 1 and steps[-1].endswith(('.sdf', '.world', '.urdf')):
         steps.pop()
@@ -272,7 +264,6 @@ def _name_from_uri(uri: str) -> str:
 # The parts that an include overrides
 
 def _override(include: XmlElement, top: XmlElement, sources: Sources) -> None:
-    """Write the name, the pose and other children of an include into its element."""
     tags = ('static', 'pose', 'name', 'placement_frame') if top.tag == 'model' else (
         'pose', 'name')
     own = {tag: xml for tag in tags if (xml := first_child(include, tag)) is not None}

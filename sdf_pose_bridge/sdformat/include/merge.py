@@ -64,7 +64,6 @@ def merge(
     """
     Replace an include by the content of the model that it merges, if that is valid.
 
-    :param include: the ``<include merge="true">``.
     :param model: the included element, with the parts that the include overrides.
     :param model_by_itself: as for
         :class:`~sdf_pose_bridge.sdformat.include.expansion.IncludeExpansion`.

@@ -58,8 +58,6 @@ def apply_params(include: XmlElement, top: XmlElement, sources: Sources) -> list
     """
     Change an included element by the first ``<experimental:params>`` of its include.
 
-    :param include: the include; it is not changed.
-    :param top: the included element.
     :param sources: takes errors and warnings. A parameter with an error is not applied.
     :return: the elements that were added.
     """
@@ -177,11 +175,6 @@ class _Changer:
     def _modify(
         self, xml: XmlElement, target: XmlElement, *, is_read_before: bool = False,
     ) -> None:
-        """
-        Change an element, and the children that a parameter has.
-
-        :param is_read_before: whether a new text is read before the new attributes.
-        """
         text = text_of(xml)
         has_text = bool(text.strip())
         self._change(
@@ -213,9 +206,8 @@ class _Changer:
         self, xml: XmlElement, target: XmlElement, text: str | None, *, is_read_before: bool,
     ) -> None:
         """
-        Change the attributes of an element to those of a parameter.
+        Change the attributes of an element to those of a parameter, and its text if one is given.
 
-        :param text: its new text; None to keep the old one.
         :param is_read_before: whether its text is read before its attributes change. Then those
             of the format of a pose are for the next text.
         """
@@ -316,7 +308,6 @@ def _holds_value(xml: XmlElement) -> bool:
 
 
 def _definition_of_parameter(xml: XmlElement) -> Definition:
-    """Return the definition of an element to add, or of a child to add to another element."""
     tag, parent = written_tag(xml), xml.getparent()
     if tag in STANDALONE_ELEMENTS or parent is None:
         return _standalone_definition(tag)
@@ -387,7 +378,7 @@ def hint_for_id(top: XmlElement, element_id: str, problems: Problems, tag: str =
 
 
 def _ids(xml: XmlElement, scope: str) -> Iterator[tuple[str, str]]:
-    """Iterate over the ids in an element, and their tags; empty ones for those without."""
+    """Iterate over ids and tags in an element; empty ones for elements without an id."""
     for child in child_elements(xml):
         name = attribute_of(child, 'name')
         scoped = scoped_name(scope, name)

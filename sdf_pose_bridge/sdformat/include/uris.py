@@ -25,6 +25,9 @@ from sdf_pose_bridge.sdformat.xml_tree import child_elements, first_child, text_
 
 _SCHEME = re.compile(r'([A-Za-z][A-Za-z0-9+.-]*)://')
 _SCHEME_OF_ADDRESS = re.compile(r'[A-Za-z][A-Za-z0-9+.-]+(?=:/)')
+_WEB = ('http', 'https')
+_SHARED = ('model', 'package')
+"""Schemes of URIs that begin with the name of a model or package."""
 _PATH_VARIABLES = ('GZ_SIM_RESOURCE_PATH', 'SDF_PATH')
 _MODELS_OF_GAZEBO_CLASSIC = ('model://sun', 'model://ground_plane')
 
@@ -55,7 +58,6 @@ class ResourceFinder(NamedTuple):
         directory.
 
         :param uri: such as ``model://box``, ``package://pkg/models/box`` or ``box.sdf``.
-        :param including_file: path of the file with the include.
         """
         found = next(filter(os.path.exists, self._candidates(uri, including_file)), None)
         return None if found is None else str(Path(found))
@@ -125,22 +127,18 @@ class ResourceFinder(NamedTuple):
         raise AddressError(msg)
 
     def reason_not_found(self, uri: str, including_file: str) -> str:
-        """
-        Return the reason why :meth:`path_from_uri` finds no path for a URI, with a remedy.
-
-        :param including_file: path of the file with the include.
-        """
-        if uri.lower().startswith(('http://', 'https://')):
+        """Return the reason why :meth:`path_from_uri` finds no path for a URI, with a remedy."""
+        scheme, name = _scheme_and_name(uri)
+        if scheme in _WEB:
             return ('it is not in the cache of Gazebo Fuel; fetch it with: gz fuel download -u '
                     f'"{uri}"')
-        scheme = _SCHEME.match(uri)
-        beside = [] if scheme and scheme[1].lower() in ('model', 'package') else [
+        beside = [] if scheme in _SHARED else [
             os.path.dirname(including_file) or '.']  # noqa: PTH120
         directories = [*dict.fromkeys((
             *beside, *self.search_paths, *self.environment_paths, '.'))]
         packages = ''
-        if scheme and scheme[1].lower() == 'package':
-            package = uri[scheme.end():].lstrip('/').partition('/')[0]
+        if scheme == 'package':
+            package = name.lstrip('/').partition('/')[0]
             is_known = next(self._package_shares(package), None) is not None
             packages = f'the package "{package}" has no such file, and it is ' if is_known else (
                 f'no package "{package}" is installed, and it is ')
@@ -150,28 +148,26 @@ class ResourceFinder(NamedTuple):
         return f'{packages or "it is "}not in {quoted_names(directories, _MOST_SHOWN)}; {cure}'
 
     def _candidates(self, uri: str, including_file: str) -> Iterator[str]:
-        scheme = _SCHEME.match(uri)
-        name = uri[scheme.end():] if scheme else uri
-        scheme_name = scheme[1].lower() if scheme else ''
-        if scheme_name in ('http', 'https'):
+        scheme, name = _scheme_and_name(uri)
+        if scheme in _WEB:
             yield from self._paths_in_fuel_cache(uri)
             return
         if not name:
             return
         # Joined to another path, an absolute path is unchanged. A Path is made only of a path that
         # is found, as this takes long for a name with many slashes. Gazebo ignores a third slash.
-        relative = name.lstrip('/') if scheme_name in ('model', 'package') else name
+        relative = name.lstrip('/') if scheme in _SHARED else name
         for directory in self.search_paths:
             yield os.path.join(directory, relative)  # noqa: PTH118
-        if scheme_name == 'package':
+        if scheme == 'package':
             package, _, rest = relative.partition('/')
             for share in self._package_shares(package):
                 yield str(share / rest)
-        if scheme_name in ('', 'file'):
+        if scheme in ('', 'file'):
             yield os.path.join(os.path.dirname(including_file), name)  # noqa: PTH118, PTH120
         for directory in self.environment_paths:
             yield os.path.join(directory, relative)  # noqa: PTH118
-        if scheme_name in ('model', 'package'):
+        if scheme in _SHARED:
             owner, _, rest = relative.partition('/')
             for folder in Path(including_file).absolute().parents:
                 if _is_model(folder, owner) or _is_package(folder, owner):
@@ -179,19 +175,14 @@ class ResourceFinder(NamedTuple):
         yield name
 
     def _package_shares(self, package: str) -> Iterator[Path]:
-        """Find the share directories of a ROS package, by the markers in ament's index."""
         for prefix in self.package_prefixes:
             marker = Path(prefix, 'share', 'ament_index', 'resource_index', 'packages', package)
             if package and os.path.exists(marker):  # noqa: PTH110
                 yield Path(prefix, 'share', package)
 
     def _paths_in_fuel_cache(self, uri: str) -> Iterator[str]:
-        """
-        Find a Fuel model in the cache.
-
-        Its URI is ``https://SERVER/1.0/OWNER/models/NAME[/VERSION][/files/REST]``, and the cache
-        has it as ``SERVER/owner/models/name/VERSION/REST``.
-        """
+        # The URI is https://SERVER/1.0/OWNER/models/NAME[/VERSION][/files/REST], and the cache has
+        # the model as SERVER/owner/models/name/VERSION/REST.
         try:
             parts = urlsplit(uri)
         except ValueError:  # a host with one square bracket
@@ -239,6 +230,11 @@ def resource_finder(
     )
 
 
+def _scheme_and_name(uri: str) -> tuple[str, str]:
+    scheme = _SCHEME.match(uri)
+    return (scheme[1].lower(), uri[scheme.end():]) if scheme else ('', uri)
+
+
 def _is_model(directory: Path, name: str) -> bool:
     return directory.name == name and os.path.isfile(directory / _NAME)  # noqa: PTH113
 
@@ -261,7 +257,6 @@ def _entry_in_any_case(directory: str, name: str) -> str:
 
 
 def _entries(directory: str) -> list[str]:
-    """Return the names in a directory; none if it cannot be read."""
     try:
         return os.listdir(directory)  # noqa: PTH208
     except OSError:
@@ -278,7 +273,6 @@ class ModelFile(NamedTuple):
     """The model file of a directory."""
 
     path: str
-    """The SDFormat file."""
     manifest: str
     """The manifest that names it."""
     warnings: tuple[SdfWarning, ...]

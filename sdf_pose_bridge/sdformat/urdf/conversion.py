@@ -87,7 +87,6 @@ def sdf_from_urdf(
 
 
 class _Conversion:
-    """Converts one file."""
 
     def __init__(
         self, root: XmlElement, robot: Robot, sources: Sources, *, for_ros: bool,
@@ -307,11 +306,7 @@ class _Conversion:
         self, parent: XmlElement, tag: str, source: XmlElement, text: str | None = None, *,
         numbers: Mapping[str, Sequence[float]] = MappingProxyType({}), **attributes: str,
     ) -> XmlElement:
-        """
-        Add an element with the line of an element of URDF.
-
-        :param numbers: the values of its child elements, by their tags.
-        """
+        """Add an element with the line of one of URDF, and child elements with numbers."""
         element = etree.SubElement(parent, tag, attributes)
         element.text = text
         self._sources.set_parsed_line(element, source)
@@ -343,7 +338,6 @@ class _Conversion:
             xml.append(child)
 
     def _move_extension(self, xml: XmlElement, link: Link) -> None:
-        """Change the pose of an element of a lumped link."""
         pose = first_child(xml, 'pose')
         if xml.tag not in _MOVED_TAGS or not self._is_lumped(link) or (
                 pose is not None and pose.get('relative_to') is not None):
