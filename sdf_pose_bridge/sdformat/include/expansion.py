@@ -115,9 +115,7 @@ class IncludeExpansion:
         if isinstance(found, str):
             self._report_missing(place, uri, found)
             return
-        if found is None:
-            return
-        chosen = self._top(include, found)
+        chosen = None if found is None else self._top(include, found)
         if chosen is None:
             return
         top = self._sources.copy_of(chosen, include)

@@ -170,7 +170,7 @@ class ResourceFinder(NamedTuple):
         if scheme in _SHARED:
             owner, _, rest = relative.partition('/')
             for folder in Path(including_file).absolute().parents:
-                if _is_model(folder, owner) or _is_package(folder, owner):
+                if _is_root_of(folder, owner):
                     yield str(folder / rest)
         yield name
 
@@ -195,7 +195,7 @@ class ResourceFinder(NamedTuple):
                 step in ('', '.', '..') or '/' in step or '\0' in step
                 for step in (parts.netloc, *steps)):
             return
-        version, rest = (steps[3] if len(steps) > 3 else 'tip'), steps[4:]
+        version, *rest = steps[3:] or ['tip']
         model = f'{self.fuel_cache}/{parts.netloc}'
         for part in steps[:3]:
             model = _entry_in_any_case(model, part)
@@ -235,15 +235,13 @@ def _scheme_and_name(uri: str) -> tuple[str, str]:
     return (scheme[1].lower(), uri[scheme.end():]) if scheme else ('', uri)
 
 
-def _is_model(directory: Path, name: str) -> bool:
-    return directory.name == name and os.path.isfile(directory / _NAME)  # noqa: PTH113
-
-
-def _is_package(directory: Path, name: str) -> bool:
+def _is_root_of(directory: Path, name: str) -> bool:
+    """Return whether a directory is that of a model or a package."""
     manifest = directory / 'package.xml'
     try:
-        return manifest.is_file() and f'<name>{name}</name>' in manifest.read_text(
-            errors='replace')
+        return (directory.name == name and os.path.isfile(directory / _NAME)) or (  # noqa: PTH113
+            manifest.is_file()
+            and f'<name>{name}</name>' in manifest.read_text(errors='replace'))
     except OSError:
         return False
 

@@ -86,17 +86,17 @@ def lumped_inertial(parent: Inertial, lumped: Inertial) -> Inertial:
     :return: their sum, with the axes of the first one; its center is NaN if both masses are zero.
     """
     mass = parent.mass + lumped.mass
-    if not mass:
-        nowhere = parent.origin._replace(x=math.nan, y=math.nan, z=math.nan)
-        return Inertial(mass, nowhere, parent.moments)
     x, y, z = (
-        (a * parent.mass + b * lumped.mass) / mass
+        (a * parent.mass + b * lumped.mass) / mass if mass else math.nan
         for a, b in zip(parent.origin[:3], lumped.origin[:3], strict=True))
     origin = parent.origin._replace(x=x, y=y, z=z)
-    places = [relative_pose(origin, parent.origin), relative_pose(origin, lumped.origin)]
-    axes = np.array([matrix_from_quaternion(place[3:]) for place in places])
-    matrices = np.array([matrix_from_moments(each.moments) for each in (parent, lumped)])
+    if not mass:
+        return Inertial(mass, origin, parent.moments)
+    both = parent, lumped
+    places = np.array([relative_pose(origin, each.origin) for each in both])
+    axes = matrix_from_quaternion(places[:, 3:])
+    matrices = np.array([matrix_from_moments(each.moments) for each in both])
     moved = moved_moments(
-        axes @ matrices @ axes.transpose(0, 2, 1), np.array([parent.mass, lumped.mass]),
-        np.array([place[:3] for place in places]))
+        axes @ matrices @ axes.transpose(0, 2, 1), np.array([each.mass for each in both]),
+        places[:, :3])
     return Inertial(mass, origin, moments_from_matrix(moved.sum(axis=0)))
