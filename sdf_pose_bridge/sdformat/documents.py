@@ -32,7 +32,6 @@ class Document(NamedTuple):
     """One file as a tree."""
 
     path: str
-    """The path with which it was opened."""
     root: XmlElement
     """The ``sdf`` element."""
     has_gazebo_elements: bool = False
@@ -46,19 +45,13 @@ def document_from_file(
     gazebo_faults: Set[int] | None = frozenset(),
 ) -> Document:
     """
-    Read a file.
+    Read a file, or the text of its name in ``sources.texts``.
 
-    :param path: path of an SDFormat file, or the name of a text in ``sources.texts``.
-    :param sources: takes the file, the places of its elements, and warnings.
-    :param is_included: whether another file includes it, so that URDF is converted as by
-        libsdformat.
+    :param is_included: whether to convert URDF as libsdformat does.
     :param gazebo_faults: lines of errors in a URDF file. Children of ``<gazebo>`` elements with
         these lines are left out; with None, all of them.
     :return: the file, in the newest version.
-    :raises FileReadError: if it is missing, unreadable or not XML, or declares no version.
-    :raises LimitError: if it is too large.
-    :raises ParsingError: if its outermost element is not ``sdf``, or xacro has not expanded it.
-    :raises ConversionError: if its version is not supported, or names in it cannot be converted.
+    :raises SdfError: if it cannot be read or converted; a LimitError if it is too large.
     """
     sources.add_path(path)
     file = xml_from_file(path, sources.usage, sources.texts.get(path))

@@ -29,15 +29,12 @@ class FileChange(NamedTuple):
     """Other bytes in one range of a file."""
 
     path: str
-    """The file."""
     encoding: str
     """Python's name of its encoding."""
     before: bytes
     """Its content before the range."""
     old: bytes
-    """The old content of the range."""
     new: bytes
-    """The new content of the range."""
     behind: bytes
     """Its content behind the range."""
 
@@ -105,8 +102,6 @@ def replace_file(path: str, old: bytes, new: bytes) -> None:
     directory ``.sdf_pose_...`` may stay beside the file.
 
     :param path: the file, or a link to it, which stays a link.
-    :param old: the content of the file as the caller knows it.
-    :param new: the new content.
     :raises FileWriteError: if it cannot be written, has another content than ``old``, or is being
         written by another process; it is unchanged then.
     """

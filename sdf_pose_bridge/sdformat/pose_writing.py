@@ -44,8 +44,6 @@ class PoseText:
 
     Elements are counted in the order of their start tags, from 0.
 
-    :param content: the bytes of the file.
-    :param path: its path, for errors.
     :raises SdfError: if it is not well-formed SDFormat 1.4 or newer.
     """
 
@@ -95,7 +93,7 @@ class PoseText:
         return line - 1
 
     def line(self, element: int) -> int:
-        """Return the line in which the start tag of an element begins, in the unchanged text."""
+        """Return the line of an element in the unchanged text."""
         return self._text.count(b'\n', 0, self._tags[element][0]) + 1
 
     def pose(self, element: int) -> Pose:

@@ -77,16 +77,12 @@ class Sources:
 
     The file of an element is the one that :meth:`set_origin` gave to it or to its nearest
     ancestor.
-
-    :param limits: the limits of the load.
-    :param texts: texts to read instead of the files at some paths.
     """
 
     def __init__(
         self, limits: Limits = DEFAULT_LIMITS, texts: Mapping[str, bytes | str] | None = None,
     ) -> None:
         self.usage = Usage(limits)
-        """The use of the load so far."""
         self.texts = texts or {}
         """Texts to read instead of the files at some paths; bytes are in the encoding that they
         declare."""
@@ -103,7 +99,6 @@ class Sources:
         self.composed_trees: set[XmlElement] = set()
         """The outermost elements of trees whose elements have sources of their own."""
         self.problems = Problems(self.paths, self.includes)
-        """The errors and warnings of these files."""
         self._origins: dict[XmlElement, Origin] = {}
         self._parsed_lines: dict[XmlElement, int] = {}
         self._places: dict[XmlElement | None, Place] | None = None
@@ -115,11 +110,7 @@ class Sources:
         return part
 
     def of_unchanged_trees(self) -> Sources:
-        """
-        Return the same sources with a cache of places.
-
-        Making a place takes long if names are very long or deep.
-        """
+        """Return the same sources with known places, which take long for deep or long names."""
         part = copy.copy(self)
         part._places = {}  # noqa: SLF001
         return part

@@ -100,7 +100,6 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
     """
     Return the content of a file.
 
-    :param usage: counts its bytes.
     :param allows_pipe: whether it may be a pipe, as of the shell's ``<(command)``.
     :raises FileReadError: if it is missing, unreadable or not a regular file;
         :class:`~sdf_pose_bridge.errors.PassingReadError` if reading it again may help.
@@ -148,7 +147,6 @@ def xml_from_file(path: str, usage: Usage, text: bytes | str | None = None) -> X
     """
     Read and parse a file, or a text instead of it.
 
-    :param usage: counts its bytes and its elements.
     :raises FileReadError: as :func:`bytes_from_file` and :func:`xml_from_bytes`.
     :raises LimitError: if it is too large.
     """
@@ -166,9 +164,8 @@ def xml_from_file(path: str, usage: Usage, text: bytes | str | None = None) -> X
 
 def xml_from_bytes(content: bytes, path: str) -> XmlFile:
     """
-    Parse XML.
+    Parse XML; ``path`` is its name in errors.
 
-    :param path: the name to use in errors.
     :raises FileReadError: if it is not well-formed and libsdformat does not accept it, or its
         encoding is not supported.
     """

@@ -83,7 +83,6 @@ def text_from_bytes(content: bytes, path: str) -> tuple[bytes, str, str]:
     """
     Decode XML by its first bytes or the encoding that it declares.
 
-    :param path: the name to use in errors.
     :return: the text in UTF-8 without a byte order mark; Python's name of its encoding; and a
         fault of the encoding, with which the bytes are unchanged and may not be UTF-8.
     :raises FileReadError: for an encoding that is not supported.
@@ -112,9 +111,8 @@ _Repair: TypeAlias = tuple[bytes, list[tuple[int, str]]]
 
 def repaired(text: bytes) -> _Repair | None:
     """
-    Rewrite text as well-formed XML of the same meaning.
+    Rewrite text, which should be UTF-8, as well-formed XML of the same meaning.
 
-    :param text: text that is not well-formed XML; it should be UTF-8.
     :return: the XML in UTF-8 without a declaration, and the first line and a message for each sort
         of fault; None if TinyXML-2 rejects the text too. Nesting and names of end tags are not
         checked.

@@ -65,8 +65,6 @@ def merge(
     Replace an include by the content of the model that it merges, if that is valid.
 
     :param model: the included element, with the parts that the include overrides.
-    :param model_by_itself: as for
-        :class:`~sdf_pose_bridge.sdformat.include.expansion.IncludeExpansion`.
     """
     parent = include.getparent()
     assert parent is not None

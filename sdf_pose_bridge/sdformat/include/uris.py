@@ -211,13 +211,7 @@ class ResourceFinder(NamedTuple):
 def resource_finder(
     resource_paths: Iterable[str | os.PathLike[str]], environment: Mapping[str, str],
 ) -> ResourceFinder:
-    """
-    Read the directories from the environment.
-
-    :param resource_paths: directories to search first.
-    :param environment: such as ``os.environ``: ``GZ_SIM_RESOURCE_PATH``, ``SDF_PATH``,
-        ``AMENT_PREFIX_PATH``, ``GZ_FUEL_CACHE_PATH`` and ``HOME``.
-    """
+    """Make a finder from directories to search first and an environment, as ``os.environ``."""
     def paths(variable: str) -> list[str]:
         return [path for path in environment.get(variable, '').split(os.pathsep) if path]
 
@@ -268,11 +262,10 @@ _DEPRECATED_NAME = 'manifest.xml'
 
 
 class ModelFile(NamedTuple):
-    """The model file of a directory."""
+    """The model file that the manifest of a directory names."""
 
     path: str
     manifest: str
-    """The manifest that names it."""
     warnings: tuple[SdfWarning, ...]
 
 
@@ -280,11 +273,8 @@ def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
     """
     Choose the file of the newest version that is supported.
 
-    :param usage: counts the bytes and elements of its manifest.
     :return: the file, which need not exist.
-    :raises FileReadError: if there is no manifest, or it is not XML.
-    :raises ParsingError: if the manifest does not name a file.
-    :raises LimitError: if the manifest is too large.
+    :raises SdfError: if there is no manifest that names a file.
     """
     # Unlike Path.exists, this returns False for a directory without permission.
     manifests = [

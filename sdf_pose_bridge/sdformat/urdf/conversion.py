@@ -76,7 +76,6 @@ def sdf_from_urdf(
     Convert a file.
 
     :param root: the ``robot`` element; the children of ``<gazebo>`` elements are removed from it.
-    :param sources: has the lines of its elements, and takes those of the new ones.
     :param is_included: whether to convert as libsdformat does, instead of reading as ROS does.
     :return: the ``sdf`` element, and the name of the link without a parent.
     :raises SdfError: if the file is not valid; its ``errors`` has all errors.

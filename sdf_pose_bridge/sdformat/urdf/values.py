@@ -79,8 +79,6 @@ def pose_from_xyz_rpy(
     """
     Convert a pose.
 
-    :param xyz: x y z in metres; finite.
-    :param rpy: roll pitch yaw in radians; finite.
     :return: the pose. Its quaternion has the sign and the rounding of libsdformat's
         (``urdf::Rotation::setFromRPY``), on which the angles of ``rpy_by_urdfdom`` depend.
     """
