@@ -9,7 +9,6 @@ is not found or not valid is reported and stays in the tree, so that no error fo
 
 from __future__ import annotations
 
-from collections.abc import Callable
 import os
 from pathlib import Path
 
@@ -32,7 +31,7 @@ from sdf_pose_bridge.errors import (
 from sdf_pose_bridge.names import ROOT_FRAME, shortened
 from sdf_pose_bridge.sdformat.documents import Document, document_from_file
 from sdf_pose_bridge.sdformat.grammar import definition_of
-from sdf_pose_bridge.sdformat.include.merge import merge, ModelByItself
+from sdf_pose_bridge.sdformat.include.merge import merge, ModelByItself, ModelCheck
 from sdf_pose_bridge.sdformat.include.params import apply_params, definition_in_tree, TOP_TAGS
 from sdf_pose_bridge.sdformat.include.uris import (
     model_file_from_directory,
@@ -62,15 +61,13 @@ class IncludeExpansion:
     Replaces includes, and reads each included file once.
 
     :param skips_missing: whether includes that are not found are warnings.
-    :param model_by_itself: checks a model file by itself, given its ``sdf`` element. If the file
-        is not valid, it reports that and returns None. Merged files have to be valid by
-        themselves.
+    :param model_by_itself: checks the files that are merged, which have to be valid by themselves.
     """
 
     def __init__(
         self, finder: ResourceFinder, sources: Sources, *,
         skips_missing: bool,
-        model_by_itself: Callable[[XmlElement], ModelByItself | None],
+        model_by_itself: ModelCheck,
     ) -> None:
         self._finder = finder
         self._sources = sources

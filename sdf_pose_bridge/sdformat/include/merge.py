@@ -12,7 +12,7 @@ proxy frame. Source: ``insertIncludedElement`` in libsdformat's ``parser.cc``.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from lxml import etree
 
@@ -57,9 +57,16 @@ class ModelByItself(NamedTuple):
     """Its model frame, in the frame that its ``<pose>`` is relative to."""
 
 
+ModelCheck: TypeAlias = Callable[[XmlElement], ModelByItself | None]
+"""
+Checks a model file by itself, given its ``sdf`` element.
+
+If the file is not valid, it reports that and returns None.
+"""
+
+
 def merge(
-    include: XmlElement, model: XmlElement, sources: Sources,
-    model_by_itself: Callable[[XmlElement], ModelByItself | None],
+    include: XmlElement, model: XmlElement, sources: Sources, model_by_itself: ModelCheck,
 ) -> None:
     """
     Replace an include by the content of the model that it merges, if that is valid.
@@ -74,15 +81,28 @@ def merge(
         sources.error(MergeIncludeError, include, msg)
         return
     proxy = _proxy_frame(include, model, parent, sources, model_by_itself)
-    if proxy is not None and _fits_in(parent, model, sources):
-        include.addprevious(proxy)
-        _move_children(include, model, attribute_of(proxy, 'name'), sources)
-        parent.remove(include)
+    if proxy is None:
+        return
+    misfits = list(child_elements(model, *_NOT_IN_WORLDS)) if parent.tag == 'world' else []
+    for child in misfits:
+        msg = f'{described(child)} cannot be merged into a world, which has no links of its own'
+        sources.error(MergeIncludeError, child, msg)
+    if misfits:
+        return
+    include.addprevious(proxy)
+    for child in list(child_elements(model)):
+        tag = written_tag(child)
+        if tag in _MOVED_TAGS or ':' in tag:
+            _warn_of_model_frame_in(child, sources)
+            _replace_model_frame(child, attribute_of(proxy, 'name'))
+            sources.set_origin(child, file=sources.path(child), is_checked=True)
+            include.addprevious(child)
+    parent.remove(include)
 
 
 def _proxy_frame(
     include: XmlElement, model: XmlElement, parent: XmlElement, sources: Sources,
-    model_by_itself: Callable[[XmlElement], ModelByItself | None],
+    model_by_itself: ModelCheck,
 ) -> XmlElement | None:
     """Return the frame that takes the place of the model frame; None for an invalid model."""
     pose = first_child(model, 'pose')
@@ -120,25 +140,6 @@ def _proxy_frame(
 def is_name_of_proxy(name: str) -> bool:
     """Return whether a merge may have made a name."""
     return name.startswith(_PROXY_START) and name.endswith(_PROXY_END)
-
-
-def _fits_in(parent: XmlElement, model: XmlElement, sources: Sources) -> bool:
-    misfits = list(child_elements(model, *_NOT_IN_WORLDS)) if parent.tag == 'world' else []
-    for child in misfits:
-        msg = f'{described(child)} cannot be merged into a world, which has no links of its own'
-        sources.error(MergeIncludeError, child, msg)
-    return not misfits
-
-
-def _move_children(include: XmlElement, model: XmlElement, proxy: str, sources: Sources) -> None:
-    for child in list(child_elements(model)):
-        tag = written_tag(child)
-        if tag not in _MOVED_TAGS and ':' not in tag:
-            continue
-        _warn_of_model_frame_in(child, sources)
-        _replace_model_frame(child, proxy)
-        sources.set_origin(child, file=sources.path(child), is_checked=True)
-        include.addprevious(child)
 
 
 def _replace_model_frame(xml: XmlElement, proxy: str) -> None:
