@@ -266,8 +266,14 @@ def _lines_and_warnings(
     has_break = has_break or rest.count(b'<') != rest.count(b'>')
     if not has_break and text.count(b'\n') < _LAST_LINE:
         return {}, []
+    without_others = _OTHER_PART.sub(lambda part: b'\n' * part[0].count(b'\n'), text)
+    characters = np.frombuffer(without_others + b'/', np.uint8)
+    begins = np.flatnonzero(characters == ord('<'))
+    begins = begins[characters[begins + 1] != ord('/')]
+    breaks = np.flatnonzero(characters == ord('\n'))
     # Nothing after the outermost element belongs to the tree.
-    lines = dict(zip(root.iter(etree.Element), _lines_of_start_tags(text), strict=False))
+    lines = dict(zip(
+        root.iter(etree.Element), (np.searchsorted(breaks, begins) + 1).tolist(), strict=False))
     warnings = []
     tags = (tag[1] for tag in START_TAG.finditer(text) if tag[1]) if has_break else ()
     for (element, line), tag in zip(lines.items(), tags, strict=False):
@@ -279,13 +285,3 @@ def _lines_and_warnings(
                    'keeps it, so names differ there')
             warnings.append(SdfWarning('WARNING', shortened_message(msg), Place(path, line)))
     return lines, warnings
-
-
-def _lines_of_start_tags(text: bytes) -> list[int]:
-    without_others = _OTHER_PART.sub(lambda part: b'\n' * part[0].count(b'\n'), text)
-    characters = np.frombuffer(without_others + b'/', np.uint8)
-    begins = np.flatnonzero(characters == ord('<'))
-    begins = begins[characters[begins + 1] != ord('/')]
-    lines: list[int] = (
-        np.searchsorted(np.flatnonzero(characters == ord('\n')), begins) + 1).tolist()
-    return lines

@@ -144,9 +144,12 @@ class _Changer:
         """Copy an element without attributes that are not defined, as libsdformat does."""
         self._sources.count_copy(xml, xml)
         element = copy_of(xml)
-        definition = _definition_of_parameter(xml)
-        attributes = element.keys()
-        for attribute in attributes:
+        tag, parent = written_tag(xml), xml.getparent()
+        if tag in STANDALONE_ELEMENTS or parent is None:
+            definition = _standalone_definition(tag)
+        else:
+            definition = _standalone_definition(written_tag(parent)).children[tag]
+        for attribute in element.keys():  # noqa: SIM118  # it is changed
             if attribute in _OWN_ATTRIBUTES or (
                     attribute not in definition.attributes and ':' not in attribute):
                 del element.attrib[attribute]
@@ -305,13 +308,6 @@ def definition_in_tree(xml: XmlElement) -> Definition | None:
 def _holds_value(xml: XmlElement) -> bool:
     definition = definition_in_tree(xml)
     return definition is None or definition.value_type is not None
-
-
-def _definition_of_parameter(xml: XmlElement) -> Definition:
-    tag, parent = written_tag(xml), xml.getparent()
-    if tag in STANDALONE_ELEMENTS or parent is None:
-        return _standalone_definition(tag)
-    return _standalone_definition(written_tag(parent)).children[tag]
 
 
 def _standalone_definition(tag: str) -> Definition:

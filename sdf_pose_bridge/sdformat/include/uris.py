@@ -28,7 +28,6 @@ _SCHEME_OF_ADDRESS = re.compile(r'[A-Za-z][A-Za-z0-9+.-]+(?=:/)')
 _WEB = ('http', 'https')
 _SHARED = ('model', 'package')
 """Schemes of URIs that begin with the name of a model or package."""
-_PATH_VARIABLES = ('GZ_SIM_RESOURCE_PATH', 'SDF_PATH')
 _MODELS_OF_GAZEBO_CLASSIC = ('model://sun', 'model://ground_plane')
 
 _MOST_SHOWN = 5
@@ -218,7 +217,7 @@ def resource_finder(
     home = environment.get('HOME', '~')
     return ResourceFinder(
         tuple(os.fspath(path) for path in resource_paths),
-        tuple(path for variable in _PATH_VARIABLES for path in paths(variable)),
+        tuple(paths('GZ_SIM_RESOURCE_PATH') + paths('SDF_PATH')),
         tuple(paths('AMENT_PREFIX_PATH')),
         environment.get('GZ_FUEL_CACHE_PATH') or os.path.join(home, '.gz', 'fuel'),  # noqa: PTH118
     )

@@ -17,7 +17,7 @@ Materials, and values that only physics needs, are not converted.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from itertools import chain
 import math
 from types import MappingProxyType
@@ -46,6 +46,7 @@ from sdf_pose_bridge.sdformat.urdf.robot import (
 )
 from sdf_pose_bridge.sdformat.urdf.values import (
     leading_numbers,
+    Numbers,
     pose_from_xyz_rpy,
     rpy_by_gz_math,
     rpy_by_urdfdom,
@@ -122,7 +123,11 @@ class _Conversion:
             self._add(self._model, 'static', self._root, static)
         self._add_extensions(self._model, '')
         self._add_frames()
-        self._add_robot_origin()
+        origin, pose = first_child(self._root, 'origin'), first_child(self._model, 'pose')
+        if origin is not None:
+            if pose is not None:
+                self._model.remove(pose)
+            self._add_pose(self._model, origin, self._robot.origin, rpy_by_urdfdom)
         for reference, children in self._extensions.items():
             self._sources.warning(
                 children[0], f'the content of <gazebo reference="{reference}"> is left out: the '
@@ -178,32 +183,31 @@ class _Conversion:
             if inertial is not None and inertial.mass <= 0.0:
                 inertial = None
             is_kept = self._for_ros or not (inertial is None or name in self._left_out)
-            if is_kept and not self._is_lumped(link) and (
-                    joint is not None or name != WORLD_FRAME):
-                self._add_link(link, inertial, joint)
+            if not is_kept or self._is_lumped(link) or (joint is None and name == WORLD_FRAME):
+                continue
+            is_joined = joint is not None and self._add_joint(joint)
+            xml = self._add(self._model, 'link', link.xml, name=name)
+            if joint is not None and is_joined:
+                self._add(xml, 'pose', joint.xml, relative_to=joint.name)
+            elif joint is not None:
+                self._add_pose_in_link(xml, joint.xml, joint.origin, joint.parent)
+            if inertial is not None:
+                self._add_inertial(xml, link, inertial)
+            members = self._bases[name].members
+            for tag in ('collision', 'visual'):
+                self._add_shapes(xml, tag, link, members)
+            for member in members:
+                for child in self._extensions.get(member.name, ()):
+                    self._move_extension(child, member)
+                self._add_extensions(xml, member.name)
 
-    def _add_link(self, link: Link, inertial: Inertial | None, joint: Joint | None) -> None:
-        is_joined = joint is not None and self._add_joint(joint)
-        xml = self._add(self._model, 'link', link.xml, name=link.name)
-        if joint is not None and is_joined:
-            self._add(xml, 'pose', joint.xml, relative_to=joint.name)
-        elif joint is not None:
-            self._add_pose_in_link(xml, joint.xml, joint.origin, joint.parent)
-        if inertial is not None:
-            inertial_xml = self._add(xml, 'inertial', link.xml)
-            self._add_pose(inertial_xml, link.xml, inertial.origin, rpy_by_gz_math)
-            self._add(inertial_xml, 'mass', link.xml, text_from_numbers([inertial.mass]))
-            if not self._for_ros:
-                self._add(inertial_xml, 'inertia', link.xml, numbers={
-                    name: [moment] for name, moment in zip(
-                        MOMENTS, inertial.moments, strict=True)})
-        members = self._bases[link.name].members
-        for tag in ('collision', 'visual'):
-            self._add_shapes(xml, tag, link, members)
-        for member in members:
-            for child in self._extensions.get(member.name, ()):
-                self._move_extension(child, member)
-            self._add_extensions(xml, member.name)
+    def _add_inertial(self, link_xml: XmlElement, link: Link, inertial: Inertial) -> None:
+        xml = self._add(link_xml, 'inertial', link.xml)
+        self._add_pose(xml, link.xml, inertial.origin, rpy_by_gz_math)
+        self._add(xml, 'mass', link.xml, text_from_numbers([inertial.mass]))
+        if not self._for_ros:
+            self._add(xml, 'inertia', link.xml, numbers={
+                name: [moment] for name, moment in zip(MOMENTS, inertial.moments, strict=True)})
 
     def _add_shapes(self, xml: XmlElement, tag: str, link: Link, members: Sequence[Link]) -> None:
         shapes = [
@@ -294,16 +298,9 @@ class _Conversion:
                 self._add(
                     self._model, 'frame', link.xml, name=link.name, attached_to=joint.name)
 
-    def _add_robot_origin(self) -> None:
-        origin, pose = first_child(self._root, 'origin'), first_child(self._model, 'pose')
-        if origin is not None:
-            if pose is not None:
-                self._model.remove(pose)
-            self._add_pose(self._model, origin, self._robot.origin, rpy_by_urdfdom)
-
     def _add(
         self, parent: XmlElement, tag: str, source: XmlElement, text: str | None = None, *,
-        numbers: Mapping[str, Sequence[float]] = MappingProxyType({}), **attributes: str,
+        numbers: Numbers = MappingProxyType({}), **attributes: str,
     ) -> XmlElement:
         """Add an element with the line of one of URDF, and child elements with numbers."""
         element = etree.SubElement(parent, tag, attributes)

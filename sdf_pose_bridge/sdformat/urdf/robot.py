@@ -24,6 +24,7 @@ from sdf_pose_bridge.sdformat.specification import URDF_JOINT_TYPES
 from sdf_pose_bridge.sdformat.urdf.values import (
     is_true,
     NotFiniteError,
+    Numbers,
     numbers_of,
     pose_from_xyz_rpy,
 )
@@ -73,7 +74,7 @@ class Shape(NamedTuple):
     """Its pose in its link."""
     geometry: XmlElement
     """The shape, such as ``<box>``."""
-    numbers: Mapping[str, Sequence[float]]
+    numbers: Numbers
     """Its dimensions."""
 
 
@@ -97,7 +98,7 @@ class Joint(NamedTuple):
     """The joint in its parent link."""
     parent: str
     child: str
-    values: Mapping[str, Mapping[str, Sequence[float]]]
+    values: Mapping[str, Numbers]
     """The numbers of its ``axis``, ``limit`` and so on, by element and attribute."""
 
 

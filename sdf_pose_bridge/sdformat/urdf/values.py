@@ -4,9 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 import math
 import re
+from typing import TypeAlias
 
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
@@ -19,6 +20,10 @@ _LEADING_NUMBER = re.compile(
 _URDFDOM_GIMBAL_LOCK = 1e-5
 _GZ_MATH_GIMBAL_LOCK = 1e-15
 """If 1 - abs(sin(pitch)) is less, libsdformat writes angles that are only nearly the same."""
+
+
+Numbers: TypeAlias = Mapping[str, Sequence[float]]
+"""Numbers by the names of attributes in URDF, or of child elements in SDFormat."""
 
 
 class NotFiniteError(ValueError):
