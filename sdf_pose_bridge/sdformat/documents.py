@@ -82,7 +82,12 @@ def document_from_file(
     sources.may_hold_scoped_names |= b'&' in file.text or (
         b':' in file.text and SEPARATOR.encode() in file.text)
     convert(root, version, sources)
-    _check_top_model(root, sources)
+    # libsdformat refuses it in a file's top model (checkXmlFromRoot). Blanks count here.
+    for pose in root.xpath('model[1]/pose[1][@relative_to!=""]'):
+        msg = (f'relative_to="{pose.get("relative_to")}": a model at the top of a file is placed '
+               'in the implicit root, which has no frames')
+        sources.error(AttributeInvalidError, pose, msg)
+        del pose.attrib['relative_to']
     return Document(path, root, has_gazebo_elements, urdf_root)
 
 
@@ -96,16 +101,6 @@ def _declared_version(root: XmlElement, place: Place) -> Version:
         msg = '<sdf> declares no version, such as version="1.10"'
         raise FileReadError(msg, place_of_root)
     return version_from_text(text, place)
-
-
-def _check_top_model(root: XmlElement, sources: Sources) -> None:
-    """Refuse ``relative_to`` in the pose of a file's top model (``checkXmlFromRoot``)."""
-    # Blanks count here, unlike elsewhere.
-    for pose in root.xpath('model[1]/pose[1][@relative_to!=""]'):
-        msg = (f'relative_to="{pose.get("relative_to")}": a model at the top of a file is placed '
-               'in the implicit root, which has no frames')
-        sources.error(AttributeInvalidError, pose, msg)
-        del pose.attrib['relative_to']
 
 
 def _check_is_expanded(root: XmlElement, path: str, sources: Sources) -> None:

@@ -48,7 +48,7 @@ class PoseText:
     """
 
     def __init__(self, content: bytes, path: str) -> None:
-        self._path = path
+        self._path, place = path, Place(path)
         file = xml_from_bytes(content, path)
         root = file.root
         for warning in file.warnings:
@@ -56,11 +56,11 @@ class PoseText:
             raise PoseNotSetError(msg, warning.place)
         if root.tag == 'robot':
             msg = 'this is URDF, in which no pose can be set; convert the file to SDFormat first'
-            raise PoseNotSetError(msg, Place(path))
-        if version_from_text(root.get('version', ''), Place(path)) < _FIRST_WITH_POSE:
+            raise PoseNotSetError(msg, place)
+        if version_from_text(root.get('version', ''), place) < _FIRST_WITH_POSE:
             msg = (f'this is SDFormat {root.get("version")}, which writes poses in another way; '
                    f'convert the file to {_FIRST_WITH_POSE} or newer first')
-            raise PoseNotSetError(msg, Place(path))
+            raise PoseNotSetError(msg, place)
         self._encoding = file.encoding
         # With its byte order mark.
         self._text = content.decode(self._encoding).encode()
@@ -69,7 +69,7 @@ class PoseText:
             (tag.start(), tag.end(1)) for tag in START_TAG.finditer(self._text) if tag[1]]
         if len(self._tags) != len(self._elements) or self._encoded(self._text) != content:
             msg = f'the text cannot be changed in its encoding, {self._encoding}'
-            raise PoseNotSetError(msg, Place(path))
+            raise PoseNotSetError(msg, place)
 
     def with_a_line_for_each_tag(self) -> bytes:
         """Return a text of the same meaning, in which each line has one start tag."""

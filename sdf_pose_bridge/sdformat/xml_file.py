@@ -169,8 +169,7 @@ def xml_from_bytes(content: bytes, path: str) -> XmlFile:
     :raises FileReadError: if it is not well-formed and libsdformat does not accept it, or its
         encoding is not supported.
     """
-    text, encoding, fault = text_from_bytes(content, path)
-    faults = [(1, fault)] if fault else []
+    text, encoding, faults = text_from_bytes(content, path)
     try:
         root = _parsed(text, path)
     except FileReadError:

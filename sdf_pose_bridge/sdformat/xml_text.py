@@ -79,12 +79,13 @@ _ESCAPED_BYTES = _Replacement(
 """Results of the error handler ``surrogateescape`` for bytes that are not UTF-8."""
 
 
-def text_from_bytes(content: bytes, path: str) -> tuple[bytes, str, str]:
+def text_from_bytes(content: bytes, path: str) -> tuple[bytes, str, list[tuple[int, str]]]:
     """
     Decode XML by its first bytes or the encoding that it declares.
 
-    :return: the text in UTF-8 without a byte order mark; Python's name of its encoding; and a
-        fault of the encoding, with which the bytes are unchanged and may not be UTF-8.
+    :return: the text in UTF-8 without a byte order mark; Python's name of its encoding; and the
+        line and a message for a fault of the encoding, with which the bytes are unchanged and may
+        not be UTF-8.
     :raises FileReadError: for an encoding that is not supported.
     """
     encoding = next((name for mark, name in _MARKS if content.startswith(mark)), '')
@@ -96,14 +97,14 @@ def text_from_bytes(content: bytes, path: str) -> tuple[bytes, str, str]:
         with contextlib.suppress(LookupError, UnicodeDecodeError):
             name = codecs.lookup(encoding or 'utf-8').name
             if name == 'utf-8':
-                return content.removeprefix(codecs.BOM_UTF8), name, ''
+                return content.removeprefix(codecs.BOM_UTF8), name, []
             if _ALLOWED.fullmatch(name) is not None:
-                return content.decode(name).removeprefix('\ufeff').encode(), name, ''
+                return content.decode(name).removeprefix('\ufeff').encode(), name, []
             msg = (f'the encoding "{encoding}" is not supported; UTF-8, UTF-16, UTF-32, ASCII, '
                    'ISO-8859 and windows-125x are')
             raise FileReadError(msg, Place(path, 1))
     fault = f'the text is not in the encoding "{encoding}"; UTF-8 is used'
-    return content, 'utf-8', fault
+    return content, 'utf-8', [(1, fault)]
 
 
 _Repair: TypeAlias = tuple[bytes, list[tuple[int, str]]]

@@ -109,7 +109,7 @@ def test_text_is_decoded_from_the_encoding_that_it_declares(encoding):
 @pytest.mark.parametrize('encoding', ['utf-16-le', 'utf-16-be', 'utf-32-le', 'utf-32-be'])
 def test_two_and_four_bytes_are_known_without_a_byte_order_mark(encoding):
     assert text_from_bytes(model_file(NAME).encode(encoding), 'f') == (
-        model_file(NAME).encode(), encoding, '')
+        model_file(NAME).encode(), encoding, [])
 
 
 @pytest.mark.parametrize('encoding', [

@@ -189,8 +189,7 @@ class IncludeExpansion:
     def _check_depth(self, root: XmlElement) -> None:
         """Check the depth before a tree is put into another one; recursion over it is limited."""
         depth = self._sources.usage.limits.depth
-        too_deep = root.xpath('descendant::*[count(ancestor::*) > $depth][1]', depth=depth)
-        for xml in too_deep:
+        for xml in root.xpath('descendant::*[count(ancestor::*) > $depth][1]', depth=depth):
             self._sources.check_depth(depth + 1, xml)
 
     def _report_missing(self, place: Place, uri: str, reason: str) -> None:

@@ -11,7 +11,7 @@ proxy frame. Source: ``insertIncludedElement`` in libsdformat's ``parser.cc``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import NamedTuple, TypeAlias
 
 from lxml import etree
@@ -35,9 +35,10 @@ from sdf_pose_bridge.sdformat.xml_tree import (
 _MOVED_TAGS = frozenset({'frame', 'gripper', 'include', 'joint', 'link', 'model', 'plugin'})
 _PROXY_START, _PROXY_END = '_merged__', '__model__'
 _NOT_IN_WORLDS = ('gripper', 'link')
-_WRITTEN = (MODEL_FRAME,)
-_WRITTEN_OR_EMPTY = (MODEL_FRAME, '')
-_REFERENCES: Mapping[str, list[tuple[str, str, tuple[str, ...]]]] = {
+_POSES_OF_PARTS = 'self::*[self::link or self::joint]/*[not(self::inertial)]/pose'
+_WRITTEN = [MODEL_FRAME]
+_WRITTEN_OR_EMPTY = [MODEL_FRAME, '']
+_REFERENCES = {
     'link': [('pose', 'relative_to', _WRITTEN_OR_EMPTY)],
     'model': [('pose', 'relative_to', _WRITTEN_OR_EMPTY)],
     'frame': [('pose', 'relative_to', _WRITTEN), ('.', 'attached_to', _WRITTEN_OR_EMPTY)],
@@ -93,7 +94,12 @@ def merge(
     for child in list(child_elements(model)):
         tag = written_tag(child)
         if tag in _MOVED_TAGS or ':' in tag:
-            _warn_of_model_frame_in(child, sources)
+            # libsdformat does not adapt the poses of visuals and similar elements.
+            for pose in child.xpath(_POSES_OF_PARTS):
+                if attribute_of(pose, 'relative_to') == MODEL_FRAME:
+                    msg = ('relative_to="__model__" means the model that this is merged into, not '
+                           'the one that it was written in')
+                    sources.warning(pose, msg)
             _replace_model_frame(child, attribute_of(proxy, 'name'))
             sources.set_origin(child, file=sources.path(child), is_checked=True)
             include.addprevious(child)
@@ -154,14 +160,3 @@ def _replace_model_frame(xml: XmlElement, proxy: str) -> None:
         if value_of(end) == MODEL_FRAME:
             end[:] = []
             end.text = proxy
-
-
-def _warn_of_model_frame_in(xml: XmlElement, sources: Sources) -> None:
-    """Libsdformat does not adapt the poses of visuals and similar elements."""
-    if xml.tag not in ('link', 'joint'):
-        return
-    for pose in xml.xpath('*[not(self::inertial)]/pose'):
-        if attribute_of(pose, 'relative_to') == MODEL_FRAME:
-            msg = ('relative_to="__model__" means the model that this is merged into, not the one '
-                   'that it was written in')
-            sources.warning(pose, msg)

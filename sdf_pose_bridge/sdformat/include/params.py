@@ -76,6 +76,7 @@ class _Changer:
         self.added: list[XmlElement] = []
         self._top = top
         self._sources = sources
+        self._error = sources.error
         self._actions = {
             'modify': self._modify, 'remove': self._remove, 'replace': self._replace}
 
@@ -84,10 +85,10 @@ class _Changer:
     def apply(self, xml: XmlElement) -> None:
         tag, element_id, action = written_tag(xml), xml.get('element_id'), xml.get('action')
         if element_id is None:
-            self._sources.error(AttributeMissingError, xml, f'<{tag}> has no element_id')
+            self._error(AttributeMissingError, xml, f'<{tag}> has no element_id')
         elif element_id.endswith(SEPARATOR):
             msg = f'element_id="{element_id}" ends with "{SEPARATOR}"; a name has to follow'
-            self._sources.error(AttributeInvalidError, xml, msg)
+            self._error(AttributeInvalidError, xml, msg)
         elif action not in (None, *_ACTIONS):
             self._report_action(xml)
         elif action == 'add':
@@ -95,7 +96,7 @@ class _Changer:
         elif (target := element_by_id(self._top, element_id, tag)) is None:
             hint = hint_for_id(self._top, element_id, self._sources.problems, tag)
             msg = f'the included model has no <{tag}> "{element_id}"{hint}'
-            self._sources.error(ElementMissingError, xml, msg)
+            self._error(ElementMissingError, xml, msg)
         elif action in ('modify', 'remove') or self._is_defined(xml):
             if action is not None:
                 self._actions[action](xml, target)
@@ -108,15 +109,15 @@ class _Changer:
         scoped = f'{element_id}{SEPARATOR}{name}'
         if not name:
             missing = AttributeMissingError if name is None else AttributeInvalidError
-            self._sources.error(missing, xml, f'<{tag}> is to be added, so it needs a name')
+            self._error(missing, xml, f'<{tag}> is to be added, so it needs a name')
         elif tag != 'plugin' and element_by_id(self._top, scoped, tag) is not None:
             msg = f'<{tag}> cannot be added: the included model has a <{tag}> "{scoped}" already'
-            self._sources.error(DuplicateNameError, xml, msg)
+            self._error(DuplicateNameError, xml, msg)
         elif (parent := element_by_id(self._top, element_id) if element_id else self._top) is None:
             hint = hint_for_id(self._top, element_id, self._sources.problems)
             msg = (f'<{tag}> cannot be added to element_id="{element_id}": the included model has '
                    f'no such element{hint}')
-            self._sources.error(ElementMissingError, xml, msg)
+            self._error(ElementMissingError, xml, msg)
         elif self._is_defined(xml):
             parent.append(self._new_element(xml))
 
@@ -124,13 +125,13 @@ class _Changer:
         tag, action = written_tag(xml), xml.get('action')
         if action is None:
             msg = f'<{tag}> has no action; it must have one, as <{parent_tag}> has none'
-            self._sources.error(AttributeMissingError, xml, msg)
+            self._error(AttributeMissingError, xml, msg)
         elif action not in _ACTIONS:
             self._report_action(xml)
         elif action in ('add', 'replace') and tag not in _standalone_definition(
                 parent_tag).children:
             msg = f'SDFormat defines no <{tag}> in a <{parent_tag}>'
-            self._sources.error(ElementInvalidError, xml, msg)
+            self._error(ElementInvalidError, xml, msg)
         elif action == 'add' and tag == 'include':
             self._sources.warning(xml, 'an <include> that is added by itself includes nothing')
         elif action == 'add':
@@ -162,7 +163,7 @@ class _Changer:
         parent = target.getparent()
         if target.get('name') is not None and xml.get('name') is None:
             msg = f'<{written_tag(xml)}> is to replace {_start_tag(target)}, so it needs a name'
-            self._sources.error(AttributeMissingError, xml, msg)
+            self._error(AttributeMissingError, xml, msg)
         elif parent is not None:
             parent.replace(target, self._new_element(xml))
 
@@ -227,7 +228,7 @@ class _Changer:
             if name not in target.attrib and (
                     definition is None or name not in definition.attributes):
                 msg = f'SDFormat defines no attribute {name} of <{written_tag(target)}>'
-                self._sources.error(AttributeInvalidError, xml, msg)
+                self._error(AttributeInvalidError, xml, msg)
             elif (is_read_before and name in _POSE_FORMAT_ATTRIBUTES and target.tag == 'pose'
                     and text_of(target).strip()):
                 if target.get(name) != value:
@@ -279,20 +280,20 @@ class _Changer:
         if found:
             return found[0]
         msg = f'{_start_tag(parent)} of the included model has no {_start_tag(xml)}'
-        self._sources.error(ElementMissingError, xml, msg)
+        self._error(ElementMissingError, xml, msg)
         return None
 
     # Errors
 
     def _report_action(self, xml: XmlElement) -> None:
         msg = f'action="{xml.get("action")}" must be one of {", ".join(_ACTIONS)}'
-        self._sources.error(AttributeInvalidError, xml, msg)
+        self._error(AttributeInvalidError, xml, msg)
 
     def _is_defined(self, xml: XmlElement) -> bool:
         tag = written_tag(xml)
         if tag not in STANDALONE_ELEMENTS:
             msg = f'<{tag}> is not an element that SDFormat defines by itself'
-            self._sources.error(ElementInvalidError, xml, msg)
+            self._error(ElementInvalidError, xml, msg)
         return tag in STANDALONE_ELEMENTS
 
 
@@ -360,7 +361,7 @@ def hint_for_id(top: XmlElement, element_id: str, problems: Problems, tag: str =
     if not problems.allows_hint() or len(element_id) > _LONGEST_ID_COMPARED:
         return ''
     searched = islice(_ids(top, ''), _MOST_ELEMENTS_SEARCHED)
-    ids = list(islice((found for found in searched if found[0]), _MOST_IDS_COMPARED))
+    ids = [found for found in searched if found[0]][:_MOST_IDS_COMPARED]
     tags = [found_tag for found_id, found_tag in ids if found_id == element_id]
     if tag in tags and len(element_id.split(SEPARATOR)[0].encode()) == 1:
         return '; libsdformat does not find names of one letter at the top of a model'

@@ -214,12 +214,12 @@ def resource_finder(
     def paths(variable: str) -> list[str]:
         return [path for path in environment.get(variable, '').split(os.pathsep) if path]
 
-    home = environment.get('HOME', '~')
     return ResourceFinder(
         tuple(os.fspath(path) for path in resource_paths),
         tuple(paths('GZ_SIM_RESOURCE_PATH') + paths('SDF_PATH')),
         tuple(paths('AMENT_PREFIX_PATH')),
-        environment.get('GZ_FUEL_CACHE_PATH') or os.path.join(home, '.gz', 'fuel'),  # noqa: PTH118
+        environment.get('GZ_FUEL_CACHE_PATH') or os.path.join(  # noqa: PTH118
+            environment.get('HOME', '~'), '.gz', 'fuel'),
     )
 
 

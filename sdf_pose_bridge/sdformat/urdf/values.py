@@ -105,7 +105,7 @@ def text_from_numbers(numbers: Sequence[float], digits: int = 16) -> str:
 
 def rpy_by_gz_math(pose: Pose) -> Sequence[float]:
     """Return roll, pitch and yaw in radians as ``gz::math::Quaternion::Euler`` does."""
-    _, _, _, x, y, z, w = pose
+    x, y, z, w = pose[3:]
     sin_pitch = max(-1.0, min(1.0, 2.0 * (w * y - x * z)))
     if 1.0 - abs(sin_pitch) >= _GZ_MATH_GIMBAL_LOCK:
         return rpy_from_quaternion((x, y, z, w))
@@ -115,7 +115,7 @@ def rpy_by_gz_math(pose: Pose) -> Sequence[float]:
 
 def rpy_by_urdfdom(pose: Pose) -> Sequence[float]:
     """Return roll, pitch and yaw in radians as ``urdf::Rotation::getRPY`` does."""
-    _, _, _, x, y, z, w = pose
+    x, y, z, w = pose[3:]
     sin_pitch = 2.0 * (w * y - x * z)
     if 1.0 - abs(sin_pitch) > _URDFDOM_GIMBAL_LOCK:
         # At half a turn of roll, the rounding decides between pi and -pi.
