@@ -170,8 +170,8 @@ class Sources:
 
     def path(self, xml: XmlElement) -> str:
         """Return the path of the file of an element."""
-        files = (self.origin(each).file for each in with_ancestors(xml))
-        return next(file for file in files if file is not None)
+        return next(
+            file for each in with_ancestors(xml) if (file := self.origin(each).file) is not None)
 
     def line(self, xml: XmlElement) -> int:
         """Return the line in which an element begins, from 1; 0 if it is not known."""

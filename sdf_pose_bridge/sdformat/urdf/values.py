@@ -42,8 +42,8 @@ def is_true(xml: XmlElement) -> bool:
 
 def leading_numbers(text: str, count: int) -> Sequence[float]:
     """Return the numbers that the first words begin with; other words have none."""
-    matches = map(_LEADING_NUMBER.match, text.split()[:count])
-    return [float(number[0]) for number in matches if number]
+    words = text.split()[:count]
+    return [float(number[0]) for number in map(_LEADING_NUMBER.match, words) if number]
 
 
 def numbers_of(xml: XmlElement, attributes: str) -> dict[str, list[float]]:
