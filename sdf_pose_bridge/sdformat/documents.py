@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Set
+from collections.abc import Set
 from pathlib import Path
 import re
 import shlex
@@ -17,15 +17,12 @@ from sdf_pose_bridge.names import SEPARATOR
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.versions import convert, Version, version_from_text
 from sdf_pose_bridge.sdformat.xml_file import xml_from_file
-from sdf_pose_bridge.sdformat.xml_tree import (
-    child_elements,
-    first_child,
-    text_of,
-    written_tag,
-    XmlElement,
-)
+from sdf_pose_bridge.sdformat.xml_tree import first_child, text_of, written_tag, XmlElement
 
-_XACRO_DECLARATIONS = ('xacro:arg', 'xacro:property')
+_EXPANDED_PARTS = etree.XPath(
+    'descendant-or-self::*[not(ancestor-or-self::*[name()="plugin" or name()="xacro:arg" or '
+    'name()="xacro:property"])]')
+"""The elements in which xacro leaves no expression that would change a frame."""
 _XACRO_EXPRESSION = re.compile(r'\$[({]')
 _LOCATIONS = ('uri', 'filename', '_map')
 """Ends of tags whose text is a location on which no frame depends, except in an include."""
@@ -35,7 +32,6 @@ class Document(NamedTuple):
     """One file as a tree."""
 
     path: str
-    """The path with which it was opened."""
     root: XmlElement
     """The ``sdf`` element."""
     has_gazebo_elements: bool = False
@@ -49,19 +45,13 @@ def document_from_file(
     gazebo_faults: Set[int] | None = frozenset(),
 ) -> Document:
     """
-    Read a file.
+    Read a file, or the text of its name in ``sources.texts``.
 
-    :param path: path of an SDFormat file, or the name of a text in ``sources.texts``.
-    :param sources: takes the file, the places of its elements, and warnings.
-    :param is_included: whether another file includes it, so that URDF is converted as by
-        libsdformat.
+    :param is_included: whether to convert URDF as libsdformat does.
     :param gazebo_faults: lines of errors in a URDF file. Children of ``<gazebo>`` elements with
         these lines are left out; with None, all of them.
     :return: the file, in the newest version.
-    :raises FileReadError: if it is missing, unreadable or not XML, or declares no version.
-    :raises LimitError: if it is too large.
-    :raises ParsingError: if its outermost element is not ``sdf``, or xacro has not expanded it.
-    :raises ConversionError: if its version is not supported, or names in it cannot be converted.
+    :raises SdfError: if it cannot be read or converted; a LimitError if it is too large.
     """
     sources.add_path(path)
     file = xml_from_file(path, sources.usage, sources.texts.get(path))
@@ -70,19 +60,15 @@ def document_from_file(
     sources.problems.extend(file.warnings)
     if b'$' in file.text or b'xacro' in file.text:
         _check_is_expanded(root, path, sources)
-    gazebo_elements: list[XmlElement] = []
-    urdf_root = None
+    has_gazebo_elements, urdf_root = False, None
     if root.tag == 'robot':
         # Most files are not URDF and do not need this import.
         from sdf_pose_bridge.sdformat.urdf.conversion import sdf_from_urdf
-        gazebo_elements = root.findall('gazebo')
-        for element in gazebo_elements:
-            if gazebo_faults is None:
-                root.remove(element)
-                continue
-            for child in list(child_elements(element)) if gazebo_faults else ():
-                if not gazebo_faults.isdisjoint(map(sources.line, child.iter(etree.Element))):
-                    element.remove(child)
+        has_gazebo_elements = first_child(root, 'gazebo') is not None
+        for child in root.xpath('gazebo/*'):
+            if gazebo_faults is None or not gazebo_faults.isdisjoint(
+                    map(sources.line, child.iter(etree.Element))):
+                child.getparent().remove(child)
         root, root_link = sdf_from_urdf(root, sources, is_included=is_included)
         if not is_included:
             urdf_root = root_link
@@ -96,8 +82,13 @@ def document_from_file(
     sources.may_hold_scoped_names |= b'&' in file.text or (
         b':' in file.text and SEPARATOR.encode() in file.text)
     convert(root, version, sources)
-    _check_top_model(root, sources)
-    return Document(path, root, bool(gazebo_elements), urdf_root)
+    # libsdformat refuses it in a file's top model (checkXmlFromRoot). Blanks count here.
+    for pose in root.xpath('model[1]/pose[1][@relative_to!=""]'):
+        msg = (f'relative_to="{pose.get("relative_to")}": a model at the top of a file is placed '
+               'in the implicit root, which has no frames')
+        sources.error(AttributeInvalidError, pose, msg)
+        del pose.attrib['relative_to']
+    return Document(path, root, has_gazebo_elements, urdf_root)
 
 
 def _declared_version(root: XmlElement, place: Place) -> Version:
@@ -112,19 +103,6 @@ def _declared_version(root: XmlElement, place: Place) -> Version:
     return version_from_text(text, place)
 
 
-def _check_top_model(root: XmlElement, sources: Sources) -> None:
-    """Refuse ``relative_to`` in the pose of a file's top model (``checkXmlFromRoot``)."""
-    model = first_child(root, 'model')
-    pose = None if model is None else first_child(model, 'pose')
-    # Blanks count here, unlike elsewhere.
-    relative_to = '' if pose is None else pose.get('relative_to', '')
-    if pose is not None and relative_to:
-        msg = (f'relative_to="{relative_to}": a model at the top of a file is placed in the '
-               'implicit root, which has no frames')
-        sources.error(AttributeInvalidError, pose, msg)
-        del pose.attrib['relative_to']
-
-
 def _check_is_expanded(root: XmlElement, path: str, sources: Sources) -> None:
     """
     Refuse a file that xacro has not expanded yet.
@@ -134,42 +112,30 @@ def _check_is_expanded(root: XmlElement, path: str, sources: Sources) -> None:
     locations of meshes, change no frame; such locations cause one warning.
     """
     name = Path(path).name
-    locations = []
-    for xml, found in _unexpanded(root):
-        if root.tag == 'sdf' and not name.endswith('.xacro') and _is_location(xml, found):
-            locations.append((xml, found))
-            continue
-        target = name.removesuffix('.xacro') if name.endswith('.xacro') else f'expanded_{name}'
-        if not Path(target).suffix:
-            target += '.sdf' if root.tag == 'sdf' else '.urdf'
-        command = f': xacro {shlex.quote(name)} -o {shlex.quote(target)}' if '.' in name else ''
-        msg = f'{found} is for xacro; run xacro first, and read the file that it writes{command}'
-        raise ParsingError(msg, Place(path, sources.line(xml)))
-    for xml, found in locations[:1]:
-        msg = (f'{found} is for xacro or launch files and is not expanded, so the file there is '
-               'not found; no frame depends on it')
-        sources.warning(xml, msg)
-
-
-def _is_location(xml: XmlElement, found: str) -> bool:
-    """Return whether an expression in an element is part of the location of a file."""
-    parent = xml.getparent()
-    return found.startswith('"') and written_tag(xml).endswith(_LOCATIONS) and (
-        parent is not None and parent.tag != 'include')
-
-
-def _unexpanded(xml: XmlElement) -> Iterator[tuple[XmlElement, str]]:
-    """Find unexpanded macros and expressions; return each element with its first one."""
-    tag = written_tag(xml)
-    if tag == 'plugin' or tag in _XACRO_DECLARATIONS:
-        return
-    if tag.startswith('xacro:'):
-        yield xml, f'<{tag}>'
-    for name, value in xml.items():
-        if _XACRO_EXPRESSION.search(value):
-            yield xml, f'{name}="{value}" of <{tag}>'
-    text = text_of(xml)
-    if _XACRO_EXPRESSION.search(text) and not tag.endswith('topic'):
-        yield xml, f'"{text.strip()}" in <{tag}>'
-    for child in child_elements(xml):
-        yield from _unexpanded(child)
+    is_xacro, is_sdf = name.endswith('.xacro'), root.tag == 'sdf'
+    location = None
+    for xml in _EXPANDED_PARTS(root):
+        tag, text, parent = written_tag(xml), text_of(xml), xml.getparent()
+        found = [f'<{tag}>'] if tag.startswith('xacro:') else []
+        found += [
+            f'{attribute}="{value}" of <{tag}>' for attribute, value in xml.items()
+            if _XACRO_EXPRESSION.search(value)]
+        if _XACRO_EXPRESSION.search(text) and not tag.endswith('topic'):
+            part = f'"{text.strip()}" in <{tag}>'
+            if is_sdf and not is_xacro and tag.endswith(_LOCATIONS) and (
+                    parent is not None and parent.tag != 'include'):
+                location = location or (xml, part)
+            else:
+                found.append(part)
+        if found:
+            target = name.removesuffix('.xacro') if is_xacro else f'expanded_{name}'
+            if not Path(target).suffix:
+                target += '.sdf' if is_sdf else '.urdf'
+            command = f': xacro {shlex.quote(name)} -o {shlex.quote(target)}'
+            msg = (f'{found[0]} is for xacro; run xacro first, and read the file that it writes'
+                   f'{command if "." in name else ""}')
+            raise ParsingError(msg, Place(path, sources.line(xml)))
+    if location is not None:
+        msg = (f'{location[1]} is for xacro or launch files and is not expanded, so the file '
+               'there is not found; no frame depends on it')
+        sources.warning(location[0], msg)

@@ -1,50 +1,52 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""A change of a file: other bytes in one range of it."""
+"""A change of a file: other bytes in one range of it, written in one step."""
 
 from __future__ import annotations
 
+import contextlib
 from difflib import unified_diff
+import fcntl
 from io import StringIO
 from itertools import islice
+import os
+from pathlib import Path
+import shutil
+import tempfile
 from typing import NamedTuple
 
+from sdf_pose_bridge.errors import FileWriteError, Place
 from sdf_pose_bridge.names import printable, shortened
-from sdf_pose_bridge.sdformat.file_replacement import replace_file
 
 _LINES_AROUND = 3
 _LONGEST_PART = 1000
 _LONGEST_LINE = 4000
 _MOST_LINES = 100
+_ACCESS_LIST = 'system.posix_acl_access'
 
 
 class FileChange(NamedTuple):
     """Other bytes in one range of a file."""
 
     path: str
-    """The file."""
-    old_text: bytes
-    """Its whole content."""
     encoding: str
     """Python's name of its encoding."""
-    begin: int
-    """The first byte of the range."""
-    end: int
-    """The byte behind it."""
+    before: bytes
+    """Its content before the range."""
+    old: bytes
     new: bytes
-    """The new content of the range."""
+    behind: bytes
+    """Its content behind the range."""
 
     @property
     def new_text(self) -> bytes:
         """The whole new content of the file."""
-        return b''.join([self.old_text[:self.begin], self.new, self.old_text[self.end:]])
+        return self.before + self.new + self.behind
 
     @property
     def undone(self) -> FileChange:
         """The change that restores the old content of the range after this one was written."""
-        return FileChange(
-            self.path, self.new_text, self.encoding, self.begin, self.begin + len(self.new),
-            self.old_text[self.begin:self.end])
+        return self._replace(old=self.new, new=self.old)
 
     def write(self) -> None:
         """
@@ -53,8 +55,8 @@ class FileChange(NamedTuple):
         :raises FileWriteError: if it cannot be written, or has changed since it was read; it is
             unchanged then.
         """
-        if self.new != self.old_text[self.begin:self.end]:
-            replace_file(self.path, self.old_text, self.new_text)
+        if self.new != self.old:
+            replace_file(self.path, self.before + self.old + self.behind, self.new_text)
 
     @property
     def diff(self) -> str:
@@ -64,9 +66,7 @@ class FileChange(NamedTuple):
         Characters that cannot be printed are escaped; very long lines are shortened to the part
         around the change.
         """
-        before, old, behind, new = (text.decode(self.encoding) for text in (
-            self.old_text[:self.begin], self.old_text[self.begin:self.end],
-            self.old_text[self.end:], self.new))
+        before, old, new, behind = (text.decode(self.encoding) for text in self[2:])
         *above, head = before.split('\n')
         tail, line_break, below = behind.partition('\n')
         if len(head) > _LONGEST_PART:
@@ -92,3 +92,56 @@ def _shown(line: str) -> str:
     text = line.rstrip('\r\n') if line.endswith('\n') else line
     end = line[len(text):] or '\n\\ No newline at end of file\n'
     return '\t'.join(map(printable, shortened(text, _LONGEST_LINE).split('\t'))) + end
+
+
+def replace_file(path: str, old: bytes, new: bytes) -> None:
+    """
+    Replace the content of a file, and keep its mode, owner, access list and attributes.
+
+    The file has its old or its new content at any time. If the process is killed meanwhile, a
+    directory ``.sdf_pose_...`` may stay beside the file.
+
+    :param path: the file, or a link to it, which stays a link.
+    :raises FileWriteError: if it cannot be written, has another content than ``old``, or is being
+        written by another process; it is unchanged then.
+    """
+    try:
+        reason = _refusal(Path(path), old, new)
+    except BlockingIOError:
+        reason = 'another process is writing the file'
+    except OSError as error:
+        reason = f'the file cannot be written: {(error.strerror or str(error)).lower()}'
+    if reason:
+        raise FileWriteError(reason, Place(path))
+
+
+def _refusal(path: Path, old: bytes, new: bytes) -> str:
+    """Replace the content of a file, or return why it must not be replaced."""
+    # The rename below would replace a read-only file too, so it is opened for writing.
+    with path.open('r+b') as file:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        path = path.resolve()
+        status = os.fstat(file.fileno())
+        if status.st_nlink > 1:
+            return (f'the file has {status.st_nlink} names (hard links), and the others would '
+                    'keep the old text; copy it first, or change it by an editor')
+        # A directory of its own, as the standard library removes it after any exception.
+        with tempfile.TemporaryDirectory(prefix='.sdf_pose_', dir=path.parent) as directory:
+            new_path = Path(directory, path.name)
+            with new_path.open('xb') as new_file:
+                # The access list that the directory gives to its files may not be the file's.
+                with contextlib.suppress(OSError):
+                    os.removexattr(new_path, _ACCESS_LIST)
+                try:
+                    os.chown(new_path, status.st_uid, status.st_gid)
+                except OSError as error:
+                    return f'its owner and group cannot be kept: {(error.strerror or "").lower()}'
+                shutil.copystat(path, new_path)
+                # Written last, so that the file has the time of now.
+                new_file.write(new)
+                new_file.flush()
+                os.fsync(new_file.fileno())
+            if path.read_bytes() != old:
+                return 'the file has changed since it was read, so it is not overwritten'
+            new_path.replace(path)
+    return ''

@@ -48,11 +48,7 @@ class FileWatcher:
         self._recent = recent
 
     def watch_also(self, paths: Iterable[str]) -> None:
-        """
-        Watch more files and directories, until the next :meth:`watch`.
-
-        :param paths: their paths; a directory changes when an entry appears or vanishes.
-        """
+        """Watch more files and directories (their entries), until the next :meth:`watch`."""
         self._signatures = _signatures(set(paths).difference(self._signatures)) | self._signatures
 
     def has_changed(self) -> bool:
@@ -61,17 +57,11 @@ class FileWatcher:
 
         Other threads use :meth:`differs`.
         """
-        now = _signatures(self._signatures)
-        has_changed = now != self._signatures
-        self._signatures = now
-        return has_changed
+        before, self._signatures = self._signatures, _signatures(self._signatures)
+        return before != self._signatures
 
     def differs(self) -> bool:
-        """
-        Look at the files.
-
-        :return: the same as :meth:`has_changed`.
-        """
+        """Return the same as :meth:`has_changed`, and remember nothing."""
         signatures = self._signatures
         return _signatures(signatures) != signatures
 

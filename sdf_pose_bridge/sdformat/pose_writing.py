@@ -3,8 +3,8 @@
 """
 Change a pose in the text of a file, and no other byte.
 
-The reader gives the place of a pose by the line in which its start tag begins. Several tags can
-begin in one line, so the reader gets the same text with one line per tag.
+The reader gives the place of a pose by the line in which its start tag begins, so it gets the same
+text with other line breaks, in which each line has one start tag.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from itertools import count
 import re
 
 from lxml import etree
-import numpy as np
 
 from sdf_pose_bridge.errors import Place, PoseNotSetError
 from sdf_pose_bridge.geometry.formulas import degrees_from_radians
@@ -36,6 +35,7 @@ _TEXT_AFTER_COMMENTS = re.compile(rb'(?:\s*<!--.*?-->)*([^<]*)', re.DOTALL)
 _WORD = re.compile(rb'[^ \t\n\r,]+')
 _INDENTATION = re.compile(rb'\s*?(\r?\n[ \t]*)?(?=<)')
 _SAME_ROTATION = 1e-12
+_NO_BREAKS = bytes.maketrans(b'\r\n', b'  ')
 
 
 class PoseText:
@@ -44,13 +44,11 @@ class PoseText:
 
     Elements are counted in the order of their start tags, from 0.
 
-    :param content: the bytes of the file.
-    :param path: its path, for errors.
     :raises SdfError: if it is not well-formed SDFormat 1.4 or newer.
     """
 
     def __init__(self, content: bytes, path: str) -> None:
-        self._path, self._content = path, content
+        self._path, place = path, Place(path)
         file = xml_from_bytes(content, path)
         root = file.root
         for warning in file.warnings:
@@ -58,11 +56,11 @@ class PoseText:
             raise PoseNotSetError(msg, warning.place)
         if root.tag == 'robot':
             msg = 'this is URDF, in which no pose can be set; convert the file to SDFormat first'
-            raise PoseNotSetError(msg, Place(path))
-        if version_from_text(root.get('version', ''), Place(path)) < _FIRST_WITH_POSE:
+            raise PoseNotSetError(msg, place)
+        if version_from_text(root.get('version', ''), place) < _FIRST_WITH_POSE:
             msg = (f'this is SDFormat {root.get("version")}, which writes poses in another way; '
                    f'convert the file to {_FIRST_WITH_POSE} or newer first')
-            raise PoseNotSetError(msg, Place(path))
+            raise PoseNotSetError(msg, place)
         self._encoding = file.encoding
         # With its byte order mark.
         self._text = content.decode(self._encoding).encode()
@@ -71,45 +69,37 @@ class PoseText:
             (tag.start(), tag.end(1)) for tag in START_TAG.finditer(self._text) if tag[1]]
         if len(self._tags) != len(self._elements) or self._encoded(self._text) != content:
             msg = f'the text cannot be changed in its encoding, {self._encoding}'
-            raise PoseNotSetError(msg, Place(path))
+            raise PoseNotSetError(msg, place)
 
     def with_a_line_for_each_tag(self) -> bytes:
-        """Return a text of the same meaning with at most one start tag per line."""
-        parts = []
+        """Return a text of the same meaning, in which each line has one start tag."""
+        lines = []
         position = 0
         for _, end in self._tags:
             cut = end - self._is_closed(end)
-            parts.append(self._text[position:cut])
+            lines.append(self._text[position:cut].translate(_NO_BREAKS))
             position = cut
-        return self._encoded(b'\n'.join([*parts, self._text[position:]]))
+        return self._encoded(b'\n'.join([*lines, self._text[position:]]))
 
     def element_at_line(self, line: int) -> int:
         """
-        Find an element.
+        Return the number of an element by its line in :meth:`with_a_line_for_each_tag`.
 
-        :param line: its line in :meth:`with_a_line_for_each_tag`.
-        :return: the number of the element.
-        :raises PoseNotSetError: if no start tag begins there.
+        :raises PoseNotSetError: if there is none.
         """
-        breaks = np.flatnonzero(np.frombuffer(self._text, np.uint8) == ord('\n'))
-        starts = np.array([start for start, _ in self._tags])
-        lines = np.searchsorted(breaks, starts) + np.arange(len(starts)) + 1
-        element = int(np.searchsorted(lines, line))
-        if element == len(lines) or lines[element] != line:
+        if not 0 < line <= len(self._tags):
             msg = 'the file alone does not place this element'
             raise PoseNotSetError(msg, Place(self._path))
-        return element
+        return line - 1
 
     def line(self, element: int) -> int:
-        """Return the line in which the start tag of an element begins, in the unchanged text."""
+        """Return the line of an element in the unchanged text."""
         return self._text.count(b'\n', 0, self._tags[element][0]) + 1
 
     def pose(self, element: int) -> Pose:
         """
-        Read a pose.
+        Read a pose as written.
 
-        :param element: the number of a ``<pose>``.
-        :return: the pose as written.
         :raises PoseNotSetError: if it is not a ``<pose>``, or does not consist of plain numbers.
         """
         try:
@@ -121,12 +111,10 @@ class PoseText:
 
     def with_pose(self, element: int, pose: Pose, tolerance: float) -> FileChange:
         """
-        Change a pose.
+        Change the numbers of a pose.
 
-        :param element: the number of a ``<pose>``.
         :param pose: the new pose, in the frame that this pose is relative to.
         :param tolerance: largest difference of the written pose, in metres and radians.
-        :return: the change of the file: other numbers in this pose.
         :raises PoseNotSetError: as :meth:`pose`.
         """
         turn = relative_pose(self.pose(element), pose)
@@ -139,22 +127,18 @@ class PoseText:
             return self._with_content(element, ' '.join(new_words).encode())
         changed = [
             index for index, new in enumerate(new_words) if words[index][0] != new.encode()] or [0]
-        begin, end = words[changed[0]].start(), words[changed[-1]].end()
-        text, position = b'', begin
-        for word, new in zip(words, new_words, strict=True):
-            if begin <= word.start() < end:
-                text += self._text[position:word.start()] + new.encode()
-                position = word.end()
-        return self._change(begin, end, text)
+        text, begin = b'', words[changed[0]].start()
+        position = begin
+        for index in range(changed[0], changed[-1] + 1):
+            text += self._text[position:words[index].start()] + new_words[index].encode()
+            position = words[index].end()
+        return self._change(begin, position, text)
 
     def with_new_pose(self, element: int, pose: Pose, tolerance: float) -> FileChange:
         """
         Insert a pose, indented like the next line, or one step deeper than the end tag.
 
         :param element: the number of the element that it places.
-        :param pose: as for :meth:`with_pose`.
-        :param tolerance: as for :meth:`with_pose`.
-        :return: the change of the file: one more ``<pose>``.
         """
         words = _words_from_pose(pose, PoseFormat(), tolerance)
         new = b'<pose>%s</pose>' % ' '.join(words).encode()
@@ -176,7 +160,6 @@ class PoseText:
         return own.removeprefix(outer) or b'  '
 
     def _with_content(self, element: int, content: bytes) -> FileChange:
-        """Return a change that puts content behind the start tag of an element."""
         end = self._tags[element][1]
         if not self._is_closed(end):
             return self._change(end + 1, end + 1, content)
@@ -185,11 +168,8 @@ class PoseText:
 
     def _change(self, begin: int, end: int, new: bytes) -> FileChange:
         """Return a change of the file, by its range in the text in UTF-8."""
-        begin_in_file = len(self._encoded(self._text[:begin]))
-        end_in_file = begin_in_file + len(self._encoded(self._text[begin:end]))
-        return FileChange(
-            self._path, self._content, self._encoding, begin_in_file, end_in_file,
-            self._encoded(new))
+        parts = self._text[:begin], self._text[begin:end], new, self._text[end:]
+        return FileChange(self._path, self._encoding, *map(self._encoded, parts))
 
     def _format(self, element: int) -> PoseFormat:
         xml = self._elements[element]
@@ -227,21 +207,17 @@ def _words_from_pose(
     keeps_rotation: bool = False,
 ) -> list[str]:
     """Write a pose in the shortest numbers; numbers that are right already stay."""
-    numbers = [*pose[:3]]
     # Together, the errors of all numbers stay within the tolerance.
-    tolerances = [tolerance / 2.0] * 3
+    numbers = [(metres, tolerance / 2.0) for metres in pose[:3]]
     if pose_format.is_quaternion:
-        numbers += pose[3:]
-        tolerances += [tolerance / 8.0] * 4
+        numbers += [(component, tolerance / 8.0) for component in pose[3:]]
     else:
-        rpy = rpy_from_quaternion(pose[3:])
         unit = degrees_from_radians(1.0) if pose_format.is_degrees else 1.0
-        numbers += [angle * unit for angle in rpy]
-        tolerances += [tolerance / 4.0 * unit] * 3
-    words = [_shortest(number, each) for number, each in zip(numbers, tolerances, strict=True)]
-    for index, old in enumerate(old_words):
-        if abs(float(old) - numbers[index]) <= tolerances[index] or (
-                keeps_rotation and index >= 3):
+        numbers += [
+            (angle * unit, tolerance / 4.0 * unit) for angle in rpy_from_quaternion(pose[3:])]
+    words = [_shortest(*each) for each in numbers]
+    for index, (old, (number, most)) in enumerate(zip(old_words, numbers, strict=False)):
+        if abs(float(old) - number) <= most or (keeps_rotation and index >= 3):
             words[index] = old
     return words
 

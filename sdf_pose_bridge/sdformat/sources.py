@@ -77,16 +77,12 @@ class Sources:
 
     The file of an element is the one that :meth:`set_origin` gave to it or to its nearest
     ancestor.
-
-    :param limits: the limits of the load.
-    :param texts: texts to read instead of the files at some paths.
     """
 
     def __init__(
         self, limits: Limits = DEFAULT_LIMITS, texts: Mapping[str, bytes | str] | None = None,
     ) -> None:
         self.usage = Usage(limits)
-        """The use of the load so far."""
         self.texts = texts or {}
         """Texts to read instead of the files at some paths; bytes are in the encoding that they
         declare."""
@@ -103,10 +99,9 @@ class Sources:
         self.composed_trees: set[XmlElement] = set()
         """The outermost elements of trees whose elements have sources of their own."""
         self.problems = Problems(self.paths, self.includes)
-        """The errors and warnings of these files."""
         self._origins: dict[XmlElement, Origin] = {}
         self._parsed_lines: dict[XmlElement, int] = {}
-        self._places: dict[XmlElement, Place] | None = None
+        self._places: dict[XmlElement | None, Place] | None = None
 
     def with_own_problems(self) -> Sources:
         """Return the same sources with separate problems, which are added to the load later."""
@@ -115,11 +110,7 @@ class Sources:
         return part
 
     def of_unchanged_trees(self) -> Sources:
-        """
-        Return the same sources with a cache of places.
-
-        Making a place takes long if names are very long or deep.
-        """
+        """Return the same sources with known places, which take long for deep or long names."""
         part = copy.copy(self)
         part._places = {}  # noqa: SLF001
         return part
@@ -135,29 +126,15 @@ class Sources:
     def warning(
         self, xml: XmlElement, message: str, code: str = 'WARNING', *, is_for_gazebo: bool = False,
     ) -> None:
-        """
-        Add a warning about an element to the problems.
-
-        See :meth:`Problems.warning` for the parameters.
-        """
+        """Add a warning about an element, as :meth:`Problems.warning`."""
         self.problems.warning(message, self.place(xml), code, is_for_gazebo=is_for_gazebo)
 
     def check_depth(self, depth: int, xml: XmlElement) -> None:
-        """
-        Compare the depth of an element with the limit.
-
-        :raises LimitError: if it is greater.
-        """
-        if depth > self.usage.limits.depth:
-            self.usage.check('depth', depth, self.place(xml))
+        """Raise a LimitError if the depth of an element exceeds the limit."""
+        self.usage.check('depth', depth, self.place(xml))
 
     def count_copy(self, xml: XmlElement, user: XmlElement) -> None:
-        """
-        Count the elements in a copy.
-
-        :param user: the element that requests the copy.
-        :raises LimitError: if the load has copied too many.
-        """
+        """Count the elements in a copy for ``user``; raise a LimitError if there are too many."""
         self.usage.add('copied_elements', int(_NUMBER_OF_ELEMENTS(xml)), self.place(user))
 
     def add_path(self, path: str) -> None:
@@ -167,11 +144,7 @@ class Sources:
             self.paths.append(path)
 
     def add_tree(self, path: str, root: XmlElement, lines: Mapping[XmlElement, int]) -> None:
-        """
-        Add the tree of a file.
-
-        :param lines: the lines of the elements whose lines lxml does not know.
-        """
+        """Add the tree of a file, and the lines of elements that lxml does not know."""
         self.set_origin(root, file=path)
         self._parsed_lines.update(lines)
         if lines:
@@ -197,8 +170,8 @@ class Sources:
 
     def path(self, xml: XmlElement) -> str:
         """Return the path of the file of an element."""
-        files = (self.origin(each).file for each in with_ancestors(xml))
-        return next(file for file in files if file is not None)
+        return next(
+            file for each in with_ancestors(xml) if (file := self.origin(each).file) is not None)
 
     def line(self, xml: XmlElement) -> int:
         """Return the line in which an element begins, from 1; 0 if it is not known."""
@@ -209,35 +182,20 @@ class Sources:
 
     def place(self, xml: XmlElement) -> Place:
         """Return the file and the line of an element, and its path in the tree."""
-        parent = xml.getparent()
-        outer = Place('') if parent is None else self._place_in_tree(parent)
-        origin = self.origin(xml)
-        file = outer.file if origin.file is None else origin.file
-        return Place(
-            file if origin.pose is None else origin.pose.file, self.line(xml),
-            f'{outer.element}/{_step(xml)}')
-
-    def _place_in_tree(self, xml: XmlElement) -> Place:
-        """Return the file and the path of an ancestor of an element."""
         known = {} if self._places is None else self._places
+        unknown = list(takewhile(lambda each: each not in known, with_ancestors(xml)))
+        for each in reversed(unknown):
+            outer = known.get(each.getparent(), Place(''))
+            known[each] = Place(
+                self.origin(each).file or outer.file, element=f'{outer.element}/{_step(each)}')
+        place, pose = known[xml], self.origin(xml).pose
         if len(known) > _MOST_PLACES_REMEMBERED:
             known.clear()
-        unknown = list(takewhile(lambda each: each not in known, with_ancestors(xml)))
-        for element in reversed(unknown):
-            parent = element.getparent()
-            outer = Place('') if parent is None else known[parent]
-            known[element] = Place(
-                self.origin(element).file or outer.file,
-                element=f'{outer.element}/{_step(element)}')
-        return known[xml]
+        return place._replace(
+            file=place.file if pose is None else pose.file, line=self.line(xml))
 
     def copy_of(self, xml: XmlElement, user: XmlElement) -> XmlElement:
-        """
-        Copy an element with its content and its places into a separate tree.
-
-        :param user: the element that requests it.
-        :raises LimitError: if the load has copied too many elements.
-        """
+        """Copy an element with its content and its places, counted as :meth:`count_copy`."""
         self.count_copy(xml, user)
         result = copy_of(xml)
         if xml.getroottree().getroot() in self.composed_trees:

@@ -8,10 +8,11 @@ Depth and sizes are limited as libxml2 does without its option ``huge``.
 
 from __future__ import annotations
 
+import codecs
 from collections.abc import Mapping
 import contextlib
 import errno
-from itertools import chain, islice
+from itertools import chain
 import os
 import re
 import stat
@@ -20,13 +21,12 @@ from xml.parsers import expat
 
 from lxml import etree
 import numpy as np
-from numpy.typing import NDArray
 
 from sdf_pose_bridge.errors import FileReadError, PassingReadError, Place, SdfWarning
 from sdf_pose_bridge.names import shortened_message
 from sdf_pose_bridge.process_limits import raise_limits
 from sdf_pose_bridge.sdformat.limits import Usage
-from sdf_pose_bridge.sdformat.xml_text import DecodedText, repaired, text_from_bytes
+from sdf_pose_bridge.sdformat.xml_text import repaired, text_from_bytes
 from sdf_pose_bridge.sdformat.xml_tree import is_foreign, WHITE_SPACE, XmlElement
 
 _PASSING = frozenset({
@@ -77,7 +77,8 @@ _BREAK_IN_TAG = re.compile(rb'<[^/!?<>][^<>\t\n]*[\t\n]')
 _NAME_SPACE = re.compile(rb'"[^"]*"|\'[^\']*\'|(?<=\s)(xmlns)(?=[\s:=])')
 """A declaration of a name space in a start tag, as group 1, or a value that may look like one."""
 
-_NAME = re.compile(rb'(?<=\s)name\s*=\s*("[^"]*"|\'[^\']*\')')
+_BROKEN_NAME = re.compile(
+    rb'(?<=\s)name\s*=\s*("[^"\t\n]*[\t\n][^"]*"|\'[^\'\t\n]*[\t\n][^\']*\')')
 _BREAKS = {'\n': 'a line break', '\t': 'a tab'}
 
 
@@ -87,7 +88,6 @@ class XmlFile(NamedTuple):
     root: XmlElement
     """The outermost element. Elements have their written tags, independently of ``xmlns``."""
     warnings: tuple[SdfWarning, ...]
-    """Warnings about accepted faults."""
     lines: Mapping[XmlElement, int]
     """The lines of start tags, of the elements for which lxml has another line."""
     text: bytes
@@ -100,7 +100,6 @@ def bytes_from_file(path: str, usage: Usage, *, allows_pipe: bool = False) -> by
     """
     Return the content of a file.
 
-    :param usage: counts its bytes.
     :param allows_pipe: whether it may be a pipe, as of the shell's ``<(command)``.
     :raises FileReadError: if it is missing, unreadable or not a regular file;
         :class:`~sdf_pose_bridge.errors.PassingReadError` if reading it again may help.
@@ -146,66 +145,56 @@ def _descriptor_without_waiting(path: str, flags: int) -> int:
 
 def xml_from_file(path: str, usage: Usage, text: bytes | str | None = None) -> XmlFile:
     """
-    Read and parse a file.
+    Read and parse a file, or a text instead of it.
 
-    :param usage: counts its bytes and its elements.
-    :param text: a text to read instead of the file.
     :raises FileReadError: as :func:`bytes_from_file` and :func:`xml_from_bytes`.
     :raises LimitError: if it is too large.
     """
-    encoding = 'utf-8' if isinstance(text, str) else None
     if text is None:
-        content = bytes_from_file(path, usage)
+        text = bytes_from_file(path, usage)
     else:
-        content = text.encode(errors='surrogatepass') if isinstance(text, str) else text
-        usage.add('bytes_read', len(content), Place(path))
+        if isinstance(text, str):  # whatever encoding it declares
+            text = codecs.BOM_UTF8 + text.encode(errors='surrogatepass')
+        usage.add('bytes_read', len(text), Place(path))
     # Counted before they are parsed, which takes many times the memory; with comments.
-    raise_limits(len(content))
-    usage.add('elements', content.count(b'<') - content.count(b'</'), Place(path))
-    return xml_from_bytes(content, path, encoding)
+    raise_limits(len(text))
+    usage.add('elements', text.count(b'<') - text.count(b'</'), Place(path))
+    return xml_from_bytes(text, path)
 
 
-def xml_from_bytes(text: bytes, path: str, encoding: str | None = None) -> XmlFile:
+def xml_from_bytes(content: bytes, path: str) -> XmlFile:
     """
-    Parse XML.
+    Parse XML; ``path`` is its name in errors.
 
-    :param path: the name to use in errors.
-    :param encoding: ``utf-8`` for text in UTF-8 with any declaration; else None.
     :raises FileReadError: if it is not well-formed and libsdformat does not accept it, or its
         encoding is not supported.
     """
-    decoded = text_from_bytes(text, path) if encoding is None else DecodedText(text, encoding)
-    text = decoded.utf8
-    faults = [(1, decoded.fault)] if decoded.fault else []
+    text, encoding, faults = text_from_bytes(content, path)
     try:
         root = _parsed(text, path)
     except FileReadError:
         repair = repaired(text)
         if repair is None:
             raise
-        text = repair.text
-        faults += repair.faults
+        text, more_faults = repair
+        faults += more_faults
         root = _parsed(text, path)
     if root.getroottree().docinfo.internalDTD is not None:
         _check_with_expat(text, path)
-    _check_instructions(root, path)
+    # TinyXML-2 refuses them in and after the outermost element.
+    for instruction in chain(root.iter(etree.PI), root.itersiblings(etree.PI)):
+        msg = f'the processing instruction <?{instruction.text}?> can only stand before <sdf>'
+        raise FileReadError(msg, Place(path, instruction.sourceline or 0))
     if b'xmlns' in text:
         root = _parsed(_without_name_spaces(text), path)
     lines, warnings = _lines_and_warnings(root, text, path)
     warnings += [
         SdfWarning('WARNING', f'this is not well-formed XML: {fault}', Place(path, line))
         for line, fault in faults]
-    return XmlFile(root, tuple(warnings), lines, text, decoded.encoding)
+    return XmlFile(root, tuple(warnings), lines, text, encoding)
 
 
 def _parsed(text: bytes, path: str) -> XmlElement:
-    """
-    Parse text.
-
-    :return: the outermost element.
-    :raises FileReadError: for the first error that is not ignored.
-    :raises MemoryError: if libxml2 has not enough memory.
-    """
     parser = etree.XMLParser(
         encoding='utf-8', recover=True, resolve_entities=False, no_network=True, load_dtd=False,
         huge_tree=False, remove_blank_text=True)
@@ -216,7 +205,10 @@ def _parsed(text: bytes, path: str) -> XmlElement:
     if any(entry.type_name == 'ERR_NO_MEMORY' for entry in errors):
         raise MemoryError
     if errors:
-        msg = f'this is not well-formed XML: {_fault_from_message(errors[0].message.strip())}'
+        fault = errors[0].message.strip()
+        for pattern, replacement in _FAULTS.items():
+            fault = re.sub(rf'\A{pattern}\Z', replacement, fault)
+        msg = f'this is not well-formed XML: {fault}'
         # libxml2 reports a missing end behind the last line break.
         last_line = text.count(b'\n') + (not text.endswith(b'\n'))
         raise FileReadError(msg, Place(path, min(errors[0].line, last_line)))
@@ -228,80 +220,44 @@ def _parsed(text: bytes, path: str) -> XmlElement:
     return root
 
 
-def _fault_from_message(message: str) -> str:
-    """Return a message of libxml2 in plain words."""
-    for pattern, fault in _FAULTS.items():
-        match = re.fullmatch(pattern, message)
-        if match:
-            return match.expand(fault)
-    return message
-
-
-def _check_instructions(root: XmlElement, path: str) -> None:
-    """Refuse processing instructions in and after the outermost element, as TinyXML-2 does."""
-    for instruction in chain(root.iter(etree.PI), root.itersiblings(etree.PI)):
-        msg = f'the processing instruction <?{instruction.text}?> can only stand before <sdf>'
-        raise FileReadError(msg, Place(path, instruction.sourceline or 0))
-
-
 def _check_with_expat(text: bytes, path: str) -> None:
-    """
-    Reject declarations in the document type, and faults that libxml2 did not report.
-
-    :raises FileReadError: for these, and if the text up to the end of the outermost element is not
-        well-formed.
-    """
-    stripped = text.lstrip(WHITE_SPACE.encode())
-    skipped = text.count(b'\n', 0, len(text) - len(stripped))
+    """Reject declarations in the document type, and faults that libxml2 did not report."""
     parser = expat.ParserCreate('utf-8')
 
     def check_document_type(
         _name: str, _system: str | None, _public: str | None, has_declarations: int,
     ) -> None:
         if has_declarations:
-            begin = stripped.rfind(b'<!DOCTYPE', 0, parser.CurrentByteIndex)
+            begin = text.rfind(b'<!DOCTYPE', 0, parser.CurrentByteIndex)
             msg = 'the document type has declarations of its own, which SDFormat does not have'
-            raise FileReadError(msg, Place(path, 1 + skipped + stripped.count(b'\n', 0, begin)))
+            raise FileReadError(msg, Place(path, 1 + text.count(b'\n', 0, begin)))
 
     parser.StartDoctypeDeclHandler = check_document_type
     try:
-        parser.Parse(stripped, True)
+        parser.Parse(text, True)
     except expat.ExpatError as error:
         message = expat.ErrorString(error.code)
         if message != expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
             msg = f'this is not well-formed XML: {message}'
-            raise FileReadError(msg, Place(path, skipped + error.lineno)) from error
+            raise FileReadError(msg, Place(path, error.lineno)) from error
 
 
 def _without_name_spaces(text: bytes) -> bytes:
-    """
-    Return text of the same length and meaning, in which no prefix has a name space.
-
-    SDFormat has none, and libxml2 searches all of them when it copies an element with a prefix.
-
-    :param text: well-formed XML.
-    """
-    last = text.rfind(b'xmlns')
-    parts, position = [], 0
+    # SDFormat has none, and libxml2 searches all of them when it copies an element with a prefix.
+    result, last = bytearray(text), text.rfind(b'xmlns')
     for tag in START_TAG.finditer(text):
         if tag.start() > last:
             break
-        if tag[1] and b'xmlns' in tag[1]:
-            parts += [text[position:tag.start()], _NAME_SPACE.sub(
-                lambda match: match[0] if match[1] is None else b'xm:ns', tag[0])]
-            position = tag.end()
-    return b''.join([*parts, text[position:]])
+        for match in _NAME_SPACE.finditer(text, *tag.span(1)) if tag[1] else ():
+            if match[1]:
+                result[slice(*match.span(1))] = b'xm:ns'
+    return bytes(result)
 
 
 def _lines_and_warnings(
     root: XmlElement, text: bytes, path: str,
 ) -> tuple[dict[XmlElement, int], list[SdfWarning]]:
-    """
-    Return the facts about start tags that only the text has.
-
-    :return: the lines of the start tags for which libxml2 has another line, and warnings about
-        names with a line break or a tab.
-    """
+    """Return lines that libxml2 has not, and warnings about names with a line break or a tab."""
     # Most texts have no such tag, which this finds in a fraction of the time of the search.
     rest = text.translate(None, _NOT_TAGS_AND_BREAKS)
     has_break = (b'<\n' in rest or b'<\t' in rest) and _BREAK_IN_TAG.search(text) is not None
@@ -309,39 +265,22 @@ def _lines_and_warnings(
     has_break = has_break or rest.count(b'<') != rest.count(b'>')
     if not has_break and text.count(b'\n') < _LAST_LINE:
         return {}, []
-    first_lines = _lines_of_start_tags(text)
-    tags = (tag[1] for tag in START_TAG.finditer(text) if tag[1]) if has_break else ()
-    broken = {index: tag for index, tag in enumerate(tags) if b'\n' in tag or b'\t' in tag}
-    late = int(np.searchsorted(first_lines, _LAST_LINE))
-    start = min(late, next(iter(broken), late))
+    without_others = _OTHER_PART.sub(lambda part: b'\n' * part[0].count(b'\n'), text)
+    characters = np.frombuffer(without_others + b'/', np.uint8)
+    begins = np.flatnonzero(characters == ord('<'))
+    begins = begins[characters[begins + 1] != ord('/')]
+    breaks = np.flatnonzero(characters == ord('\n'))
     # Nothing after the outermost element belongs to the tree.
-    elements = list(islice(root.iter(etree.Element), start, None))
-    end = start + len(elements)
-    chosen = [*(index for index in broken if index < min(late, end)), *range(late, end)]
-    lines = {
-        elements[index - start]: line
-        for index, line in zip(chosen, first_lines[chosen].tolist(), strict=True)}
+    lines = dict(zip(
+        root.iter(etree.Element), (np.searchsorted(breaks, begins) + 1).tolist(), strict=False))
     warnings = []
-    for index, tag in broken.items():
-        if index >= end:
-            break
-        element, line = elements[index - start], int(first_lines[index])
-        name = _NAME.search(tag)
-        value = name[1][1:-1].strip(WHITE_SPACE.encode()).decode() if name else ''
+    tags = (tag[1] for tag in START_TAG.finditer(text) if tag[1]) if has_break else ()
+    for (element, line), tag in zip(lines.items(), tags, strict=False):
+        name = _BROKEN_NAME.search(tag)
+        value = name[1][1:-1].decode().strip(WHITE_SPACE) if name else ''
         found = [label for character, label in _BREAKS.items() if character in value]
         if found and not is_foreign(element):
             msg = (f'the name "{value}" holds {found[0]}, which XML reads as a blank; Gazebo '
                    'keeps it, so names differ there')
             warnings.append(SdfWarning('WARNING', shortened_message(msg), Place(path, line)))
     return lines, warnings
-
-
-def _lines_of_start_tags(text: bytes) -> NDArray[np.int64]:
-    """Return the line of each start tag, from 1."""
-    without_others = _OTHER_PART.sub(lambda part: b'\n' * part[0].count(b'\n'), text)
-    characters = np.frombuffer(without_others + b'/', np.uint8)
-    begins = np.flatnonzero(characters == ord('<'))
-    begins = begins[characters[begins + 1] != ord('/')]
-    lines: NDArray[np.int64] = np.searchsorted(
-        np.flatnonzero(characters == ord('\n')), begins) + 1
-    return lines

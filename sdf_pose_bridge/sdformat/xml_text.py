@@ -22,7 +22,7 @@ from collections.abc import Callable
 import contextlib
 import re
 import sys
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from sdf_pose_bridge.errors import FileReadError, Place
 
@@ -79,22 +79,13 @@ _ESCAPED_BYTES = _Replacement(
 """Results of the error handler ``surrogateescape`` for bytes that are not UTF-8."""
 
 
-class DecodedText(NamedTuple):
-    """The text of a file."""
-
-    utf8: bytes
-    """In UTF-8, without a byte order mark."""
-    encoding: str
-    """Python's name of the encoding that the file is in."""
-    fault: str = ''
-    """A fault of the encoding; the bytes are unchanged, and may not be UTF-8."""
-
-
-def text_from_bytes(content: bytes, path: str) -> DecodedText:
+def text_from_bytes(content: bytes, path: str) -> tuple[bytes, str, list[tuple[int, str]]]:
     """
     Decode XML by its first bytes or the encoding that it declares.
 
-    :param path: the name to use in errors.
+    :return: the text in UTF-8 without a byte order mark; Python's name of its encoding; and the
+        line and a message for a fault of the encoding, with which the bytes are unchanged and may
+        not be UTF-8.
     :raises FileReadError: for an encoding that is not supported.
     """
     encoding = next((name for mark, name in _MARKS if content.startswith(mark)), '')
@@ -106,32 +97,26 @@ def text_from_bytes(content: bytes, path: str) -> DecodedText:
         with contextlib.suppress(LookupError, UnicodeDecodeError):
             name = codecs.lookup(encoding or 'utf-8').name
             if name == 'utf-8':
-                return DecodedText(content.removeprefix(codecs.BOM_UTF8), name)
+                return content.removeprefix(codecs.BOM_UTF8), name, []
             if _ALLOWED.fullmatch(name) is not None:
-                return DecodedText(content.decode(name).removeprefix('\ufeff').encode(), name)
+                return content.decode(name).removeprefix('\ufeff').encode(), name, []
             msg = (f'the encoding "{encoding}" is not supported; UTF-8, UTF-16, UTF-32, ASCII, '
                    'ISO-8859 and windows-125x are')
             raise FileReadError(msg, Place(path, 1))
     fault = f'the text is not in the encoding "{encoding}"; UTF-8 is used'
-    return DecodedText(content, 'utf-8', fault)
+    return content, 'utf-8', [(1, fault)]
 
 
-class Repair(NamedTuple):
-    """Well-formed XML with the meaning of a text that is not well-formed."""
-
-    text: bytes
-    """In UTF-8, without a declaration."""
-    faults: list[tuple[int, str]]
-    """The first line and a message for each sort of fault."""
+_Repair: TypeAlias = tuple[bytes, list[tuple[int, str]]]
 
 
-def repaired(text: bytes) -> Repair | None:
+def repaired(text: bytes) -> _Repair | None:
     """
-    Rewrite text.
+    Rewrite text, which should be UTF-8, as well-formed XML of the same meaning.
 
-    :param text: text that is not well-formed XML; it should be UTF-8.
-    :return: the repair; None if TinyXML-2 rejects the text too. Nesting and names of end tags are
-        not checked.
+    :return: the XML in UTF-8 without a declaration, and the first line and a message for each sort
+        of fault; None if TinyXML-2 rejects the text too. Nesting and names of end tags are not
+        checked.
     """
     return _Repairer().repaired(text)
 
@@ -141,13 +126,12 @@ class _Repairer:
     def __init__(self) -> None:
         self._faults: dict[str, int] = {}
         self._line = 1
-        self._depth = 0
-        self._has_root = False
-        self._open_after_root: list[str] = []
-        """The tags of open elements behind the outermost one."""
+        self._open: list[str] = []
+        """The tags of the open elements."""
+        self._is_after_root = False
         self._may_declare = True
 
-    def repaired(self, text: bytes) -> Repair | None:
+    def repaired(self, text: bytes) -> _Repair | None:
         escaped = text.decode('utf-8', errors='surrogateescape')
         decoded = self._replaced(escaped, _ESCAPED_BYTES).partition('\0')[0]
         parts = []
@@ -160,31 +144,32 @@ class _Repairer:
             begin, position = position, rest.end()
             is_last_text = position == len(decoded) and bool((token['text'] or '').strip())
             if (token['instruction'] and not self._may_declare) or (
-                    self._is_after_root() and is_last_text):
+                    self._is_after_root and is_last_text):
                 return None
-            if token['tag'] and self._is_after_root() and not rest['empty']:
-                if not token['end']:
-                    self._open_after_root.append(token['tag'])
-                elif not self._open_after_root:
-                    self._note('an end tag without a start tag; the text behind it is not read')
-                    break
-                elif self._open_after_root.pop() != token['tag']:
-                    return None
             self._may_declare &= bool(token['instruction']) or (
                 not (token['text'] or 'x').strip('\ufeff \t\r\n'))
-            parts.append(
-                self._repaired_tag(token, rest) if token['tag'] else self._repaired_token(token))
+            if not token['tag']:
+                parts.append(self._repaired_token(token))
+            elif self._is_after_root and token['end'] and not self._open:
+                self._note('an end tag without a start tag; the text behind it is not read')
+                break
+            else:
+                parts.append(self._repaired_tag(token, rest))
+                if not token['end'] and not rest['empty']:
+                    self._open.append(token['tag'])
+                elif token['end'] and self._open and (
+                        self._open.pop() != token['tag'] and self._is_after_root):
+                    return None
+                self._is_after_root |= not self._open
             self._line += decoded.count('\n', begin, position)
-        return None if self._open_after_root or not self._has_root else Repair(
+        # There is no element, or one behind the outermost element has no end.
+        return None if self._is_after_root is bool(self._open) else (
             ''.join(parts).encode(errors='replace'),
             sorted((line, fault) for fault, line in self._faults.items()))
 
-    def _is_after_root(self) -> bool:
-        return self._has_root and not self._depth
-
     def _repaired_token(self, token: re.Match[str]) -> str:
         whole = token[0]
-        is_outside = not self._depth
+        is_outside = self._is_after_root or not self._open
         if token['comment']:
             whole = self._replaced(whole, _CHARACTERS)
             inside = whole[4:-3]
@@ -196,7 +181,8 @@ class _Repairer:
             if not is_outside:
                 return self._repaired_text(whole)
             if whole.strip('\ufeff \t\r\n'):
-                self._note(f'text {"after" if self._has_root else "before"} the outermost element')
+                where = 'after' if self._is_after_root else 'before'
+                self._note(f'text {where} the outermost element')
             return _blank(whole)
         if token['instruction']:
             if token.start():
@@ -204,19 +190,14 @@ class _Repairer:
             return _blank(whole)
         if token['verbatim']:
             whole = self._replaced(self._replaced(whole, _SPACES), _CHARACTERS)
-        if (token['verbatim'] and is_outside) or (token['other'] and self._is_after_root()):
+        if (token['verbatim'] and is_outside) or (token['other'] and self._is_after_root):
             return _blank(whole)
         return whole
 
     def _repaired_tag(self, token: re.Match[str], rest: re.Match[str]) -> str:
-        if self._is_after_root():
+        if self._is_after_root:
             self._note('elements after the outermost element')
             return _blank(token.string[token.start():rest.end()])
-        if token['end']:
-            self._depth -= 1
-        elif not rest['empty']:
-            self._depth += 1
-        self._has_root = True
         # White space behind the name is allowed.
         parts = [f'<{token["end"]}{token["tag"]}{_blank(token["space"])}']
         if token['space']:

@@ -62,7 +62,7 @@ def test_the_pose_is_what_was_asked_for(change, tmp_path, text, name, relative_t
     write_files(tmp_path, m=text)
     made = change(name, relative_to)
     assert made.file.path == str(tmp_path / 'm.sdf')
-    assert made.file.old_text == text.encode()
+    assert made.file.undone.new_text == text.encode()
 
 
 def test_what_does_not_depend_on_it_stays_to_the_last_bit(change, tmp_path):

@@ -1,8 +1,17 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Other bytes in a range of a file, and how they are shown."""
+"""Other bytes in a range of a file, how they are shown, and how the file is replaced."""
 
 import difflib
+import fcntl
+import os
+import random
+import resource
+import signal
+import stat
+import struct
+import subprocess
+import sys
 
 import pytest
 
@@ -10,13 +19,14 @@ pytest.importorskip('hypothesis', reason='needs hypothesis')
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sdf_pose_bridge.sdformat.file_change import FileChange
+from sdf_pose_bridge.errors import FileWriteError
+from sdf_pose_bridge.sdformat.file_change import FileChange, replace_file
 
 
 def change_of(text, old, new, encoding='utf-8', path='cell.sdf'):
-    begin = len(text[:text.index(old)].encode(encoding))
-    return FileChange(path, text.encode(encoding), encoding, begin,
-                      begin + len(old.encode(encoding)), new.encode(encoding))
+    before, _, behind = text.partition(old)
+    return FileChange(path, encoding, *(
+        part.encode(encoding) for part in (before, old, new, behind)))
 
 
 LINES = ''.join(f'line {number}\n' for number in range(1, 10))
@@ -38,15 +48,16 @@ def test_the_change_is_shown_as_difflib_would(text, old, new):
 
 def test_a_change_that_is_undone():
     change = change_of(LINES, '5', 'other')
-    assert change.undone.old_text == change.new_text
     assert change.undone.new_text == LINES.encode()
+    assert change.undone.undone == change
 
 
 @given(st.text('ab\n', min_size=1), st.data())
 def test_the_new_text_is_the_old_one_with_the_range_replaced(text, data):
     begin = data.draw(st.integers(0, len(text)))
     end = data.draw(st.integers(begin, len(text)))
-    change = FileChange('f', text.encode(), 'utf-8', begin, end, b'new')
+    change = FileChange(
+        'f', 'utf-8', text[:begin].encode(), text[begin:end].encode(), b'new', text[end:].encode())
     assert change.new_text.decode() == f'{text[:begin]}new{text[end:]}'
     removed = [line for line in change.diff.splitlines()[3:] if line[0] in '- ']
     assert set(''.join(line[1:] for line in removed)) <= set(text)
@@ -75,3 +86,182 @@ def test_of_long_lines_and_long_changes_a_part_is_shown():
     assert f'+...{999 * "x"} 2 {999 * "y"}...\n' in diff
     many = change_of(f'a{10_000 * chr(10)}b', f'a{10_000 * chr(10)}b', '').diff
     assert len(many) < 2000
+
+
+# Replacement
+
+ACCESS_LIST = 'system.posix_acl_access'
+FOLDER_LIST = 'system.posix_acl_default'
+OLD, NEW = b'the old text', b'the new text'
+
+
+def access_list(user, rights):
+    """An access list that gives a user rights, and the owner all; nobody else has any."""
+    nobody = 0xffffffff
+    entries = [(1, 7, nobody), (2, rights, user), (4, 0, nobody), (16, 7, nobody), (32, 0, nobody)]
+    return struct.pack('<I', 2) + b''.join(struct.pack('<HHI', *entry) for entry in entries)
+
+
+def set_attribute(path, name, value):
+    try:
+        os.setxattr(path, name, value)
+    except OSError as error:
+        pytest.skip(f'the file system of {path} does not have {name}: {error.strerror}')
+
+
+@pytest.fixture(name='path')
+def make_file(tmp_path):
+    path = tmp_path / 'cell.sdf'
+    path.write_bytes(b'the old text')
+    return path
+
+
+def left_beside(path):
+    return [each for each in path.parent.iterdir() if each != path]
+
+
+def edited_meanwhile(monkeypatch, edit):
+    """Run an edit after the new file is written, before the old one is replaced."""
+    synchronize = os.fsync
+
+    def synchronize_and_edit(descriptor):
+        synchronize(descriptor)
+        edit()
+
+    monkeypatch.setattr(os, 'fsync', synchronize_and_edit)
+
+
+def test_a_missing_file_is_one_sentence(tmp_path):
+    with pytest.raises(FileWriteError, match='cannot be written: no such file') as caught:
+        replace_file(str(tmp_path / 'missing.sdf'), b'', NEW)
+    assert caught.value.place.file == str(tmp_path / 'missing.sdf')
+
+
+def test_a_file_that_has_changed_is_not_overwritten(path):
+    path.write_bytes(b'the new text of another')
+    with pytest.raises(FileWriteError, match='has changed since it was read'):
+        replace_file(str(path), OLD, NEW)
+    assert path.read_bytes() == b'the new text of another'
+    assert not left_beside(path)
+
+
+@pytest.mark.parametrize('edit', ['in place', 'by another file'])
+def test_an_edit_while_the_new_file_is_written_is_kept(path, monkeypatch, edit):
+    def change():
+        other = path if edit == 'in place' else path.with_name('other')
+        other.write_bytes(b'THE OLD TEXT')
+        other.replace(path)
+
+    edited_meanwhile(monkeypatch, change)
+    with pytest.raises(FileWriteError, match='has changed since it was read'):
+        replace_file(str(path), OLD, NEW)
+    assert path.read_bytes() == b'THE OLD TEXT'
+    assert not left_beside(path)
+
+
+def test_a_file_with_a_second_name_is_refused(path):
+    os.link(path, path.with_name('second.sdf'))
+    with pytest.raises(
+            FileWriteError, match=r'2 names \(hard links\), and the others would keep'):
+        replace_file(str(path), OLD, NEW)
+    assert path.read_bytes() == OLD
+
+
+def test_a_file_that_another_process_writes_is_left_alone(path):
+    with path.open('rb') as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        with pytest.raises(FileWriteError, match='another process is writing the file'):
+            replace_file(str(path), OLD, NEW)
+    assert path.read_bytes() == OLD
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason='root may write everywhere')
+@pytest.mark.parametrize('part', ['file', 'directory'])
+def test_without_the_right_to_write_it_is_one_sentence(path, part):
+    refusing = path if part == 'file' else path.parent
+    mode = refusing.stat().st_mode
+    refusing.chmod(mode & 0o555)
+    with pytest.raises(FileWriteError, match='permission denied'):
+        replace_file(str(path), OLD, NEW)
+    refusing.chmod(mode)
+    assert path.read_bytes() == OLD
+
+
+def test_an_owner_that_cannot_be_kept_is_a_reason_to_refuse(path, monkeypatch):
+    def refuse(*_):
+        raise PermissionError(1, 'Operation not permitted')
+
+    monkeypatch.setattr(os, 'chown', refuse)
+    with pytest.raises(FileWriteError, match='its owner and group cannot be kept: operation not'):
+        replace_file(str(path), OLD, NEW)
+    assert path.read_bytes() == OLD
+    assert not left_beside(path)
+
+
+def test_without_space_the_old_file_is_whole(path):
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limits[1]))
+    try:
+        with pytest.raises(FileWriteError, match='the file cannot be written: file too large'):
+            replace_file(str(path), OLD, bytes(2000))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert path.read_bytes() == OLD
+    assert not left_beside(path)
+
+
+def test_the_content_is_replaced_and_the_mode_stays(path):
+    path.chmod(0o640)
+    os.utime(path, ns=(0, 0))
+    replace_file(str(path), OLD, NEW)
+    assert path.read_bytes() == NEW
+    assert stat.S_IMODE(path.stat().st_mode) == 0o640
+    assert path.stat().st_mtime_ns > 0
+    assert not left_beside(path)
+
+
+def test_a_link_stays_a_link(path, tmp_path):
+    link = tmp_path / 'link.sdf'
+    link.symlink_to('cell.sdf')
+    replace_file(str(link), OLD, NEW)
+    assert link.is_symlink()
+    assert path.read_bytes() == NEW
+
+
+def test_access_list_and_attributes_stay(path):
+    set_attribute(path, ACCESS_LIST, access_list(4321, 4))
+    set_attribute(path, 'user.note', b'measured in March')
+    before = path.stat()
+    replace_file(str(path), OLD, NEW)
+    assert os.getxattr(path, ACCESS_LIST) == access_list(4321, 4)
+    assert os.getxattr(path, 'user.note') == b'measured in March'
+    assert path.stat().st_mode == before.st_mode
+
+
+def test_the_list_that_a_folder_gives_to_new_files_is_not_taken(path):
+    path.chmod(0o600)
+    set_attribute(path.parent, FOLDER_LIST, access_list(4321, 7))
+    replace_file(str(path), OLD, NEW)
+    assert ACCESS_LIST not in os.listxattr(path)
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+
+
+def test_a_killed_process_leaves_the_old_file_or_the_new_one(path):
+    random_numbers = random.Random(1)
+    rest = b'x' * 300_000
+    program = (
+        'from sdf_pose_bridge.sdformat.file_change import replace_file\n'
+        'texts = [word + b"x" * 300_000 for word in (b"old", b"new")]\n'
+        'print(flush=True)\n'
+        'while True:\n'
+        f'    replace_file({str(path)!r}, *texts)\n'
+        '    texts.reverse()')
+    for _ in range(5):
+        path.write_bytes(b'old' + rest)
+        process = subprocess.Popen([sys.executable, '-c', program], stdout=subprocess.PIPE)
+        process.stdout.readline()
+        with pytest.raises(subprocess.TimeoutExpired):
+            process.wait(random_numbers.uniform(0.001, 0.1))
+        process.send_signal(signal.SIGKILL)
+        process.communicate()
+        assert path.read_bytes() in (b'old' + rest, b'new' + rest)

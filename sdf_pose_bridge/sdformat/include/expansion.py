@@ -9,8 +9,6 @@ is not found or not valid is reported and stays in the tree, so that no error fo
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from itertools import takewhile
 import os
 from pathlib import Path
 
@@ -32,9 +30,9 @@ from sdf_pose_bridge.errors import (
 )
 from sdf_pose_bridge.names import ROOT_FRAME, shortened
 from sdf_pose_bridge.sdformat.documents import Document, document_from_file
-from sdf_pose_bridge.sdformat.grammar import Definition, definition_of
-from sdf_pose_bridge.sdformat.include.merge import merge, ModelByItself
-from sdf_pose_bridge.sdformat.include.params import apply_params
+from sdf_pose_bridge.sdformat.grammar import definition_of
+from sdf_pose_bridge.sdformat.include.merge import merge, ModelByItself, ModelCheck
+from sdf_pose_bridge.sdformat.include.params import apply_params, definition_in_tree, TOP_TAGS
 from sdf_pose_bridge.sdformat.include.uris import (
     model_file_from_directory,
     ModelFile,
@@ -50,7 +48,6 @@ from sdf_pose_bridge.sdformat.xml_tree import (
     described,
     first_child,
     value_of,
-    with_ancestors,
     written_tag,
     XmlElement,
 )
@@ -58,25 +55,19 @@ from sdf_pose_bridge.sdformat.xml_tree import (
 _MOST_TOPS_SHOWN = 5
 """Largest number of elements at the top of a file that an error names."""
 
-_TOP_TAGS = ('model', 'actor', 'light')
-"""The tags of elements that can be included, in the order of preference."""
 
 class IncludeExpansion:
     """
     Replaces includes, and reads each included file once.
 
-    :param finder: finds the files that URIs name.
-    :param sources: takes the files, the places of elements, and problems.
     :param skips_missing: whether includes that are not found are warnings.
-    :param model_by_itself: checks a model file by itself, given its ``sdf`` element. If the file
-        is not valid, it reports that and returns None. Merged files have to be valid by
-        themselves.
+    :param model_by_itself: checks the files that are merged, which have to be valid by themselves.
     """
 
     def __init__(
         self, finder: ResourceFinder, sources: Sources, *,
         skips_missing: bool,
-        model_by_itself: Callable[[XmlElement], ModelByItself | None],
+        model_by_itself: ModelCheck,
     ) -> None:
         self._finder = finder
         self._sources = sources
@@ -86,43 +77,21 @@ class IncludeExpansion:
         self._model_files: dict[str, ModelFile | str] = {}
         self._missing: set[str] = set()
         self._merged_models: dict[tuple[XmlElement, str, bytes], ModelByItself | None] = {}
-        self._definitions: dict[XmlElement, Definition | None] = {}
-        """The definitions of the elements around includes."""
 
     def expand(self, document: Document) -> None:
-        """
-        Replace the includes of a file.
-
-        :param document: the file, in the newest version; it is changed in place.
-        """
+        """Replace the includes of a file, in place."""
         self._expand_in(document.root, (os.path.realpath(document.path),))
 
     def _expand_in(self, root: XmlElement, files: tuple[str, ...]) -> None:
         """Replace the includes in a tree; ``files`` led to it, each included by the one before."""
         for include in list(root.iter('include')):
             parent = include.getparent()
-            if parent is not None and self._definition_in_tree(parent) is not None:
+            definition = None if parent is None else definition_in_tree(parent)
+            if definition is not None and definition.value_type is None and (
+                    not definition.takes_any_children):
                 self._expand_include(include, files)
                 if include.getparent() is not None:
                     self._mark_missing(include)
-
-    def _definition_in_tree(self, xml: XmlElement) -> Definition | None:
-        """Return the definition of an element with children; None if it is not read."""
-        known = self._definitions
-        unknown = list(takewhile(lambda each: each not in known, with_ancestors(xml)))
-        for each in reversed(unknown):
-            parent = each.getparent()
-            if parent is None:
-                # The copy of an included element has no <sdf> around it yet.
-                is_top = each.tag in ('sdf', *_TOP_TAGS)
-                known[each] = definition_of(str(each.tag), has_frames=True) if is_top else None
-                continue
-            outer = known[parent]
-            definition = None if outer is None else outer.children.get(each.tag)
-            is_read = definition is not None and definition.value_type is None and (
-                not definition.takes_any_children)
-            known[each] = definition if is_read else None
-        return known[xml]
 
     def _mark_missing(self, include: XmlElement) -> None:
         """Record the URI of an include that is not replaced, by the names that it may have."""
@@ -143,9 +112,7 @@ class IncludeExpansion:
         if isinstance(found, str):
             self._report_missing(place, uri, found)
             return
-        if found is None:
-            return
-        chosen = self._top(include, found)
+        chosen = None if found is None else self._top(include, found)
         if chosen is None:
             return
         top = self._sources.copy_of(chosen, include)
@@ -222,8 +189,7 @@ class IncludeExpansion:
     def _check_depth(self, root: XmlElement) -> None:
         """Check the depth before a tree is put into another one; recursion over it is limited."""
         depth = self._sources.usage.limits.depth
-        too_deep = root.xpath('descendant::*[count(ancestor::*) > $depth][1]', depth=depth)
-        for xml in too_deep:
+        for xml in root.xpath('descendant::*[count(ancestor::*) > $depth][1]', depth=depth):
             self._sources.check_depth(depth + 1, xml)
 
     def _report_missing(self, place: Place, uri: str, reason: str) -> None:
@@ -238,8 +204,7 @@ class IncludeExpansion:
             self._sources.problems.error(UriLookupError(msg, place))
 
     def _top(self, include: XmlElement, document: Document) -> XmlElement | None:
-        """Return the model, actor or light at the top of an included file."""
-        tops = [xml for xml in child_elements(document.root) if xml.tag in _TOP_TAGS]
+        tops = [xml for xml in child_elements(document.root) if xml.tag in TOP_TAGS]
         if len(tops) > 1:
             names = ', '.join(map(described, tops[:_MOST_TOPS_SHOWN]))
             rest = len(tops) - _MOST_TOPS_SHOWN
@@ -247,7 +212,7 @@ class IncludeExpansion:
                    f'{f" and {rest} more" if rest > 0 else ""}')
             self._sources.error(ElementIncorrectTypeError, include, msg)
         if tops:
-            return min(tops, key=lambda xml: _TOP_TAGS.index(str(xml.tag)))
+            return min(tops, key=lambda xml: TOP_TAGS.index(str(xml.tag)))
         # An include at its top that was not found is reported already.
         if first_child(document.root, 'include') is None:
             msg = f'{document.path} cannot be included: no model, light or actor is at its top'
@@ -273,7 +238,7 @@ class IncludeExpansion:
     def _insert(self, include: XmlElement, top: XmlElement) -> None:
         parent = include.getparent()
         assert parent is not None
-        definition = self._definition_in_tree(parent)
+        definition = definition_in_tree(parent)
         if definition is None or top.tag not in definition.children:
             msg = (f'the included {written_tag(top)} is left out; a <{written_tag(parent)}> '
                    'cannot hold one')
@@ -284,7 +249,6 @@ class IncludeExpansion:
 
 
 def _name_from_uri(uri: str) -> str:
-    """Return the likely name of a model that was not found: the name of its directory."""
     steps = [part for part in uri.split('/') if part]
     if len(steps) > 1 and steps[-1].endswith(('.sdf', '.world', '.urdf')):
         steps.pop()
@@ -294,50 +258,33 @@ def _name_from_uri(uri: str) -> str:
 # The parts that an include overrides
 
 def _override(include: XmlElement, top: XmlElement, sources: Sources) -> None:
-    """Write the name, the pose and other children of an include into its element."""
-    name = _override_value(include, 'name', sources)
-    if name:
-        top.set('name', name)
+    tags = ('static', 'pose', 'name', 'placement_frame') if top.tag == 'model' else (
+        'pose', 'name')
+    own = {tag: xml for tag in tags if (xml := first_child(include, tag)) is not None}
+    values = {tag: value_of(xml) for tag, xml in own.items() if tag != 'pose'}
+    for tag, value in values.items():
+        if not value:
+            sources.error(ElementInvalidError, own[tag], f'<{tag}> of the include is empty')
+    if values.get('name'):
+        top.set('name', values['name'])
         sources.set_origin(top, is_named_by_include=True)
-    if top.tag == 'model':
-        if _override_value(include, 'static', sources):
-            _override_element(include, top, 'static', sources)
-        placement = _placement_frame(include, sources)
-        if placement:
-            top.set('placement_frame', placement)
-    if first_child(include, 'pose') is not None:
-        _override_element(include, top, 'pose', sources)
+    placement = values.get('placement_frame')
+    if placement:
+        top.set('placement_frame', placement)
+        if 'pose' not in own:
+            msg = (f'<placement_frame> "{placement}" needs a <pose> in the same include, which '
+                   'says where that frame is')
+            sources.error(PlacementFrameError, include, msg)
+        elif placement == ROOT_FRAME:
+            msg = f'"{placement}" is reserved; it cannot be a placement frame'
+            sources.error(ReservedNameError, include, msg)
+    for tag, new in own.items():
+        if tag in ('static', 'pose'):
+            replacement, old = copy_of(new), first_child(top, tag)
+            if old is None:
+                top.insert(0, replacement)
+            else:
+                top.replace(old, replacement)
+            sources.set_source(replacement, new)
+    if 'pose' in own:
         sources.set_origin(top, pose=Place(sources.path(include), sources.line(include)))
-
-
-def _override_value(include: XmlElement, tag: str, sources: Sources) -> str:
-    element = first_child(include, tag)
-    value = '' if element is None else value_of(element)
-    if element is not None and not value:
-        sources.error(ElementInvalidError, element, f'<{tag}> of the include is empty')
-    return value
-
-
-def _override_element(
-    include: XmlElement, top: XmlElement, tag: str, sources: Sources,
-) -> None:
-    new, old = first_child(include, tag), first_child(top, tag)
-    assert new is not None
-    replacement = copy_of(new)
-    if old is None:
-        top.insert(0, replacement)
-    else:
-        top.replace(old, replacement)
-    sources.set_source(replacement, new)
-
-
-def _placement_frame(include: XmlElement, sources: Sources) -> str:
-    placement = _override_value(include, 'placement_frame', sources)
-    if placement and first_child(include, 'pose') is None:
-        msg = (f'<placement_frame> "{placement}" needs a <pose> in the same include, which '
-               'says where that frame is')
-        sources.error(PlacementFrameError, include, msg)
-    elif placement == ROOT_FRAME:
-        msg = f'"{placement}" is reserved; it cannot be a placement frame'
-        sources.error(ReservedNameError, include, msg)
-    return placement

@@ -12,7 +12,7 @@ proxy frame. Source: ``insertIncludedElement`` in libsdformat's ``parser.cc``.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from lxml import etree
 
@@ -25,7 +25,6 @@ from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
     child_elements,
-    copy_of,
     described,
     first_child,
     value_of,
@@ -36,7 +35,18 @@ from sdf_pose_bridge.sdformat.xml_tree import (
 _MOVED_TAGS = frozenset({'frame', 'gripper', 'include', 'joint', 'link', 'model', 'plugin'})
 _PROXY_START, _PROXY_END = '_merged__', '__model__'
 _NOT_IN_WORLDS = ('gripper', 'link')
-_FORMAT_ATTRIBUTES = ('degrees', 'rotation_format')
+_POSES_OF_PARTS = 'self::*[self::link or self::joint]/*[not(self::inertial)]/pose'
+_WRITTEN = [MODEL_FRAME]
+_WRITTEN_OR_EMPTY = [MODEL_FRAME, '']
+_REFERENCES = {
+    'link': [('pose', 'relative_to', _WRITTEN_OR_EMPTY)],
+    'model': [('pose', 'relative_to', _WRITTEN_OR_EMPTY)],
+    'frame': [('pose', 'relative_to', _WRITTEN), ('.', 'attached_to', _WRITTEN_OR_EMPTY)],
+    'joint': [('pose', 'relative_to', _WRITTEN), ('axis/xyz', 'expressed_in', _WRITTEN),
+              ('axis2/xyz', 'expressed_in', _WRITTEN)],
+}
+"""The references to frames in a child of a model: path, attribute, and the values that mean the
+model frame."""
 
 
 class ModelByItself(NamedTuple):
@@ -48,17 +58,21 @@ class ModelByItself(NamedTuple):
     """Its model frame, in the frame that its ``<pose>`` is relative to."""
 
 
+ModelCheck: TypeAlias = Callable[[XmlElement], ModelByItself | None]
+"""
+Checks a model file by itself, given its ``sdf`` element.
+
+If the file is not valid, it reports that and returns None.
+"""
+
+
 def merge(
-    include: XmlElement, model: XmlElement, sources: Sources,
-    model_by_itself: Callable[[XmlElement], ModelByItself | None],
+    include: XmlElement, model: XmlElement, sources: Sources, model_by_itself: ModelCheck,
 ) -> None:
     """
     Replace an include by the content of the model that it merges, if that is valid.
 
-    :param include: the ``<include merge="true">``.
     :param model: the included element, with the parts that the include overrides.
-    :param model_by_itself: as for
-        :class:`~sdf_pose_bridge.sdformat.include.expansion.IncludeExpansion`.
     """
     parent = include.getparent()
     assert parent is not None
@@ -68,30 +82,47 @@ def merge(
         sources.error(MergeIncludeError, include, msg)
         return
     proxy = _proxy_frame(include, model, parent, sources, model_by_itself)
-    if proxy is not None and _fits_in(parent, model, sources):
-        include.addprevious(proxy)
-        _move_children(include, model, attribute_of(proxy, 'name'), sources)
-        parent.remove(include)
+    if proxy is None:
+        return
+    misfits = list(child_elements(model, *_NOT_IN_WORLDS)) if parent.tag == 'world' else []
+    for child in misfits:
+        msg = f'{described(child)} cannot be merged into a world, which has no links of its own'
+        sources.error(MergeIncludeError, child, msg)
+    if misfits:
+        return
+    include.addprevious(proxy)
+    for child in list(child_elements(model)):
+        tag = written_tag(child)
+        if tag in _MOVED_TAGS or ':' in tag:
+            # libsdformat does not adapt the poses of visuals and similar elements.
+            for pose in child.xpath(_POSES_OF_PARTS):
+                if attribute_of(pose, 'relative_to') == MODEL_FRAME:
+                    msg = ('relative_to="__model__" means the model that this is merged into, not '
+                           'the one that it was written in')
+                    sources.warning(pose, msg)
+            _replace_model_frame(child, attribute_of(proxy, 'name'))
+            sources.set_origin(child, file=sources.path(child), is_checked=True)
+            include.addprevious(child)
+    parent.remove(include)
 
 
 def _proxy_frame(
     include: XmlElement, model: XmlElement, parent: XmlElement, sources: Sources,
-    model_by_itself: Callable[[XmlElement], ModelByItself | None],
+    model_by_itself: ModelCheck,
 ) -> XmlElement | None:
     """Return the frame that takes the place of the model frame; None for an invalid model."""
     pose = first_child(model, 'pose')
-    proxy_pose = etree.Element('pose')
+    relative_to = '' if pose is None else attribute_of(pose, 'relative_to')
+    proxy_pose = etree.Element('pose', relative_to=relative_to or (
+        MODEL_FRAME if parent.tag == 'model' else WORLD_FRAME))
     if pose is not None:
-        proxy_pose = copy_of(pose)
         sources.set_source(proxy_pose, pose)
         # By itself, the model cannot be relative to a frame.
         pose.attrib.pop('relative_to', None)
-    if attribute_of(proxy_pose, 'relative_to') == ROOT_FRAME:
+    if relative_to == ROOT_FRAME:
         msg = f'relative_to="{ROOT_FRAME}" is not {ValueType.FRAME.description}'
         sources.error(AttributeInvalidError, proxy_pose, msg)
         return None
-    if not attribute_of(proxy_pose, 'relative_to'):
-        proxy_pose.set('relative_to', MODEL_FRAME if parent.tag == 'model' else WORLD_FRAME)
     root = etree.Element('sdf')
     root.append(model)
     sources.set_source(root, include)
@@ -99,8 +130,6 @@ def _proxy_frame(
     if known is None:
         return None
     proxy_pose.text = text_from_pose(known.pose)
-    for attribute in set(_FORMAT_ATTRIBUTES) & set(proxy_pose.keys()):
-        del proxy_pose.attrib[attribute]
     name = f'{_PROXY_START}{attribute_of(model, "name")}{_PROXY_END}'
     canonical_link = attribute_of(model, 'canonical_link') or known.canonical_link
     proxy = etree.Element('frame', {'name': name, 'attached_to': canonical_link})
@@ -119,62 +148,15 @@ def is_name_of_proxy(name: str) -> bool:
     return name.startswith(_PROXY_START) and name.endswith(_PROXY_END)
 
 
-def _fits_in(parent: XmlElement, model: XmlElement, sources: Sources) -> bool:
-    misfits = list(child_elements(model, *_NOT_IN_WORLDS)) if parent.tag == 'world' else []
-    for child in misfits:
-        msg = f'{described(child)} cannot be merged into a world, which has no links of its own'
-        sources.error(MergeIncludeError, child, msg)
-    return not misfits
-
-
-def _move_children(include: XmlElement, model: XmlElement, proxy: str, sources: Sources) -> None:
-    for child in list(child_elements(model)):
-        tag = written_tag(child)
-        if tag not in _MOVED_TAGS and ':' not in tag:
-            continue
-        _warn_of_model_frame_in(child, sources)
-        _replace_model_frame(child, proxy)
-        sources.set_origin(child, file=sources.path(child), is_checked=True)
-        include.addprevious(child)
-
-
 def _replace_model_frame(xml: XmlElement, proxy: str) -> None:
     """Let references to the model frame refer to the proxy frame."""
-    pose = first_child(xml, 'pose')
-    if xml.tag in ('link', 'model'):
-        if pose is None:
-            pose = etree.Element('pose')
-            xml.insert(0, pose)
-        _replace_reference(pose, 'relative_to', proxy, replaces_empty=True)
-        return
-    if pose is not None and xml.tag in ('frame', 'joint'):
-        _replace_reference(pose, 'relative_to', proxy)
-    if xml.tag == 'frame':
-        _replace_reference(xml, 'attached_to', proxy, replaces_empty=True)
-    elif xml.tag == 'joint':
-        for end in child_elements(xml, 'parent', 'child'):
-            if value_of(end) == MODEL_FRAME:
-                end[:] = []
-                end.text = proxy
-        for axis in child_elements(xml, 'axis', 'axis2'):
-            for xyz in child_elements(axis, 'xyz'):
-                _replace_reference(xyz, 'expressed_in', proxy)
-
-
-def _replace_reference(
-    xml: XmlElement, attribute: str, proxy: str, *, replaces_empty: bool = False,
-) -> None:
-    name = attribute_of(xml, attribute)
-    if name == MODEL_FRAME or (replaces_empty and not name):
-        xml.set(attribute, proxy)
-
-
-def _warn_of_model_frame_in(xml: XmlElement, sources: Sources) -> None:
-    """Libsdformat does not adapt the poses of visuals and similar elements."""
-    if xml.tag not in ('link', 'joint'):
-        return
-    for pose in xml.xpath('*[not(self::inertial)]/pose'):
-        if attribute_of(pose, 'relative_to') == MODEL_FRAME:
-            msg = ('relative_to="__model__" means the model that this is merged into, not the one '
-                   'that it was written in')
-            sources.warning(pose, msg)
+    if xml.tag in ('link', 'model') and first_child(xml, 'pose') is None:
+        xml.insert(0, etree.Element('pose'))
+    for path, attribute, meaning_model_frame in _REFERENCES.get(str(xml.tag), ()):
+        for element in xml.iterfind(path):
+            if attribute_of(element, attribute) in meaning_model_frame:
+                element.set(attribute, proxy)
+    for end in child_elements(xml, 'parent', 'child') if xml.tag == 'joint' else ():
+        if value_of(end) == MODEL_FRAME:
+            end[:] = []
+            end.text = proxy

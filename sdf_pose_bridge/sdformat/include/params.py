@@ -5,9 +5,16 @@ Change an included model by the parameters of its include (``<experimental:param
 
 Each parameter names an element of the model by ``element_id`` and a change by ``action``: of the
 whole element, or of its children one by one. Source: libsdformat's ``ParamPassing.cc``.
+
+An ``element_id`` joins names by ``::``, from the included model inwards. The search works
+as in libsdformat (``ParamPassing::getElementById``), with its limits: among siblings it selects
+the one whose name is the longest prefix of the id, and continues only inside this one.
 """
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import islice
 
 from lxml import etree
 
@@ -18,33 +25,39 @@ from sdf_pose_bridge.errors import (
     ElementInvalidError,
     ElementMissingError,
 )
-from sdf_pose_bridge.names import SEPARATOR
+from sdf_pose_bridge.names import scoped_name, SEPARATOR
+from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, STANDALONE_ELEMENTS
-from sdf_pose_bridge.sdformat.include.element_ids import element_by_id, hint_for_id
 from sdf_pose_bridge.sdformat.joints import DEFAULT_END
 from sdf_pose_bridge.sdformat.reader import is_valid_element
 from sdf_pose_bridge.sdformat.sources import PARAMS_TAG, Sources
 from sdf_pose_bridge.sdformat.xml_tree import (
+    attribute_of,
     child_elements,
     copy_of,
     text_of,
+    WHITE_SPACE,
+    with_ancestors,
     written_tag,
     XmlElement,
 )
 
+TOP_TAGS = ('model', 'actor', 'light')
+"""The tags of elements that can be included, in the order of preference."""
 _OWN_ATTRIBUTES = ('element_id', 'action')
 _ACTIONS = ('add', 'modify', 'remove', 'replace')
 _POSE_FORMAT_ATTRIBUTES = frozenset({'degrees', 'rotation_format'})
 _PARTS = ('pose', 'parent', 'child', 'axis', 'axis2')
 """Children that are in the file of their parent element."""
+_MOST_IDS_COMPARED = 2000
+_MOST_ELEMENTS_SEARCHED = 10_000
+_LONGEST_ID_COMPARED = 200
 
 
 def apply_params(include: XmlElement, top: XmlElement, sources: Sources) -> list[XmlElement]:
     """
     Change an included element by the first ``<experimental:params>`` of its include.
 
-    :param include: the include; it is not changed.
-    :param top: the included element.
     :param sources: takes errors and warnings. A parameter with an error is not applied.
     :return: the elements that were added.
     """
@@ -63,48 +76,48 @@ class _Changer:
         self.added: list[XmlElement] = []
         self._top = top
         self._sources = sources
+        self._error = sources.error
+        self._actions = {
+            'modify': self._modify, 'remove': self._remove, 'replace': self._replace}
 
     # One parameter
 
     def apply(self, xml: XmlElement) -> None:
         tag, element_id, action = written_tag(xml), xml.get('element_id'), xml.get('action')
         if element_id is None:
-            self._sources.error(AttributeMissingError, xml, f'<{tag}> has no element_id')
+            self._error(AttributeMissingError, xml, f'<{tag}> has no element_id')
         elif element_id.endswith(SEPARATOR):
             msg = f'element_id="{element_id}" ends with "{SEPARATOR}"; a name has to follow'
-            self._sources.error(AttributeInvalidError, xml, msg)
+            self._error(AttributeInvalidError, xml, msg)
         elif action not in (None, *_ACTIONS):
             self._report_action(xml)
         elif action == 'add':
             self._add(xml, tag, element_id)
         elif (target := element_by_id(self._top, element_id, tag)) is None:
-            msg = (f'the included model has no <{tag}> "{element_id}"'
-                   f'{self._hint(element_id, tag)}')
-            self._sources.error(ElementMissingError, xml, msg)
+            hint = hint_for_id(self._top, element_id, self._sources.problems, tag)
+            msg = f'the included model has no <{tag}> "{element_id}"{hint}'
+            self._error(ElementMissingError, xml, msg)
         elif action in ('modify', 'remove') or self._is_defined(xml):
             if action is not None:
-                self._perform(action, xml, target)
+                self._actions[action](xml, target)
                 return
             for child in child_elements(xml):
                 self._change_child(child, tag, target)
-
-    def _perform(self, action: str, xml: XmlElement, target: XmlElement) -> None:
-        acts = {'modify': self._modify, 'remove': self._remove, 'replace': self._replace}
-        acts[action](xml, target)
 
     def _add(self, xml: XmlElement, tag: str, element_id: str) -> None:
         name = xml.get('name')
         scoped = f'{element_id}{SEPARATOR}{name}'
         if not name:
             missing = AttributeMissingError if name is None else AttributeInvalidError
-            self._sources.error(missing, xml, f'<{tag}> is to be added, so it needs a name')
+            self._error(missing, xml, f'<{tag}> is to be added, so it needs a name')
         elif tag != 'plugin' and element_by_id(self._top, scoped, tag) is not None:
             msg = f'<{tag}> cannot be added: the included model has a <{tag}> "{scoped}" already'
-            self._sources.error(DuplicateNameError, xml, msg)
+            self._error(DuplicateNameError, xml, msg)
         elif (parent := element_by_id(self._top, element_id) if element_id else self._top) is None:
+            hint = hint_for_id(self._top, element_id, self._sources.problems)
             msg = (f'<{tag}> cannot be added to element_id="{element_id}": the included model has '
-                   f'no such element{self._hint(element_id)}')
-            self._sources.error(ElementMissingError, xml, msg)
+                   f'no such element{hint}')
+            self._error(ElementMissingError, xml, msg)
         elif self._is_defined(xml):
             parent.append(self._new_element(xml))
 
@@ -112,19 +125,19 @@ class _Changer:
         tag, action = written_tag(xml), xml.get('action')
         if action is None:
             msg = f'<{tag}> has no action; it must have one, as <{parent_tag}> has none'
-            self._sources.error(AttributeMissingError, xml, msg)
+            self._error(AttributeMissingError, xml, msg)
         elif action not in _ACTIONS:
             self._report_action(xml)
         elif action in ('add', 'replace') and tag not in _standalone_definition(
                 parent_tag).children:
             msg = f'SDFormat defines no <{tag}> in a <{parent_tag}>'
-            self._sources.error(ElementInvalidError, xml, msg)
+            self._error(ElementInvalidError, xml, msg)
         elif action == 'add' and tag == 'include':
             self._sources.warning(xml, 'an <include> that is added by itself includes nothing')
         elif action == 'add':
             target.append(self._new_element(xml))
         elif (found := self._child(target, xml, takes_first=action == 'modify')) is not None:
-            self._perform(action, xml, found)
+            self._actions[action](xml, found)
 
     # Actions
 
@@ -132,9 +145,12 @@ class _Changer:
         """Copy an element without attributes that are not defined, as libsdformat does."""
         self._sources.count_copy(xml, xml)
         element = copy_of(xml)
-        definition = _definition_of_parameter(xml)
-        attributes = element.keys()
-        for attribute in attributes:
+        tag, parent = written_tag(xml), xml.getparent()
+        if tag in STANDALONE_ELEMENTS or parent is None:
+            definition = _standalone_definition(tag)
+        else:
+            definition = _standalone_definition(written_tag(parent)).children[tag]
+        for attribute in element.keys():  # noqa: SIM118  # it is changed
             if attribute in _OWN_ATTRIBUTES or (
                     attribute not in definition.attributes and ':' not in attribute):
                 del element.attrib[attribute]
@@ -147,7 +163,7 @@ class _Changer:
         parent = target.getparent()
         if target.get('name') is not None and xml.get('name') is None:
             msg = f'<{written_tag(xml)}> is to replace {_start_tag(target)}, so it needs a name'
-            self._sources.error(AttributeMissingError, xml, msg)
+            self._error(AttributeMissingError, xml, msg)
         elif parent is not None:
             parent.replace(target, self._new_element(xml))
 
@@ -163,15 +179,10 @@ class _Changer:
     def _modify(
         self, xml: XmlElement, target: XmlElement, *, is_read_before: bool = False,
     ) -> None:
-        """
-        Change an element, and the children that a parameter has.
-
-        :param is_read_before: whether a new text is read before the new attributes.
-        """
         text = text_of(xml)
         has_text = bool(text.strip())
         self._change(
-            xml, target, text if has_text and self._holds_value(target) else None,
+            xml, target, text if has_text and _holds_value(target) else None,
             is_read_before=is_read_before or not has_text)
         if not has_text:
             for child in child_elements(xml):
@@ -183,9 +194,9 @@ class _Changer:
             return
         if not _is_empty(xml):
             self._modify(xml, found, is_read_before=True)
-        elif self._holds_value(found):
+        elif _holds_value(found):
             is_end = written_tag(target) == 'joint' and found.tag in ('parent', 'child')
-            definition = self._definition(found)
+            definition = definition_in_tree(found)
             if definition is not None and definition.is_required and not is_end:
                 # Without the element, its default applies.
                 target.remove(found)
@@ -199,9 +210,8 @@ class _Changer:
         self, xml: XmlElement, target: XmlElement, text: str | None, *, is_read_before: bool,
     ) -> None:
         """
-        Change the attributes of an element to those of a parameter.
+        Change the attributes of an element to those of a parameter, and its text if one is given.
 
-        :param text: its new text; None to keep the old one.
         :param is_read_before: whether its text is read before its attributes change. Then those
             of the format of a pose are for the next text.
         """
@@ -210,7 +220,7 @@ class _Changer:
             target.attrib.update(dict(self._sources.origin(target).next_attributes))
             target[:] = []
             target.text = text
-        definition = self._definition(target)
+        definition = definition_in_tree(target)
         attributes = {
             name: str(value) for name, value in xml.attrib.items()
             if name not in _OWN_ATTRIBUTES and ':' not in name}
@@ -218,10 +228,15 @@ class _Changer:
             if name not in target.attrib and (
                     definition is None or name not in definition.attributes):
                 msg = f'SDFormat defines no attribute {name} of <{written_tag(target)}>'
-                self._sources.error(AttributeInvalidError, xml, msg)
+                self._error(AttributeInvalidError, xml, msg)
             elif (is_read_before and name in _POSE_FORMAT_ATTRIBUTES and target.tag == 'pose'
                     and text_of(target).strip()):
-                self._keep_for_next_text(name, value, xml, target)
+                if target.get(name) != value:
+                    msg = (f'{name}="{value}" has no effect: libsdformat has read the numbers of '
+                           'this pose before')
+                    self._sources.warning(xml, msg)
+                kept = self._sources.origin(target).next_attributes
+                self._sources.set_origin(target, next_attributes={**kept, name: value})
             else:
                 target.set(name, value)
                 is_changed = True
@@ -229,16 +244,6 @@ class _Changer:
             self._set_source(target, xml)
             if definition is not None:
                 is_valid_element(target, definition, self._sources)
-
-    def _keep_for_next_text(
-        self, name: str, value: str, xml: XmlElement, target: XmlElement,
-    ) -> None:
-        if target.get(name) != value:
-            msg = (f'{name}="{value}" has no effect: libsdformat has read the numbers of this '
-                   'pose before')
-            self._sources.warning(xml, msg)
-        kept = self._sources.origin(target).next_attributes
-        self._sources.set_origin(target, next_attributes={**kept, name: value})
 
     def _set_source(self, target: XmlElement, xml: XmlElement) -> None:
         """Move the place of an element, and of ancestors up to that with the id, to the params."""
@@ -264,7 +269,7 @@ class _Changer:
         """Find the child with the tag and the name of a parameter; report it if there is none."""
         tag, name = written_tag(xml), xml.get('name')
         children = [child for child in child_elements(parent) if written_tag(child) == tag]
-        definition = self._definition(parent)
+        definition = definition_in_tree(parent)
         if not children and definition is not None and tag in definition.required_children:
             children = [etree.SubElement(parent, tag)]
             self._sources.set_source(children[0], xml)
@@ -275,45 +280,35 @@ class _Changer:
         if found:
             return found[0]
         msg = f'{_start_tag(parent)} of the included model has no {_start_tag(xml)}'
-        self._sources.error(ElementMissingError, xml, msg)
+        self._error(ElementMissingError, xml, msg)
         return None
-
-    def _definition(self, xml: XmlElement) -> Definition | None:
-        """Return the definition of an element of the included model; None if there is none."""
-        parent = xml.getparent()
-        if parent is None:
-            return definition_of(str(xml.tag))
-        definition = self._definition(parent)
-        return None if definition is None else definition.children.get(str(xml.tag))
-
-    def _holds_value(self, xml: XmlElement) -> bool:
-        definition = self._definition(xml)
-        return definition is None or definition.value_type is not None
 
     # Errors
 
-    def _hint(self, element_id: str, tag: str = '') -> str:
-        problems = self._sources.problems
-        return hint_for_id(self._top, element_id, tag, problems) if problems.allows_hint() else ''
-
     def _report_action(self, xml: XmlElement) -> None:
         msg = f'action="{xml.get("action")}" must be one of {", ".join(_ACTIONS)}'
-        self._sources.error(AttributeInvalidError, xml, msg)
+        self._error(AttributeInvalidError, xml, msg)
 
     def _is_defined(self, xml: XmlElement) -> bool:
         tag = written_tag(xml)
         if tag not in STANDALONE_ELEMENTS:
             msg = f'<{tag}> is not an element that SDFormat defines by itself'
-            self._sources.error(ElementInvalidError, xml, msg)
+            self._error(ElementInvalidError, xml, msg)
         return tag in STANDALONE_ELEMENTS
 
 
-def _definition_of_parameter(xml: XmlElement) -> Definition:
-    """Return the definition of an element to add, or of a child to add to another element."""
-    tag, parent = written_tag(xml), xml.getparent()
-    if tag in STANDALONE_ELEMENTS or parent is None:
-        return _standalone_definition(tag)
-    return _standalone_definition(written_tag(parent)).children[tag]
+def definition_in_tree(xml: XmlElement) -> Definition | None:
+    """Return the definition of an element of a file or of an included element, if it has one."""
+    top, *inner = reversed([*with_ancestors(xml)])
+    definition = definition_of(str(top.tag)) if top.tag in ('sdf', *TOP_TAGS) else None
+    for each in inner:
+        definition = None if definition is None else definition.children.get(each.tag)
+    return definition
+
+
+def _holds_value(xml: XmlElement) -> bool:
+    definition = definition_in_tree(xml)
+    return definition is None or definition.value_type is not None
 
 
 def _standalone_definition(tag: str) -> Definition:
@@ -327,3 +322,65 @@ def _start_tag(xml: XmlElement) -> str:
 
 def _is_empty(xml: XmlElement) -> bool:
     return len(xml) == 0 and not (xml.text or '').strip()
+
+
+# Look-ups by element_id
+
+def element_by_id(top: XmlElement, element_id: str, tag: str = '') -> XmlElement | None:
+    """Find an element by its id and its tag as written; any tag if that is empty."""
+    start = longest = 0
+    wanted = element_id.encode()  # libsdformat counts bytes
+    match: XmlElement | None = top
+    while match is not None:
+        children, match = child_elements(match), None
+        for child in children:
+            written = child.get('name')
+            if written is None:
+                continue
+            name = written.strip(WHITE_SPACE).encode()
+            if not tag and name == wanted:
+                return child
+            last = start + len(name) - 1
+            if last <= longest or not wanted.startswith(name, start):
+                continue
+            if wanted[start:] == name and tag in ('', written_tag(child)):
+                return child
+            match, longest = child, last
+        start = longest
+        if wanted.startswith(SEPARATOR.encode(), start + 1):
+            start += 1 + len(SEPARATOR)
+    return None
+
+
+def hint_for_id(top: XmlElement, element_id: str, problems: Problems, tag: str = '') -> str:
+    """
+    Return the end of a message about an id that was not found: a likely reason, or the nearest id.
+
+    :param problems: the problems of the load, which limit the comparisons.
+    """
+    if not problems.allows_hint() or len(element_id) > _LONGEST_ID_COMPARED:
+        return ''
+    searched = islice(_ids(top, ''), _MOST_ELEMENTS_SEARCHED)
+    ids = [found for found in searched if found[0]][:_MOST_IDS_COMPARED]
+    tags = [found_tag for found_id, found_tag in ids if found_id == element_id]
+    if tag in tags and len(element_id.split(SEPARATOR)[0].encode()) == 1:
+        return '; libsdformat does not find names of one letter at the top of a model'
+    if tag in tags:
+        return f'; libsdformat finds only the <{tags[0]}> of that name, which comes before it'
+    if tags:
+        return f'; that is a <{tags[0]}>'
+    wanted = (found_id for found_id, found_tag in ids if tag in ('', found_tag))
+    # Each parameter may change the elements, so each has a separate index.
+    return problems.name_index(object(), wanted).hint(element_id)
+
+
+def _ids(xml: XmlElement, scope: str) -> Iterator[tuple[str, str]]:
+    """Iterate over ids and tags in an element; empty ones for elements without an id."""
+    for child in child_elements(xml):
+        name = attribute_of(child, 'name')
+        scoped = scoped_name(scope, name)
+        if name and len(scoped) <= 2 * _LONGEST_ID_COMPARED:
+            yield scoped, written_tag(child)
+            yield from _ids(child, scoped)
+        else:
+            yield '', ''

@@ -10,7 +10,6 @@ version: ``getModelFilePath`` and ``getBestSupportedModelVersion`` of libsdforma
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from functools import lru_cache
 import os
 from pathlib import Path
 import re
@@ -26,7 +25,9 @@ from sdf_pose_bridge.sdformat.xml_tree import child_elements, first_child, text_
 
 _SCHEME = re.compile(r'([A-Za-z][A-Za-z0-9+.-]*)://')
 _SCHEME_OF_ADDRESS = re.compile(r'[A-Za-z][A-Za-z0-9+.-]+(?=:/)')
-_PATH_VARIABLES = ('GZ_SIM_RESOURCE_PATH', 'SDF_PATH')
+_WEB = ('http', 'https')
+_SHARED = ('model', 'package')
+"""Schemes of URIs that begin with the name of a model or package."""
 _MODELS_OF_GAZEBO_CLASSIC = ('model://sun', 'model://ground_plane')
 
 _MOST_SHOWN = 5
@@ -56,7 +57,6 @@ class ResourceFinder(NamedTuple):
         directory.
 
         :param uri: such as ``model://box``, ``package://pkg/models/box`` or ``box.sdf``.
-        :param including_file: path of the file with the include.
         """
         found = next(filter(os.path.exists, self._candidates(uri, including_file)), None)
         return None if found is None else str(Path(found))
@@ -126,22 +126,18 @@ class ResourceFinder(NamedTuple):
         raise AddressError(msg)
 
     def reason_not_found(self, uri: str, including_file: str) -> str:
-        """
-        Return the reason why :meth:`path_from_uri` finds no path for a URI, with a remedy.
-
-        :param including_file: path of the file with the include.
-        """
-        if uri.lower().startswith(('http://', 'https://')):
+        """Return the reason why :meth:`path_from_uri` finds no path for a URI, with a remedy."""
+        scheme, name = _scheme_and_name(uri)
+        if scheme in _WEB:
             return ('it is not in the cache of Gazebo Fuel; fetch it with: gz fuel download -u '
                     f'"{uri}"')
-        scheme = _SCHEME.match(uri)
-        beside = [] if scheme and scheme[1].lower() in ('model', 'package') else [
+        beside = [] if scheme in _SHARED else [
             os.path.dirname(including_file) or '.']  # noqa: PTH120
         directories = [*dict.fromkeys((
             *beside, *self.search_paths, *self.environment_paths, '.'))]
         packages = ''
-        if scheme and scheme[1].lower() == 'package':
-            package = uri[scheme.end():].lstrip('/').partition('/')[0]
+        if scheme == 'package':
+            package = name.lstrip('/').partition('/')[0]
             is_known = next(self._package_shares(package), None) is not None
             packages = f'the package "{package}" has no such file, and it is ' if is_known else (
                 f'no package "{package}" is installed, and it is ')
@@ -151,48 +147,41 @@ class ResourceFinder(NamedTuple):
         return f'{packages or "it is "}not in {quoted_names(directories, _MOST_SHOWN)}; {cure}'
 
     def _candidates(self, uri: str, including_file: str) -> Iterator[str]:
-        scheme = _SCHEME.match(uri)
-        name = uri[scheme.end():] if scheme else uri
-        scheme_name = scheme[1].lower() if scheme else ''
-        if scheme_name in ('http', 'https'):
+        scheme, name = _scheme_and_name(uri)
+        if scheme in _WEB:
             yield from self._paths_in_fuel_cache(uri)
             return
         if not name:
             return
         # Joined to another path, an absolute path is unchanged. A Path is made only of a path that
         # is found, as this takes long for a name with many slashes. Gazebo ignores a third slash.
-        relative = name.lstrip('/') if scheme_name in ('model', 'package') else name
+        relative = name.lstrip('/') if scheme in _SHARED else name
         for directory in self.search_paths:
             yield os.path.join(directory, relative)  # noqa: PTH118
-        if scheme_name == 'package':
+        if scheme == 'package':
             package, _, rest = relative.partition('/')
             for share in self._package_shares(package):
                 yield str(share / rest)
-        if scheme_name in ('', 'file'):
+        if scheme in ('', 'file'):
             yield os.path.join(os.path.dirname(including_file), name)  # noqa: PTH118, PTH120
         for directory in self.environment_paths:
             yield os.path.join(directory, relative)  # noqa: PTH118
-        if scheme_name in ('model', 'package'):
+        if scheme in _SHARED:
             owner, _, rest = relative.partition('/')
             for folder in Path(including_file).absolute().parents:
-                if _is_model(folder, owner) or _is_package(folder, owner):
+                if _is_root_of(folder, owner):
                     yield str(folder / rest)
         yield name
 
     def _package_shares(self, package: str) -> Iterator[Path]:
-        """Find the share directories of a ROS package, by the markers in ament's index."""
         for prefix in self.package_prefixes:
             marker = Path(prefix, 'share', 'ament_index', 'resource_index', 'packages', package)
             if package and os.path.exists(marker):  # noqa: PTH110
                 yield Path(prefix, 'share', package)
 
     def _paths_in_fuel_cache(self, uri: str) -> Iterator[str]:
-        """
-        Find a Fuel model in the cache.
-
-        Its URI is ``https://SERVER/1.0/OWNER/models/NAME[/VERSION][/files/REST]``, and the cache
-        has it as ``SERVER/owner/models/name/VERSION/REST``.
-        """
+        # The URI is https://SERVER/1.0/OWNER/models/NAME[/VERSION][/files/REST], and the cache has
+        # the model as SERVER/owner/models/name/VERSION/REST.
         try:
             parts = urlsplit(uri)
         except ValueError:  # a host with one square bracket
@@ -200,10 +189,12 @@ class ResourceFinder(NamedTuple):
         steps = [unquote(part) for part in parts.path.split('/') if part]
         if steps and re.fullmatch(r'[0-9]+\.[0-9]+', steps[0]):
             steps = steps[1:]
-        if len(steps) < 3 or steps[1] != 'models' or not all(
-                map(_is_file_name, (parts.netloc, *steps))):
+        # Without its per cent escapes, each step must be the name of one file.
+        if len(steps) < 3 or steps[1] != 'models' or any(
+                step in ('', '.', '..') or '/' in step or '\0' in step
+                for step in (parts.netloc, *steps)):
             return
-        version, rest = (steps[3] if len(steps) > 3 else 'tip'), steps[4:]
+        version, *rest = steps[3:] or ['tip']
         model = f'{self.fuel_cache}/{parts.netloc}'
         for part in steps[:3]:
             model = _entry_in_any_case(model, part)
@@ -219,63 +210,48 @@ class ResourceFinder(NamedTuple):
 def resource_finder(
     resource_paths: Iterable[str | os.PathLike[str]], environment: Mapping[str, str],
 ) -> ResourceFinder:
-    """
-    Read the directories from the environment.
-
-    :param resource_paths: directories to search first.
-    :param environment: such as ``os.environ``: ``GZ_SIM_RESOURCE_PATH``, ``SDF_PATH``,
-        ``AMENT_PREFIX_PATH``, ``GZ_FUEL_CACHE_PATH`` and ``HOME``.
-    """
+    """Make a finder from directories to search first and an environment, as ``os.environ``."""
     def paths(variable: str) -> list[str]:
         return [path for path in environment.get(variable, '').split(os.pathsep) if path]
 
-    home = environment.get('HOME', '~')
     return ResourceFinder(
         tuple(os.fspath(path) for path in resource_paths),
-        tuple(path for variable in _PATH_VARIABLES for path in paths(variable)),
+        tuple(paths('GZ_SIM_RESOURCE_PATH') + paths('SDF_PATH')),
         tuple(paths('AMENT_PREFIX_PATH')),
-        environment.get('GZ_FUEL_CACHE_PATH') or os.path.join(home, '.gz', 'fuel'),  # noqa: PTH118
+        environment.get('GZ_FUEL_CACHE_PATH') or os.path.join(  # noqa: PTH118
+            environment.get('HOME', '~'), '.gz', 'fuel'),
     )
 
 
-def _is_model(directory: Path, name: str) -> bool:
-    return directory.name == name and os.path.isfile(directory / _NAME)  # noqa: PTH113
+def _scheme_and_name(uri: str) -> tuple[str, str]:
+    scheme = _SCHEME.match(uri)
+    return (scheme[1].lower(), uri[scheme.end():]) if scheme else ('', uri)
 
 
-def _is_package(directory: Path, name: str) -> bool:
+def _is_root_of(directory: Path, name: str) -> bool:
+    """Return whether a directory is that of a model or a package."""
     manifest = directory / 'package.xml'
     try:
-        return manifest.is_file() and f'<name>{name}</name>' in manifest.read_text(
-            errors='replace')
+        return (directory.name == name and os.path.isfile(directory / _NAME)) or (  # noqa: PTH113
+            manifest.is_file()
+            and f'<name>{name}</name>' in manifest.read_text(errors='replace'))
     except OSError:
         return False
 
 
 def _entry_in_any_case(directory: str, name: str) -> str:
     """Return the entry of a name; Gazebo writes owners and models in lower case."""
-    plain = f'{directory}/{name}'
-    if os.path.exists(plain):  # noqa: PTH110
-        return plain
-    return f'{directory}/{_entries(directory).get(name.lower(), name)}'
+    if not os.path.exists(f'{directory}/{name}'):  # noqa: PTH110
+        entries = _entries(directory)
+        name = next((entry for entry in entries if entry.lower() == name.lower()), name)
+    return f'{directory}/{name}'
 
 
-def _entries(directory: str) -> Mapping[str, str]:
-    """Return the names in a directory by their lower case; empty if it cannot be read."""
+def _entries(directory: str) -> list[str]:
     try:
-        return _entries_of_state(directory, os.stat(directory).st_mtime_ns)  # noqa: PTH116
-    except (OSError, ValueError):  # ValueError: a zero character
-        return {}
-
-
-@lru_cache(maxsize=64)
-def _entries_of_state(directory: str, _changed_ns: int) -> Mapping[str, str]:
-    # If names differ in case only, the first one counts.
-    return {name.lower(): name for name in reversed(os.listdir(directory))}  # noqa: PTH208
-
-
-def _is_file_name(name: str) -> bool:
-    """Return whether a part of a URI, without its per cent escapes, is the name of one file."""
-    return name not in ('', '.', '..') and not {'/', '\0'}.intersection(name)
+        return os.listdir(directory)  # noqa: PTH208
+    except OSError:
+        return []
 
 
 # Directories of models
@@ -285,12 +261,10 @@ _DEPRECATED_NAME = 'manifest.xml'
 
 
 class ModelFile(NamedTuple):
-    """The model file of a directory."""
+    """The model file that the manifest of a directory names."""
 
     path: str
-    """The SDFormat file."""
     manifest: str
-    """The manifest that names it."""
     warnings: tuple[SdfWarning, ...]
 
 
@@ -298,11 +272,8 @@ def model_file_from_directory(directory: str, usage: Usage) -> ModelFile:
     """
     Choose the file of the newest version that is supported.
 
-    :param usage: counts the bytes and elements of its manifest.
     :return: the file, which need not exist.
-    :raises FileReadError: if there is no manifest, or it is not XML.
-    :raises ParsingError: if the manifest does not name a file.
-    :raises LimitError: if the manifest is too large.
+    :raises SdfError: if there is no manifest that names a file.
     """
     # Unlike Path.exists, this returns False for a directory without permission.
     manifests = [

@@ -4,9 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 import math
 import re
+from typing import TypeAlias
 
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import rpy_from_quaternion
@@ -19,6 +20,10 @@ _LEADING_NUMBER = re.compile(
 _URDFDOM_GIMBAL_LOCK = 1e-5
 _GZ_MATH_GIMBAL_LOCK = 1e-15
 """If 1 - abs(sin(pitch)) is less, libsdformat writes angles that are only nearly the same."""
+
+
+Numbers: TypeAlias = Mapping[str, Sequence[float]]
+"""Numbers by the names of attributes in URDF, or of child elements in SDFormat."""
 
 
 class NotFiniteError(ValueError):
@@ -37,8 +42,8 @@ def is_true(xml: XmlElement) -> bool:
 
 def leading_numbers(text: str, count: int) -> Sequence[float]:
     """Return the numbers that the first words begin with; other words have none."""
-    matches = map(_LEADING_NUMBER.match, text.split()[:count])
-    return [float(number[0]) for number in matches if number]
+    words = text.split()[:count]
+    return [float(number[0]) for number in map(_LEADING_NUMBER.match, words) if number]
 
 
 def numbers_of(xml: XmlElement, attributes: str) -> dict[str, list[float]]:
@@ -52,29 +57,25 @@ def numbers_of(xml: XmlElement, attributes: str) -> dict[str, list[float]]:
     """
     tag = written_tag(xml)
     result = {}
-    for word in attributes.split():
-        name, _, count = word.rstrip('!').partition(':')
+    for item in attributes.split():
+        name, _, count = item.rstrip('!').partition(':')
         text = xml.get(name)
-        if text is not None:
-            result[name] = _numbers_from_text(text, int(count or 1), f'{name} of <{tag}>')
-        elif word.endswith('!'):
-            msg = f'<{tag}> has no {name}'
+        if text is None:
+            if item.endswith('!'):
+                msg = f'<{tag}> has no {name}'
+                raise ValueError(msg)
+            continue
+        # Text behind a single number is ignored.
+        words = text.split() if count else [text.lstrip(WHITE_SPACE)]
+        result[name] = [number for word in words for number in number_from_word(word)]
+        msg = f'{name} of <{tag}> is "{text[:80]}"'
+        if not len(result[name]) == len(words) == int(count or 1):
+            msg += f', which is not {f"{count} numbers" if count else "a number"}'
             raise ValueError(msg)
+        if count and not all(map(math.isfinite, result[name])):
+            msg += '; the numbers must be finite'
+            raise NotFiniteError(msg)
     return result
-
-
-def _numbers_from_text(text: str, count: int, what: str) -> list[float]:
-    # Text behind a single number is ignored.
-    words = [text.lstrip(WHITE_SPACE)] if count == 1 else text.split()
-    numbers = [number for word in words for number in number_from_word(word)]
-    if not len(numbers) == len(words) == count:
-        type_name = 'a number' if count == 1 else f'{count} numbers'
-        msg = f'{what} is "{text[:80]}", which is not {type_name}'
-        raise ValueError(msg)
-    if count > 1 and not all(map(math.isfinite, numbers)):
-        msg = f'{what} is "{text[:80]}"; the numbers must be finite'
-        raise NotFiniteError(msg)
-    return numbers
 
 
 def pose_from_xyz_rpy(
@@ -83,8 +84,6 @@ def pose_from_xyz_rpy(
     """
     Convert a pose.
 
-    :param xyz: x y z in metres; finite.
-    :param rpy: roll pitch yaw in radians; finite.
     :return: the pose. Its quaternion has the sign and the rounding of libsdformat's
         (``urdf::Rotation::setFromRPY``), on which the angles of ``rpy_by_urdfdom`` depend.
     """
@@ -106,7 +105,7 @@ def text_from_numbers(numbers: Sequence[float], digits: int = 16) -> str:
 
 def rpy_by_gz_math(pose: Pose) -> Sequence[float]:
     """Return roll, pitch and yaw in radians as ``gz::math::Quaternion::Euler`` does."""
-    _, _, _, x, y, z, w = pose
+    x, y, z, w = pose[3:]
     sin_pitch = max(-1.0, min(1.0, 2.0 * (w * y - x * z)))
     if 1.0 - abs(sin_pitch) >= _GZ_MATH_GIMBAL_LOCK:
         return rpy_from_quaternion((x, y, z, w))
@@ -116,7 +115,7 @@ def rpy_by_gz_math(pose: Pose) -> Sequence[float]:
 
 def rpy_by_urdfdom(pose: Pose) -> Sequence[float]:
     """Return roll, pitch and yaw in radians as ``urdf::Rotation::getRPY`` does."""
-    _, _, _, x, y, z, w = pose
+    x, y, z, w = pose[3:]
     sin_pitch = 2.0 * (w * y - x * z)
     if 1.0 - abs(sin_pitch) > _URDFDOM_GIMBAL_LOCK:
         # At half a turn of roll, the rounding decides between pi and -pi.

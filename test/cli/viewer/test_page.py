@@ -101,7 +101,7 @@ def test_joints_move_on_while_the_page_acts(page_of):
 
 def test_number_that_is_typed_while_a_file_is_read_stays(page_of):
     page = page_of('', set_pose=lambda scene, *_, **__: PoseChange(
-        FileChange(scene.path, b'', 'utf-8', 0, 0, b''), 1, scene))
+        FileChange(scene.path, 'utf-8', b'', b'', b'', b''), 1, scene))
     page._selected.select(page._posed.tree.frame_ids.index('l'))
     page._edit._numbers[0].value = 0.5
     page.show(page._shown)

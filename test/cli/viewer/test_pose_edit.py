@@ -37,7 +37,7 @@ def written():
             raise ElementInvalidError('no', scene.place(element))
         if not dry_run:
             poses.append(pose)
-        return PoseChange(FileChange(scene.path, b'', 'utf-8', 0, 0, b''), 1, scene)
+        return PoseChange(FileChange(scene.path, 'utf-8', b'', b'', b'', b''), 1, scene)
     server = viser.ViserServer('127.0.0.1', 0, verbose=False)
     yield poses, PoseEdit(server, put, Events(), lambda: None)
     server.stop()

@@ -29,8 +29,8 @@ def model_from(text, *, is_included=True):
     sources.add_path('f')
     file = xml_from_bytes(text.encode(), 'f')
     sources.add_tree('f', file.root, file.lines)
-    converted = sdf_from_urdf(file.root, sources, is_included=is_included)
-    return converted.root.find('model')
+    converted, _ = sdf_from_urdf(file.root, sources, is_included=is_included)
+    return converted.find('model')
 
 
 def kinds_of(scene):

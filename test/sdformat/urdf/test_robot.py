@@ -1,18 +1,16 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Reading URDF: what is refused or left out, ``<gazebo>`` elements, joints named as links."""
+"""Reading URDF: what is refused or left out, and joints named as links."""
 
 import math
 
-from lxml import etree
 import numpy as np
 import pytest
 from sdf_texts import errors_of, only_error, world_file
-from urdf_texts import gazebo, joint, link, origin, robot, shape
+from urdf_texts import joint, link, origin, robot, shape
 
 from sdf_pose_bridge import load, load_text, scene_at_positions
 from sdf_pose_bridge.problems import MOST_PROBLEMS
-from sdf_pose_bridge.sdformat.urdf.robot import gazebo_elements_of, GazeboElements
 from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 TWO = link('a') + link('b')
@@ -165,33 +163,3 @@ def test_fixed_joint_of_the_name_of_its_link_leaves_two_frames():
 def test_robot_may_have_the_name_of_its_link():
     scene = load_text(robot(link('r')))
     assert tf_tree_from_scene(scene).frame_ids == ('r',)
-
-
-def read(content):
-    return gazebo_elements_of(etree.fromstring(robot(content)))
-
-
-def test_without_any_there_are_no_settings():
-    assert read('') == GazeboElements(None, set(), set(), {})
-
-
-def test_what_is_not_a_setting_is_an_extension_of_what_it_refers_to():
-    extensions = read(
-        gazebo('<sensor/><mu1>1</mu1>', 'a') + gazebo('<plugin/>')
-        + gazebo('<light/>', 'a')).extensions
-    assert {name: [each.tag for each in found] for name, found in extensions.items()} == {
-        'a': ['sensor', 'light'], '': ['plugin']}
-
-
-def test_a_joint_that_is_preserved_does_not_become_revolute():
-    elements = read(
-        gazebo('<preserveFixedJoint>true</preserveFixedJoint>', 'j')
-        + gazebo('<disableFixedJointLumping>true</disableFixedJointLumping>', 'j')
-        + gazebo('<disableFixedJointLumping>true</disableFixedJointLumping>', 'k')
-        + gazebo('<preserveFixedJoint>false</preserveFixedJoint>', 'l'))
-    assert elements == GazeboElements(None, {'j', 'k'}, {'k'}, {})
-
-
-def test_only_the_model_is_static():
-    assert read(gazebo('<static>yes</static>')).static == 'true'
-    assert read(gazebo('<static>yes</static>', 'a')).static is None
