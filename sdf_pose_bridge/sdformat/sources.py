@@ -189,7 +189,7 @@ class Sources:
             outer = known.get(each.getparent(), Place(''))
             known[each] = Place(
                 self.origin(each).file or outer.file, element=f'{outer.element}/{_step(each)}')
-        place, pose = known[xml], self.origin(xml).pose
+        place, pose = known.pop(xml), self.origin(xml).pose  # only ancestors stay known
         if len(known) > _MOST_PLACES_REMEMBERED:
             known.clear()
         return place._replace(
