@@ -131,7 +131,8 @@ class Sources:
 
     def check_depth(self, depth: int, xml: XmlElement) -> None:
         """Raise a LimitError if the depth of an element exceeds the limit."""
-        self.usage.check('depth', depth, self.place(xml))
+        if depth > self.usage.limits.depth:  # else its place is not worth the time
+            self.usage.check('depth', depth, self.place(xml))
 
     def count_copy(self, xml: XmlElement, user: XmlElement) -> None:
         """Count the elements in a copy for ``user``; raise a LimitError if there are too many."""
@@ -188,7 +189,7 @@ class Sources:
             outer = known.get(each.getparent(), Place(''))
             known[each] = Place(
                 self.origin(each).file or outer.file, element=f'{outer.element}/{_step(each)}')
-        place, pose = known[xml], self.origin(xml).pose
+        place, pose = known.pop(xml), self.origin(xml).pose  # only ancestors stay known
         if len(known) > _MOST_PLACES_REMEMBERED:
             known.clear()
         return place._replace(
