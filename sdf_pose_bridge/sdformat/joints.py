@@ -168,8 +168,8 @@ def _axis(
     if limit is not None:
         lower = number_of_child(limit, 'lower', lower)
         upper = number_of_child(limit, 'upper', upper)
-        joint_type = JOINT_TYPES.get(attribute_of(joint, 'type').lower())
-        if any(map(_may_be_degrees, (lower, upper))) and joint_type is not None and any(
+        joint_type = JOINT_TYPES.get(attribute_of(joint, 'type').lower(), JOINT_TYPES['fixed'])
+        if any(map(_may_be_degrees, (lower, upper))) and any(
                 dof.motion is Motion.TURN for dof in joint_type.dofs):
             msg = (f'the limits {lower:g} to {upper:g} of joint "{attribute_of(joint, "name")}" '
                    'are radians; they look like degrees')
@@ -187,16 +187,12 @@ def _may_be_degrees(limit: float) -> bool:
 
 
 def _dynamics(axis: XmlElement) -> Dynamics:
-    values = NO_DYNAMICS._asdict()
-    for tag, names in (('limit', ('effort', 'velocity')), ('dynamics', ('damping', 'friction'))):
-        part = first_child(axis, tag)
-        if part is None:
-            continue
-        for name in names:
-            value = number_of_child(part, name, values[name])
-            # In older files, a limit below zero means no limit.
-            values[name] = math.inf if tag == 'limit' and value < 0.0 else value
-    return Dynamics(**values)
+    largest = (number_of_child(axis, f'limit/{name}', math.inf) for name in ('effort', 'velocity'))
+    # In older files, a limit below zero means no limit.
+    effort, velocity = (math.inf if value < 0.0 else value for value in largest)
+    return Dynamics(
+        effort, velocity, number_of_child(axis, 'dynamics/damping', 0.0),
+        number_of_child(axis, 'dynamics/friction', 0.0))
 
 
 def _mimic(
