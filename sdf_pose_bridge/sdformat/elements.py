@@ -230,10 +230,10 @@ class ElementsBuilder:
             about poses that may be mistakes.
         """
         table = Elements(
-            kinds=np.array(self.kinds, dtype=np.uint8), names=self.names,
-            parents=_indices(self.parents), scopes=_indices(self._scopes),
-            file_indices=_indices(self.file_indices), lines=_indices(self.lines),
-            pose_lines=_indices(self.pose_lines), poses=np.tile(Pose(), (len(self.names), 1)),
+            kinds=np.array(self.kinds), names=self.names,
+            parents=np.array(self.parents), scopes=np.array(self._scopes),
+            file_indices=np.array(self.file_indices), lines=np.array(self.lines),
+            pose_lines=np.array(self.pose_lines), poses=np.tile(Pose(), (len(self.names), 1)),
             paths=self._paths, has_shapes=self._has_shapes, **self.details)
         for pose_format, (indices, texts) in self._poses.items():
             rows = []
@@ -253,7 +253,6 @@ class ElementsBuilder:
         return table
 
     def _warn_of_millimetres(self, table: Elements, problems: Problems) -> None:
-        """Warn once of positions in models that are too far away for metres."""
         is_far = np.abs(table.poses[:, :3]).max(axis=1, initial=0.0) >= FAR_M
         if not is_far.any():
             return
@@ -269,7 +268,3 @@ class ElementsBuilder:
             msg = (f'the position {x:g} {y:g} {z:g} of {table.kind(rows[0]).label} '
                    f'"{table.names[rows[0]]}" is in metres{more}; these look like millimetres')
             problems.warning(msg, table.place_of_pose(rows[0]))
-
-
-def _indices(column: array[int]) -> Indices:
-    return np.array(column, dtype=np.int32)

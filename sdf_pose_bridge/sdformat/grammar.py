@@ -170,7 +170,6 @@ class Item(NamedTuple):
 
 @cache
 def _items(content: str) -> Sequence[Item]:
-    """Read the content of an element."""
     words = (word.partition(':') for word in content.split())
     return [
         _item(f'{name}{colon}{rest}')
@@ -178,11 +177,6 @@ def _items(content: str) -> Sequence[Item]:
 
 
 def _item(text: str) -> Item:
-    """
-    Read an item of the content of an element.
-
-    :raises ValueError: if it is not in the notation of this module, or has an unknown type.
-    """
     match = _ITEM.fullmatch(text)
     if match is None:
         msg = f'"{text}" is not an item of a definition'

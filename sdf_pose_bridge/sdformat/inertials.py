@@ -50,15 +50,17 @@ class Inertial(NamedTuple):
         """Whether libsdformat accepts it, as a body can have it (``MassMatrix3::IsValid``)."""
         if not all(map(math.isfinite, self.moments_kg_m2)):
             return False
-        ixx, iyy, izz, ixy, ixz, iyz = self.moments_kg_m2
-        tolerance = _TOLERANCE * abs(0.5 * (ixx + iyy + izz))
+        xx, yy, zz, xy, xz, yz = self.moments_kg_m2
+        tolerance = _TOLERANCE * abs(0.5 * (xx + yy + zz))
         smallest, middle, largest = (
             np.linalg.eigvalsh(matrix_from_moments(self.moments_kg_m2)).tolist()
-            if ixy or ixz or iyz else sorted((ixx, iyy, izz)))
+            if xy or xz or yz else sorted((xx, yy, zz)))
+        # The rounding is that of gz-math (Matrix3::Determinant).
+        determinant = (
+            (zz * yy - yz * yz) * xx - (zz * xy - xz * yz) * xy + (yz * xy - xz * yy) * xz)
         return bool(
-            self.mass_kg >= 0.0 and ixx + tolerance >= 0.0
-            and ixx * iyy - ixy * ixy + tolerance >= 0.0
-            and _determinant(ixx, iyy, izz, ixy, ixz, iyz) + tolerance >= 0.0
+            self.mass_kg >= 0.0 and xx + tolerance >= 0.0
+            and xx * yy - xy * xy + tolerance >= 0.0 and determinant + tolerance >= 0.0
             and smallest + tolerance >= 0.0 and smallest + middle + tolerance >= largest)
 
 
@@ -79,14 +81,6 @@ class AutomaticInertial(NamedTuple):
     """The masses of the collisions of its link, in file order."""
     mass_kg: float | None
     """Their total mass, if the file has it."""
-
-
-def _determinant(
-    xx: float, yy: float, zz: float, xy: float, xz: float, yz: float,
-) -> float:
-    """Compute it with the rounding of gz-math (``Matrix3::Determinant``)."""
-    return (
-        (zz * yy - yz * yz) * xx - (zz * xy - xz * yz) * xy + (yz * xy - xz * yy) * xz)
 
 
 def matrix_from_moments(moments: Sequence[float]) -> Floats:

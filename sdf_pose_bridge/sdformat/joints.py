@@ -118,7 +118,7 @@ def joint_details_from_element(
     :return: its details. References are empty where they are missing or reserved.
     """
     joint_type = attribute_of(xml, 'type').lower()
-    has_thread = joint_type in JOINT_TYPES and JOINT_TYPES[joint_type].has_thread
+    has_thread = _has_dof(joint_type, Motion.SCREW)
     axis, axis2 = (
         _axis(xml, tag, sources, reads_dynamics=reads_dynamics) for tag in AXIS_TAGS)
     return JointDetails(
@@ -168,9 +168,8 @@ def _axis(
     if limit is not None:
         lower = number_of_child(limit, 'lower', lower)
         upper = number_of_child(limit, 'upper', upper)
-        joint_type = JOINT_TYPES.get(attribute_of(joint, 'type').lower(), JOINT_TYPES['fixed'])
-        if any(map(_may_be_degrees, (lower, upper))) and any(
-                dof.motion is Motion.TURN for dof in joint_type.dofs):
+        if any(map(_may_be_degrees, (lower, upper))) and _has_dof(
+                attribute_of(joint, 'type').lower(), Motion.TURN):
             msg = (f'the limits {lower:g} to {upper:g} of joint "{attribute_of(joint, "name")}" '
                    'are radians; they look like degrees')
             sources.warning(limit, msg)
@@ -179,6 +178,10 @@ def _axis(
         JointAxis(
             (x, y, z), lower, upper, mimic, _dynamics(axis) if reads_dynamics else NO_DYNAMICS),
         expressed_in, leader)
+
+
+def _has_dof(joint_type: str, motion: Motion) -> bool:
+    return motion in {dof.motion for dof in JOINT_TYPES.get(joint_type, ())}
 
 
 def _may_be_degrees(limit: float) -> bool:
@@ -198,7 +201,6 @@ def _dynamics(axis: XmlElement) -> Dynamics:
 def _mimic(
     joint: XmlElement, axis: XmlElement, tag: str, sources: Sources,
 ) -> tuple[Mimic | None, Reference]:
-    """Read a mimic, and the name of its leader."""
     xml = first_child(axis, 'mimic')
     if xml is None:
         return None, _NO_REFERENCE

@@ -49,11 +49,6 @@ class PoseFormat(NamedTuple):
     is_degrees: bool = False
     """Whether roll, pitch and yaw are in degrees."""
 
-    @property
-    def layout(self) -> str:
-        """The names of the numbers in their order."""
-        return 'x y z qx qy qz qw' if self.is_quaternion else 'x y z roll pitch yaw'
-
 
 class PoseTextError(ValueError):
     """The text is not a pose; the message has the value and the rule."""
@@ -107,7 +102,7 @@ def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> Sequence[float
     """
     Read the numbers of a text.
 
-    :return: the numbers in the order of the layout; a quaternion that is too large is scaled.
+    :return: x y z roll pitch yaw, or x y z qx qy qz qw; a quaternion that is too large is scaled.
     :raises PoseTextError: if the text is not a pose.
     """
     numbers = plain_numbers_from_text(text)
@@ -126,7 +121,8 @@ def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> Sequence[float
 
 
 def _numbers_from_words(text: str, pose_format: PoseFormat) -> Sequence[float]:
-    count = len(pose_format.layout.split())
+    layout = 'x y z qx qy qz qw' if pose_format.is_quaternion else 'x y z roll pitch yaw'
+    count = len(layout.split())
     words = _words(text) or '0 0 0 0 0 0 1'.split()[:count]
     plain_words = [word.removesuffix(',') for word in words]
     for word, plain in zip(words[:count], plain_words, strict=False):
@@ -137,8 +133,7 @@ def _numbers_from_words(text: str, pose_format: PoseFormat) -> Sequence[float]:
             raise PoseTextError(msg)
     if len(words) != count:
         hint = '' if len(words) != 7 else '; did you mean rotation_format="quat_xyzw"?'
-        msg = (f'a pose has {count} values ({pose_format.layout}), "{_shown(text)}" has '
-               f'{len(words)}{hint}')
+        msg = f'a pose has {count} values ({layout}), "{_shown(text)}" has {len(words)}{hint}'
         raise PoseTextError(msg)
     return [*map(float, plain_words)]
 

@@ -52,7 +52,6 @@ from sdf_pose_bridge.sdformat.values import (
     boolean_from_text,
     choice_fault,
     frame_of_attribute,
-    is_of_type,
     judged_value,
     value_at,
 )
@@ -235,7 +234,7 @@ class _Reader:
                     if definition.has_frames is has_frames:
                         check(xml, self._sources)
             else:
-                element, scope = self._added(xml, definition, kind, scope, parent)
+                element, scope = self._added(xml, kind, scope, parent)
                 if element == NO_ELEMENT:
                     definition = definition_of(definition.identifier)
             if depth > self._sources.usage.limits.depth:
@@ -253,7 +252,7 @@ class _Reader:
                             self._undefined.report_element(grandchild, child_definition)
 
     def _added(
-        self, xml: XmlElement, definition: Definition, kind: Kind, scope: _Scope, parent: int,
+        self, xml: XmlElement, kind: Kind, scope: _Scope, parent: int,
     ) -> tuple[int, _Scope]:
         """
         Add an element to the table, unless its name has an error.
@@ -268,8 +267,7 @@ class _Reader:
                 is_checked=scope.is_checked)
             parent = NO_ELEMENT
         table, names, path, scope_element, is_checked = scope
-        has_name = 'name' in definition.attributes
-        name = names.add(kind, xml, parent, path) if has_name else kind.label
+        name = names.add(kind, xml, parent, path) if kind.has_name else kind.label
         if name is None:
             return NO_ELEMENT, scope
         origin = self._sources.origin(xml)
@@ -311,9 +309,11 @@ class _Reader:
                 if rule.required:
                     msg = f'{name}="{text}" of <{written_tag(xml)}> is empty'
                     self._sources.error(AttributeInvalidError, xml, msg)
-            elif not is_of_type(text.strip(), rule.value_type):
-                msg = f'{name}="{text.strip()}" is not {rule.value_type.description}'
-                self._sources.error(AttributeInvalidError, xml, msg)
+            elif rule.choice is None:
+                fault, _ = judged_value(text.strip(), rule)
+                if fault:
+                    msg = f'{name}="{text.strip()}" {fault}'
+                    self._sources.error(AttributeInvalidError, xml, msg)
             elif choice is not None and (fault := choice_fault(value, choice)):
                 error = ElementInvalidError if definition.kind is None else AttributeInvalidError
                 problems = self._sources.problems

@@ -197,7 +197,6 @@ def _round_surface(profile_m: Sequence[tuple[float, float]]) -> Surface:
 
 
 def _of_sphere(function: Callable[..., _Made]) -> Callable[..., _Made]:
-    """Make the function for a sphere from the one for an ellipsoid."""
     return lambda radius_m: function(radius_m, radius_m, radius_m)
 
 

@@ -37,18 +37,6 @@ class DofType(NamedTuple):
     """Appended to the name of the joint for its name in ``joint_states``."""
 
 
-class JointType(NamedTuple):
-    """A type of joints in SDFormat."""
-
-    dofs: tuple[DofType, ...]
-    """Its degrees of freedom, from its parent to its child."""
-
-    @property
-    def has_thread(self) -> bool:
-        """Whether it has the pitch of a thread."""
-        return any(dof.motion is Motion.SCREW for dof in self.dofs)
-
-
 class UrdfJointType(NamedTuple):
     """A type of joints in URDF."""
 
@@ -59,24 +47,24 @@ class UrdfJointType(NamedTuple):
     """Whether it requires a ``<limit>`` of its position."""
 
 
-_ONE_TURN = JointType((DofType(Motion.TURN),))
-_TWO_TURNS = JointType((DofType(Motion.TURN), DofType(Motion.TURN, 1, '_axis2')))
+_ONE_TURN = (DofType(Motion.TURN),)
+_TWO_TURNS = (DofType(Motion.TURN), DofType(Motion.TURN, 1, '_axis2'))
 
-JOINT_TYPES: Mapping[str, JointType] = {
-    'ball': JointType((
+JOINT_TYPES: Mapping[str, tuple[DofType, ...]] = {
+    'ball': (
         DofType(Motion.TURN, (0.0, 0.0, 1.0), '_yaw'),
         DofType(Motion.TURN, (0.0, 1.0, 0.0), '_pitch'),
-        DofType(Motion.TURN, (1.0, 0.0, 0.0), '_roll'))),
+        DofType(Motion.TURN, (1.0, 0.0, 0.0), '_roll')),
     'continuous': _ONE_TURN,
-    'fixed': JointType(()),
+    'fixed': (),
     'gearbox': _ONE_TURN,
-    'prismatic': JointType((DofType(Motion.SLIDE),)),
+    'prismatic': (DofType(Motion.SLIDE),),
     'revolute': _ONE_TURN,
     'revolute2': _TWO_TURNS,
-    'screw': JointType((DofType(Motion.SCREW),)),
+    'screw': (DofType(Motion.SCREW),),
     'universal': _TWO_TURNS,
 }
-"""The types of joints by their names in SDFormat."""
+"""The types of joints by their names in SDFormat: degrees of freedom from parent to child."""
 
 URDF_JOINT_TYPES: Mapping[str, UrdfJointType] = {
     'continuous': UrdfJointType('revolute', has_axis=True, has_limit=False),
@@ -122,30 +110,29 @@ CHOICES: Mapping[str, Choice] = {
 }
 """The types of values that are one of a few texts."""
 
-ELEMENTS = {
+_CONTENTS = {
     'sdf': '@version! include',
     'actor/animation': '@name! filename! scale:double interpolate_x:bool',
     'actor/script': 'loop:bool delay_start:double auto_start:bool trajectory',
     'air_pressure': '/ reference_altitude:double pressure',
     'air_speed': '/ pressure',
     'altimeter': '/ vertical_position vertical_velocity',
-    'angular_velocity': 'x y z',
+    'angular_velocity,force,linear_acceleration,torque': 'x y z',
     'atmosphere': '/ @type!:atmosphere_type temperature,pressure,temperature_gradient:double',
     'attenuation': 'range!,linear,constant,quadratic:double',
     'audio': 'device!',
-    'audio_sink': '/',
+    'audio_sink,rfid,rfidtag': '/',
     'audio_source': '/ uri! pitch,gain:double contact loop:bool pose',
     'audio_source/contact': 'collision+:string',
     'auto_inertia_params': '*',
-    'axis': 'xyz! dynamics limit! mimic',
+    'axis,axis2': 'xyz! dynamics limit! mimic',
     'axis/limit': 'lower!,upper!,effort,velocity,stiffness,dissipation:double',
-    'axis2': 'xyz! dynamics limit! mimic',
     'axis2/limit': 'lower,upper,effort,velocity,stiffness,dissipation:double',
     'battery': '/ @name! voltage!:double',
     'blend': 'min_height!,fade_dist!:double',
     'bounce': 'restitution_coefficient:double[0,1] threshold:double',
     'box': '/box_shape size!:vector3',
-    'bullet': 'solver! constraints!',
+    'bullet,ode': 'solver! constraints!',
     'bullet/constraints': (
         'cfm!,erp!,contact_surface_layer!:double split_impulse!:bool '
         'split_impulse_penetration_threshold!:double'),
@@ -178,14 +165,13 @@ ELEMENTS = {
     'empty': '',
     'fluid_added_mass': 'xx,xy,xz,xp,xq,xr,yy,yz,yp,yq,yr,zz,zp,zq,zr,pp,pq,pr,qq,qr,rr:double',
     'fog': 'color:color type start,end,density:double[0,]',
-    'force': 'x y z',
     'force_torque': '/forcetorque frame:string measure_direction force torque',
     'friction': 'torsional ode bullet',
     'friction/bullet': 'friction,friction2:double[0,] fdir1:vector3 rolling_friction:double',
     'friction/ode': 'mu,mu2:double[0,] fdir1:vector3 slip1,slip2:double',
     'geometry': (
         '/ empty box capsule cone cylinder ellipsoid heightmap image mesh plane polyline sphere'),
-    'gps': '/ position_sensing velocity_sensing',
+    'gps,navsat': '/ position_sensing velocity_sensing',
     'grasp_check': 'detach_steps,attach_steps:int min_contact_count:uint',
     'grav_dir_x': ':vector3 @parent_frame',
     'gripper': '/ @name! grasp_check gripper_link+ palm_link!',
@@ -212,17 +198,15 @@ ELEMENTS = {
     'lens': (
         'type! scale_to_hfov!:bool custom_function cutoff_angle:double[0,3.141592653] '
         'env_texture_size:int[4,2048] intrinsics projection'),
-    'lidar': '/ scan! range! noise=camera/noise visibility_mask:uint',
+    'lidar,ray': '/ scan! range! noise=camera/noise visibility_mask:uint',
     'light_map': ':string @uv_set:uint',
     'light_state': '/ @name! pose',
-    'limit': 'cfm!,erp!:double',
-    'linear_acceleration': 'x y z',
+    'limit,suspension': 'cfm!,erp!:double',
     'link_state': (
         '/ @name! angular_velocity linear_velocity:vector3 velocity:pose angular_acceleration '
         'linear_acceleration:vector3 acceleration:pose torque,force:vector3 wrench:pose '
         'collision_state pose'),
-    'link_state/angular_acceleration': ':vector3 @degrees:bool',
-    'link_state/angular_velocity': ':vector3 @degrees:bool',
+    'link_state/angular_acceleration,link_state/angular_velocity': ':vector3 @degrees:bool',
     'link_state/collision_state': '@name!',
     'old_link_state': (
         '@name! velocity,acceleration,wrench:pose collision=link_state/collision_state pose'),
@@ -247,13 +231,11 @@ ELEMENTS = {
     'angle': ':double @axis!:uint',
     'axis_state': 'position=quantity velocity=quantity acceleration=quantity effort:double',
     'quantity': ':double @degrees:bool',
-    'navsat': '/ position_sensing velocity_sensing',
     'noise': (
         '/ @type! mean:double stddev:double[0,] bias_mean:double '
         'bias_stddev,dynamic_bias_stddev:double[0,] '
         'dynamic_bias_correlation_time,precision:double'),
     'normal_map': ':string @type',
-    'ode': 'solver! constraints!',
     'ode/constraints': 'cfm!,erp!,contact_max_correcting_vel!,contact_surface_layer!:double',
     'ode/solver': (
         'type! min_step_size:double island_threads,iters!,precon_iters:int sor!:double '
@@ -269,15 +251,11 @@ ELEMENTS = {
     'population': '/ @name! box cylinder model_count!:int distribution! pose model!=model',
     'distribution': 'type! rows,cols:int step:vector3',
     'pose': '/ :pose @relative_to:frame @rotation_format @degrees:bool',
-    'position_sensing': 'horizontal vertical',
-    'position_sensing/horizontal': 'noise',
-    'position_sensing/vertical': 'noise',
-    'pressure': 'noise',
+    'position_sensing,velocity_sensing': 'horizontal vertical',
+    'position_sensing/horizontal,position_sensing/vertical': 'noise',
+    'pressure,vertical_position,vertical_velocity,x,y,z': 'noise',
     'projection': 'p_fx,p_fy,p_cx,p_cy,tx,ty:double',
     'range': 'min!,max!,resolution:double',
-    'ray': '/ scan! range! noise=camera/noise visibility_mask:uint',
-    'rfid': '/',
-    'rfidtag': '/',
     'road': '/ @name! width!:double point+:vector3 material',
     'save': '@enabled!:bool path!',
     'scan': 'horizontal! vertical',
@@ -315,9 +293,7 @@ ELEMENTS = {
         'soft_cfm,soft_erp,kp,kd:double split_impulse!:bool '
         'split_impulse_penetration_threshold!:double'),
     'contact_ode': 'soft_cfm,soft_erp,kp,kd,max_vel,min_depth:double',
-    'suspension': 'cfm!,erp!:double',
     'texture': 'size!:double diffuse! normal!',
-    'torque': 'x y z',
     'torsional': (
         'coefficient:double[0,] use_patch_radius:bool patch_radius,surface_radius:double[0,] ode'),
     'torsional/ode': 'slip:double',
@@ -326,17 +302,16 @@ ELEMENTS = {
     'trajectory': '@id!:int @type! @tension:double waypoint',
     'transceiver': '/ essid frequency,min_frequency,max_frequency,gain!,power!,sensitivity:double',
     'velocity_decay': 'linear,angular:double',
-    'velocity_sensing': 'horizontal vertical',
-    'velocity_sensing/horizontal': 'noise',
-    'velocity_sensing/vertical': 'noise',
+    'velocity_sensing/horizontal,velocity_sensing/vertical': 'noise',
     'vertical': 'samples!:uint resolution,min_angle!,max_angle!:double',
-    'vertical_position': 'noise',
-    'vertical_velocity': 'noise',
     'waypoint': 'time!:double pose!:pose',
     'wind': 'linear_velocity:vector3',
-    'x': 'noise',
     'xyz': '!:axis @expressed_in',
-    'y': 'noise',
-    'z': 'noise',
 }
-"""The content of each element, by its tag, ``parent/tag`` or a name that ``tag=name`` uses."""
+"""The content of each element, by its tag, ``parent/tag`` or a name that ``tag=name`` uses. A key
+with commas is for several elements."""
+
+ELEMENTS = {
+    identifier: content
+    for identifiers, content in _CONTENTS.items() for identifier in identifiers.split(',')}
+"""The same for each element by itself."""

@@ -85,11 +85,10 @@ class UndefinedReporter:
             self._warn(xml, f'{name}="{xml.get(name)}" of <{written_tag(xml)}>', hint)
 
     def _is_only_counted(self) -> bool:
-        """Return whether the limit of warnings is reached, and count this one."""
-        is_kept = self._sources.problems.keeps_warnings()
-        if not is_kept:
-            self._sources.problems.count_more(errors=0, warnings=1)
-        return not is_kept
+        if self._sources.problems.keeps_warnings():
+            return False
+        self._sources.problems.count_more(errors=0, warnings=1)
+        return True
 
     def _warn(self, xml: XmlElement, what: str, hint: str) -> None:
         ending = f'; {hint}' if hint else ''

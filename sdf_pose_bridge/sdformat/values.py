@@ -94,10 +94,10 @@ def choice_fault(text: str, choice: Choice) -> str:
 
 def judged_value(text: str, rule: Item) -> tuple[str, str]:
     """
-    Judge the value of an element as libsdformat does.
+    Judge the value of an element or an attribute as libsdformat does.
 
-    :param text: the value. If the element is not required, the default replaces a blank one.
-    :param rule: the rule of the grammar for the value, which is not a pose.
+    :param text: the value. If it is not required, the default replaces a blank one.
+    :param rule: the rule of the grammar for it, which is not a pose.
     :return: the rule that it breaks, empty if it is valid; and the numbers that were read, empty
         if they agree with the text. Each is a part of a sentence behind the value.
     """
@@ -129,8 +129,8 @@ def _are_numbers_as_written(text: str, numbers: Sequence[float]) -> bool:
         words = [*map(float, text.split())] if numbers else []
     except ValueError:
         return False
-    return words == numbers or (len(words) == len(numbers) and all(
-        word == number or math.isnan(word) for word, number in zip(words, numbers, strict=True)))
+    return len(words) == len(numbers) and all(
+        word == number or math.isnan(word) for word, number in zip(words, numbers, strict=True))
 
 
 def is_representable(text: str, number: float) -> bool:
@@ -146,16 +146,6 @@ def is_representable(text: str, number: float) -> bool:
     if math.isinf(number):
         return text.lstrip('+-')[:1] in 'iI'
     return math.isnan(number) or abs(number) >= sys.float_info.min
-
-
-def is_of_type(text: str, value_type: ValueType) -> bool:
-    """
-    Return whether libsdformat accepts a text as a value of a type.
-
-    :param text: the value, stripped and not empty.
-    :param value_type: any type but ``POSE``; any text is accepted for a choice.
-    """
-    return _is_of_type(text, numbers_from_text(text, value_type), value_type)
 
 
 def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> bool:

@@ -63,7 +63,7 @@ def dofs_from_joint(joint: Joint) -> list[DegreeOfFreedom]:
         DegreeOfFreedom(joint, axis, suffix, joint.axes[axis], *rad_and_m_per_unit[motion])
         if isinstance(axis, int) else
         DegreeOfFreedom(joint, None, suffix, JointAxis(axis), *rad_and_m_per_unit[motion])
-        for motion, axis, suffix in JOINT_TYPES[joint.type].dofs]
+        for motion, axis, suffix in JOINT_TYPES[joint.type]]
 
 
 class JointMotion:

@@ -110,7 +110,7 @@ def test_every_degree_of_freedom_moves(joint_type):
 def test_only_joints_with_a_thread_turn_and_slide_at_once():
     both = {name for name in JOINT_TYPES for dof in dofs_of(name)
             if dof.rad_per_unit and dof.m_per_unit}
-    assert both == {name for name, joint_type in JOINT_TYPES.items() if joint_type.has_thread}
+    assert both == {'screw'}
 
 
 def test_types_of_urdf_become_types_of_sdformat():

@@ -303,7 +303,7 @@ class _Conversion:
             xml, joint.xml, pose_product(base.pose, joint.origin), parent)
         self._write.add(xml, 'parent', joint.xml, text=parent)
         self._write.add(xml, 'child', joint.xml, text=joint.child)
-        if JOINT_TYPES[joint_type].dofs:
+        if JOINT_TYPES[joint_type]:
             self._add_axis(xml, joint)
         elif joint.name in self._gazebo.kept_joints and not self._for_ros:
             # Other joints may mimic it, as libsdformat gives it the axis of a default.
