@@ -34,22 +34,6 @@ class Reference(NamedTuple):
     line: int = 0
 
 
-class Dynamics(NamedTuple):
-    """Limits, damping and friction of a joint; forces if it slides, else torques."""
-
-    effort: float = math.inf
-    """Largest force in newtons, or torque in newton metres; not negative."""
-    velocity: float = math.inf
-    """Largest velocity, in metres or radians per second; not negative."""
-    damping: float = 0.0
-    """Force or torque for a velocity of 1."""
-    friction: float = 0.0
-    """Force or torque without a velocity."""
-
-
-NO_DYNAMICS = Dynamics()
-
-
 class Mimic(NamedTuple):
     """
     The joint axis that an axis follows.
@@ -68,7 +52,12 @@ class Mimic(NamedTuple):
 
 
 class JointAxis(NamedTuple):
-    """An axis of a joint."""
+    """
+    An axis of a joint.
+
+    Its forces are in newtons if the joint slides, and torques in newton metres if it turns. They
+    and the largest velocity are read together with shapes only.
+    """
 
     xyz: tuple[float, float, float]
     """Unit vector in the frame of the joint."""
@@ -77,8 +66,14 @@ class JointAxis(NamedTuple):
     upper: float = math.inf
     """Upper limit of the position, in radians or metres."""
     mimic: Mimic | None = None
-    dynamics: Dynamics = NO_DYNAMICS
-    """Defaults unless the load reads shapes."""
+    effort: float = math.inf
+    """Largest force; not negative."""
+    velocity: float = math.inf
+    """Largest velocity, in metres or radians per second; not negative."""
+    damping: float = 0.0
+    """Force for a velocity of 1."""
+    friction: float = 0.0
+    """Force without a velocity."""
 
 
 class AxisDetails(NamedTuple):
@@ -174,10 +169,9 @@ def _axis(
                    'are radians; they look like degrees')
             sources.warning(limit, msg)
     mimic, leader = _mimic(joint, axis, tag, sources)
+    dynamics = _dynamics(axis) if reads_dynamics else ()
     return AxisDetails(
-        JointAxis(
-            (x, y, z), lower, upper, mimic, _dynamics(axis) if reads_dynamics else NO_DYNAMICS),
-        expressed_in, leader)
+        JointAxis((x, y, z), lower, upper, mimic, *dynamics), expressed_in, leader)
 
 
 def _has_dof(joint_type: str, motion: Motion) -> bool:
@@ -189,11 +183,11 @@ def _may_be_degrees(limit: float) -> bool:
     return 8.0 * math.pi < abs(limit) <= 1080.0 and limit.is_integer()
 
 
-def _dynamics(axis: XmlElement) -> Dynamics:
+def _dynamics(axis: XmlElement) -> Sequence[float]:
     largest = (number_of_child(axis, f'limit/{name}', math.inf) for name in ('effort', 'velocity'))
     # In older files, a limit below zero means no limit.
     effort, velocity = (math.inf if value < 0.0 else value for value in largest)
-    return Dynamics(
+    return (
         effort, velocity, number_of_child(axis, 'dynamics/damping', 0.0),
         number_of_child(axis, 'dynamics/friction', 0.0))
 

@@ -158,17 +158,17 @@ class _Writer:
         if axis is None:
             return
         etree.SubElement(xml, 'axis', xyz=_numbers(_rounded(axis.xyz)))
-        effort, velocity, damping, friction = axis.dynamics
         limits = {'lower': axis.lower, 'upper': axis.upper}
         if joint.type == 'continuous':
             limits = {}
-        if limits or min(effort, velocity) < NO_LIMIT:
-            limits |= {'effort': effort, 'velocity': velocity}
+        if limits or min(axis.effort, axis.velocity) < NO_LIMIT:
+            limits |= {'effort': axis.effort, 'velocity': axis.velocity}
             etree.SubElement(xml, 'limit', {
                 name: _numbers([_limited(limit)]) for name, limit in limits.items()})
-        if damping or friction:
+        if axis.damping or axis.friction:
             etree.SubElement(
-                xml, 'dynamics', damping=_numbers([damping]), friction=_numbers([friction]))
+                xml, 'dynamics', damping=_numbers([axis.damping]),
+                friction=_numbers([axis.friction]))
         if joint.mimic is not None:
             name, multiplier, offset = joint.mimic
             etree.SubElement(
