@@ -175,7 +175,7 @@ def _axis(
 
 
 def _has_dof(joint_type: str, motion: Motion) -> bool:
-    return motion in {dof.motion for dof in JOINT_TYPES.get(joint_type, ())}
+    return any(dof.motion is motion for dof in JOINT_TYPES.get(joint_type, ()))
 
 
 def _may_be_degrees(limit: float) -> bool:

@@ -107,6 +107,8 @@ def judged_value(text: str, rule: Item) -> tuple[str, str]:
     stripped, value_type = text.strip(WHITE_SPACE), rule.value_type
     if not stripped:
         return 'is empty; it must have a value' if rule.required == '!' else '', ''
+    if value_type is ValueType.STRING:
+        return '', ''
     if rule.choice is not None:
         return choice_fault(stripped, rule.choice), ''
     numbers = numbers_from_text(stripped, value_type)
