@@ -21,7 +21,13 @@ from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.sdformat.inertials import AutomaticInertial, Inertial
 from sdf_pose_bridge.sdformat.joints import JointDetails
-from sdf_pose_bridge.sdformat.poses import PoseFormat, poses_from_texts
+from sdf_pose_bridge.sdformat.poses import (
+    pose_doubts,
+    pose_numbers_from_text,
+    PoseFormat,
+    poses_from_numbers,
+    PoseTextError,
+)
 from sdf_pose_bridge.sdformat.shapes import Shape
 from sdf_pose_bridge.sdformat.xml_tree import path_step
 
@@ -224,23 +230,29 @@ class ElementsBuilder:
             about poses that may be mistakes.
         """
         table = Elements(
-            kinds=np.array(self.kinds, dtype=np.uint8), names=self.names,
-            parents=_indices(self.parents), scopes=_indices(self._scopes),
-            file_indices=_indices(self.file_indices), lines=_indices(self.lines),
-            pose_lines=_indices(self.pose_lines), poses=np.tile(Pose(), (len(self.names), 1)),
+            kinds=np.array(self.kinds), names=self.names,
+            parents=np.array(self.parents), scopes=np.array(self._scopes),
+            file_indices=np.array(self.file_indices), lines=np.array(self.lines),
+            pose_lines=np.array(self.pose_lines), poses=np.tile(Pose(), (len(self.names), 1)),
             paths=self._paths, has_shapes=self._has_shapes, **self.details)
         for pose_format, (indices, texts) in self._poses.items():
-            result = poses_from_texts(texts, pose_format)
-            table.poses[indices] = result.poses
-            for row, reason in result.failures:
-                problems.error(ElementInvalidError(reason, table.place_of_pose(indices[row])))
-            for row, reason in result.doubts:
-                problems.warning(reason, table.place_of_pose(indices[row]))
+            rows = []
+            for row, text in enumerate(texts):
+                try:
+                    rows.append(pose_numbers_from_text(text, pose_format))
+                except PoseTextError as error:
+                    place = table.place_of_pose(indices[row])
+                    problems.error(ElementInvalidError(str(error), place))
+                    rows.append(pose_numbers_from_text('', pose_format))
+                    texts[row] = ''
+            numbers = np.array(rows)
+            table.poses[indices] = poses_from_numbers(numbers, pose_format)
+            for row, doubt in pose_doubts(texts, numbers, pose_format):
+                problems.warning(doubt, table.place_of_pose(indices[row]))
         self._warn_of_millimetres(table, problems)
         return table
 
     def _warn_of_millimetres(self, table: Elements, problems: Problems) -> None:
-        """Warn once of positions in models that are too far away for metres."""
         is_far = np.abs(table.poses[:, :3]).max(axis=1, initial=0.0) >= FAR_M
         if not is_far.any():
             return
@@ -256,7 +268,3 @@ class ElementsBuilder:
             msg = (f'the position {x:g} {y:g} {z:g} of {table.kind(rows[0]).label} '
                    f'"{table.names[rows[0]]}" is in metres{more}; these look like millimetres')
             problems.warning(msg, table.place_of_pose(rows[0]))
-
-
-def _indices(column: array[int]) -> Indices:
-    return np.array(column, dtype=np.int32)

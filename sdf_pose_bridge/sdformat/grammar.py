@@ -10,9 +10,10 @@ separated by blanks:
 * ``tag``: a child element; its definition is ``parent/tag`` or ``tag``, or it is a string.
 * ``tag:type`` or ``tag:type[min,max]``: a child element with a value. The type is one of
   :class:`ValueType`, or of :data:`~sdf_pose_bridge.sdformat.specification.CHOICES`.
+* ``tag,tag:type``: several with the same type.
 * ``tag=name``: a child element that is defined under another name.
 * ``@name`` or ``@name:type``: an attribute.
-* ``:type``: the type of the value of the element itself.
+* ``:type`` or ``!:type``: the type of the value of the element itself.
 * ``*``: any children, which are not read.
 * ``/`` or ``/name``: the element has a file of its own in the specification, of its tag or of that
   name. So parameters of includes can add and replace it by this name. All kinds have one.
@@ -24,7 +25,7 @@ element that may be repeated; its value may be blank, which a required value may
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 import enum
 from functools import cache, cached_property
 import math
@@ -57,6 +58,7 @@ class ValueType(enum.Enum):
         self.label = label
         self.description = description
         self.count = count
+        self.is_integer = label in ('int', 'uint', 'time')
 
 
 class Kind(enum.IntEnum):
@@ -86,21 +88,22 @@ class Kind(enum.IntEnum):
     ROOT = '', ''
     """The implicit root of a model file, in which its poses are resolved. It has no tag."""
     WORLD = 'sdf', (
-        '@name! audio wind include gravity!:vector3 magnetic_field!:vector3 atmosphere! gui '
-        'physics+ scene! plugin road spherical_coordinates state population')
+        '@name! audio wind include gravity!,magnetic_field!:vector3 atmosphere! gui physics+ '
+        'scene! plugin road spherical_coordinates state population')
     MODEL = 'sdf world model', (
-        '@name! @canonical_link:frame @placement_frame:frame pose static:bool self_collide:bool '
-        'allow_auto_disable:bool enable_wind:bool plugin gripper include model_state'), True
+        '@name! @canonical_link,@placement_frame:frame pose '
+        'static,self_collide,allow_auto_disable,enable_wind:bool plugin gripper include '
+        'model_state'), True
     LINK = 'model', (
-        '@name! pose gravity:bool enable_wind:bool self_collide:bool kinematic:bool '
-        'must_be_base_link:bool velocity_decay audio_sink audio_source battery'), True
+        '@name! pose gravity,enable_wind,self_collide,kinematic,must_be_base_link:bool '
+        'velocity_decay audio_sink audio_source battery'), True
     JOINT = 'model world', (
         '@name! @type!:joint_type pose parent! child! gearbox_ratio:double gearbox_reference_body '
-        'thread_pitch:double screw_thread_pitch:double axis axis2 physics'), True
+        'thread_pitch,screw_thread_pitch:double axis axis2 physics'), True
     FRAME = 'model world', '@name! @attached_to:frame pose', True
     VISUAL = 'link', (
-        '@name! pose cast_shadows:bool laser_retro:double transparency:double '
-        'visibility_flags:uint meta material geometry! plugin')
+        '@name! pose cast_shadows:bool laser_retro,transparency:double visibility_flags:uint meta '
+        'material geometry! plugin')
     COLLISION = 'link', (
         '@name! pose laser_retro:double max_contacts:int density:double auto_inertia_params '
         'geometry! surface')
@@ -110,19 +113,17 @@ class Kind(enum.IntEnum):
         'contact force_torque gps imu lidar logical_camera magnetometer navsat ray rfid rfidtag '
         'sonar transceiver')
     LIGHT = 'sdf world link', (
-        '@name! @type!:light_type pose cast_shadows:bool light_on:bool visualize:bool '
-        'intensity:double diffuse:color specular:color attenuation direction!:vector3 spot')
+        '@name! @type!:light_type pose cast_shadows,light_on,visualize:bool intensity:double '
+        'diffuse,specular:color attenuation direction!:vector3 spot')
     INERTIAL = 'link', (
-        '@auto:bool pose mass:double density:double auto_inertia_params inertia '
-        'fluid_added_mass')
+        '@auto:bool pose mass,density:double auto_inertia_params inertia fluid_added_mass')
     PARTICLE_EMITTER = 'link', (
-        '@name! @type!:emitter_type pose emitting:bool duration:double size:vector3 '
-        'particle_size:vector3 lifetime:double rate:double[0,] min_velocity:double[0,] '
-        'max_velocity:double[0,] scale_rate:double[0,] color_start:color color_end:color '
-        'color_range_image topic particle_scatter_ratio:double material')
+        '@name! @type!:emitter_type pose emitting:bool duration:double size,particle_size:vector3 '
+        'lifetime:double rate,min_velocity,max_velocity,scale_rate:double[0,] '
+        'color_start,color_end:color color_range_image topic particle_scatter_ratio:double '
+        'material')
     PROJECTOR = 'link', (
-        '@name! pose texture!:string fov:double near_clip:double far_clip:double '
-        'visibility_flags:uint plugin')
+        '@name! pose texture!:string fov,near_clip,far_clip:double visibility_flags:uint plugin')
     ACTOR = 'sdf world', '@name! pose skin animation script! link!=link joint=joint plugin'
 
     @property
@@ -137,48 +138,59 @@ class Kind(enum.IntEnum):
 
 
 _ITEM = re.compile(
-    r'(?P<mark>@(?=\w)|/)?(?P<name>\w+|\*|(?<=/)|(?=:))(?P<required>[!+]?)'
+    r'(?P<mark>@(?=\w)|/)?(?P<name>\w+|\*|(?<=/)|(?=[!+]?:))(?P<required>[!+]?)'
     r'(?:=(?P<identifier>\w+(?:/\w+)?))?'
     r'(?P<value>:(?P<type>\w+)(?:\[(?P<minimum>[^,\]]*),(?P<maximum>[^,\]]*)\])?)?')
-_KINDS = {kind.label: kind for kind in Kind}
 _UNREAD = frozenset({'model_state', 'population', 'road', 'state'})
 """Elements that libsdformat does not load."""
 _CHECKED_WITH_FRAMES = frozenset({'include', 'material', 'shader', 'submesh'})
 """Elements without a frame of which libsdformat checks more than values when it loads frames."""
-
-
+_CONTENTS = {**ELEMENTS, **{kind.label: kind.content for kind in Kind}}
+_KINDS = {kind.label: kind for kind in Kind}
 _VALUE_TYPES = {each.label: each for each in ValueType} | dict.fromkeys(CHOICES, ValueType.CHOICE)
 
 
-class Attribute(NamedTuple):
-    """Definition of an attribute."""
+class Item(NamedTuple):
+    """One item of the content of an element: a child element, an attribute or its value."""
 
+    mark: str
+    name: str
+    """Empty for the value of the element itself."""
+    required: str
+    """``!``, ``+`` or empty."""
+    identifier: str
+    value: str
+    """The type and the range, as written; empty for a child element with a definition."""
     value_type: ValueType
-    is_required: bool
-    choice: Choice | None = None
-    """The possible values of a choice; None for an element that is not read."""
+    choice: Choice | None
+    """The possible values of a choice."""
+    minimum: float
+    maximum: float
 
 
 @cache
-def _item(text: str) -> Mapping[str, str]:
-    """
-    Read an item of the content of an element.
+def _items(content: str) -> Sequence[Item]:
+    words = (word.partition(':') for word in content.split())
+    return [
+        _item(f'{name}{colon}{rest}')
+        for names, colon, rest in words for name in names.split(',')]
 
-    :raises ValueError: if it is not in the notation of this module, or has an unknown type.
-    """
+
+def _item(text: str) -> Item:
     match = _ITEM.fullmatch(text)
     if match is None:
         msg = f'"{text}" is not an item of a definition'
         raise ValueError(msg)
-    item = match.groupdict('')
-    if item['type'] and item['type'] not in _VALUE_TYPES:
-        msg = f'"{item["type"]}" in the definition "{text}" is not a type of values'
+    mark, name, required, identifier, value, label, minimum, maximum = match.groups('')
+    if label and label not in _VALUE_TYPES:
+        msg = f'"{label}" in the definition "{text}" is not a type of values'
         raise ValueError(msg)
-    if item['identifier'] and item['identifier'] not in ELEMENTS and (
-            item['identifier'] not in _KINDS):
-        msg = f'"{item["identifier"]}" in the definition "{text}" is not the name of a definition'
+    if identifier and identifier not in _CONTENTS:
+        msg = f'"{identifier}" in the definition "{text}" is not the name of a definition'
         raise ValueError(msg)
-    return item
+    return Item(
+        mark, name, required, identifier, value, _VALUE_TYPES[label or 'string'],
+        CHOICES.get(label), float(minimum or -math.inf), float(maximum or math.inf))
 
 
 class Definition:
@@ -189,108 +201,77 @@ class Definition:
     :param content: the content of the element, in the notation of this module.
     :param has_frames: whether kinds of elements are frames here. They are not in elements that
         libsdformat checks but does not load, such as a state.
-    :param is_required: whether the value may not be blank.
-    :param is_checked: whether the values in the element are checked already, as those of an
-        included file. Child elements of which nothing else is read are left out then.
     :raises ValueError: if the content is not in the notation of this module.
     """
 
-    def __init__(
-        self, identifier: str, content: str, *, has_frames: bool = False,
-        is_required: bool = False, is_checked: bool = False,
-    ) -> None:
+    def __init__(self, identifier: str, content: str, *, has_frames: bool = False) -> None:
         self.identifier = identifier
-        self.is_required = is_required
-        self.is_checked = is_checked
+        self.has_frames = has_frames
         self.kind = _KINDS.get(identifier) if has_frames else None
         """The kind of the element; None for an element that is no frame."""
-        self.has_frames = has_frames
-        items = [*map(_item, content.split())]
-        value = next((item for item in items if not item['name'] and not item['mark']), {})
-        self.value_type = _VALUE_TYPES.get(value.get('type', ''))
-        """Type of the value; None for an element with child elements."""
-        self.choice = CHOICES.get(value.get('type', ''))
-        """The possible values of a choice."""
-        self.minimum = float(value.get('minimum') or -math.inf)
-        self.maximum = float(value.get('maximum') or math.inf)
-        # Python takes longer to look up a member of an Enum than to read an attribute.
+        items = _items(content)
+        self.value = next((item for item in items if not item.name and not item.mark), None)
+        """Its value; None for an element with child elements."""
+        self.value_type = None if self.value is None else self.value.value_type
+        self.is_required = self.value is not None and self.value.required == '!'
+        """Whether the value may not be blank."""
         self.is_pose = self.value_type is ValueType.POSE
-        self.is_scope = self.kind in (Kind.WORLD, Kind.MODEL)
-        self.takes_any_number = (
-            self.value_type is ValueType.NUMBER and self.minimum == -math.inf)
-        self.takes_any_children = is_checked or any(item['name'] == '*' for item in items)
+        self.takes_any_children = any(item.name == '*' for item in items)
         """Whether the element may contain undefined elements."""
-        self.attributes: Mapping[str, Attribute] = {
-            item['name']: Attribute(
-                _VALUE_TYPES[item['type'] or 'string'], bool(item['required']),
-                CHOICES.get(item['type']) if has_frames else None)
-            for item in items if item['mark'] == '@'}
+        self.attributes = {item.name: item for item in items if item.mark == '@'}
         """The attributes by name."""
         self.checked_attributes = [
-            (name, attribute) for name, attribute in self.attributes.items()
-            if (attribute.is_required or attribute.value_type is not ValueType.STRING)
-            and (name != 'name' or self.kind is None)
-            and (attribute.choice is not None or not is_checked)]
-        """The attributes that are required or have another type than string, without names of
-        frames."""
-        self.has_required_attributes = any(
-            attribute.is_required for _, attribute in self.checked_attributes)
+            item for item in self.attributes.values()
+            if (item.required or item.value_type is not ValueType.STRING)
+            and (item.name != 'name' or self.kind is None)]
+        """Those that are required or have another type than string, without names of frames."""
+        self.has_required_attributes = any(item.required for item in self.checked_attributes)
         self._child_items = [
-            item for item in items if item['name'] not in ('', '*') and not item['mark']]
-        self.required_children = {item['name'] for item in self._child_items if item['required']}
+            item for item in items if item.name not in ('', '*') and not item.mark]
+        self.required_children = {item.name for item in self._child_items if item.required}
         """Tags of the child elements that libsdformat adds if they are missing."""
 
     @cached_property
     def children(self) -> Mapping[object, Definition]:
         """The child elements by tag."""
         children: dict[object, Definition] = {
-            item['name']: self._child(item) for item in self._child_items}
+            item.name: self._child(item) for item in self._child_items}
         for kind in Kind:
             if self.identifier in kind.parents:
-                children[kind.label] = definition_of(
-                    kind.label, has_frames=self.has_frames, is_checked=self.is_checked)
-        if not self.is_checked:
-            return children
-        return {
-            tag: child for tag, child in children.items()
-            if child.kind is not None or child.identifier in _CHECKED_WITH_FRAMES
-            or (child.is_pose and self.kind is not None) or (child.is_checked and child.children)}
+                children[kind.label] = definition_of(kind.label, has_frames=self.has_frames)
+        return children
 
-    def _child(self, item: Mapping[str, str]) -> Definition:
-        tag, is_required = item['name'], item['required'] == '!'
-        if item['type']:
-            return Definition(tag, item['value'], is_required=is_required)
-        for identifier in (item['identifier'], f'{self.identifier}/{tag}', tag):
-            if identifier in ELEMENTS or (identifier and item['identifier']):
-                is_read = identifier not in _UNREAD
-                return definition_of(
-                    identifier, is_required=is_required, has_frames=self.has_frames and is_read,
-                    is_checked=self.is_checked and is_read)
-        return Definition(tag, ':string', is_required=is_required)
+    @cached_property
+    def concerns_frames(self) -> bool:
+        """Whether there is something to read in it if all values in it are checked already."""
+        return self.has_frames and (
+            self.kind is not None or self.is_pose or self.identifier in _CHECKED_WITH_FRAMES
+            or any(child.concerns_frames for child in self.children.values()))
+
+    def _child(self, item: Item) -> Definition:
+        identifier = next((
+            each for each in (item.identifier, f'{self.identifier}/{item.name}', item.name)
+            if each in _CONTENTS), '')
+        if item.value or not identifier:
+            return Definition(item.name, f'{item.required}{item.value or ":string"}')
+        return definition_of(
+            identifier, has_frames=self.has_frames and identifier not in _UNREAD)
 
 
 @cache
-def definition_of(
-    identifier: str, *, has_frames: bool = False, is_required: bool = False,
-    is_checked: bool = False,
-) -> Definition:
+def definition_of(identifier: str, *, has_frames: bool = False) -> Definition:
     """
     Return the definition of an element.
 
     :param identifier: label of a kind, or a key of :data:`ELEMENTS`.
     :param has_frames: as for :class:`Definition`.
-    :param is_required: as for :class:`Definition`.
-    :param is_checked: as for :class:`Definition`.
     """
-    return Definition(
-        identifier, _CONTENTS[identifier], has_frames=has_frames, is_required=is_required,
-        is_checked=is_checked)
+    return Definition(identifier, _CONTENTS[identifier], has_frames=has_frames)
 
 
-_CONTENTS = {**ELEMENTS, **{kind.label: kind.content for kind in Kind}}
 STANDALONE_ELEMENTS: Mapping[str, str] = {
-    item['name'] or identifier: identifier
-    for identifier, content in _CONTENTS.items() for item in map(_item, content.split())
-    if item['mark'] == '/'} | {kind.label: kind.label for kind in Kind}
+    item.name or identifier: identifier
+    for identifier, content in _CONTENTS.items() for item in _items(content)
+    if item.mark == '/'} | {kind.label: kind.label for kind in Kind}
 """Elements with a file of their own in the specification: identifiers by the names of the files.
 This reads all definitions, so that a mistake in one is an error of the import."""

@@ -34,8 +34,6 @@ MOMENTS = ('ixx', 'iyy', 'izz', 'ixy', 'ixz', 'iyz')
 _MAY_BE_MASSLESS = ('capsule', 'ellipsoid')
 """Shapes that libsdformat also accepts with the density 0."""
 
-_MOMENTS_OF_NONE = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
-"""The default moments of libsdformat."""
 _TOLERANCE = 10.0 * sys.float_info.epsilon
 """Tolerance of gz-math for rules of moments, relative to half their sum."""
 
@@ -52,15 +50,17 @@ class Inertial(NamedTuple):
         """Whether libsdformat accepts it, as a body can have it (``MassMatrix3::IsValid``)."""
         if not all(map(math.isfinite, self.moments_kg_m2)):
             return False
-        ixx, iyy, izz, ixy, ixz, iyz = self.moments_kg_m2
-        tolerance = _TOLERANCE * abs(0.5 * (ixx + iyy + izz))
+        xx, yy, zz, xy, xz, yz = self.moments_kg_m2
+        tolerance = _TOLERANCE * abs(0.5 * (xx + yy + zz))
         smallest, middle, largest = (
             np.linalg.eigvalsh(matrix_from_moments(self.moments_kg_m2)).tolist()
-            if ixy or ixz or iyz else sorted((ixx, iyy, izz)))
+            if xy or xz or yz else sorted((xx, yy, zz)))
+        # The rounding is that of gz-math (Matrix3::Determinant).
+        determinant = (
+            (zz * yy - yz * yz) * xx - (zz * xy - xz * yz) * xy + (yz * xy - xz * yy) * xz)
         return bool(
-            self.mass_kg >= 0.0 and ixx + tolerance >= 0.0
-            and ixx * iyy - ixy * ixy + tolerance >= 0.0
-            and _determinant(ixx, iyy, izz, ixy, ixz, iyz) + tolerance >= 0.0
+            self.mass_kg >= 0.0 and xx + tolerance >= 0.0
+            and xx * yy - xy * xy + tolerance >= 0.0 and determinant + tolerance >= 0.0
             and smallest + tolerance >= 0.0 and smallest + middle + tolerance >= largest)
 
 
@@ -81,14 +81,6 @@ class AutomaticInertial(NamedTuple):
     """The masses of the collisions of its link, in file order."""
     mass_kg: float | None
     """Their total mass, if the file has it."""
-
-
-def _determinant(
-    xx: float, yy: float, zz: float, xy: float, xz: float, yz: float,
-) -> float:
-    """Compute it with the rounding of gz-math (``Matrix3::Determinant``)."""
-    return (
-        (zz * yy - yz * yz) * xx - (zz * xy - xz * yz) * xy + (yz * xy - xz * yy) * xz)
 
 
 def matrix_from_moments(moments: Sequence[float]) -> Floats:
@@ -128,15 +120,17 @@ def inertial_from_element(
     :param reads_masses: whether to read one that is not automatic.
     :return: the inertial; None if it is not read, or cannot be computed.
     """
-    auto = xml.get('auto')
-    if auto and boolean_from_text(auto):
-        return _automatic_inertial(xml, sources)
+    link = xml.getparent()
+    assert link is not None
+    if boolean_from_text(xml.get('auto', '')):
+        return _automatic_inertial(xml, link, sources)
     if not reads_masses:
         return None
-    inertial = _inertial_from_values(xml)
+    # By default the moments are those of the unit matrix, as in libsdformat.
+    inertial = Inertial(number_of_child(xml, 'mass', 1.0), tuple(
+        number_of_child(xml, f'inertia/{tag}', float(tag[1] == tag[2])) for tag in MOMENTS))
     if not inertial.is_valid:
-        link = xml.getparent()
-        warn_of_inertial(xml, '' if link is None else attribute_of(link, 'name'), sources)
+        warn_of_inertial(xml, attribute_of(link, 'name'), sources)
     return inertial
 
 
@@ -156,24 +150,14 @@ def warn_of_inertial(
         is_for_gazebo=is_for_gazebo)
 
 
-def _inertial_from_values(xml: XmlElement) -> Inertial:
-    """Read an inertial; values that libsdformat cannot read are as in an empty one."""
-    inertia = first_child(xml, 'inertia')
-    mass_kg = number_of_child(xml, 'mass', 1.0)
-    if inertia is None:
-        return Inertial(mass_kg, _MOMENTS_OF_NONE)
-    return Inertial(mass_kg, tuple(
-        number_of_child(inertia, tag, default)
-        for tag, default in zip(MOMENTS, _MOMENTS_OF_NONE, strict=True)))
-
-
-def _automatic_inertial(inertial: XmlElement, sources: Sources) -> AutomaticInertial | None:
+def _automatic_inertial(
+    inertial: XmlElement, link: XmlElement, sources: Sources,
+) -> AutomaticInertial | None:
     """Return the masses for an automatic inertial; None if not each mass is known."""
-    link = inertial.getparent()
-    outer = None if link is None else link.getparent()
+    outer = link.getparent()
     if outer is not None and outer.tag == 'actor':
         return None  # libsdformat computes none in an actor
-    collisions = [] if link is None else list(child_elements(link, 'collision'))
+    collisions = list(child_elements(link, 'collision'))
     if not collisions:
         msg = 'the inertial is automatic, but its link has no <collision>'
         sources.error(ElementMissingError, inertial, msg)
@@ -186,16 +170,14 @@ def _automatic_inertial(inertial: XmlElement, sources: Sources) -> AutomaticIner
     for collision in collisions:
         shape = shape_of(collision)
         if shape is not None and shape.type == 'mesh':
-            name = '' if link is None else attribute_of(link, 'name')
-            msg = (f'the automatic inertial of link "{name}" has its pose as written, as the mass '
-                   'of a mesh is not computed')
+            msg = (f'the automatic inertial of link "{attribute_of(link, "name")}" has its pose '
+                   'as written, as the mass of a mesh is not computed')
             sources.warning(collision, msg)
             return None
         # An empty density means the default of the element, not the density of the inertial.
-        has_density = first_child(collision, 'density') is not None
-        density = number_of_child(collision, 'density', DEFAULT_DENSITY_KG_M3)
+        density_kg_m3 = default_density if first_child(collision, 'density') is None else (
+            number_of_child(collision, 'density', DEFAULT_DENSITY_KG_M3))
         solid = None if shape is None else shape.solid
-        density_kg_m3 = density if has_density else default_density
         is_massless = density_kg_m3 == 0.0 and shape is not None and shape.type in _MAY_BE_MASSLESS
         if solid is None or not (density_kg_m3 > 0.0 or is_massless):
             types = [name for name, each in SHAPE_TYPES.items() if each.solid is not None]
@@ -203,10 +185,10 @@ def _automatic_inertial(inertial: XmlElement, sources: Sources) -> AutomaticIner
                    'positive dimensions and density')
             sources.error(LinkInertiaError, collision, msg)
         else:
-            mass_kg = density_kg_m3 * solid.volume_m3
+            part_kg = density_kg_m3 * solid.volume_m3
             masses.append(CollisionMass(
-                mass_kg, solid.center_z_m,
-                tuple(mass_kg * moment for moment in solid.moments_m2)))
-    has_mass = first_child(inertial, 'mass') is not None
-    mass_kg = number_of_child(inertial, 'mass', 1.0)
-    return AutomaticInertial(tuple(masses), mass_kg if has_mass else None) if masses else None
+                part_kg, solid.center_z_m,
+                tuple(part_kg * moment for moment in solid.moments_m2)))
+    mass_kg = None if first_child(inertial, 'mass') is None else (
+        number_of_child(inertial, 'mass', 1.0))
+    return AutomaticInertial(tuple(masses), mass_kg) if masses else None

@@ -34,22 +34,6 @@ class Reference(NamedTuple):
     line: int = 0
 
 
-class Dynamics(NamedTuple):
-    """Limits, damping and friction of a joint; forces if it slides, else torques."""
-
-    effort: float = math.inf
-    """Largest force in newtons, or torque in newton metres; not negative."""
-    velocity: float = math.inf
-    """Largest velocity, in metres or radians per second; not negative."""
-    damping: float = 0.0
-    """Force or torque for a velocity of 1."""
-    friction: float = 0.0
-    """Force or torque without a velocity."""
-
-
-NO_DYNAMICS = Dynamics()
-
-
 class Mimic(NamedTuple):
     """
     The joint axis that an axis follows.
@@ -68,7 +52,12 @@ class Mimic(NamedTuple):
 
 
 class JointAxis(NamedTuple):
-    """An axis of a joint."""
+    """
+    An axis of a joint.
+
+    Its forces are in newtons if the joint slides, and torques in newton metres if it turns. They
+    and the largest velocity are read together with shapes only.
+    """
 
     xyz: tuple[float, float, float]
     """Unit vector in the frame of the joint."""
@@ -77,8 +66,14 @@ class JointAxis(NamedTuple):
     upper: float = math.inf
     """Upper limit of the position, in radians or metres."""
     mimic: Mimic | None = None
-    dynamics: Dynamics = NO_DYNAMICS
-    """Defaults unless the load reads shapes."""
+    effort: float = math.inf
+    """Largest force; not negative."""
+    velocity: float = math.inf
+    """Largest velocity, in metres or radians per second; not negative."""
+    damping: float = 0.0
+    """Force for a velocity of 1."""
+    friction: float = 0.0
+    """Force without a velocity."""
 
 
 class AxisDetails(NamedTuple):
@@ -118,7 +113,7 @@ def joint_details_from_element(
     :return: its details. References are empty where they are missing or reserved.
     """
     joint_type = attribute_of(xml, 'type').lower()
-    has_thread = joint_type in JOINT_TYPES and JOINT_TYPES[joint_type].has_thread
+    has_thread = _has_dof(joint_type, Motion.SCREW)
     axis, axis2 = (
         _axis(xml, tag, sources, reads_dynamics=reads_dynamics) for tag in AXIS_TAGS)
     return JointDetails(
@@ -168,17 +163,19 @@ def _axis(
     if limit is not None:
         lower = number_of_child(limit, 'lower', lower)
         upper = number_of_child(limit, 'upper', upper)
-        joint_type = JOINT_TYPES.get(attribute_of(joint, 'type').lower())
-        if any(map(_may_be_degrees, (lower, upper))) and joint_type is not None and any(
-                dof.motion is Motion.TURN for dof in joint_type.dofs):
+        if any(map(_may_be_degrees, (lower, upper))) and _has_dof(
+                attribute_of(joint, 'type').lower(), Motion.TURN):
             msg = (f'the limits {lower:g} to {upper:g} of joint "{attribute_of(joint, "name")}" '
                    'are radians; they look like degrees')
             sources.warning(limit, msg)
     mimic, leader = _mimic(joint, axis, tag, sources)
+    dynamics = _dynamics(axis) if reads_dynamics else ()
     return AxisDetails(
-        JointAxis(
-            (x, y, z), lower, upper, mimic, _dynamics(axis) if reads_dynamics else NO_DYNAMICS),
-        expressed_in, leader)
+        JointAxis((x, y, z), lower, upper, mimic, *dynamics), expressed_in, leader)
+
+
+def _has_dof(joint_type: str, motion: Motion) -> bool:
+    return any(dof.motion is motion for dof in JOINT_TYPES.get(joint_type, ()))
 
 
 def _may_be_degrees(limit: float) -> bool:
@@ -186,23 +183,18 @@ def _may_be_degrees(limit: float) -> bool:
     return 8.0 * math.pi < abs(limit) <= 1080.0 and limit.is_integer()
 
 
-def _dynamics(axis: XmlElement) -> Dynamics:
-    values = NO_DYNAMICS._asdict()
-    for tag, names in (('limit', ('effort', 'velocity')), ('dynamics', ('damping', 'friction'))):
-        part = first_child(axis, tag)
-        if part is None:
-            continue
-        for name in names:
-            value = number_of_child(part, name, values[name])
-            # In older files, a limit below zero means no limit.
-            values[name] = math.inf if tag == 'limit' and value < 0.0 else value
-    return Dynamics(**values)
+def _dynamics(axis: XmlElement) -> Sequence[float]:
+    largest = (number_of_child(axis, f'limit/{name}', math.inf) for name in ('effort', 'velocity'))
+    # In older files, a limit below zero means no limit.
+    effort, velocity = (math.inf if value < 0.0 else value for value in largest)
+    return (
+        effort, velocity, number_of_child(axis, 'dynamics/damping', 0.0),
+        number_of_child(axis, 'dynamics/friction', 0.0))
 
 
 def _mimic(
     joint: XmlElement, axis: XmlElement, tag: str, sources: Sources,
 ) -> tuple[Mimic | None, Reference]:
-    """Read a mimic, and the name of its leader."""
     xml = first_child(axis, 'mimic')
     if xml is None:
         return None, _NO_REFERENCE

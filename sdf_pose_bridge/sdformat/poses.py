@@ -11,23 +11,20 @@ numbers. Quaternions are normalised, unlike by libsdformat.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import chain
+from collections.abc import Iterator, Sequence
 import math
 import re
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry.formats import LARGEST_ANGLE_RAD
-from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.geometry.rotations import quaternion_from_rpy, rpy_from_quaternion
+from sdf_pose_bridge.geometry.poses import Pose, PoseArray
+from sdf_pose_bridge.geometry.rotations import Floats, quaternion_from_rpy, rpy_from_quaternion
 from sdf_pose_bridge.sdformat.values import (
     boolean_from_text,
     DECIMAL,
     is_representable,
-    LONGEST_PLAIN,
     plain_numbers_from_text,
 )
 from sdf_pose_bridge.sdformat.xml_tree import attribute_of, WHITE_SPACE, XmlElement
@@ -41,10 +38,7 @@ _LARGEST_NORM = 1e150
 _NORM_TOLERANCE = 1e-3
 """A quaternion whose norm differs more from 1 is probably a mistake."""
 
-_IDENTITY_TEXTS = {6: '0 0 0 0 0 0', 7: '0 0 0 0 0 0 1'}
 _DECIMAL_NUMBER = re.compile(rf'[+-]?{DECIMAL}')
-_NUMBER_CHARACTERS = b'0123456789+-.eE \t\n\r'
-_THREE_DIGIT_EXPONENT = re.compile(r'[eE][+-]?0*[1-9][0-9][0-9]')
 
 
 class PoseFormat(NamedTuple):
@@ -54,14 +48,6 @@ class PoseFormat(NamedTuple):
     """True for ``rotation_format="quat_xyzw"``, False for ``euler_rpy``."""
     is_degrees: bool = False
     """Whether roll, pitch and yaw are in degrees."""
-
-    @property
-    def layout(self) -> str:
-        """The names of the numbers in their order."""
-        return 'x y z qx qy qz qw' if self.is_quaternion else 'x y z roll pitch yaw'
-
-
-_PLAIN_FORMAT = PoseFormat()
 
 
 class PoseTextError(ValueError):
@@ -75,7 +61,7 @@ def pose_format_of(xml: XmlElement) -> PoseFormat:
     :raises PoseTextError: if ``rotation_format`` or ``degrees`` is not valid.
     """
     if not xml.keys():
-        return _PLAIN_FORMAT
+        return PoseFormat()
     rotation_format = attribute_of(xml, 'rotation_format')
     pose_format = PoseFormat(
         rotation_format == 'quat_xyzw', boolean_from_text(xml.get('degrees', '')) is True)
@@ -88,43 +74,6 @@ def pose_format_of(xml: XmlElement) -> PoseFormat:
     return pose_format
 
 
-class PosesFromTexts(NamedTuple):
-    """Result of :func:`poses_from_texts`."""
-
-    poses: NDArray[np.float64]
-    """Shape (n, 7): x y z in metres, unit quaternion x y z w; the identity for each failure."""
-    failures: list[tuple[int, str]]
-    """The index of each text that is not a pose, and the reason."""
-    doubts: list[tuple[int, str]]
-    """The index of each text that may be a mistake, and the reason."""
-
-
-def poses_from_texts(texts: Sequence[str], pose_format: PoseFormat) -> PosesFromTexts:
-    """
-    Convert many texts.
-
-    :param texts: n poses as written, all in the same format; a blank text is the identity.
-    """
-    failures: list[tuple[int, str]] = []
-    commas: list[tuple[int, str]] = []
-    numbers = _numbers_from_texts(texts, len(pose_format.layout.split()))
-    if numbers is None:
-        rows = []
-        for index, text in enumerate(texts):
-            try:
-                rows.append(pose_numbers_from_text(text, pose_format))
-            except PoseTextError as error:
-                failures.append((index, str(error)))
-                rows.append(pose_numbers_from_text('', pose_format))
-            else:
-                if ',' in text:
-                    doubt = f'the commas in the pose "{_shown(text)}" are ignored'
-                    commas.append((index, f'{doubt}; only white space separates numbers'))
-        numbers = np.array(rows)
-    doubts = _doubts(texts, numbers, pose_format) + commas
-    return PosesFromTexts(_poses_from_numbers(numbers, pose_format), failures, doubts)
-
-
 def pose_from_text(text: str, pose_format: PoseFormat) -> Sequence[float]:
     """
     Convert one text.
@@ -134,7 +83,7 @@ def pose_from_text(text: str, pose_format: PoseFormat) -> Sequence[float]:
     :raises PoseTextError: if it is not a pose.
     """
     numbers = np.array([pose_numbers_from_text(text, pose_format)])
-    pose: list[float] = _poses_from_numbers(numbers, pose_format)[0].tolist()
+    pose: list[float] = poses_from_numbers(numbers, pose_format)[0].tolist()
     return pose
 
 
@@ -149,42 +98,85 @@ def text_from_pose(pose: Pose) -> str:
         repr(number if is_representable('1', number) else 0.0) for number in numbers)
 
 
-def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> list[float]:
+def pose_numbers_from_text(text: str, pose_format: PoseFormat) -> Sequence[float]:
     """
     Read the numbers of a text.
 
-    :return: the numbers in the order of the layout; a quaternion that is too large is scaled.
+    :return: x y z roll pitch yaw, or x y z qx qy qz qw; a quaternion that is too large is scaled.
     :raises PoseTextError: if the text is not a pose.
     """
-    layout = pose_format.layout
-    count = len(layout.split())
-    plain_numbers = plain_numbers_from_text(text)
-    if len(plain_numbers) == count and not pose_format.is_quaternion:
-        return list(plain_numbers)
-    words = _words(text) or _IDENTITY_TEXTS[count].split()
-    plain_words = [word.removesuffix(',') for word in words]
-    shown = _shown(text)
-    for word, plain in zip(words[:count], plain_words, strict=False):
-        is_decimal = _DECIMAL_NUMBER.fullmatch(plain) is not None
-        if not is_decimal or not is_representable(plain, float(plain)):
-            rule = 'beyond the range of a double' if is_decimal else 'not a finite decimal number'
-            msg = f'"{word[:80]}" in the pose "{shown}" is {rule}'
-            raise PoseTextError(msg)
-    if len(words) != count:
-        hint = '' if len(words) != 7 else '; did you mean rotation_format="quat_xyzw"?'
-        msg = f'a pose has {count} values ({layout}), "{shown}" has {len(words)}{hint}'
-        raise PoseTextError(msg)
-    numbers = list(map(float, plain_words))
+    numbers = plain_numbers_from_text(text)
+    if len(numbers) != (7 if pose_format.is_quaternion else 6):
+        numbers = _numbers_from_words(text, pose_format)
     if pose_format.is_quaternion:
         norm = math.hypot(*numbers[3:])
         if norm < _SHORTEST_QUATERNION or math.isinf(norm):
             rule = ('zero, so it is not a rotation' if norm < _SHORTEST_QUATERNION
                     else 'beyond the range of a double')
-            msg = f'the quaternion of the pose "{shown}" is {rule}'
+            msg = f'the quaternion of the pose "{_shown(text)}" is {rule}'
             raise PoseTextError(msg)
         if norm > _LARGEST_NORM:
-            numbers[3:] = [number / norm for number in numbers[3:]]
+            return [*numbers[:3], *(number / norm for number in numbers[3:])]
     return numbers
+
+
+def _numbers_from_words(text: str, pose_format: PoseFormat) -> Sequence[float]:
+    layout = 'x y z qx qy qz qw' if pose_format.is_quaternion else 'x y z roll pitch yaw'
+    count = len(layout.split())
+    words = _words(text) or '0 0 0 0 0 0 1'.split()[:count]
+    plain_words = [word.removesuffix(',') for word in words]
+    for word, plain in zip(words[:count], plain_words, strict=False):
+        is_decimal = _DECIMAL_NUMBER.fullmatch(plain) is not None
+        if not is_decimal or not is_representable(plain, float(plain)):
+            rule = 'beyond the range of a double' if is_decimal else 'not a finite decimal number'
+            msg = f'"{word[:80]}" in the pose "{_shown(text)}" is {rule}'
+            raise PoseTextError(msg)
+    if len(words) != count:
+        hint = '' if len(words) != 7 else '; did you mean rotation_format="quat_xyzw"?'
+        msg = f'a pose has {count} values ({layout}), "{_shown(text)}" has {len(words)}{hint}'
+        raise PoseTextError(msg)
+    return [*map(float, plain_words)]
+
+
+def pose_doubts(
+    texts: Sequence[str], numbers: Floats, pose_format: PoseFormat,
+) -> Iterator[tuple[int, str]]:
+    """
+    Find poses that may be mistakes.
+
+    :param numbers: those of the texts, shape (n, 6) or (n, 7).
+    :return: the row of each of them, and the reason.
+    """
+    if pose_format.is_quaternion:
+        is_doubtful = np.abs(np.linalg.norm(numbers[:, 3:], axis=1) - 1.0) > _NORM_TOLERANCE
+        doubt = 'the quaternion of the pose "{}" is not of length 1; it is normalised'
+    else:
+        largest_rad = math.inf if pose_format.is_degrees else LARGEST_ANGLE_RAD
+        is_doubtful = np.abs(numbers[:, 3:]).max(axis=1) > largest_rad
+        doubt = 'the angles of the pose "{}" are radians; did you mean degrees="true"?'
+    for row in np.flatnonzero(is_doubtful).tolist():
+        yield row, doubt.format(_shown(texts[row]))
+    for row, text in enumerate(texts):
+        if ',' in text:
+            yield row, (f'the commas in the pose "{_shown(text)}" are ignored; only white space '
+                        'separates numbers')
+
+
+def poses_from_numbers(numbers: Floats, pose_format: PoseFormat) -> PoseArray:
+    """
+    Convert the numbers of many poses.
+
+    :param numbers: shape (n, 6) or (n, 7), each as from :func:`pose_numbers_from_text`.
+    :return: shape (n, 7).
+    """
+    rotations = numbers[:, 3:]
+    if pose_format.is_quaternion:
+        norms = np.sqrt(np.einsum('ij,ij->i', rotations, rotations))
+        quaternions = rotations / norms[:, np.newaxis]
+    else:
+        quaternions = quaternion_from_rpy(
+            np.radians(rotations) if pose_format.is_degrees else rotations)
+    return np.hstack((numbers[:, :3], quaternions))
 
 
 def _words(text: str) -> list[str]:
@@ -194,58 +186,3 @@ def _words(text: str) -> list[str]:
 def _shown(text: str) -> str:
     shown = ' '.join(_words(text))
     return shown if len(shown) <= 80 else shown[:77] + '...'
-
-
-def _doubts(
-    texts: Sequence[str], numbers: NDArray[np.float64], pose_format: PoseFormat,
-) -> list[tuple[int, str]]:
-    if pose_format.is_quaternion:
-        is_doubtful = np.abs(np.linalg.norm(numbers[:, 3:], axis=1) - 1.0) > _NORM_TOLERANCE
-        doubt = 'the quaternion of the pose "{}" is not of length 1; it is normalised'
-    else:
-        largest_rad = math.inf if pose_format.is_degrees else LARGEST_ANGLE_RAD
-        is_doubtful = np.abs(numbers[:, 3:]).max(axis=1, initial=0.0) > largest_rad
-        doubt = 'the angles of the pose "{}" are radians; did you mean degrees="true"?'
-    rows: list[int] = np.flatnonzero(is_doubtful).tolist()
-    return [(row, doubt.format(_shown(texts[row]))) for row in rows]
-
-
-def _numbers_from_texts(texts: Sequence[str], count: int) -> NDArray[np.float64] | None:
-    """
-    Read the numbers of many texts at once, which is faster.
-
-    :param count: the number of values of each text.
-    :return: shape (n, count); None if a text is not a list of plain numbers.
-    """
-    texts = [text or _IDENTITY_TEXTS[count] for text in texts]
-    joined = ' '.join(texts)
-    words = [text.split() for text in texts]
-    if (not joined.isascii() or joined.encode().translate(None, _NUMBER_CHARACTERS)
-            or _THREE_DIGIT_EXPONENT.search(joined)
-            or max(map(len, texts), default=0) >= LONGEST_PLAIN
-            or any(len(each) != count for each in words)):
-        return None
-    try:
-        numbers = np.fromiter(
-            map(float, chain.from_iterable(words)), np.float64, len(words) * count)
-    except ValueError:
-        return None
-    numbers = numbers.reshape(-1, count)
-    if count == 7 and (
-            np.abs(numbers).max(initial=0.0) > _LARGEST_NORM
-            or (np.linalg.norm(numbers[:, 3:], axis=1) < _SHORTEST_QUATERNION).any()):
-        return None
-    return numbers
-
-
-def _poses_from_numbers(
-    numbers: NDArray[np.float64], pose_format: PoseFormat,
-) -> NDArray[np.float64]:
-    rotations = numbers[:, 3:]
-    if pose_format.is_quaternion:
-        norms = np.sqrt(np.einsum('ij,ij->i', rotations, rotations))
-        quaternions = rotations / norms[:, np.newaxis]
-    else:
-        quaternions = quaternion_from_rpy(
-            np.radians(rotations) if pose_format.is_degrees else rotations)
-    return np.hstack((numbers[:, :3], quaternions))

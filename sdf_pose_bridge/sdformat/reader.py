@@ -9,9 +9,9 @@ a value is checked, and an unknown element is skipped.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
-from itertools import chain, takewhile
+from itertools import takewhile
 from typing import Any, NamedTuple
 
 from lxml import etree
@@ -23,6 +23,7 @@ from sdf_pose_bridge.errors import (
     ElementIncorrectTypeError,
     ElementInvalidError,
     ReservedNameError,
+    SdfError,
 )
 from sdf_pose_bridge.names import ROOT_FRAME, SEPARATOR, shortened
 from sdf_pose_bridge.sdformat.elements import (
@@ -51,8 +52,8 @@ from sdf_pose_bridge.sdformat.values import (
     boolean_from_text,
     choice_fault,
     frame_of_attribute,
-    is_of_type,
     judged_value,
+    value_at,
 )
 from sdf_pose_bridge.sdformat.versions import allows_scoped_names
 from sdf_pose_bridge.sdformat.xml_tree import (
@@ -72,12 +73,14 @@ from sdf_pose_bridge.sdformat.xml_tree import (
 
 _FRAME_ID_TAGS = ('frame_id', 'gz_frame_id', 'ignition_frame_id')
 """Elements of a sensor with the frame id of its messages; the first of them counts."""
-_CHECKS = {'material': check_material, 'submesh': check_submesh}
-"""Functions that check elements without a frame, by the identifiers of these."""
-_CHECKS_OF_UNREAD = {
-    'joint': partial(check_children_of_joint, tags=('parent', 'child')),
-    'old_joint_state': partial(check_children_of_joint, tags=('angle',))}
-"""The same for elements that libsdformat does not load, such as those in a state."""
+_SCOPES = (Kind.WORLD, Kind.MODEL)
+_CHECKS: Mapping[str, tuple[bool, Callable[[XmlElement, Sources], None]]] = {
+    'material': (True, check_material),
+    'submesh': (True, check_submesh),
+    'joint': (False, partial(check_children_of_joint, tags=('parent', 'child'))),
+    'old_joint_state': (False, partial(check_children_of_joint, tags=('angle',)))}
+"""Functions that check elements without a frame, by the identifiers of these, and whether they do
+so where libsdformat loads frames, or where it does not, as in a state."""
 
 
 def elements_from_tree(root: XmlElement, sources: Sources, *, shapes: bool = False) -> Elements:
@@ -95,7 +98,7 @@ def elements_from_tree(root: XmlElement, sources: Sources, *, shapes: bool = Fal
     sources = sources.of_unchanged_trees()
     if sources.may_hold_scoped_names:
         _check_scoped_names(root, sources)
-    return _Reader(sources, shapes=shapes).elements(root)
+    return _Reader(sources, sources.path(root), shapes=shapes).elements(root)
 
 
 def is_valid_element(xml: XmlElement, definition: Definition, sources: Sources) -> bool:
@@ -106,7 +109,8 @@ def is_valid_element(xml: XmlElement, definition: Definition, sources: Sources) 
     :return: whether there are no errors.
     """
     part = sources.with_own_problems()
-    _Reader(part).check(xml, definition)
+    reader = _Reader(part)
+    reader.read(xml, definition, reader.top)
     part.problems.extend_parent()
     return not part.problems.errors
 
@@ -140,18 +144,20 @@ class _Scope(NamedTuple):
     """The file of the parent element, which a merged element may not share with its scope."""
     element: int = NO_ELEMENT
     """Its index in the table; -1 for the file itself, and for a part of an actor."""
+    is_checked: bool = False
+    """Whether all values in it are checked already, as those of an included file."""
 
 
 class _Reader:
 
-    def __init__(self, sources: Sources, *, shapes: bool = False) -> None:
+    def __init__(self, sources: Sources, path: str = '', *, shapes: bool = False) -> None:
         self._sources = sources
-        self._deepest = sources.usage.limits.depth
         self._table = ElementsBuilder(sources.paths, has_shapes=shapes)
         self._parts_of_actors = ElementsBuilder(sources.paths)
         """Links and joints of actors with their content, which are checked, but have no frames."""
         self._undefined = UndefinedReporter(sources)
-        self._file_indices = sources.file_indices
+        self.top = _Scope(self._table, SiblingNames(self._table, sources), path)
+        """The scope of the outermost element."""
         self._readers_of_details: dict[Kind, tuple[str, Callable[[XmlElement], Any]]] = {
             Kind.MODEL: ('models', _model_details),
             Kind.FRAME: ('frames', partial(_frame_details, sources=sources)),
@@ -169,45 +175,34 @@ class _Reader:
     def elements(self, root: XmlElement) -> Elements:
         """Read worlds, and the one model, light or actor that may stand beside them."""
         definition = definition_of('sdf', has_frames=True)
-        scope = self._new_scope(self._table, self._sources.path(root))
         first = ''
         for child in root:
             child_definition = definition.children.get(child.tag)
             if child_definition is None:
                 self._undefined.report_element(child, definition)
             elif child_definition.kind is Kind.WORLD:
-                self.read(child, child_definition, scope)
+                self.read(child, child_definition, self.top)
             elif first:
                 self._check_attributes(child, child_definition)
-                self._report_second_top(child, first)
+                error: type[SdfError] = DuplicateNameError
+                msg = f'{first} stands at the top of this file already'
+                if described(child) != first:
+                    error = ElementIncorrectTypeError
+                    msg = (f'{described(child)} stands at the top of this file after {first}; '
+                           'only one model, light or actor may')
+                self._sources.error_in_name(error, child, msg)
             else:
                 first = described(child)
                 index = self._table.add(
-                    Kind.ROOT, ROOT_FRAME, NO_ELEMENT, NO_ELEMENT, self._file_indices[scope.path],
-                    self._sources.line(child))
-                self.read(child, child_definition, scope._replace(element=index), index)
+                    Kind.ROOT, ROOT_FRAME, NO_ELEMENT, NO_ELEMENT,
+                    self._sources.file_indices[self.top.path], self._sources.line(child))
+                self.read(child, child_definition, self.top._replace(element=index), index)
         if not self._table.names:
             self._sources.warning(root, 'the file has no world, model, light or actor')
         self._parts_of_actors.elements(self._sources.problems)
         return self._table.elements(self._sources.problems)
 
-    def _report_second_top(self, xml: XmlElement, first: str) -> None:
-        if described(xml) == first:
-            msg = f'{first} stands at the top of this file already'
-            self._sources.error_in_name(DuplicateNameError, xml, msg)
-        else:
-            msg = (f'{described(xml)} stands at the top of this file after {first}; only one '
-                   'model, light or actor may')
-            self._sources.error_in_name(ElementIncorrectTypeError, xml, msg)
-
-    def _new_scope(self, table: ElementsBuilder, path: str) -> _Scope:
-        return _Scope(table, SiblingNames(table, self._sources), path)
-
     # The walk
-
-    def check(self, xml: XmlElement, definition: Definition) -> None:
-        """Check the values of an element that is no part of the tree, with its content."""
-        self.read(xml, definition, self._new_scope(self._table, ''))
 
     def read(
         self, xml: XmlElement, definition: Definition, scope: _Scope, parent: int = NO_ELEMENT,
@@ -219,11 +214,11 @@ class _Reader:
         :param parent: index of its parent element; -1 if this has no frame.
         """
         if definition.has_required_attributes or xml.keys():
-            self._check_attributes(xml, definition)
+            self._check_attributes(xml, definition, is_checked=scope.is_checked)
         if definition.is_pose:
             self._read_pose(xml, definition, scope, parent)
-        elif definition.value_type is not None:
-            fault, doubt = judged_value(text_of(xml), definition)
+        elif definition.value is not None:
+            fault, doubt = judged_value(text_of(xml), definition.value)
             if fault:
                 self._sources.error(ElementInvalidError, xml, f'{_described_value(xml)} {fault}')
             elif doubt:
@@ -234,32 +229,30 @@ class _Reader:
         else:
             kind, element = definition.kind, NO_ELEMENT
             if kind is None:
-                checks = _CHECKS if definition.has_frames else _CHECKS_OF_UNREAD
-                if definition.identifier in checks:
-                    checks[definition.identifier](xml, self._sources)
+                if definition.identifier in _CHECKS:
+                    has_frames, check = _CHECKS[definition.identifier]
+                    if definition.has_frames is has_frames:
+                        check(xml, self._sources)
             else:
-                if self._sources.origin(xml).is_checked:
-                    definition = definition_of(
-                        definition.identifier, has_frames=True, is_checked=True)
-                element, scope = self._added(xml, definition, kind, scope, parent)
+                element, scope = self._added(xml, kind, scope, parent)
                 if element == NO_ELEMENT:
                     definition = definition_of(definition.identifier)
-            if depth > self._deepest:
+            if depth > self._sources.usage.limits.depth:
                 self._sources.check_depth(depth, xml)
             definitions = definition.children
             for child in xml:
                 child_definition = definitions.get(child.tag)
                 if child_definition is None:
-                    if not definition.takes_any_children:
+                    if not (definition.takes_any_children or scope.is_checked):
                         self._undefined.report_element(child, definition)
-                    continue
-                self.read(child, child_definition, scope, element, depth + 1)
-                if child_definition.value_type is not None and len(child):
-                    for grandchild in child:
-                        self._undefined.report_element(grandchild, child_definition)
+                elif not scope.is_checked or child_definition.concerns_frames:
+                    self.read(child, child_definition, scope, element, depth + 1)
+                    if child_definition.value is not None and len(child):
+                        for grandchild in child:
+                            self._undefined.report_element(grandchild, child_definition)
 
     def _added(
-        self, xml: XmlElement, definition: Definition, kind: Kind, scope: _Scope, parent: int,
+        self, xml: XmlElement, kind: Kind, scope: _Scope, parent: int,
     ) -> tuple[int, _Scope]:
         """
         Add an element to the table, unless its name has an error.
@@ -268,10 +261,13 @@ class _Reader:
         """
         if parent >= 0 and scope.table.kinds[parent] == Kind.ACTOR:
             # Nothing can refer to the links and joints of actors, so their names may repeat.
-            scope, parent = self._new_scope(self._parts_of_actors, scope.path), NO_ELEMENT
-        table, names, path, scope_element = scope
-        has_name = 'name' in definition.attributes
-        name = names.add(kind, xml, parent, path) if has_name else kind.label
+            parts = self._parts_of_actors
+            scope = _Scope(
+                parts, SiblingNames(parts, self._sources), scope.path,
+                is_checked=scope.is_checked)
+            parent = NO_ELEMENT
+        table, names, path, scope_element, is_checked = scope
+        name = names.add(kind, xml, parent, path) if kind.has_name else kind.label
         if name is None:
             return NO_ELEMENT, scope
         origin = self._sources.origin(xml)
@@ -279,7 +275,7 @@ class _Reader:
             path = origin.file
         index = table.add(
             kind, name, parent, scope_element,
-            self._file_indices[path if origin.pose is None else origin.pose.file],
+            self._sources.file_indices[path if origin.pose is None else origin.pose.file],
             self._sources.line(xml))
         if origin.include is not None:
             table.details['includes'][index] = origin.include
@@ -288,36 +284,43 @@ class _Reader:
             details = details_from_element(xml)
             if details is not None:
                 table.details[field][index] = details
-        if definition.is_scope or path != scope.path:
-            scope = _Scope(table, names, path, index if definition.is_scope else scope_element)
+        if kind in _SCOPES or path != scope.path or origin.is_checked:
+            scope = _Scope(
+                table, names, path, index if kind in _SCOPES else scope_element,
+                is_checked or origin.is_checked)
         return index, scope
 
     # Attributes and poses
 
-    def _check_attributes(self, xml: XmlElement, definition: Definition) -> None:
+    def _check_attributes(
+        self, xml: XmlElement, definition: Definition, *, is_checked: bool = False,
+    ) -> None:
         self._undefined.report_attributes(xml, definition)
-        for name, attribute in definition.checked_attributes:
-            value = xml.get(name)
-            if value is None:
-                if attribute.is_required:
-                    msg = f'<{written_tag(xml)}> has no {name}'
-                    self._sources.error(AttributeMissingError, xml, msg)
-            elif value.strip() and not is_of_type(value.strip(), attribute.value_type):
-                msg = f'{name}="{value.strip()}" is not {attribute.value_type.description}'
-                self._sources.error(AttributeInvalidError, xml, msg)
-            elif attribute.is_required and not value.strip():
-                msg = f'{name}="{value}" of <{written_tag(xml)}> is empty'
-                self._sources.error(AttributeInvalidError, xml, msg)
-            elif attribute.choice is not None:
-                fault = choice_fault(value.strip(WHITE_SPACE), attribute.choice)
+        for rule in definition.checked_attributes:
+            name, text = rule.name, xml.get(rule.name)
+            choice = rule.choice if definition.has_frames else None
+            if (is_checked and choice is None) or (text is None and not rule.required):
+                continue
+            value = '' if text is None else text.strip(WHITE_SPACE)
+            if text is None:
+                msg = f'<{written_tag(xml)}> has no {name}'
+                self._sources.error(AttributeMissingError, xml, msg)
+            elif not text.strip():
+                if rule.required:
+                    msg = f'{name}="{text}" of <{written_tag(xml)}> is empty'
+                    self._sources.error(AttributeInvalidError, xml, msg)
+            elif rule.choice is None:
+                fault, _ = judged_value(text.strip(), rule)
                 if fault:
-                    error = (
-                        ElementInvalidError if definition.kind is None else AttributeInvalidError)
-                    msg = f'{name}="{value.strip(WHITE_SPACE)}" of <{written_tag(xml)}> {fault}'
-                    problems = self._sources.problems
-                    hint = problems.name_index(attribute.choice, attribute.choice.texts).hint(
-                        value.strip(WHITE_SPACE)) if problems.allows_hint() else ''
-                    self._sources.error(error, xml, msg + hint)
+                    msg = f'{name}="{text.strip()}" {fault}'
+                    self._sources.error(AttributeInvalidError, xml, msg)
+            elif choice is not None and (fault := choice_fault(value, choice)):
+                error = ElementInvalidError if definition.kind is None else AttributeInvalidError
+                problems = self._sources.problems
+                hint = problems.name_index(choice, choice.texts).hint(
+                    value) if problems.allows_hint() else ''
+                msg = f'{name}="{value}" of <{written_tag(xml)}> {fault}{hint}'
+                self._sources.error(error, xml, msg)
 
     def _read_pose(
         self, xml: XmlElement, definition: Definition, scope: _Scope, parent: int,
@@ -351,14 +354,13 @@ class _Reader:
         relative_to = frame_of_attribute(xml, 'relative_to')
         if not relative_to or 'relative_to' not in definition.attributes:
             return
-        reason = ''
+        ignored = f'relative_to="{relative_to}" is ignored'
         if table.kinds[index] == Kind.ACTOR:
-            reason = 'an actor is placed in the world'
+            self._sources.warning(xml, f'{ignored}; an actor is placed in the world')
         elif (table.kinds[index] == Kind.LIGHT
                 and table.kinds[table.parents[index]] == Kind.ROOT):
-            reason = 'a light at the top of a file is placed in the implicit root'
-        if reason:
-            self._sources.warning(xml, f'relative_to="{relative_to}" is ignored; {reason}')
+            msg = f'{ignored}; a light at the top of a file is placed in the implicit root'
+            self._sources.warning(xml, msg)
         else:
             table.details['relative_to'][index] = relative_to
 
@@ -385,10 +387,9 @@ def _frame_details(xml: XmlElement, sources: Sources) -> FrameDetails:
 
 
 def _sensor_details(xml: XmlElement) -> SensorDetails:
-    frame_ids = chain.from_iterable(child_elements(xml, tag) for tag in _FRAME_ID_TAGS)
-    camera = first_child(xml, 'camera')
+    frame_ids = (value_of(each) for tag in _FRAME_ID_TAGS for each in child_elements(xml, tag))
     sensor_type = attribute_of(xml, 'type')
     return SensorDetails(
-        sensor_type, next(filter(None, map(value_of, frame_ids)), ''),
-        camera is not None or sensor_type in CAMERA_TYPES,
-        '' if camera is None else child_value(camera, 'optical_frame_id'))
+        sensor_type, next(filter(None, frame_ids), ''),
+        first_child(xml, 'camera') is not None or sensor_type in CAMERA_TYPES,
+        value_at(xml, 'camera/optical_frame_id'))

@@ -11,13 +11,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 import enum
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry.rotations import Floats
 
+_Made = TypeVar('_Made')
 _SEGMENTS = 24
 """Number of sides of a surface that is round about its z axis."""
 _NO_SIZES: Mapping[str, tuple[float, ...]] = {}
@@ -90,16 +91,12 @@ def _ellipsoid(x_m: float, y_m: float, z_m: float) -> tuple[Part, ...]:
     return (Part(Primitive.ELLIPSOID, (2.0 * x_m, 2.0 * y_m, 2.0 * z_m)),)
 
 
-def _sphere(radius_m: float) -> tuple[Part, ...]:
-    return _ellipsoid(radius_m, radius_m, radius_m)
-
-
 def _cylinder(radius_m: float, length_m: float) -> tuple[Part, ...]:
     return (Part(Primitive.CYLINDER, (2.0 * radius_m, 2.0 * radius_m, length_m)),)
 
 
 def _capsule(radius_m: float, length_m: float) -> tuple[Part, ...]:
-    (end,) = _sphere(radius_m)
+    (end,) = _ellipsoid(radius_m, radius_m, radius_m)
     if length_m <= 0.0:
         return (end,)
     return (*_cylinder(radius_m, length_m),
@@ -107,17 +104,16 @@ def _capsule(radius_m: float, length_m: float) -> tuple[Part, ...]:
 
 
 def _box_solid(x_m: float, y_m: float, z_m: float) -> Solid:
-    x, y, z = x_m ** 2 / 12.0, y_m ** 2 / 12.0, z_m ** 2 / 12.0
-    return Solid(x_m * y_m * z_m, (y + z, x + z, x + y))
+    return _symmetric_solid(x_m * y_m * z_m, 12.0, x_m, y_m, z_m)
 
 
 def _ellipsoid_solid(x_m: float, y_m: float, z_m: float) -> Solid:
-    x, y, z = x_m ** 2 / 5.0, y_m ** 2 / 5.0, z_m ** 2 / 5.0
-    return Solid(4.0 / 3.0 * math.pi * x_m * y_m * z_m, (y + z, x + z, x + y))
+    return _symmetric_solid(4.0 / 3.0 * math.pi * x_m * y_m * z_m, 5.0, x_m, y_m, z_m)
 
 
-def _sphere_solid(radius_m: float) -> Solid:
-    return _ellipsoid_solid(radius_m, radius_m, radius_m)
+def _symmetric_solid(volume_m3: float, divisor: float, *sizes_m: float) -> Solid:
+    x, y, z = (size_m ** 2 / divisor for size_m in sizes_m)
+    return Solid(volume_m3, (y + z, x + z, x + y))
 
 
 def _cylinder_solid(radius_m: float, length_m: float) -> Solid:
@@ -134,7 +130,7 @@ def _cone_solid(radius_m: float, length_m: float) -> Solid:
 def _capsule_solid(radius_m: float, length_m: float) -> Solid:
     length_m = max(length_m, 0.0)
     (middle, (across, _, along), _), ends = (
-        _cylinder_solid(radius_m, length_m), _sphere_solid(radius_m))
+        _cylinder_solid(radius_m, length_m), _ellipsoid_solid(radius_m, radius_m, radius_m))
     volume_m3 = middle + ends.volume_m3
     # The centers of the halves of a sphere are 3/8 of its radius beyond the cylinder.
     across_of_ends = 0.4 * radius_m ** 2 + length_m ** 2 / 4.0 + 0.375 * length_m * radius_m
@@ -158,10 +154,6 @@ def _plane_surface(x_m: float, y_m: float) -> Surface:
 def _ellipsoid_surface(x_m: float, y_m: float, z_m: float) -> Surface:
     points, faces = _capsule_surface(1.0, 0.0)
     return Surface(points * (x_m, y_m, z_m), faces)
-
-
-def _sphere_surface(radius_m: float) -> Surface:
-    return _ellipsoid_surface(radius_m, radius_m, radius_m)
 
 
 def _cylinder_surface(radius_m: float, length_m: float) -> Surface:
@@ -204,6 +196,10 @@ def _round_surface(profile_m: Sequence[tuple[float, float]]) -> Surface:
         points.reshape(-1, 3), np.concatenate([lower.reshape(-1, 3), upper.reshape(-1, 3)]))
 
 
+def _of_sphere(function: Callable[..., _Made]) -> Callable[..., _Made]:
+    return lambda radius_m: function(radius_m, radius_m, radius_m)
+
+
 _RADIUS_AND_LENGTH = {'radius': (1.0,), 'length': (1.0,)}
 
 SHAPE_TYPES: Mapping[str, ShapeType] = {
@@ -216,7 +212,9 @@ SHAPE_TYPES: Mapping[str, ShapeType] = {
     'ellipsoid': ShapeType(
         {'radii': (1.0, 1.0, 1.0)}, 3, _ellipsoid_surface, _ellipsoid, _ellipsoid_solid),
     'plane': ShapeType({'size': (1.0, 1.0)}, 2, _plane_surface),
-    'sphere': ShapeType({'radius': (1.0,)}, 1, _sphere_surface, _sphere, _sphere_solid),
+    'sphere': ShapeType(
+        {'radius': (1.0,)}, 1, _of_sphere(_ellipsoid_surface), _of_sphere(_ellipsoid),
+        _of_sphere(_ellipsoid_solid)),
     'mesh': ShapeType(),
     'heightmap': ShapeType(),
     'image': ShapeType(),

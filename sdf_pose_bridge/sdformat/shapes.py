@@ -23,6 +23,7 @@ from sdf_pose_bridge.sdformat.values import (
     number_of_child,
     numbers_from_text,
     numbers_of_child,
+    value_at,
 )
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
@@ -133,27 +134,22 @@ def shape_of(xml: XmlElement) -> Shape | None:
     tag = str(shape.tag)
     sizes_m = (
         numbers_of_child(shape, name, size) for name, size in SHAPE_TYPES[tag].sizes_m.items())
-    submesh = first_child(shape, 'submesh')
     transparency = number_of_child(xml, 'transparency', 0.0)
     return Shape(
         type=tag,
         sizes_m=tuple(size_m for each in sizes_m for size_m in each),
         normal=numbers_of_child(shape, 'normal', _UP) if tag == 'plane' else _UP,
         mesh_uri=child_value(shape, 'uri') if tag == 'mesh' else '',
-        submesh='' if submesh is None else child_value(submesh, 'name'),
+        submesh=value_at(shape, 'submesh/name'),
         mesh_scale=numbers_of_child(shape, 'scale', (1.0, 1.0, 1.0)),
         rgba=_color(xml),
         opacity=1.0 - transparency if 0.0 < transparency <= 1.0 else 1.0,
-        is_centered=submesh is not None and bool(
-            boolean_from_text(child_value(submesh, 'center'))))
+        is_centered=bool(boolean_from_text(value_at(shape, 'submesh/center'))))
 
 
 def _color(xml: XmlElement) -> tuple[float, float, float, float] | None:
-    material = first_child(xml, 'material')
-    if material is None:
-        return None
     for tag in ('diffuse', 'ambient'):
-        numbers = numbers_from_text(child_value(material, tag), ValueType.COLOR)
+        numbers = numbers_from_text(value_at(xml, f'material/{tag}'), ValueType.COLOR)
         if len(numbers) >= 3 and all(map(math.isfinite, numbers)):
             red, green, blue, alpha = (*numbers, 1.0)[:4]
             return red, green, blue, alpha

@@ -9,7 +9,7 @@ World and Link in libsdformat.
 
 from __future__ import annotations
 
-from itertools import chain, count
+from itertools import count
 
 from sdf_pose_bridge.errors import (
     AttributeInvalidError,
@@ -37,8 +37,8 @@ class SiblingNames:
         self._builder = builder
         self._sources = sources
         self._used: dict[tuple[int, Kind | None, str], tuple[Kind, int, bool]] = {}
-        """Kind, index, and whether the name is a new one, by parent, kind and name."""
-        self._renamed: set[tuple[int, Kind, str]] = set()
+        """Kind, index, and whether the name is a new one, by parent, kind and name. The kind in
+        a key is None in the shared name space, except for a name that is replaced by a new one."""
 
     def add(self, kind: Kind, xml: XmlElement, parent: int, parent_path: str) -> str | None:
         """
@@ -51,19 +51,26 @@ class SiblingNames:
         """
         name = attribute_of(xml, 'name')
         if not name:
-            self._report_no_name(kind, xml)
+            if xml.get('name') is None:
+                msg = f'the {kind.label} has no name'
+                self._sources.error_in_name(AttributeMissingError, xml, msg)
+            else:
+                msg = f'the name of the {kind.label} is empty'
+                self._sources.error_in_name(AttributeInvalidError, xml, msg)
             return None
         if is_reserved(name) and kind is not Kind.ACTOR:
-            self._report_reserved_name(xml, name)
+            rule = ('it means the frame of the world' if name == WORLD_FRAME else
+                    'so are all that begin and end with two underscores')
+            msg = f'the name "{name}" is reserved; {rule}'
+            self._sources.error_in_name(ReservedNameError, xml, msg)
         key = (parent, None if kind.is_frame else kind, name)
         if key not in self._used:
             self._used[key] = (kind, len(self._builder.names), False)
             return name
         other, index, is_new = self._used[key]
-        has_duplicate = (other is kind and not is_new) or (
-            (parent, kind, name) in self._renamed)
-        if not has_duplicate and self._is_renamed(kind, parent, parent_path):
-            self._renamed.add((parent, kind, name))
+        if (other is not kind or is_new) and (parent, kind, name) not in self._used and (
+                self._is_renamed(kind, parent, parent_path)):
+            self._used[parent, kind, name] = (kind, len(self._builder.names), False)
             return self._new_name(kind, xml, parent, name)
         path = self._sources.paths[self._builder.file_indices[index]]
         article = 'an' if other is Kind.ACTOR else 'a'
@@ -72,20 +79,6 @@ class SiblingNames:
         self._sources.error_in_name(DuplicateNameError, xml, msg)
         return None
 
-    def _report_no_name(self, kind: Kind, xml: XmlElement) -> None:
-        if xml.get('name') is None:
-            msg = f'the {kind.label} has no name'
-            self._sources.error_in_name(AttributeMissingError, xml, msg)
-        else:
-            msg = f'the name of the {kind.label} is empty'
-            self._sources.error_in_name(AttributeInvalidError, xml, msg)
-
-    def _report_reserved_name(self, xml: XmlElement, name: str) -> None:
-        rule = ('it means the frame of the world' if name == WORLD_FRAME else
-                'so are all that begin and end with two underscores')
-        msg = f'the name "{name}" is reserved; {rule}'
-        self._sources.error_in_name(ReservedNameError, xml, msg)
-
     def _is_renamed(self, kind: Kind, parent: int, parent_path: str) -> bool:
         if parent < 0 or not kind.is_frame or kind is Kind.MODEL:
             return False
@@ -93,10 +86,9 @@ class SiblingNames:
             self._builder.kinds[parent] == Kind.MODEL or kind is Kind.FRAME)
 
     def _new_name(self, kind: Kind, xml: XmlElement, parent: int, name: str) -> str:
-        candidates = chain(
-            [f'{name}_{kind.label}'], (f'{name}_{kind.label}{number}' for number in count()))
-        new_name = next(
-            each for each in candidates if (parent, None, each) not in self._used)
+        new_name, numbers = f'{name}_{kind.label}', count()
+        while (parent, None, new_name) in self._used:
+            new_name = f'{name}_{kind.label}{next(numbers)}'
         self._used[parent, None, new_name] = (kind, len(self._builder.names), True)
         msg = (f'the name "{name}" is that of another kind of element in this scope; this '
                f'{kind.label} is called "{new_name}" instead, and references to "{name}" mean the '

@@ -37,18 +37,6 @@ class DofType(NamedTuple):
     """Appended to the name of the joint for its name in ``joint_states``."""
 
 
-class JointType(NamedTuple):
-    """A type of joints in SDFormat."""
-
-    dofs: tuple[DofType, ...]
-    """Its degrees of freedom, from its parent to its child."""
-
-    @property
-    def has_thread(self) -> bool:
-        """Whether it has the pitch of a thread."""
-        return any(dof.motion is Motion.SCREW for dof in self.dofs)
-
-
 class UrdfJointType(NamedTuple):
     """A type of joints in URDF."""
 
@@ -59,24 +47,24 @@ class UrdfJointType(NamedTuple):
     """Whether it requires a ``<limit>`` of its position."""
 
 
-_ONE_TURN = JointType((DofType(Motion.TURN),))
-_TWO_TURNS = JointType((DofType(Motion.TURN), DofType(Motion.TURN, 1, '_axis2')))
+_ONE_TURN = (DofType(Motion.TURN),)
+_TWO_TURNS = (DofType(Motion.TURN), DofType(Motion.TURN, 1, '_axis2'))
 
-JOINT_TYPES: Mapping[str, JointType] = {
-    'ball': JointType((
+JOINT_TYPES: Mapping[str, tuple[DofType, ...]] = {
+    'ball': (
         DofType(Motion.TURN, (0.0, 0.0, 1.0), '_yaw'),
         DofType(Motion.TURN, (0.0, 1.0, 0.0), '_pitch'),
-        DofType(Motion.TURN, (1.0, 0.0, 0.0), '_roll'))),
+        DofType(Motion.TURN, (1.0, 0.0, 0.0), '_roll')),
     'continuous': _ONE_TURN,
-    'fixed': JointType(()),
+    'fixed': (),
     'gearbox': _ONE_TURN,
-    'prismatic': JointType((DofType(Motion.SLIDE),)),
+    'prismatic': (DofType(Motion.SLIDE),),
     'revolute': _ONE_TURN,
     'revolute2': _TWO_TURNS,
-    'screw': JointType((DofType(Motion.SCREW),)),
+    'screw': (DofType(Motion.SCREW),),
     'universal': _TWO_TURNS,
 }
-"""The types of joints by their names in SDFormat."""
+"""The types of joints by their names in SDFormat: degrees of freedom from parent to child."""
 
 URDF_JOINT_TYPES: Mapping[str, UrdfJointType] = {
     'continuous': UrdfJointType('revolute', has_axis=True, has_limit=False),
@@ -122,37 +110,31 @@ CHOICES: Mapping[str, Choice] = {
 }
 """The types of values that are one of a few texts."""
 
-ELEMENTS = {
+_CONTENTS = {
     'sdf': '@version! include',
     'actor/animation': '@name! filename! scale:double interpolate_x:bool',
     'actor/script': 'loop:bool delay_start:double auto_start:bool trajectory',
     'air_pressure': '/ reference_altitude:double pressure',
     'air_speed': '/ pressure',
     'altimeter': '/ vertical_position vertical_velocity',
-    'angular_velocity': 'x y z',
-    'atmosphere': (
-        '/ @type!:atmosphere_type temperature:double pressure:double temperature_gradient:double'),
-    'attenuation': 'range!:double linear:double constant:double quadratic:double',
+    'angular_velocity,force,linear_acceleration,torque': 'x y z',
+    'atmosphere': '/ @type!:atmosphere_type temperature,pressure,temperature_gradient:double',
+    'attenuation': 'range!,linear,constant,quadratic:double',
     'audio': 'device!',
-    'audio_sink': '/',
-    'audio_source': '/ uri! pitch:double gain:double contact loop:bool pose',
+    'audio_sink,rfid,rfidtag': '/',
+    'audio_source': '/ uri! pitch,gain:double contact loop:bool pose',
     'audio_source/contact': 'collision+:string',
     'auto_inertia_params': '*',
-    'axis': 'xyz! dynamics limit! mimic',
-    'axis/limit': (
-        'lower!:double upper!:double effort:double velocity:double stiffness:double '
-        'dissipation:double'),
-    'axis2': 'xyz! dynamics limit! mimic',
-    'axis2/limit': (
-        'lower:double upper:double effort:double velocity:double stiffness:double '
-        'dissipation:double'),
+    'axis,axis2': 'xyz! dynamics limit! mimic',
+    'axis/limit': 'lower!,upper!,effort,velocity,stiffness,dissipation:double',
+    'axis2/limit': 'lower,upper,effort,velocity,stiffness,dissipation:double',
     'battery': '/ @name! voltage!:double',
-    'blend': 'min_height!:double fade_dist!:double',
+    'blend': 'min_height!,fade_dist!:double',
     'bounce': 'restitution_coefficient:double[0,1] threshold:double',
     'box': '/box_shape size!:vector3',
-    'bullet': 'solver! constraints!',
+    'bullet,ode': 'solver! constraints!',
     'bullet/constraints': (
-        'cfm!:double erp!:double contact_surface_layer!:double split_impulse!:bool '
+        'cfm!,erp!,contact_surface_layer!:double split_impulse!:bool '
         'split_impulse_penetration_threshold!:double'),
     'bullet/solver': 'type! min_step_size:double iters!:int sor!:double',
     'camera': (
@@ -160,95 +142,86 @@ ELEMENTS = {
         'horizontal_fov!:double[0.001,6.283186] image! clip! save depth_camera segmentation_type '
         'box_type noise distortion lens visibility_mask:uint optical_frame_id pose'),
     'camera/clip': 'near!:double[0,] far!:double[0.1,]',
-    'camera/image': 'width!:int height!:int format anti_aliasing:int',
-    'camera/noise': 'type! mean:double stddev:double',
-    'capsule': '/capsule_shape radius!:double length!:double',
+    'camera/image': 'width!,height!:int format anti_aliasing:int',
+    'camera/noise': 'type! mean,stddev:double',
+    'capsule': '/capsule_shape radius!,length!:double',
     'clouds': (
-        'speed:double[0,] direction:double[0,3.1456] humidity:double[0,1] '
-        'mean_size:double[0,1] ambient:color'),
-    'cone': '/cone_shape radius!:double length!:double',
+        'speed:double[0,] direction:double[0,3.1456] humidity,mean_size:double[0,1] '
+        'ambient:color'),
+    'cone': '/cone_shape radius!,length!:double',
     'contact': '/ collision!:string topic!',
-    'convex_decomposition': 'max_convex_hulls:uint voxel_resolution:uint',
-    'custom_function': 'c1:double c2:double c3:double f:double fun!',
+    'convex_decomposition': 'max_convex_hulls,voxel_resolution:uint',
+    'custom_function': 'c1,c2,c3,f:double fun!',
     'custom_rpy': ':vector3 @parent_frame:frame',
-    'cylinder': '/cylinder_shape radius!:double length!:double',
+    'cylinder': '/cylinder_shape radius!,length!:double',
     'dart': 'solver! collision_detector',
     'dart/solver': 'solver_type!',
     'deletions': 'name+',
     'depth_camera': 'output! clip',
     'depth_camera/clip': 'near:double[0,] far:double[0.1,]',
-    'distortion': 'k1:double k2:double k3:double p1:double p2:double center:vector2',
-    'dynamics': (
-        'damping:double friction:double spring_reference!:double spring_stiffness!:double'),
+    'distortion': 'k1,k2,k3,p1,p2:double center:vector2',
+    'dynamics': 'damping,friction,spring_reference!,spring_stiffness!:double',
     'ellipsoid': '/ellipsoid_shape radii!:vector3',
     'empty': '',
-    'fluid_added_mass': (
-        'xx:double xy:double xz:double xp:double xq:double xr:double yy:double yz:double '
-        'yp:double yq:double yr:double zz:double zp:double zq:double zr:double pp:double '
-        'pq:double pr:double qq:double qr:double rr:double'),
-    'fog': 'color:color type start:double[0,] end:double[0,] density:double[0,]',
-    'force': 'x y z',
+    'fluid_added_mass': 'xx,xy,xz,xp,xq,xr,yy,yz,yp,yq,yr,zz,zp,zq,zr,pp,pq,pr,qq,qr,rr:double',
+    'fog': 'color:color type start,end,density:double[0,]',
     'force_torque': '/forcetorque frame:string measure_direction force torque',
     'friction': 'torsional ode bullet',
-    'friction/bullet': (
-        'friction:double[0,] friction2:double[0,] fdir1:vector3 rolling_friction:double'),
-    'friction/ode': 'mu:double[0,] mu2:double[0,] fdir1:vector3 slip1:double slip2:double',
+    'friction/bullet': 'friction,friction2:double[0,] fdir1:vector3 rolling_friction:double',
+    'friction/ode': 'mu,mu2:double[0,] fdir1:vector3 slip1,slip2:double',
     'geometry': (
         '/ empty box capsule cone cylinder ellipsoid heightmap image mesh plane polyline sphere'),
-    'gps': '/ position_sensing velocity_sensing',
-    'grasp_check': 'detach_steps:int attach_steps:int min_contact_count:uint',
+    'gps,navsat': '/ position_sensing velocity_sensing',
+    'grasp_check': 'detach_steps,attach_steps:int min_contact_count:uint',
     'grav_dir_x': ':vector3 @parent_frame',
     'gripper': '/ @name! grasp_check gripper_link+ palm_link!',
     'gui': '/ @fullscreen:bool plugin camera=gui_camera',
     'gui_camera': '@name! view_controller projection_type track_visual pose',
     'heightmap': (
-        '/heightmap_shape uri! size:vector3 pos:vector3 texture blend use_terrain_paging:bool '
+        '/heightmap_shape uri! size,pos:vector3 texture blend use_terrain_paging:bool '
         'sampling:uint'),
-    'horizontal': 'samples!:uint resolution!:double min_angle!:double max_angle!:double',
+    'horizontal': 'samples!:uint resolution!,min_angle!,max_angle!:double',
     'image': '/image_shape uri! scale!:double threshold!:int height!:double granularity!:int',
     'imu': (
         '/ orientation_reference_frame angular_velocity linear_acceleration '
         'enable_orientation:bool'),
     'include': '@merge:bool uri! pose plugin name static:bool placement_frame model_state',
-    'inertia': 'ixx!:double ixy!:double ixz!:double iyy!:double iyz!:double izz!:double',
+    'inertia': 'ixx!,ixy!,ixz!,iyy!,iyz!,izz!:double',
     'inertial/pose': ':pose @rotation_format @degrees:bool',
     'insertions': 'model+=model light+=light joint+=joint',
-    'intrinsics': 'fx!:double fy!:double cx!:double cy!:double s!:double',
+    'intrinsics': 'fx!,fy!,cx!,cy!,s!:double',
     'joint/physics': 'simbody=joint_simbody ode=joint_ode provide_feedback:bool',
     'joint_ode': (
-        'cfm_damping:bool implicit_spring_damper:bool fudge_factor:double cfm:double erp:double '
-        'bounce:double max_force:double velocity:double limit suspension'),
+        'cfm_damping,implicit_spring_damper:bool '
+        'fudge_factor,cfm,erp,bounce,max_force,velocity:double limit suspension'),
     'joint_simbody': 'must_be_loop_joint:bool',
     'lens': (
         'type! scale_to_hfov!:bool custom_function cutoff_angle:double[0,3.141592653] '
         'env_texture_size:int[4,2048] intrinsics projection'),
-    'lidar': '/ scan! range! noise=camera/noise visibility_mask:uint',
+    'lidar,ray': '/ scan! range! noise=camera/noise visibility_mask:uint',
     'light_map': ':string @uv_set:uint',
     'light_state': '/ @name! pose',
-    'limit': 'cfm!:double erp!:double',
-    'linear_acceleration': 'x y z',
+    'limit,suspension': 'cfm!,erp!:double',
     'link_state': (
         '/ @name! angular_velocity linear_velocity:vector3 velocity:pose angular_acceleration '
-        'linear_acceleration:vector3 acceleration:pose torque:vector3 force:vector3 wrench:pose '
+        'linear_acceleration:vector3 acceleration:pose torque,force:vector3 wrench:pose '
         'collision_state pose'),
-    'link_state/angular_acceleration': ':vector3 @degrees:bool',
-    'link_state/angular_velocity': ':vector3 @degrees:bool',
+    'link_state/angular_acceleration,link_state/angular_velocity': ':vector3 @degrees:bool',
     'link_state/collision_state': '@name!',
     'old_link_state': (
-        '@name! velocity:pose acceleration:pose wrench:pose collision=link_state/collision_state '
-        'pose'),
-    'logical_camera': '/ near!:double far!:double aspect_ratio!:double horizontal_fov!:double',
+        '@name! velocity,acceleration,wrench:pose collision=link_state/collision_state pose'),
+    'logical_camera': '/ near!,far!,aspect_ratio!,horizontal_fov!:double',
     'magnetometer': '/ x y z',
     'material': (
-        '/ script shader render_order:double lighting:bool ambient:color diffuse:color '
-        'specular:color shininess:double emissive:color double_sided:bool pbr'),
+        '/ script shader render_order:double lighting:bool ambient,diffuse,specular:color '
+        'shininess:double emissive:color double_sided:bool pbr'),
     'material/script': 'uri+ name!',
     'mesh': '/mesh_shape @optimization convex_decomposition uri! submesh scale:vector3',
     'meta': 'layer:int',
     'metal': (
         'albedo_map roughness_map roughness metalness_map metalness environment_map '
         'ambient_occlusion_map normal_map emissive_map light_map'),
-    'mimic': '/ @joint! @axis multiplier!:double offset!:double reference!:double',
+    'mimic': '/ @joint! @axis multiplier!,offset!,reference!:double',
     'model_state': '/ @name! joint_state model_state frame=frame pose scale:vector3 link_state',
     'old_model_state': (
         '@name! joint=old_joint_state model=old_model_state frame=frame pose scale:vector3 '
@@ -256,111 +229,89 @@ ELEMENTS = {
     'joint_state': '@name! angle axis_state axis2_state=axis_state',
     'old_joint_state': '@name! angle+',
     'angle': ':double @axis!:uint',
-    'axis_state': (
-        'position=quantity velocity=quantity acceleration=quantity effort:double'),
+    'axis_state': 'position=quantity velocity=quantity acceleration=quantity effort:double',
     'quantity': ':double @degrees:bool',
-    'navsat': '/ position_sensing velocity_sensing',
     'noise': (
-        '/ @type! mean:double stddev:double[0,] bias_mean:double bias_stddev:double[0,] '
-        'dynamic_bias_stddev:double[0,] dynamic_bias_correlation_time:double precision:double'),
+        '/ @type! mean:double stddev:double[0,] bias_mean:double '
+        'bias_stddev,dynamic_bias_stddev:double[0,] '
+        'dynamic_bias_correlation_time,precision:double'),
     'normal_map': ':string @type',
-    'ode': 'solver! constraints!',
-    'ode/constraints': (
-        'cfm!:double erp!:double contact_max_correcting_vel!:double '
-        'contact_surface_layer!:double'),
+    'ode/constraints': 'cfm!,erp!,contact_max_correcting_vel!,contact_surface_layer!:double',
     'ode/solver': (
-        'type! min_step_size:double island_threads:int iters!:int precon_iters:int sor!:double '
-        'thread_position_correction:bool use_dynamic_moi_rescaling!:bool friction_model'),
+        'type! min_step_size:double island_threads,iters!,precon_iters:int sor!:double '
+        'thread_position_correction,use_dynamic_moi_rescaling!:bool friction_model'),
     'orientation_reference_frame': 'localization! custom_rpy grav_dir_x',
     'pbr': 'metal specular',
     'physics': (
-        '/ @name @default:bool @type! max_step_size!:double real_time_factor!:double '
+        '/ @name @default:bool @type! max_step_size!,real_time_factor!,'
         'real_time_update_rate!:double max_contacts:int dart simbody bullet ode'),
     'plane': '/plane_shape normal!:vector3 size!:vector2',
     'plugin': '/ @name @filename! *',
     'polyline': '/polyline_shape point+:vector2 height!:double',
     'population': '/ @name! box cylinder model_count!:int distribution! pose model!=model',
-    'distribution': 'type! rows:int cols:int step:vector3',
+    'distribution': 'type! rows,cols:int step:vector3',
     'pose': '/ :pose @relative_to:frame @rotation_format @degrees:bool',
-    'position_sensing': 'horizontal vertical',
-    'position_sensing/horizontal': 'noise',
-    'position_sensing/vertical': 'noise',
-    'pressure': 'noise',
-    'projection': (
-        'p_fx:double p_fy:double p_cx:double p_cy:double tx:double ty:double'),
-    'range': 'min!:double max!:double resolution:double',
-    'ray': '/ scan! range! noise=camera/noise visibility_mask:uint',
-    'rfid': '/',
-    'rfidtag': '/',
+    'position_sensing,velocity_sensing': 'horizontal vertical',
+    'position_sensing/horizontal,position_sensing/vertical': 'noise',
+    'pressure,vertical_position,vertical_velocity,x,y,z': 'noise',
+    'projection': 'p_fx,p_fy,p_cx,p_cy,tx,ty:double',
+    'range': 'min!,max!,resolution:double',
     'road': '/ @name! width!:double point+:vector3 material',
     'save': '@enabled!:bool path!',
     'scan': 'horizontal! vertical',
-    'scene': (
-        '/ ambient!:color background!:color sky shadows!:bool fog grid:bool origin_visual:bool'),
+    'scene': '/ ambient!,background!:color sky shadows!:bool fog grid,origin_visual:bool',
     'shader': '@type!:shader_type normal_map:string',
-    'simbody': (
-        'min_step_size:double accuracy:double max_transient_velocity:double contact'),
+    'simbody': 'min_step_size,accuracy,max_transient_velocity:double contact',
     'simbody/contact': (
-        'stiffness:double dissipation:double plastic_coef_restitution:double '
-        'plastic_impact_velocity:double static_friction:double dynamic_friction:double '
-        'viscous_friction:double override_impact_capture_velocity:double '
+        'stiffness,dissipation,plastic_coef_restitution,plastic_impact_velocity,static_friction,'
+        'dynamic_friction,viscous_friction,override_impact_capture_velocity,'
         'override_stiction_transition_velocity:double'),
     'skin': 'filename! scale:double',
-    'sky': 'time:double sunrise:double sunset:double clouds cubemap_uri',
+    'sky': 'time,sunrise,sunset:double clouds cubemap_uri',
     'soft_contact': 'dart',
-    'soft_contact/dart': (
-        'bone_attachment!:double stiffness!:double damping!:double flesh_mass_fraction!:double'),
-    'sonar': '/ geometry:string min!:double max!:double radius:double',
+    'soft_contact/dart': 'bone_attachment!,stiffness!,damping!,flesh_mass_fraction!:double',
+    'sonar': '/ geometry:string min!,max!,radius:double',
     'specular': (
-        'albedo_map specular_map glossiness_map glossiness environment_map '
-        'ambient_occlusion_map normal_map emissive_map light_map'),
+        'albedo_map specular_map glossiness_map glossiness environment_map ambient_occlusion_map '
+        'normal_map emissive_map light_map'),
     'sphere': '/sphere_shape radius!:double',
     'spherical_coordinates': (
         '/ surface_model!:surface_model world_frame_orientation:world_frame_orientation '
-        'latitude_deg!:double longitude_deg!:double elevation!:double '
-        'surface_axis_equatorial:double surface_axis_polar:double heading_deg!:double'),
-    'spot': 'inner_angle!:double outer_angle!:double falloff!:double',
+        'latitude_deg!,longitude_deg!,elevation!,surface_axis_equatorial,surface_axis_polar,'
+        'heading_deg!:double'),
+    'spot': 'inner_angle!,outer_angle!,falloff!:double',
     'state': (
-        '/ @world_name! sim_time:time wall_time:time real_time:time iterations!:uint '
-        'insertions deletions model=old_model_state model_state light=light_state light_state '
-        'joint_state'),
+        '/ @world_name! sim_time,wall_time,real_time:time iterations!:uint insertions deletions '
+        'model=old_model_state model_state light=light_state light_state joint_state'),
     'submesh': 'name! center:bool',
     'surface': '/ bounce friction contact soft_contact',
     'surface/contact': (
-        'collide_without_contact:bool collide_without_contact_bitmask:uint collide_bitmask:uint '
-        'category_bitmask:uint poissons_ratio:double elastic_modulus:double ode=contact_ode '
+        'collide_without_contact:bool collide_without_contact_bitmask,collide_bitmask,'
+        'category_bitmask:uint poissons_ratio,elastic_modulus:double ode=contact_ode '
         'bullet=contact_bullet'),
     'contact_bullet': (
-        'soft_cfm:double soft_erp:double kp:double kd:double split_impulse!:bool '
+        'soft_cfm,soft_erp,kp,kd:double split_impulse!:bool '
         'split_impulse_penetration_threshold!:double'),
-    'contact_ode': (
-        'soft_cfm:double soft_erp:double kp:double kd:double max_vel:double min_depth:double'),
-    'suspension': 'cfm!:double erp!:double',
+    'contact_ode': 'soft_cfm,soft_erp,kp,kd,max_vel,min_depth:double',
     'texture': 'size!:double diffuse! normal!',
-    'torque': 'x y z',
     'torsional': (
-        'coefficient:double[0,] use_patch_radius:bool patch_radius:double[0,] '
-        'surface_radius:double[0,] ode'),
+        'coefficient:double[0,] use_patch_radius:bool patch_radius,surface_radius:double[0,] ode'),
     'torsional/ode': 'slip:double',
     'track_visual': (
-        'name min_dist:double max_dist:double static:bool use_model_frame:bool xyz:vector3 '
-        'inherit_yaw:bool'),
+        'name min_dist,max_dist:double static,use_model_frame:bool xyz:vector3 inherit_yaw:bool'),
     'trajectory': '@id!:int @type! @tension:double waypoint',
-    'transceiver': (
-        '/ essid frequency:double min_frequency:double max_frequency:double gain!:double '
-        'power!:double sensitivity:double'),
-    'velocity_decay': 'linear:double angular:double',
-    'velocity_sensing': 'horizontal vertical',
-    'velocity_sensing/horizontal': 'noise',
-    'velocity_sensing/vertical': 'noise',
-    'vertical': 'samples!:uint resolution:double min_angle!:double max_angle!:double',
-    'vertical_position': 'noise',
-    'vertical_velocity': 'noise',
+    'transceiver': '/ essid frequency,min_frequency,max_frequency,gain!,power!,sensitivity:double',
+    'velocity_decay': 'linear,angular:double',
+    'velocity_sensing/horizontal,velocity_sensing/vertical': 'noise',
+    'vertical': 'samples!:uint resolution,min_angle!,max_angle!:double',
     'waypoint': 'time!:double pose!:pose',
     'wind': 'linear_velocity:vector3',
-    'x': 'noise',
-    'xyz': ':axis @expressed_in',
-    'y': 'noise',
-    'z': 'noise',
+    'xyz': '!:axis @expressed_in',
 }
-"""The content of each element, by its tag, ``parent/tag`` or a name that ``tag=name`` uses."""
+"""The content of each element, by its tag, ``parent/tag`` or a name that ``tag=name`` uses. A key
+with commas is for several elements."""
+
+ELEMENTS = {
+    identifier: content
+    for identifiers, content in _CONTENTS.items() for identifier in identifiers.split(',')}
+"""The same for each element by itself."""

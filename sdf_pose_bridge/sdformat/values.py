@@ -15,9 +15,15 @@ import re
 import sys
 
 from sdf_pose_bridge.names import ROOT_FRAME
-from sdf_pose_bridge.sdformat.grammar import Definition, ValueType
+from sdf_pose_bridge.sdformat.grammar import Item, ValueType
 from sdf_pose_bridge.sdformat.specification import Choice
-from sdf_pose_bridge.sdformat.xml_tree import attribute_of, child_value, WHITE_SPACE, XmlElement
+from sdf_pose_bridge.sdformat.xml_tree import (
+    attribute_of,
+    first_child,
+    value_of,
+    WHITE_SPACE,
+    XmlElement,
+)
 
 DECIMAL = r'(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?'
 """A decimal number without its sign."""
@@ -30,26 +36,31 @@ _STREAM_NUMBER = re.compile(rf'[{WHITE_SPACE}]*([+-]?{DECIMAL})')
 """The part that a C++ stream reads; it leaves the rest for the next number."""
 _STREAM_INTEGERS = re.compile(r'([+-]?[0-9]+)(\s+[+-]?[0-9]+|[+-][0-9]+)', re.ASCII)
 """Two integers, as a C++ stream reads them."""
-_PLAIN_NUMBER = re.compile(r'[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,2})?')
+_PLAIN_NUMBER = r'[+-]?[0-9]{1,50}(?:\.[0-9]{0,50})?(?:[eE][+-]?[0-9]{1,2})?'
 """A number that all of these read alike."""
-_NOT_IN_DECIMALS = re.compile(rf'[^-+.0-9{WHITE_SPACE}]')
-_SHORTEST_AXIS = 9.999999974752427e-07
-"""The float that is nearest to 1e-6, as libsdformat compares with it."""
-LONGEST_PLAIN = 200
+_PLAIN_PART = r'(?:0(?:\.[0-9]{0,50})?|1)'
+"""Such a number from 0 to 1."""
+_PLAIN_VALUES = {
+    ':double': re.compile(_PLAIN_NUMBER),
+    ':vector3': re.compile(rf'{_PLAIN_NUMBER}(?:[{WHITE_SPACE}]+{_PLAIN_NUMBER}){{2}}'),
+    ':color': re.compile(rf'{_PLAIN_PART}(?:[{WHITE_SPACE}]+{_PLAIN_PART}){{2,3}}'),
+}
+"""The usual values of the most frequent types; that they are valid is seen fastest so."""
+_DECIMAL_CHARACTERS = f'0123456789+-.{WHITE_SPACE}'
+_LONG_EXPONENT = re.compile(r'[eE][+-]?[0-9]{3}')
+_LONGEST_PLAIN = 200
 """
 A number with fewer characters, and an exponent of two digits at most, is in the range of a double.
 """
+_SHORTEST_AXIS = 9.999999974752427e-07
+"""The float that is nearest to 1e-6, as libsdformat compares with it."""
 _NOT_ZERO = re.compile(r'[^eE]*[1-9]')
-_FEWEST_COLOR_NUMBERS = 3
 _BOOLEANS = {'true': True, '1': True, 'false': False, '0': False}
 _INTEGER_RANGES = {
     ValueType.INTEGER: (-2 ** 31, 2 ** 31 - 1),
     # A negative number counts modulo 2 ** 64.
     ValueType.UNSIGNED: (-2 ** 64 + 1, 2 ** 64 - 1),
 }
-_FLOATING_TYPES = (
-    ValueType.NUMBER, ValueType.THREE_NUMBERS, ValueType.COLOR, ValueType.AXIS,
-    ValueType.TWO_NUMBERS)
 _TYPES_BY_COUNT = {
     1: ValueType.NUMBER, 2: ValueType.TWO_NUMBERS, 3: ValueType.THREE_NUMBERS}
 
@@ -81,56 +92,47 @@ def choice_fault(text: str, choice: Choice) -> str:
     return '' if value in choice.texts else f'must be one of {", ".join(choice.texts)}'
 
 
-def judged_value(text: str, definition: Definition) -> tuple[str, str]:
+def judged_value(text: str, rule: Item) -> tuple[str, str]:
     """
-    Judge the value of an element as libsdformat does.
+    Judge the value of an element or an attribute as libsdformat does.
 
-    :param text: the value. If the element is not required, the default replaces a blank one.
-    :param definition: the definition of the element, which is not a pose.
+    :param text: the value. If it is not required, the default replaces a blank one.
+    :param rule: the rule of the grammar for it, which is not a pose.
     :return: the rule that it breaks, empty if it is valid; and the numbers that were read, empty
         if they agree with the text. Each is a part of a sentence behind the value.
     """
-    value_type = definition.value_type
-    if value_type is None or (
-            definition.takes_any_number and len(text) < LONGEST_PLAIN
-            and _PLAIN_NUMBER.fullmatch(text)):
+    plain = _PLAIN_VALUES.get(rule.value)
+    if plain is not None and plain.fullmatch(text):
         return '', ''
-    stripped = text.strip(WHITE_SPACE)
-    if not stripped and definition.is_required:
-        return 'is empty; it must have a value', ''
-    if not stripped or value_type is ValueType.STRING:
+    stripped, value_type = text.strip(WHITE_SPACE), rule.value_type
+    if not stripped:
+        return 'is empty; it must have a value' if rule.required == '!' else '', ''
+    if value_type is ValueType.STRING:
         return '', ''
-    if definition.choice is not None:
-        return choice_fault(stripped, definition.choice), ''
-    plain_numbers = _plain_numbers(stripped, value_type)
-    numbers = plain_numbers or numbers_from_text(stripped, value_type)
-    if not plain_numbers and not _is_of_type(stripped, numbers, value_type):
+    if rule.choice is not None:
+        return choice_fault(stripped, rule.choice), ''
+    numbers = numbers_from_text(stripped, value_type)
+    if not _is_of_type(stripped, numbers, value_type):
         return f'is not {value_type.description}', ''
     if value_type is ValueType.AXIS and math.hypot(*numbers) <= _SHORTEST_AXIS:
         return 'is not a valid axis: its length is zero', ''
-    minimum, maximum = definition.minimum, definition.maximum
     # Like libsdformat, this accepts NaN.
-    if numbers and (numbers[0] < minimum or numbers[0] > maximum):
-        rule = (f'at least {minimum:g}' if maximum == math.inf
-                else f'from {minimum:g} to {maximum:g}')
-        return f'must be {rule}', ''
-    is_integer = value_type in _INTEGER_RANGES and _C_INTEGER.fullmatch(stripped)
-    return '', '' if plain_numbers or is_integer else _doubt(stripped, numbers)
+    if numbers and (numbers[0] < rule.minimum or numbers[0] > rule.maximum):
+        limits = (f'at least {rule.minimum:g}' if rule.maximum == math.inf
+                  else f'from {rule.minimum:g} to {rule.maximum:g}')
+        return f'must be {limits}', ''
+    is_integer = value_type.is_integer and _C_INTEGER.fullmatch(stripped)
+    return '', '' if is_integer or _are_numbers_as_written(stripped, numbers) else (
+        f'is read as {" ".join(map(repr, numbers))}')
 
 
-def _doubt(text: str, numbers: Sequence[float]) -> str:
-    """Return the numbers that were read, if they differ from the words of the text."""
-    if not numbers:
-        return ''
+def _are_numbers_as_written(text: str, numbers: Sequence[float]) -> bool:
     try:
-        words = [float(word) for word in text.split()]
+        words = [*map(float, text.split())] if numbers else []
     except ValueError:
-        words = []
-    if len(words) == len(numbers) and all(
-            word == number or math.isnan(word)
-            for word, number in zip(words, numbers, strict=True)):
-        return ''
-    return f'is read as {" ".join(map(repr, numbers))}'
+        return False
+    return len(words) == len(numbers) and all(
+        word == number or math.isnan(word) for word, number in zip(words, numbers, strict=True))
 
 
 def is_representable(text: str, number: float) -> bool:
@@ -148,22 +150,13 @@ def is_representable(text: str, number: float) -> bool:
     return math.isnan(number) or abs(number) >= sys.float_info.min
 
 
-def is_of_type(text: str, value_type: ValueType) -> bool:
-    """
-    Return whether libsdformat accepts a text as a value of a type.
-
-    :param text: the value, stripped and not empty.
-    :param value_type: any type but ``POSE``; any text is accepted for a choice.
-    """
-    return _is_of_type(text, numbers_from_text(text, value_type), value_type)
-
-
 def _is_of_type(text: str, numbers: Sequence[float], value_type: ValueType) -> bool:
-    if value_type is ValueType.COLOR:
-        return _FEWEST_COLOR_NUMBERS <= len(numbers) <= value_type.count and not [
-            number for number in numbers if number < 0.0 or number > 1.0]
-    if value_type.count > 0:
-        return len(numbers) == value_type.count
+    count = value_type.count
+    if count:
+        # A color may be without its last number.
+        return min(count, 3) <= len(numbers) <= count and (
+            value_type is not ValueType.COLOR
+            or not [number for number in numbers if number < 0.0 or number > 1.0])
     if value_type is ValueType.BOOLEAN:
         return boolean_from_text(text) is not None
     return value_type is not ValueType.FRAME or text != ROOT_FRAME
@@ -176,41 +169,35 @@ def numbers_from_text(text: str, value_type: ValueType) -> Sequence[float]:
     :return: as many numbers as the type has, or three of a color; fewer if the text is not of the
         type.
     """
-    if value_type.count == 0:
+    stripped, count = text.strip(WHITE_SPACE), value_type.count
+    if count == 0:
         return ()
-    stripped = text.strip(WHITE_SPACE)
-    plain_numbers = _plain_numbers(stripped, value_type)
-    if plain_numbers:
-        return plain_numbers
-    if value_type is ValueType.COLOR:
-        words = text.split()
-        numbers = [number for word in words for number in number_from_word(word)]
-        return numbers if len(numbers) == len(words) else ()
-    boolean = None if value_type.count > 1 else boolean_from_text(stripped)
+    if not value_type.is_integer:
+        numbers = plain_numbers_from_text(stripped)
+        if len(numbers) == count:
+            return numbers
+    boolean = boolean_from_text(stripped) if count == 1 else None
     if boolean is not None:
         return (float(boolean),)
-    if value_type is ValueType.NUMBER:
-        return number_from_word(stripped)
-    if value_type in _INTEGER_RANGES:
-        return _integer(stripped, *_INTEGER_RANGES[value_type])
     if value_type is ValueType.TIME:
         match = _STREAM_INTEGERS.match(stripped)
-        integers = match.groups() if match else ()
         return [
-            number for text in integers
-            for number in _integer(text.strip(), *_INTEGER_RANGES[ValueType.INTEGER])]
-    return _streamed_numbers(stripped, value_type.count)
-
-
-def _plain_numbers(text: str, value_type: ValueType) -> Sequence[float]:
-    """Return the numbers of a value that is plain numbers; none for any other text."""
-    numbers = plain_numbers_from_text(text) if value_type in _FLOATING_TYPES else ()
-    return numbers if numbers and _is_of_type(text, numbers, value_type) else ()
+            number for word in (match.groups() if match else ())
+            for number in _integer(word.strip(), ValueType.INTEGER)]
+    if value_type in _INTEGER_RANGES:
+        return _integer(stripped, value_type)
+    if value_type in (ValueType.NUMBER, ValueType.COLOR):
+        words = [stripped] if count == 1 else stripped.split()
+        numbers = [number for word in words for number in number_from_word(word)]
+        return numbers if len(numbers) == len(words) else ()
+    return _streamed_numbers(stripped, count)
 
 
 def plain_numbers_from_text(text: str) -> Sequence[float]:
-    """Return the numbers of a text of short decimals without exponents; none for other texts."""
-    if len(text) >= LONGEST_PLAIN or _NOT_IN_DECIMALS.search(text):
+    """Return the numbers of a text that all readers read alike; none for other texts."""
+    others = text.strip(_DECIMAL_CHARACTERS)
+    if len(text) >= _LONGEST_PLAIN or others.strip(_DECIMAL_CHARACTERS + 'eE') or (
+            others and _LONG_EXPONENT.search(text)):
         return ()
     try:
         return [float(word) for word in text.split()]
@@ -232,12 +219,13 @@ def number_from_word(word: str) -> Sequence[float]:
     return (number,) if is_representable(match[0], number) else ()
 
 
-def _integer(text: str, minimum: int, maximum: int) -> Sequence[float]:
+def _integer(text: str, value_type: ValueType) -> Sequence[float]:
     """Read an integer as ``std::stoi`` and ``std::stoul`` do."""
     match = _C_INTEGER.match(text)
-    if match is None or len(match[0]) > LONGEST_PLAIN:
+    if match is None or len(match[0]) > _LONGEST_PLAIN:
         return ()
     number = int(match[0], 16 if 'x' in match[0] or 'X' in match[0] else 10)
+    minimum, maximum = _INTEGER_RANGES[value_type]
     return (number,) if minimum <= number <= maximum else ()
 
 
@@ -255,20 +243,35 @@ def _streamed_numbers(text: str, count: int) -> Sequence[float]:
     return numbers
 
 
+def value_at(parent: XmlElement, path: str) -> str:
+    """
+    Return the value of a child element, or of a child of a child.
+
+    :param path: its tags, such as ``mass`` or ``limit/lower``; of each, the first child counts.
+    :return: the value; empty if there is no such element.
+    """
+    xml: XmlElement | None = parent
+    for tag in path.split('/'):
+        xml = None if xml is None else first_child(xml, tag)
+    return '' if xml is None else value_of(xml)
+
+
 def numbers_of_child(
-    parent: XmlElement, tag: str, default: tuple[float, ...],
+    parent: XmlElement, path: str, default: tuple[float, ...],
 ) -> tuple[float, ...]:
     """
     Return the numbers in a child element.
 
+    :param path: as for :func:`value_at`.
     :param default: the numbers if there is no child, or if it has fewer numbers than these.
     :return: as many numbers as there are in the default.
     """
-    numbers = tuple(numbers_from_text(child_value(parent, tag), _TYPES_BY_COUNT[len(default)]))
+    text = value_at(parent, path)
+    numbers = tuple(numbers_from_text(text, _TYPES_BY_COUNT[len(default)]))
     return numbers if len(numbers) == len(default) else default
 
 
-def number_of_child(parent: XmlElement, tag: str, default: float) -> float:
+def number_of_child(parent: XmlElement, path: str, default: float) -> float:
     """Return the number in a child element, or the default, as :func:`numbers_of_child`."""
-    (number,) = numbers_of_child(parent, tag, (default,))
+    (number,) = numbers_of_child(parent, path, (default,))
     return number

@@ -47,29 +47,28 @@ NEWEST = Version(1, 12)
 _SUPPORTED = {f'1.{minor}': Version(1, minor) for minor in range(OLDEST.minor, NEWEST.minor + 1)}
 
 _MOVED_ELEMENTS = (
-    (Version(1, 4), 'world/physics', 'update_rate', 'real_time_update_rate'),
-    (Version(1, 4), 'world/physics', 'ode/solver/dt', 'max_step_size'),
-    (Version(1, 4), 'world/physics', 'bullet/dt', 'max_step_size'),
-    (Version(1, 6), 'world', 'physics/gravity', 'gravity'),
-    (Version(1, 6), 'world', 'physics/magnetic_field', 'magnetic_field'),
+    ((1, 4), 'world/physics', 'update_rate', 'real_time_update_rate'),
+    ((1, 4), 'world/physics', 'ode/solver/dt', 'max_step_size'),
+    ((1, 4), 'world/physics', 'bullet/dt', 'max_step_size'),
+    ((1, 6), 'world', 'physics/gravity', 'gravity'),
+    ((1, 6), 'world', 'physics/magnetic_field', 'magnetic_field'),
 )
 """Elements without poses that have moved: first version without them, path of their parent, their
 tag in the parent, and their new tag."""
 
 _DEPRECATED = (
-    (Version(1, 10), 'joint', 'thread_pitch', '<screw_thread_pitch>, in metres per turn'),
-    (Version(1, 12), 'sensor', 'gz_frame_id', '<frame_id>'),
-    (Version(1, 12), 'camera', 'optical_frame_id', '<frame_id> of the sensor'),
-    (Version(1, 12), 'link_state', 'velocity', '<linear_velocity> and <angular_velocity>'),
-    (Version(1, 12), 'link_state', 'acceleration',
-     '<linear_acceleration> and <angular_acceleration>'),
-    (Version(1, 12), 'link_state', 'wrench', '<force> and <torque>'),
-    (Version(1, 12), 'joint_state', 'angle', '<axis_state>'),
+    ((1, 10), 'joint', 'thread_pitch', '<screw_thread_pitch>, in metres per turn'),
+    ((1, 12), 'sensor', 'gz_frame_id', '<frame_id>'),
+    ((1, 12), 'camera', 'optical_frame_id', '<frame_id> of the sensor'),
+    ((1, 12), 'link_state', 'velocity', '<linear_velocity> and <angular_velocity>'),
+    ((1, 12), 'link_state', 'acceleration', '<linear_acceleration> and <angular_acceleration>'),
+    ((1, 12), 'link_state', 'wrench', '<force> and <torque>'),
+    ((1, 12), 'joint_state', 'angle', '<axis_state>'),
 )
 """Elements that are deprecated from a version on: their parent, their tag, and the new element."""
 
-_MODELS = ('model', 'world/model')
-"""Paths of models that are not in another model."""
+_MODELS = '(model | world/model)'
+"""The models that are not in another model."""
 
 _SCOPED_TAGS = frozenset({'link', 'joint', 'frame', 'model', 'gripper'})
 _REFERENCE_ATTRIBUTES = ('relative_to', 'attached_to', 'expressed_in')
@@ -121,12 +120,12 @@ def convert(root: XmlElement, version: Version, sources: Sources) -> None:
     """
     _report_deprecated(root, version, sources)
     _move_elements(root, version)
-    if version < Version(1, 5):
-        _express_axes_in_model(root, sources)
-    if version < Version(1, 7):
-        _rename_frame_attributes(root)
-        _convert_use_parent_model_frame(root, sources)
-    if version < Version(1, 8):
+    if version < (1, 7):
+        _convert_axes(root, version, sources)
+        for pose in root.iter('pose'):
+            if pose.get('frame') is not None and not is_foreign(pose):
+                pose.set('relative_to', pose.attrib.pop('frame'))
+    if version < (1, 8):
         # An <inertial> can only be relative to its link, which an empty attribute meant.
         for pose in root.xpath('.//inertial/pose[@relative_to=""]'):
             del pose.attrib['relative_to']
@@ -157,51 +156,35 @@ def _move_elements(root: XmlElement, version: Version) -> None:
             if element is not None:
                 element.tag = new_tag
                 parent.append(element)
-    if version < Version(1, 6):
+    if version < (1, 6):
         # The noise of each axis gets its values.
-        for path in _MODELS:
-            for noise in root.xpath(f'{path}/link/sensor/imu/noise[1]'):
-                noise.getparent().remove(noise)
+        for noise in root.xpath(f'{_MODELS}/link/sensor/imu/noise[1]'):
+            noise.getparent().remove(noise)
 
 
-def _express_axes_in_model(root: XmlElement, sources: Sources) -> None:
-    """1.4 to 1.5: axes are given in the model frame by default."""
-    axes = '*[self::axis or self::axis2][not(use_parent_model_frame)]'
-    for path in _MODELS:
-        for axis in root.xpath(f'{path}/joint/{axes}'):
-            _express_in_model(axis, sources)
+def _convert_axes(root: XmlElement, version: Version, sources: Sources) -> None:
+    """
+    Write ``xyz/@expressed_in`` for axes in the model frame; without ``<xyz>``, in an empty one.
 
-
-def _rename_frame_attributes(root: XmlElement) -> None:
-    """1.6 to 1.7: ``pose/@frame`` becomes ``relative_to``."""
-    for pose in root.iter('pose'):
-        frame = pose.get('frame')
-        if frame is not None and not is_foreign(pose):
-            del pose.attrib['frame']
-            pose.set('relative_to', frame)
-
-
-def _convert_use_parent_model_frame(root: XmlElement, sources: Sources) -> None:
-    """1.6 to 1.7: ``axis/use_parent_model_frame`` becomes ``axis/xyz/@expressed_in``."""
-    expressed_in_model = {}
+    1.4 to 1.5: they are by default; 1.6 to 1.7: ``use_parent_model_frame`` is the other way to say
+    so.
+    """
+    axes: dict[XmlElement, None] = {}
+    if version < (1, 5):
+        axes = dict.fromkeys(root.xpath(
+            f'{_MODELS}/joint/*[self::axis or self::axis2][not(use_parent_model_frame)]'))
     for flag in list(root.iter('use_parent_model_frame')):
         axis = flag.getparent()
-        if axis is None or is_foreign(flag):
-            continue
-        if boolean_from_text(text_of(flag)):
-            expressed_in_model[axis] = True
-        axis.remove(flag)
-    for axis in expressed_in_model:
-        _express_in_model(axis, sources)
-
-
-def _express_in_model(axis: XmlElement, sources: Sources) -> None:
-    """Express an axis in the model frame; without an ``<xyz>`` that makes an empty one."""
-    xyz = first_child(axis, 'xyz')
-    if xyz is None:
-        xyz = etree.SubElement(axis, 'xyz')
-        sources.set_parsed_line(xyz, axis)
-    xyz.set('expressed_in', MODEL_FRAME)
+        if axis is not None and not is_foreign(flag):
+            if boolean_from_text(text_of(flag)):
+                axes[axis] = None
+            axis.remove(flag)
+    for axis in axes:
+        xyz = first_child(axis, 'xyz')
+        if xyz is None:
+            xyz = etree.SubElement(axis, 'xyz')
+            sources.set_parsed_line(xyz, axis)
+        xyz.set('expressed_in', MODEL_FRAME)
 
 
 def _nest_scoped_elements(

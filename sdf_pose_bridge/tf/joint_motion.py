@@ -80,7 +80,7 @@ def dofs_from_joint(joint: Joint, name: str = '') -> list[DegreeOfFreedom]:
             joint, axis if isinstance(axis, int) else None, name + suffix, suffix,
             joint.axes[axis] if isinstance(axis, int) else JointAxis(axis),
             *rad_and_m_per_unit[motion])
-        for motion, axis, suffix in JOINT_TYPES[joint.type].dofs]
+        for motion, axis, suffix in JOINT_TYPES[joint.type]]
 
 
 class JointMotion:

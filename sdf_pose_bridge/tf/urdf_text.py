@@ -151,16 +151,16 @@ class _Writer:
         if axis is None:
             return
         etree.SubElement(xml, 'axis', xyz=_numbers(_rounded(axis.xyz)))
-        effort, velocity, damping, friction = axis.dynamics
         limits = {} if joint.type == 'continuous' else {'lower': axis.lower, 'upper': axis.upper}
-        if limits or min(effort, velocity) < NO_LIMIT:
-            limits |= {'effort': effort, 'velocity': velocity}
+        if limits or min(axis.effort, axis.velocity) < NO_LIMIT:
+            limits |= {'effort': axis.effort, 'velocity': axis.velocity}
             etree.SubElement(xml, 'limit', {
                 name: _numbers([max(-NO_LIMIT, min(limit, NO_LIMIT))])
                 for name, limit in limits.items()})
-        if damping or friction:
+        if axis.damping or axis.friction:
             etree.SubElement(
-                xml, 'dynamics', damping=_numbers([damping]), friction=_numbers([friction]))
+                xml, 'dynamics', damping=_numbers([axis.damping]),
+                friction=_numbers([axis.friction]))
         if joint.mimic is not None:
             name, multiplier, offset = joint.mimic
             etree.SubElement(

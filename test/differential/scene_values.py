@@ -105,7 +105,7 @@ def _complete(element: ElementTree.Element, definition: Definition | None = None
     """Add what has to be there beside the odd values."""
     definition = definition or definition_of('sdf', has_frames=True)
     for name, attribute in definition.attributes.items():
-        if attribute.is_required and element.get(name) is None:
+        if attribute.required and element.get(name) is None:
             is_type = name == 'type' and definition.identifier in TYPES
             element.set(name, TYPES[definition.identifier] if is_type else _name_of(element))
     tags = {child.tag for child in element}

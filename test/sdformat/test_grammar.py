@@ -100,9 +100,9 @@ def test_number_of_a_kind_is_its_position():
 # Definitions
 
 def test_definition_has_attributes():
-    definition = definition_of('joint', has_frames=True)
-    assert definition.attributes['type'] == (
-        ValueType.CHOICE, True, CHOICES['joint_type'])
+    attribute = definition_of('joint', has_frames=True).attributes['type']
+    assert (attribute.value_type, attribute.required, attribute.choice) == (
+        ValueType.CHOICE, '!', CHOICES['joint_type'])
 
 
 def test_definition_has_children_with_values():
@@ -110,8 +110,8 @@ def test_definition_has_children_with_values():
 
 
 def test_definition_has_children_with_ranges():
-    child = definition_of('bounce').children['restitution_coefficient']
-    assert (child.minimum, child.maximum) == (0.0, 1.0)
+    value = definition_of('bounce').children['restitution_coefficient'].value
+    assert (value.minimum, value.maximum) == (0.0, 1.0)
 
 
 def test_definition_depends_on_the_parent_element():
@@ -123,13 +123,13 @@ def test_definition_has_required_children():
     assert definition_of('axis').required_children == {'xyz', 'limit'}
 
 
-def test_element_with_checked_values_has_only_children_that_frames_depend_on():
-    definition = definition_of('visual', has_frames=True, is_checked=True)
-    assert set(definition.children) == {'pose', 'geometry', 'material'}
-    assert set(definition.children['geometry'].children) == {'mesh'}
-    assert definition.checked_attributes == []
-    joint = definition_of('joint', has_frames=True, is_checked=True)
-    assert [name for name, _ in joint.checked_attributes] == ['type']
+def test_frames_depend_on_some_children_only():
+    def tags_of(definition):
+        return {tag for tag, child in definition.children.items() if child.concerns_frames}
+
+    definition = definition_of('visual', has_frames=True)
+    assert tags_of(definition) == {'pose', 'geometry', 'material'}
+    assert tags_of(definition.children['geometry']) == {'mesh'}
 
 
 def test_element_of_a_state_is_no_frame():

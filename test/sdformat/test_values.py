@@ -8,8 +8,13 @@ import pytest
 from sdf_texts import codes_of, link_with, model_file, only_error, TWO_LINKS, world_file
 
 from sdf_pose_bridge import load_text
-from sdf_pose_bridge.sdformat.grammar import ValueType
-from sdf_pose_bridge.sdformat.values import boolean_from_text, is_of_type, numbers_from_text
+from sdf_pose_bridge.sdformat.grammar import Definition, ValueType
+from sdf_pose_bridge.sdformat.values import boolean_from_text, judged_value, numbers_from_text
+
+
+def is_of_type(text, value_type):
+    fault, _ = judged_value(text, Definition('x', f':{value_type.label}').value)
+    return not fault
 
 
 def visual(content):

@@ -253,7 +253,7 @@ class _Conversion:
             xml, joint.xml, pose_product(base.pose, joint.origin), parent)
         self._add(xml, 'parent', joint.xml, parent)
         self._add(xml, 'child', joint.xml, joint.child)
-        if JOINT_TYPES[joint_type].dofs:
+        if JOINT_TYPES[joint_type]:
             self._add_axis(xml, joint)
         elif joint.name in self._robot.kept_joints and not self._for_ros:
             # Other joints may mimic it, as libsdformat gives it the axis of a default.
