@@ -18,9 +18,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry.chains import ends_from_pointers, Indices, poses_along_chains
-from sdf_pose_bridge.geometry.poses import Pose, pose_products, PoseArray, transformed_points
+from sdf_pose_bridge.geometry.poses import (
+    Pose,
+    pose_products,
+    PoseArray,
+    ScrewMotions,
+    transformed_points,
+)
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion, Floats
-from sdf_pose_bridge.geometry.screws import ScrewMotions
 from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.joints import JointAxis
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES, Motion
