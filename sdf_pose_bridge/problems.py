@@ -4,20 +4,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import TypeVar
 
 from sdf_pose_bridge.errors import LoadError, Place, SdfError, SdfWarning
-from sdf_pose_bridge.names import NameIndex, shortened_message
+from sdf_pose_bridge.names import shortened_message
 
 MOST_PROBLEMS = 100
 """Largest number of errors, and of warnings, that a load keeps."""
 
 MOST_HINTS = 50
 """Largest number of messages of a load that suggest a name."""
-
-MOST_CHARACTERS_OF_HINTS = 1_000_000
-"""Largest number of characters of all names that a load searches for hints."""
 
 _LONGEST_CHAIN = 10
 """Largest number of includes that an error names on the way to a file."""
@@ -50,8 +47,6 @@ class Problems:
         self._errors = _First[SdfError]()
         self._warnings = _First[SdfWarning]()
         self._hints = 0
-        self._indices: dict[Hashable, NameIndex] = {}
-        self._characters_of_hints = 0
         self.are_for_gazebo = False
         """Whether all warnings from now on concern Gazebo only."""
 
@@ -103,25 +98,6 @@ class Problems:
             return self._parent.allows_hint()
         self._hints += 1
         return self._hints <= MOST_HINTS
-
-    def name_index(self, key: Hashable, names: Iterable[str]) -> NameIndex:
-        """
-        Return an index of names for hints; hints with the same key share it.
-
-        Names are left out if the names in all indices of the load would be too long together.
-        """
-        if self._parent is not None:
-            return self._parent.name_index(key, names)
-        if key not in self._indices:
-            self._indices[key] = NameIndex(self._affordable(names))
-        return self._indices[key]
-
-    def _affordable(self, names: Iterable[str]) -> Iterator[str]:
-        for name in names:
-            self._characters_of_hints += len(name)
-            if self._characters_of_hints > MOST_CHARACTERS_OF_HINTS:
-                return
-            yield name
 
     @property
     def errors(self) -> tuple[SdfError, ...]:

@@ -15,7 +15,14 @@ from itertools import chain, islice
 import numpy as np
 
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
-from sdf_pose_bridge.names import MODEL_FRAME, ROOT_FRAME, scoped_name, SEPARATOR, WORLD_FRAME
+from sdf_pose_bridge.names import (
+    MODEL_FRAME,
+    NameIndex,
+    ROOT_FRAME,
+    scoped_name,
+    SEPARATOR,
+    WORLD_FRAME,
+)
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -45,8 +52,7 @@ class NameScopes:
     def __init__(self, elements: Elements, problems: Problems) -> None:
         self._elements = elements
         self._problems = problems
-        # Key of the indices for hints. Using the object itself would make a circle of references.
-        self._key = object()
+        self._indices: dict[int, NameIndex] = {}
         self.names = _absolute_names(elements)
         self.roots: list[int] = ends_from_pointers(elements.parents).tolist()
         self._is_model: list[bool] = (elements.kinds == Kind.MODEL).tolist()
@@ -129,12 +135,15 @@ class NameScopes:
                 return (f'; {self._described(outer)} has a frame "{scoped}", but names of '
                         'enclosing scopes cannot be used here')
             outer = int(self._elements.parents[outer])
-        own, prefix = (MODEL_FRAME, self.names[scope] + SEPARATOR) if self._is_model[scope] else (
-            WORLD_FRAME, '')
-        visible = (name[len(prefix):] for name in self._frames[self.roots[scope]]
-                   if name.startswith(prefix))
-        names = chain([own], islice(visible, _MOST_NAMES_COMPARED - 1))
-        return self._problems.name_index((self._key, scope), names).hint(reference)
+        if scope not in self._indices:
+            own, prefix = (
+                (MODEL_FRAME, self.names[scope] + SEPARATOR) if self._is_model[scope]
+                else (WORLD_FRAME, ''))
+            visible = (name[len(prefix):] for name in self._frames[self.roots[scope]]
+                       if name.startswith(prefix))
+            self._indices[scope] = NameIndex(
+                chain([own], islice(visible, _MOST_NAMES_COMPARED - 1)))
+        return self._indices[scope].hint(reference)
 
 
 def _absolute_names(elements: Elements) -> list[str]:

@@ -24,7 +24,7 @@ from sdf_pose_bridge.errors import (
     ElementInvalidError,
     ReservedNameError,
 )
-from sdf_pose_bridge.names import ROOT_FRAME, SEPARATOR, shortened
+from sdf_pose_bridge.names import hint_from_names, ROOT_FRAME, SEPARATOR, shortened
 from sdf_pose_bridge.sdformat.elements import (
     Elements,
     ElementsBuilder,
@@ -314,9 +314,8 @@ class _Reader:
                     error = (
                         ElementInvalidError if definition.kind is None else AttributeInvalidError)
                     msg = f'{name}="{value.strip(WHITE_SPACE)}" of <{written_tag(xml)}> {fault}'
-                    problems = self._sources.problems
-                    hint = problems.name_index(attribute.choice, attribute.choice.texts).hint(
-                        value.strip(WHITE_SPACE)) if problems.allows_hint() else ''
+                    hint = hint_from_names(value.strip(WHITE_SPACE), attribute.choice.texts) if (
+                        self._sources.problems.allows_hint()) else ''
                     self._sources.error(error, xml, msg + hint)
 
     def _read_pose(

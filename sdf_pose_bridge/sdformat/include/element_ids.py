@@ -13,8 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import islice
 
-from sdf_pose_bridge.names import scoped_name, SEPARATOR
-from sdf_pose_bridge.problems import Problems
+from sdf_pose_bridge.names import hint_from_names, scoped_name, SEPARATOR
 from sdf_pose_bridge.sdformat.xml_tree import (
     attribute_of,
     child_elements,
@@ -59,11 +58,10 @@ def element_by_id(top: XmlElement, element_id: str, tag: str = '') -> XmlElement
     return None
 
 
-def hint_for_id(top: XmlElement, element_id: str, tag: str, problems: Problems) -> str:
+def hint_for_id(top: XmlElement, element_id: str, tag: str) -> str:
     """
     Return the end of a message about an id that was not found.
 
-    :param problems: the problems of the load, which limit the comparisons.
     :return: a likely reason, or the nearest id; else an empty string.
     """
     if len(element_id) > _LONGEST_ID_COMPARED:
@@ -78,8 +76,7 @@ def hint_for_id(top: XmlElement, element_id: str, tag: str, problems: Problems) 
     if tags:
         return f'; that is a <{tags[0]}>'
     wanted = (found_id for found_id, found_tag in ids if tag in ('', found_tag))
-    # Each parameter may change the elements, so each has a separate index.
-    return problems.name_index(object(), wanted).hint(element_id)
+    return hint_from_names(element_id, wanted)
 
 
 def _ids(xml: XmlElement, scope: str) -> Iterator[tuple[str, str]]:

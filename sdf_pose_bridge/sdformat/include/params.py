@@ -294,7 +294,7 @@ class _Changer:
 
     def _hint(self, element_id: str, tag: str = '') -> str:
         problems = self._sources.problems
-        return hint_for_id(self._top, element_id, tag, problems) if problems.allows_hint() else ''
+        return hint_for_id(self._top, element_id, tag) if problems.allows_hint() else ''
 
     def _report_action(self, xml: XmlElement) -> None:
         msg = f'action="{xml.get("action")}" must be one of {", ".join(_ACTIONS)}'

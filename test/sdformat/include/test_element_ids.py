@@ -4,7 +4,6 @@
 
 import pytest
 
-from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.include.element_ids import element_by_id, hint_for_id
 from sdf_pose_bridge.sdformat.xml_file import xml_from_bytes
 
@@ -66,4 +65,4 @@ def test_element_that_libsdformat_does_not_find_is_not_found(arm, element_id, ta
      '; libsdformat finds only the <visual> of that name, which comes before it'),
 ])
 def test_hint_for_an_id_that_was_not_found(arm, element_id, tag, hint):
-    assert hint_for_id(arm, element_id, tag, Problems(['a.sdf'])) == hint
+    assert hint_for_id(arm, element_id, tag) == hint
