@@ -8,7 +8,7 @@ from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import TypeVar
 
 from sdf_pose_bridge.errors import LoadError, Place, SdfError, SdfWarning
-from sdf_pose_bridge.names import shortened_message
+from sdf_pose_bridge.names import listed, shortened_message
 
 MOST_PROBLEMS = 100
 """Largest number of errors, and of warnings, that a load keeps."""
@@ -128,11 +128,7 @@ class Problems:
         return tuple(warnings)
 
     def raise_errors(self) -> None:
-        """
-        Raise the errors, if there are any.
-
-        :raises LoadError: with the errors and warnings.
-        """
+        """Raise the errors with the warnings, if there are any."""
         if self._errors:
             raise LoadError(self.errors, self.warnings)
 
@@ -167,16 +163,12 @@ def folded(problems: Iterable[_Problem]) -> list[tuple[_Problem, str]]:
     for problem in problems:
         key = (problem.place.file, problem.code, problem.message)
         groups.setdefault(key, []).append(problem)
-    return [(group[0], _text_of_lines([str(each.place.line) for each in group[1:]]))
-            for group in groups.values()]
-
-
-def _text_of_lines(lines: Sequence[str]) -> str:
-    if not lines:
-        return ''
-    more = len(lines) - _MOST_LINES_NAMED
-    text = ', '.join(lines[:_MOST_LINES_NAMED]) + (f' and {more} more' if more > 0 else '')
-    return f' (also line{"s" if lines[1:] else ""} {text})'
+    result = []
+    for first, *others in groups.values():
+        lines = listed([str(each.place.line) for each in others], _MOST_LINES_NAMED)
+        text = f' (also line{"s" if others[1:] else ""} {lines})' if others else ''
+        result.append((first, text))
+    return result
 
 
 class _First(dict[Hashable, _Problem]):

@@ -80,12 +80,7 @@ class Format(NamedTuple):
     """A metre in the unit of the position."""
 
     def doubt(self, numbers: Sequence[float]) -> UnitDoubt | None:
-        """
-        Return why numbers are probably in another unit than the format has.
-
-        :param numbers: one finite pose or rotation, shape (row_length,).
-        :return: None if they are plausible.
-        """
+        """Return why numbers are probably in another unit than the format has, or None."""
         angles, xyz = numbers[-3:], [numbers[index] for index in self.position]
         if self.largest == math.pi and max(map(abs, angles)) > LARGEST_ANGLE_RAD:
             return UnitDoubt(f'the angles {_shown(angles)} are radians', 'degrees')
@@ -123,8 +118,6 @@ def converted_rotations(
     """
     Convert rotations as :func:`converted_poses` does poses, between :data:`ROTATION_FORMATS`.
 
-    :param values: shape (n * row_length,) or (n, row_length).
-    :return: the rotations, shape (n * row_length,) or (n, row_length) like the values; new memory.
     :raises PoseFormatError: as :func:`converted_poses`.
     """
     return _converted(values, from_format, to_format, ROTATION_FORMATS, 'rotation')
@@ -147,12 +140,7 @@ def without_rounding_errors(values: Floats, source: Format, target: Format) -> F
 
 
 def are_canonical_angles(rpy: Any, half_turn: float) -> Any:
-    """
-    Return whether angles are in their ranges and not near gimbal lock.
-
-    :param rpy: roll, pitch, yaw, as floats or as arrays.
-    :param half_turn: half a turn in their unit.
-    """
+    """Return whether angles are in their ranges and not near gimbal lock; floats or arrays."""
     roll, pitch, yaw = rpy
     return (
         (abs(roll) <= half_turn) & (abs(yaw) <= half_turn)
@@ -237,46 +225,42 @@ def _shown(numbers: Sequence[float]) -> str:
     return ' '.join(f'{number:g}' for number in numbers)
 
 
-def _pose_format(name: str, meaning: str, rotation: Format, metre: float = 1.0) -> Format:
-    """Return a format with x, y and z before a rotation."""
-    return rotation._replace(
-        name=name, row_length=3 + rotation.row_length, meaning=meaning,
-        to_common=lambda row: np.concatenate(
-            (row[:, :3] / metre, rotation.to_common(row[:, 3:])), axis=1),
-        from_common=lambda pose: np.concatenate(
-            (pose[:, :3] * metre, rotation.from_common(pose[:, 3:])), axis=1),
-        position=(0, 1, 2), metre=metre)
-
-
-def _matrix_format(
-    name: str, meaning: str, axes: tuple[int, ...], position: tuple[int, ...],
+def _pose_format(
+    name: str, meaning: str, rotation: Format, metre: float = 1.0, *,
+    position: tuple[int, ...] = (0, 1, 2), rest: Sequence[int] = (), last_row: Sequence[int] = (),
 ) -> Format:
     """
-    Return a format of 4 x 4 matrices.
+    Return a format with a position and a rotation.
 
-    :param axes: the axes of an array in the format, as the axes of matrices by row and column.
+    :param position: the indices of x, y and z.
+    :param rest: the indices of the numbers of the rotation, if they do not follow the position.
+    :param last_row: the indices of the last row of a matrix.
     """
-    def poses(rows: Floats) -> Floats:
-        matrices = rows.reshape(-1, 4, 4).transpose(axes)
-        is_exact = matrices[:, 3] == LAST_ROW
+    rotated = list(rest or range(3, 3 + rotation.row_length))
+    constant, constants = list(last_row), LAST_ROW[:len(last_row)]
+    row_length = 3 + len(rotated) + len(constant)
+
+    def poses_from_rows(rows: Floats) -> Floats:
+        is_exact = rows[:, constant] == constants
         if not is_exact.all():
             row = int(np.argmin(is_exact.all(axis=1)))
             msg = (
-                f'row {row}: last row of the matrix is {tuple(matrices[row, 3].tolist())}, and'
+                f'row {row}: last row of the matrix is {tuple(rows[row, constant].tolist())}, and'
                 f' must be exactly {LAST_ROW}')
             raise RotationError(msg)
         return np.concatenate(
-            (matrices[:, :3, 3], quaternion_from_matrix(matrices[:, :3, :3])), axis=1)
+            (rows[:, position] / metre, rotation.to_common(rows[:, rotated])), axis=1)
 
-    def rows(poses: Floats) -> Floats:
-        matrices = np.empty((len(poses), 4, 4))
-        matrices[:, :3, :3] = matrix_from_quaternion(poses[:, 3:])
-        matrices[:, :3, 3] = poses[:, :3]
-        matrices[:, 3] = LAST_ROW
-        values: Floats = matrices.transpose(axes).reshape(-1, 16)
-        return values
+    def rows_from_poses(poses: Floats) -> Floats:
+        rows = np.empty((len(poses), row_length))
+        rows[:, position] = poses[:, :3] * metre
+        rows[:, rotated] = rotation.from_common(poses[:, 3:])
+        rows[:, constant] = constants
+        return rows
 
-    return Format(name, 16, meaning, poses, rows, position=position)
+    return rotation._replace(
+        name=name, row_length=row_length, meaning=meaning, to_common=poses_from_rows,
+        from_common=rows_from_poses, position=position, metre=metre)
 
 
 def _registry(*formats: Format) -> Mapping[str, Format]:
@@ -326,10 +310,12 @@ POSE_FORMATS = _registry(
     _pose_format(
         'sdf_quat_xyzw', 'x y z in metres, quaternion x y z w of any norm but 0',
         ROTATION_FORMATS['quaternion']),
-    _matrix_format(
-        'matrix_row_major', '4 x 4 matrix row after row, in metres', (0, 1, 2), (3, 7, 11)),
-    _matrix_format(
-        'franka_matrix', '4 x 4 matrix column after column, in metres', (0, 2, 1), (12, 13, 14)),
+    _pose_format(
+        'matrix_row_major', '4 x 4 matrix row after row, in metres', ROTATION_FORMATS['matrix'],
+        position=(3, 7, 11), rest=(0, 1, 2, 4, 5, 6, 8, 9, 10), last_row=(12, 13, 14, 15)),
+    _pose_format(
+        'franka_matrix', '4 x 4 matrix column after column, in metres', ROTATION_FORMATS['matrix'],
+        position=(12, 13, 14), rest=(0, 4, 8, 1, 5, 9, 2, 6, 10), last_row=(3, 7, 11, 15)),
     _pose_format(
         'franka_measured',
         "x y z in millimetres, rotations x y z in degrees (z-y'-x'': x is roll, z is yaw)",

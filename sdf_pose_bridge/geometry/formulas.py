@@ -52,10 +52,8 @@ SPLITTER = 1.5 * 2.0 ** 26
 
 _Angle = TypeVar('_Angle', float, Floats)
 _One = TypeVar('_One')
-_Many = TypeVar('_Many')
 _Result = TypeVar('_Result')
 _One_contra = TypeVar('_One_contra', contravariant=True)
-_Many_contra = TypeVar('_Many_contra', contravariant=True)
 _Result_co = TypeVar('_Result_co', covariant=True)
 
 
@@ -76,20 +74,20 @@ class InvalidRotationError(ValueError):
 
 
 @dataclass(frozen=True)
-class Representation(Generic[_One, _Many, _Result]):
+class Representation(Generic[_One, _Result]):
     """
     A representation of rotations by numbers.
 
-    The types are those of one and of many in arguments, and of one in results.
+    The types are those of one rotation in arguments and in results.
     """
 
     name: str
     shape: tuple[int, ...]
     message: Callable[..., str]
-    """Returns the error message for invalid numbers."""
+    """Returns the error message for a tuple of invalid numbers."""
 
 
-class Conversion(Protocol[_One_contra, _Many_contra, _Result_co]):
+class Conversion(Protocol[_One_contra, _Result_co]):
     """Converts one rotation or many from one representation to another."""
 
     formula: Callable[..., Any]
@@ -98,12 +96,12 @@ class Conversion(Protocol[_One_contra, _Many_contra, _Result_co]):
     @overload
     def __call__(self, values: _One_contra) -> _Result_co: ...
     @overload
-    def __call__(self, values: _Many_contra) -> Floats: ...
+    def __call__(self, values: Floats | Sequence[Sequence[Any]]) -> Floats: ...
 
 
 def conversion(
-    given: Representation[_One, _Many, Any], target: Representation[Any, Any, _Result],
-) -> Callable[[Callable[..., Any]], Conversion[_One, _Many, _Result]]:
+    given: Representation[_One, Any], target: Representation[Any, _Result],
+) -> Callable[[Callable[..., Any]], Conversion[_One, _Result]]:
     """
     Make a formula a function that takes one rotation or many.
 
@@ -128,16 +126,15 @@ def conversion(
                         components = formula(np, *columns)
                     except InvalidRotationError as error:
                         row = block.start + int(np.argmin(error.is_valid))
-                        message = given.message(*rows[row].reshape(given.shape).tolist())
+                        message = given.message(tuple(rows[row].reshape(given.shape).tolist()))
                         raise RotationError(
                             f'row {row}: {message}' if leading else message) from error
                     results[block] = np.reshape(components, (results.shape[1], -1)).T
             return results.reshape(leading + target.shape)
 
-        # The function has the documentation of the formula, but not its arguments.
-        function.__name__ = function.__qualname__ = formula.__name__
-        function.__module__, function.__doc__ = formula.__module__, formula.__doc__
-        function.formula = formula  # type: ignore[attr-defined]
+        functools.update_wrapper(function, formula)
+        # Without this attribute the function has its own arguments for tools of documentation.
+        function.__dict__['formula'] = function.__dict__.pop('__wrapped__')
         return function
     return function_from_formula
 
@@ -148,7 +145,7 @@ def row_blocks(count: int) -> Iterator[slice]:
         yield slice(start, start + BLOCK)
 
 
-def _array(values: Any, given: Representation[Any, Any, Any]) -> Floats:
+def _array(values: Any, given: Representation[Any, Any]) -> Floats:
     try:
         array = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:

@@ -16,7 +16,9 @@ Conventions:
 
 Every function takes one rotation or many. One is a tuple or list of floats; the result is a tuple
 and takes a few microseconds. Many are an array of shape (..., 3), (..., 4) or (..., 3, 3), or
-nested sequences; the result is an array with the same leading shape.
+nested sequences; the result is an array with the same leading shape. All raise
+:class:`RotationError` for a wrong shape, numbers that are not finite, a quaternion of zeros, a
+rotation vector of 1e70 or longer, and a matrix that is not orthonormal or has determinant -1.
 
 At gimbal lock, where pitch is a right angle, only roll - yaw (pitch up) or roll + yaw (pitch down)
 is defined: yaw is then 0 and roll has all of it, as in gz-math. Near lock each angle alone is less
@@ -60,9 +62,7 @@ Triple: TypeAlias = tuple[float, float, float]
 Quaternion: TypeAlias = tuple[float, float, float, float]
 Matrix: TypeAlias = tuple[Triple, Triple, Triple]
 One: TypeAlias = Sequence[float]
-OneMatrix: TypeAlias = Sequence[Sequence[float]]
 Many: TypeAlias = Floats | Sequence[Sequence[float]]
-ManyMatrices: TypeAlias = Floats | Sequence[Sequence[Sequence[float]]]
 
 LOCK_TOLERANCE = 1e-15
 """Of gz-math: at gimbal lock the sine of pitch differs from 1 or -1 by less than this."""
@@ -82,21 +82,13 @@ _NEAREST_STEPS = 3
 """Steps of the power iteration that reduce an error of 1e-5 to less than rounding."""
 
 
-def _rpy_message(*rpy: float) -> str:
-    return f'roll, pitch, yaw {rpy} are not finite'
-
-
-def _rotation_vector_message(*rotation_vector_rad: float) -> str:
-    return f'rotation vector {rotation_vector_rad} is not finite, or longer than 1e70'
-
-
-def _quaternion_message(*quat_xyzw: float) -> str:
+def _quaternion_message(quat_xyzw: Quaternion) -> str:
     if all(map(math.isfinite, quat_xyzw)):
         return f'quaternion {quat_xyzw} is zero, which is not a rotation'
     return f'quaternion {quat_xyzw} (x, y, z, w) is not finite'
 
 
-def _matrix_message(*matrix: Triple) -> str:
+def _matrix_message(matrix: Matrix) -> str:
     rows = tuple(map(tuple, matrix))
     if not np.isfinite(matrix).all():
         return f'rotation matrix {rows} is not finite'
@@ -110,12 +102,12 @@ def _matrix_message(*matrix: Triple) -> str:
         ' a rotation has determinant +1')
 
 
-_RPY = Representation[One, Many, Triple]('roll, pitch, yaw', (3,), _rpy_message)
-_QUATERNION = Representation[One, Many, Quaternion]('quaternion', (4,), _quaternion_message)
-_ROTATION_VECTOR = Representation[One, Many, Triple](
-    'rotation vector', (3,), _rotation_vector_message)
-_MATRIX = Representation[OneMatrix, ManyMatrices, Matrix](
-    'rotation matrix', (3, 3), _matrix_message)
+_RPY = Representation[One, Triple](
+    'roll, pitch, yaw', (3,), 'roll, pitch, yaw {} are not finite'.format)
+_QUATERNION = Representation[One, Quaternion]('quaternion', (4,), _quaternion_message)
+_ROTATION_VECTOR = Representation[One, Triple](
+    'rotation vector', (3,), 'rotation vector {} is not finite, or longer than 1e70'.format)
+_MATRIX = Representation[Sequence[One], Matrix]('rotation matrix', (3, 3), _matrix_message)
 
 
 @conversion(_QUATERNION, _QUATERNION)
@@ -123,10 +115,10 @@ def canonical_quaternion(xp: Any, *quat: Component) -> Any:
     """
     Return the canonical one of the two unit quaternions of a rotation.
 
-    :param values: x, y, z, w of any norm but zero; shape (4,) or (..., 4).
-    :return: x, y, z, w; unit; w >= 0, and if w is 0, the first of x, y, z that is not 0 is
-        positive; shape (4,) or (..., 4). A canonical quaternion is returned bit for bit.
-    :raises RotationError: wrong shape, not finite or zero.
+    A canonical quaternion is returned bit for bit.
+
+    :param values: x, y, z, w.
+    :return: x, y, z, w.
     """
     is_nearly_unit = abs(square_of(quat) - 1.0) < NEARLY_UNIT
     if not xp.all(is_nearly_unit):
@@ -141,9 +133,8 @@ def quaternion_from_rpy(xp: Any, *rpy: Component) -> Any:
     """
     Convert roll, pitch, yaw to a quaternion.
 
-    :param values: roll, pitch, yaw in radians, of any size; shape (3,) or (..., 3).
-    :return: x, y, z, w; unit, w >= 0; shape (4,) or (..., 4).
-    :raises RotationError: wrong shape or not finite.
+    :param values: roll, pitch, yaw in radians, of any size.
+    :return: x, y, z, w.
     """
     (sin_r, cos_r), (sin_p, cos_p), (sin_y, cos_y) = _sines_and_cosines(
         xp, [0.5 * angle for angle in rpy])
@@ -163,10 +154,8 @@ def rpy_from_quaternion(xp: Any, *quat: Component) -> Any:
     """
     Convert a quaternion to roll, pitch, yaw.
 
-    :param values: x, y, z, w of any norm but zero; shape (4,) or (..., 4).
-    :return: roll, pitch, yaw in radians; roll and yaw in [-pi, pi], pitch in [-pi/2, pi/2], yaw 0
-        at gimbal lock; shape (3,) or (..., 3).
-    :raises RotationError: wrong shape, not finite or zero.
+    :param values: x, y, z, w.
+    :return: roll, pitch, yaw in radians.
     """
     # gz-math takes pitch from an arc sine, which loses half of the digits near a right angle. Here
     # all angles are arc tangents of numbers that are exact to the last digits everywhere: (a, b)
@@ -199,9 +188,8 @@ def matrix_from_quaternion(xp: Any, *quat: Component) -> Any:
     """
     Convert a quaternion to a rotation matrix.
 
-    :param values: x, y, z, w of any norm but zero; shape (4,) or (..., 4).
-    :return: a tuple of the three rows, or an array of shape (..., 3, 3).
-    :raises RotationError: wrong shape, not finite or zero.
+    :param values: x, y, z, w.
+    :return: the three rows.
     """
     x, y, z, w = canonical_quaternion.formula(xp, *quat)
     xx, yy, zz, ww = x * x, y * y, z * z, w * w
@@ -218,10 +206,8 @@ def quaternion_from_matrix(xp: Any, *matrix: Sequence[Component]) -> Any:
     """
     Convert a rotation matrix to a quaternion.
 
-    :param values: three rows, or shape (..., 3, 3); a rotation to within 1e-5, of which the
-        nearest rotation is used.
-    :return: x, y, z, w; unit, w >= 0; shape (4,) or (..., 4).
-    :raises RotationError: wrong shape, not finite, not orthonormal or with determinant -1.
+    :param values: the three rows.
+    :return: x, y, z, w.
     """
     is_valid = determinant(*matrix) > 0.0
     for value, expected, _ in orthonormality(xp, *matrix):
@@ -257,9 +243,8 @@ def matrix_from_rpy(xp: Any, *rpy: Component) -> Any:
     """
     Convert roll, pitch, yaw to a rotation matrix.
 
-    :param values: roll, pitch, yaw in radians, of any size; shape (3,) or (..., 3).
-    :return: a tuple of the three rows, or an array of shape (..., 3, 3).
-    :raises RotationError: wrong shape or not finite.
+    :param values: roll, pitch, yaw in radians, of any size.
+    :return: the three rows.
     """
     # The elements at gimbal lock are exact, unlike those computed from the quaternion.
     (sin_r, cos_r), (sin_p, cos_p), (sin_y, cos_y) = _sines_and_cosines(xp, rpy)
@@ -283,11 +268,8 @@ def rpy_from_matrix(xp: Any, *matrix: Sequence[Component]) -> Any:
     """
     Convert a rotation matrix to roll, pitch, yaw.
 
-    :param values: three rows, or shape (..., 3, 3); a rotation to within 1e-5, of which the
-        nearest rotation is used.
-    :return: roll, pitch, yaw in radians; roll and yaw in [-pi, pi], pitch in [-pi/2, pi/2], yaw 0
-        at gimbal lock; shape (3,) or (..., 3).
-    :raises RotationError: wrong shape, not finite, not orthonormal or with determinant -1.
+    :param values: the three rows.
+    :return: roll, pitch, yaw in radians.
     """
     return rpy_from_quaternion.formula(xp, *quaternion_from_matrix.formula(xp, *matrix))
 
@@ -297,9 +279,8 @@ def quaternion_from_rotation_vector(xp: Any, *vector: Component) -> Any:
     """
     Convert a rotation vector, an axis times an angle, to a quaternion.
 
-    :param values: x, y, z; its length is the angle in radians, below 1e70; shape (3,) or (..., 3).
-    :return: x, y, z, w; unit, w >= 0; shape (4,) or (..., 4).
-    :raises RotationError: wrong shape, not finite or too long.
+    :param values: x, y, z; its length is the angle in radians.
+    :return: x, y, z, w.
     """
     square = dot(vector, vector)
     check(xp, square < LARGEST_SQUARE)
@@ -316,10 +297,9 @@ def rotation_vector_from_quaternion(xp: Any, *quat: Component) -> Any:
     """
     Convert a quaternion to a rotation vector, an axis times an angle.
 
-    :param values: x, y, z, w of any norm but zero; shape (4,) or (..., 4).
+    :param values: x, y, z, w.
     :return: x, y, z; its length is the angle in radians, in [0, pi]; of half a turn the first
-        component that is not 0 is positive; shape (3,) or (..., 3).
-    :raises RotationError: wrong shape, not finite or zero.
+        component that is not 0 is positive.
     """
     x, y, z, w = canonical_quaternion.formula(xp, *quat)
     square = x * x + y * y + z * z
@@ -340,9 +320,7 @@ def near_gimbal_lock(quat_xyzw: One | Many) -> bool | NDArray[np.bool_]:
     The rule is gz-math's: the sine of pitch differs from 1 or -1 by less than 1e-15, so pitch is
     within 4.5e-8 radians of a right angle.
 
-    :param quat_xyzw: x, y, z, w of any norm but zero; shape (4,) or (..., 4).
-    :return: a bool, or an array of bool of shape (...).
-    :raises RotationError: wrong shape, not finite or zero.
+    :return: a bool, or an array of bool.
     """
     unit = canonical_quaternion(quat_xyzw)
     x, y, z, w = unit if isinstance(unit, tuple) else np.moveaxis(unit, -1, 0)

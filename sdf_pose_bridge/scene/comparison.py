@@ -9,7 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.poses import PoseArray, relative_poses
+from sdf_pose_bridge.geometry.poses import (
+    distance_and_angle,
+    Pose,
+    PoseArray,
+    relative_poses,
+)
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 
@@ -56,22 +61,17 @@ def differences_of_scenes(
     :raises UnknownFrameError: if there is no such frame in one of the scenes.
     """
     old_poses, new_poses = _poses(old, relative_to), _poses(new, relative_to)
-    old_keys, new_keys = _indices(old), _indices(new)
+    old_indices, new_indices = _indices(old), _indices(new)
     renamed = _renamed(
-        old, new, [index for key, index in old_keys.items() if key not in new_keys],
-        [index for key, index in new_keys.items() if key not in old_keys])
+        old, new, [index for key, index in old_indices.items() if key not in new_indices],
+        [index for key, index in new_indices.items() if key not in old_indices])
     old_of_new = renamed | {
-        new_keys[key]: index for key, index in old_keys.items() if key in new_keys}
+        new_indices[key]: index for key, index in old_indices.items() if key in new_indices}
     remaining = set(old_of_new.values())
     differences = [
         Difference(Change.REMOVED, Kind(old.kinds[index]), old.names[index], old.names[index])
-        for index in old_keys.values() if index not in remaining]
-    between = relative_poses(old_poses[list(old_of_new.values())], new_poses[list(old_of_new)])
-    distances = np.linalg.norm(between[:, :3], axis=1)
-    angles = 2.0 * np.arctan2(np.linalg.norm(between[:, 3:6], axis=1), np.abs(between[:, 6]))
-    movements = dict(zip(
-        old_of_new, zip(distances.tolist(), angles.tolist(), strict=True), strict=True))
-    for index in new_keys.values():
+        for index in old_indices.values() if index not in remaining]
+    for index in new_indices.values():
         kind, name = Kind(new.kinds[index]), new.names[index]
         if index not in old_of_new:
             differences.append(Difference(Change.ADDED, kind, name, ''))
@@ -79,8 +79,10 @@ def differences_of_scenes(
         old_name = old.names[old_of_new[index]]
         if index in renamed:
             differences.append(Difference(Change.RENAMED, kind, name, old_name))
-        if max(movements[index]) > tolerance:
-            differences.append(Difference(Change.MOVED, kind, name, old_name, *movements[index]))
+        movement = distance_and_angle(
+            Pose(*old_poses[old_of_new[index]].tolist()), Pose(*new_poses[index].tolist()))
+        if max(movement) > tolerance:
+            differences.append(Difference(Change.MOVED, kind, name, old_name, *movement))
     return differences
 
 
