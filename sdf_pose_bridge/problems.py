@@ -57,12 +57,7 @@ class Problems:
     def warning(
         self, message: str, place: Place, code: str = 'WARNING', *, is_for_gazebo: bool = False,
     ) -> None:
-        """
-        Add a warning.
-
-        :param code: code of the corresponding error, or ``WARNING``.
-        :param is_for_gazebo: whether it concerns Gazebo only.
-        """
+        """Add a warning; the arguments are the fields of :class:`SdfWarning`."""
         warning = SdfWarning(
             code, shortened_message(message), place, is_for_gazebo or self.are_for_gazebo)
         self._warnings.add(warning, self._key(warning))

@@ -9,12 +9,10 @@ import enum
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from sdf_pose_bridge.geometry.formats import are_canonical_angles
-from sdf_pose_bridge.geometry.formulas import (
-    degrees_from_radians,
-    FLOATS,
-    radians_from_degrees,
-)
+from sdf_pose_bridge.geometry.formulas import degrees_from_radians, radians_from_degrees
 from sdf_pose_bridge.geometry.rotations import (
     canonical_quaternion,
     near_gimbal_lock,
@@ -64,7 +62,7 @@ def converted_rotation(
         rpy_rad: Sequence[float] = rpy
         # Angles that are not finite are not changed: the error shows them as they are given.
         if degrees and all(map(math.isfinite, rpy)):
-            rpy_rad = [radians_from_degrees(FLOATS, angle) for angle in rpy]
+            rpy_rad = radians_from_degrees(np.array(rpy)).tolist()
         quat = quaternion_from_rpy(rpy_rad)
     elif given == Given.QUATERNION:
         quat = canonical_quaternion(quat_xyzw)

@@ -274,7 +274,7 @@ ROTATION_FORMATS = _registry(
     ),
     Format(
         'rpy_degrees', 3, 'roll pitch yaw in degrees',
-        lambda row: quaternion_from_rpy(radians_from_degrees(np, row)),
+        lambda row: quaternion_from_rpy(radians_from_degrees(row)),
         lambda quat: degrees_from_radians(rpy_from_quaternion(quat)),
         largest=180.0, has_rpy=True,
     ),

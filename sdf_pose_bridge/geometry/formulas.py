@@ -31,7 +31,7 @@ BLOCK = 8192
 
 FLOATS = SimpleNamespace(
     all=bool, any=bool,  # a float has one condition where an array has many
-    arctan2=math.atan2, copysign=math.copysign, cos=math.cos, fmod=math.fmod, frexp=math.frexp,
+    arctan2=math.atan2, copysign=math.copysign, cos=math.cos, frexp=math.frexp,
     isfinite=math.isfinite, ldexp=math.ldexp, maximum=max, minimum=min, sin=math.sin,
     sqrt=math.sqrt, where=lambda condition, if_true, if_false: if_true if condition else if_false,
 )
@@ -158,14 +158,13 @@ def _array(values: Any, given: Representation[Any, Any]) -> Floats:
     return array
 
 
-def radians_from_degrees(xp: Any, angle_deg: _Angle) -> _Angle:
+def radians_from_degrees(angle_deg: Floats) -> Floats:
     """
     Return radians as libsdformat does, ``deg * pi / 180``, after removing multiples of 360.
 
     These are exact in degrees but not in radians.
     """
-    angle_rad: _Angle = xp.fmod(angle_deg, 360.0) * math.pi / 180.0
-    return angle_rad
+    return np.fmod(angle_deg, 360.0) * math.pi / 180.0
 
 
 def degrees_from_radians(angle_rad: _Angle) -> _Angle:
@@ -192,9 +191,7 @@ def determinant(*matrix: Sequence[Component]) -> Component:
     return dot(a, (by * cz - bz * cy, bz * cx - bx * cz, bx * cy - by * cx))
 
 
-def scaled(
-    xp: Any, quat: tuple[Component, ...],
-) -> tuple[tuple[Component, ...], Component]:
+def scaled(xp: Any, quat: Sequence[Component]) -> Any:
     """Return the components and the square, scaled by a power of two if it is extreme."""
     square = square_of(quat)
     is_usual = (square > SMALLEST_SQUARE) & (square < LARGEST_SQUARE)

@@ -327,9 +327,7 @@ def near_gimbal_lock(quat_xyzw: One | Many) -> bool | NDArray[np.bool_]:
     return abs(abs(2.0 * (w * y - x * z)) - 1.0) < LOCK_TOLERANCE
 
 
-def _sines_and_cosines(
-    xp: Any, rpy: Sequence[Component],
-) -> Sequence[tuple[Component, Component]]:
+def _sines_and_cosines(xp: Any, rpy: Sequence[Component]) -> Any:
     """Return sine and cosine of roll, pitch and yaw."""
     roll, pitch, yaw = ((xp.sin(angle), xp.cos(angle)) for angle in rpy)
     # Sines of angles that are not finite are not numbers.

@@ -9,12 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.poses import (
-    distance_and_angle,
-    Pose,
-    PoseArray,
-    relative_poses,
-)
+from sdf_pose_bridge.geometry.poses import distance_and_angle, Pose, relative_pose
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 
@@ -60,7 +55,9 @@ def differences_of_scenes(
         one.
     :raises UnknownFrameError: if there is no such frame in one of the scenes.
     """
-    old_poses, new_poses = _poses(old, relative_to), _poses(new, relative_to)
+    old_frame, new_frame = (
+        scene.pose_of(scene.index(relative_to)) if relative_to else Pose()
+        for scene in (old, new))
     old_indices, new_indices = _indices(old), _indices(new)
     renamed = _renamed(
         old, new, [index for key, index in old_indices.items() if key not in new_indices],
@@ -80,7 +77,8 @@ def differences_of_scenes(
         if index in renamed:
             differences.append(Difference(Change.RENAMED, kind, name, old_name))
         movement = distance_and_angle(
-            Pose(*old_poses[old_of_new[index]].tolist()), Pose(*new_poses[index].tolist()))
+            relative_pose(old_frame, old.pose_of(old_of_new[index])),
+            relative_pose(new_frame, new.pose_of(index)))
         if max(movement) > tolerance:
             differences.append(Difference(Change.MOVED, kind, name, old_name, *movement))
     return differences
@@ -98,12 +96,6 @@ def _indices(scene: Scene) -> dict[tuple[str, int, str], int]:
     return {
         (scene.world_of(index), int(scene.kinds[index]), scene.names[index]): index
         for index in np.flatnonzero(scene.parents >= 0).tolist()}
-
-
-def _poses(scene: Scene, relative_to: str) -> PoseArray:
-    if not relative_to:
-        return scene.poses
-    return relative_poses(scene.poses[scene.index(relative_to)], scene.poses)
 
 
 def _renamed(old: Scene, new: Scene, gone: list[int], come: list[int]) -> dict[int, int]:

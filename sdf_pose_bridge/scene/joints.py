@@ -59,28 +59,27 @@ class JointChecks:
         """Return a joint with the references of its axes; None if it does not join two bodies."""
         axes = tuple(
             (ends.joint, NO_ELEMENT) if axis is None else
-            (self._expressed_in(ends.joint, axis), self._leader(ends.joint, index, axis))
+            (self._expressed_in(ends.joint, axis.expressed_in),
+             self._leader(ends.joint, index, axis))
             for index, axis in enumerate(self._elements.joints[ends.joint].axes))
         return ends._replace(axes=axes) if self._are_valid(ends) else None
 
-    def _expressed_in(self, joint: int, axis: AxisDetails) -> int:
-        reference = axis.expressed_in
-        if not reference.name:
-            return joint
-        found = self._scopes.frame(self._scopes.scope_of[joint], reference.name)
+    def _expressed_in(self, joint: int, reference: Reference) -> int:
+        found = joint if not reference.name else self._scopes.frame(
+            self._scopes.scope_of[joint], reference.name)
         if found is None:
             self._report_unknown(ExpressedInError, joint, reference, 'expressed_in', 'axis')
             return joint
         return found
 
     def _leader(self, joint: int, index: int, axis: AxisDetails) -> int:
-        mimic, name = axis.axis.mimic, axis.leader.name
+        mimic, name, scope = axis.axis.mimic, axis.leader.name, self._scopes.scope_of[joint]
         if mimic is None:
             return NO_ELEMENT
-        leader = self._scopes.frame(self._scopes.scope_of[joint], name) if name else None
+        leader = self._scopes.frame(scope, name) if name else None
         if leader is None or leader not in self._elements.joints:
             msg = f'mimic joint="{name}" names no joint'
-        elif not self._is_found_by_parts(leader, self._scopes.scope_of[joint], name):
+        elif not self._is_found_by_parts(leader, scope, name):
             msg = (f'mimic joint="{name}" names no joint: libsdformat finds none in a model whose '
                    f'own name holds "{SEPARATOR}"')
         elif self._elements.joints[leader].axes[mimic.axis] is None:
@@ -113,7 +112,8 @@ class JointChecks:
             self._report_unknown(JointChildError, joint, child, 'child')
         if parent.name and parent.name == child.name:
             msg = f'parent and child are both "{child.name}"; a joint joins two bodies'
-            self._report(JointSameLinkError, msg, joint, is_checked=True)
+            # libsdformat checks this in nested models too.
+            self._problems.error(JointSameLinkError(msg, self._elements.place(joint)))
             return False
         if ends.parent < 0 and parent.name:
             # libsdformat looks for other parents before it resolves them.
@@ -150,17 +150,12 @@ class JointChecks:
 
     def _report(
         self, error_class: type[SdfError], message: str, joint: int, line: int = 0,
-        part: str = '', *, is_checked: bool = False,
+        part: str = '',
     ) -> None:
-        """
-        Report an error, or a warning if libsdformat does not check this.
-
-        :param is_checked: whether libsdformat checks this in nested models too, as for children.
-        """
+        """Report an error, or a warning if libsdformat does not check this in nested models."""
         scope, root = self._scopes.scope_of[joint], self._scopes.roots[joint]
         place = self._elements.place(joint, line, part)
-        if is_checked or error_class is JointChildError or (
-                root in (scope, self._elements.parents[scope])):
+        if error_class is JointChildError or root in (scope, self._elements.parents[scope]):
             self._problems.error(error_class(message, place))
         else:
             self._problems.warning(
