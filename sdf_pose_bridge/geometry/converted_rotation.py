@@ -70,8 +70,7 @@ def converted_rotation(
         known = ', '.join(f'{value.value} ({value.name})' for value in Given)
         msg = f'given is {given!r}, which is neither RPY nor quaternion; known are {known}'
         raise RotationError(msg)
-    half_turn = 180.0 if degrees else math.pi
-    if given == Given.RPY and are_canonical_angles(rpy, half_turn):
+    if given == Given.RPY and are_canonical_angles(rpy, 180.0 if degrees else math.pi):
         roll, pitch, yaw = rpy
     else:
         roll, pitch, yaw = rpy_from_quaternion(quat)

@@ -65,12 +65,8 @@ class InvalidRotationError(ValueError):
     """
     The components of a rotation are not valid.
 
-    :param is_valid: False, or an array with False for each rotation that is not valid.
+    The argument is False, or an array with False for each rotation that is not valid.
     """
-
-    def __init__(self, is_valid: Any) -> None:
-        super().__init__(is_valid)
-        self.is_valid = is_valid
 
 
 @dataclass(frozen=True)
@@ -125,7 +121,7 @@ def conversion(
                     try:
                         components = formula(np, *columns)
                     except InvalidRotationError as error:
-                        row = block.start + int(np.argmin(error.is_valid))
+                        row = block.start + int(np.argmin(error.args[0]))
                         message = given.message(tuple(rows[row].reshape(given.shape).tolist()))
                         raise RotationError(
                             f'row {row}: {message}' if leading else message) from error

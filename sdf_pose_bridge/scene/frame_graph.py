@@ -147,24 +147,22 @@ class _Builder:
 
     def _canonical_pointers(self) -> dict[int, int]:
         """Find the canonical link of each model, or the frame that leads to it."""
-        kinds: list[int] = self._elements.kinds.tolist()
-        first_links = self._first_children_of_kind(Kind.LINK)
-        first_models = self._first_children_of_kind(Kind.MODEL)
+        elements = self._elements
+        first_children: dict[int, int] = {}
+        for kind in (Kind.MODEL, Kind.LINK):  # links are preferred
+            indices = np.flatnonzero(elements.kinds == kind)[::-1]
+            first_children.update(
+                zip(elements.parents[indices].tolist(), indices.tolist(), strict=True))
         pointers: dict[int, int] = {}
-        for model in sorted(self._elements.models, reverse=True):  # inner models come first
-            default = first_links.get(model, first_models.get(model, NO_ELEMENT))
+        for model in sorted(elements.models, reverse=True):  # inner models come first
+            default = first_children.get(model, NO_ELEMENT)
             # For a nested model, its own link counts, even if the model is static and its frame is
             # not attached to the link.
             inner = pointers.get(default, NO_ELEMENT)
-            if inner >= 0 and kinds[inner] == Kind.LINK:
+            if inner >= 0 and elements.kinds[inner] == Kind.LINK:
                 default = inner
             pointers[model] = self._canonical_pointer(model, default)
         return pointers
-
-    def _first_children_of_kind(self, kind: Kind) -> dict[int, int]:
-        """Find the first child of a kind of each element that has one."""
-        indices = np.flatnonzero(self._elements.kinds == kind)[::-1]
-        return dict(zip(self._elements.parents[indices].tolist(), indices.tolist(), strict=True))
 
     def _canonical_pointer(self, model: int, default: int) -> int:
         details = self._elements.models[model]
