@@ -54,6 +54,10 @@ class SdfError(Exception):
 
     code: str = 'ERROR'
 
+    def __init_subclass__(cls, code: str = '') -> None:
+        if code:
+            cls.code = code
+
     def __init__(self, message: str, place: Place) -> None:
         message = shortened_message(message)
         super().__init__(message, place)
@@ -110,185 +114,127 @@ class LoadError(SdfError):
         return '\n'.join(str(error) for error in self._errors)
 
 
-class FileReadError(SdfError):
+class FileReadError(SdfError, code='FILE_READ'):
     """A file is missing, cannot be read, is not XML or declares no version."""
-
-    code = 'FILE_READ'
 
 
 class PassingReadError(FileReadError):
     """A file cannot be read for a temporary reason: no descriptors, no memory, a disk."""
 
 
-class LimitError(SdfError):
+class LimitError(SdfError, code='LIMIT'):
     """The file exceeds a limit of the load."""
 
-    code = 'LIMIT'
 
-
-class ParsingError(SdfError):
+class ParsingError(SdfError, code='PARSING_ERROR'):
     """The XML is not SDFormat."""
 
-    code = 'PARSING_ERROR'
 
-
-class ConversionError(SdfError):
+class ConversionError(SdfError, code='CONVERSION_ERROR'):
     """The declared version is not supported."""
 
-    code = 'CONVERSION_ERROR'
 
-
-class AttributeInvalidError(SdfError):
+class AttributeInvalidError(SdfError, code='ATTRIBUTE_INVALID'):
     """An attribute has an invalid value."""
 
-    code = 'ATTRIBUTE_INVALID'
 
-
-class AttributeMissingError(SdfError):
+class AttributeMissingError(SdfError, code='ATTRIBUTE_MISSING'):
     """A required attribute is missing."""
 
-    code = 'ATTRIBUTE_MISSING'
 
-
-class ElementInvalidError(SdfError):
+class ElementInvalidError(SdfError, code='ELEMENT_INVALID'):
     """An element has an invalid value."""
 
-    code = 'ELEMENT_INVALID'
 
-
-class ElementMissingError(SdfError):
+class ElementMissingError(SdfError, code='ELEMENT_MISSING'):
     """A required element is missing."""
 
-    code = 'ELEMENT_MISSING'
 
-
-class ElementIncorrectTypeError(SdfError):
+class ElementIncorrectTypeError(SdfError, code='ELEMENT_INCORRECT_TYPE'):
     """An element is not allowed at its place."""
 
-    code = 'ELEMENT_INCORRECT_TYPE'
 
-
-class ReservedNameError(SdfError):
+class ReservedNameError(SdfError, code='RESERVED_NAME'):
     """A name is reserved."""
 
-    code = 'RESERVED_NAME'
 
-
-class DuplicateNameError(SdfError):
+class DuplicateNameError(SdfError, code='DUPLICATE_NAME'):
     """Two elements of one scope have the same name."""
 
-    code = 'DUPLICATE_NAME'
 
-
-class ModelWithoutLinkError(SdfError):
+class ModelWithoutLinkError(SdfError, code='MODEL_WITHOUT_LINK'):
     """A model that is not static has neither a link nor a nested model."""
 
-    code = 'MODEL_WITHOUT_LINK'
 
-
-class CanonicalLinkError(SdfError):
+class CanonicalLinkError(SdfError, code='MODEL_CANONICAL_LINK_INVALID'):
     """``canonical_link`` does not name a frame."""
 
-    code = 'MODEL_CANONICAL_LINK_INVALID'
 
-
-class RelativeToError(SdfError):
+class RelativeToError(SdfError, code='POSE_RELATIVE_TO_INVALID'):
     """``relative_to`` or a placement frame does not name a frame."""
 
-    code = 'POSE_RELATIVE_TO_INVALID'
 
-
-class RelativeToCycleError(SdfError):
+class RelativeToCycleError(SdfError, code='POSE_RELATIVE_TO_CYCLE'):
     """Poses are relative to one another in a cycle."""
 
-    code = 'POSE_RELATIVE_TO_CYCLE'
 
-
-class AttachedToError(SdfError):
+class AttachedToError(SdfError, code='FRAME_ATTACHED_TO_INVALID'):
     """``attached_to`` does not name a frame."""
 
-    code = 'FRAME_ATTACHED_TO_INVALID'
 
-
-class AttachedToCycleError(SdfError):
+class AttachedToCycleError(SdfError, code='FRAME_ATTACHED_TO_CYCLE'):
     """Frames are attached to one another in a cycle."""
 
-    code = 'FRAME_ATTACHED_TO_CYCLE'
 
-
-class LinkInertiaError(SdfError):
+class LinkInertiaError(SdfError, code='LINK_INERTIA_INVALID'):
     """The inertia of a link cannot be computed."""
 
-    code = 'LINK_INERTIA_INVALID'
 
-
-class JointChildError(SdfError):
+class JointChildError(SdfError, code='JOINT_CHILD_LINK_INVALID'):
     """The child of a joint is not valid."""
 
-    code = 'JOINT_CHILD_LINK_INVALID'
 
-
-class JointParentError(SdfError):
+class JointParentError(SdfError, code='JOINT_PARENT_LINK_INVALID'):
     """The parent of a joint is not valid."""
 
-    code = 'JOINT_PARENT_LINK_INVALID'
 
-
-class JointSameLinkError(SdfError):
+class JointSameLinkError(SdfError, code='JOINT_PARENT_SAME_AS_CHILD'):
     """The parent and the child of a joint are the same body."""
 
-    code = 'JOINT_PARENT_SAME_AS_CHILD'
 
-
-class ExpressedInError(SdfError):
+class ExpressedInError(SdfError, code='JOINT_AXIS_EXPRESSED_IN_INVALID'):
     """The frame that a joint's axis is expressed in does not exist."""
 
-    code = 'JOINT_AXIS_EXPRESSED_IN_INVALID'
 
-
-class MimicError(SdfError):
+class MimicError(SdfError, code='JOINT_AXIS_MIMIC_INVALID'):
     """The joint or the axis that a joint's axis mimics does not exist, or is that axis itself."""
 
-    code = 'JOINT_AXIS_MIMIC_INVALID'
 
-
-class UriLookupError(SdfError):
+class UriLookupError(SdfError, code='URI_LOOKUP'):
     """The URI of an include was not found."""
 
-    code = 'URI_LOOKUP'
 
-
-class PlacementFrameError(SdfError):
+class PlacementFrameError(SdfError, code='MODEL_PLACEMENT_FRAME_INVALID'):
     """An include has a placement frame, but no pose."""
 
-    code = 'MODEL_PLACEMENT_FRAME_INVALID'
 
-
-class MergeIncludeError(SdfError):
+class MergeIncludeError(SdfError, code='MERGE_INCLUDE_UNSUPPORTED'):
     """An element cannot be merged into the element that includes it."""
 
-    code = 'MERGE_INCLUDE_UNSUPPORTED'
 
-
-class PoseNotSetError(SdfError):
+class PoseNotSetError(SdfError, code='POSE_NOT_SET'):
     """The requested pose cannot be written into the file."""
 
-    code = 'POSE_NOT_SET'
 
-
-class UrdfNotMadeError(SdfError):
+class UrdfNotMadeError(SdfError, code='URDF_NOT_MADE'):
     """No URDF can be made of a file."""
 
-    code = 'URDF_NOT_MADE'
 
-
-class FileWriteError(SdfError):
+class FileWriteError(SdfError, code='FILE_WRITE'):
     """A file cannot be written; it is as before."""
 
-    code = 'FILE_WRITE'
 
-
-class JointPositionError(SdfError, ValueError):
+class JointPositionError(SdfError, ValueError, code='JOINT_POSITION_INVALID'):
     """
     A query about positions of joints is not valid.
 
@@ -296,13 +242,9 @@ class JointPositionError(SdfError, ValueError):
     position.
     """
 
-    code = 'JOINT_POSITION_INVALID'
 
-
-class UnknownFrameError(SdfError, LookupError):
+class UnknownFrameError(SdfError, LookupError, code='POSE_RELATIVE_TO_INVALID'):
     """A query names a frame that does not exist, or one of several with the same name."""
-
-    code = 'POSE_RELATIVE_TO_INVALID'
 
 
 class AddressError(ValueError):

@@ -77,8 +77,13 @@ def shortened_message(message: str) -> str:
 
 def quoted_names(names: Sequence[str], most: int) -> str:
     """Return the first names for a message, in double quotes, and the number of the others."""
-    shown = ', '.join(f'"{shortened(name)}"' for name in names[:most])
-    return f'{shown} and {len(names) - most} more' if len(names) > most else shown
+    return listed([f'"{shortened(name)}"' for name in names], most)
+
+
+def listed(texts: Sequence[str], most: int) -> str:
+    """Return the first texts for a message, and the number of the others."""
+    more = f' and {len(texts) - most} more' if len(texts) > most else ''
+    return ', '.join(texts[:most]) + more
 
 
 def printable(text: str) -> str:
@@ -98,11 +103,7 @@ def printable(text: str) -> str:
 
 
 def hint_from_names(wanted: str, names: Iterable[str]) -> str:
-    """
-    Return the end of a message about a name that was not found.
-
-    :return: ``; did you mean "..."?`` with the nearest name, or an empty string.
-    """
+    """Return the end of a message about a name that was not found: the nearest name, or ''."""
     return NameIndex(names).hint(wanted)
 
 

@@ -4,20 +4,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import TypeVar
 
 from sdf_pose_bridge.errors import LoadError, Place, SdfError, SdfWarning
-from sdf_pose_bridge.names import NameIndex, shortened_message
+from sdf_pose_bridge.names import listed, shortened_message
 
 MOST_PROBLEMS = 100
 """Largest number of errors, and of warnings, that a load keeps."""
 
 MOST_HINTS = 50
 """Largest number of messages of a load that suggest a name."""
-
-MOST_CHARACTERS_OF_HINTS = 1_000_000
-"""Largest number of characters of all names that a load searches for hints."""
 
 _LONGEST_CHAIN = 10
 """Largest number of includes that an error names on the way to a file."""
@@ -50,8 +47,6 @@ class Problems:
         self._errors = _First[SdfError]()
         self._warnings = _First[SdfWarning]()
         self._hints = 0
-        self._indices: dict[Hashable, NameIndex] = {}
-        self._characters_of_hints = 0
         self.are_for_gazebo = False
         """Whether all warnings from now on concern Gazebo only."""
 
@@ -62,12 +57,7 @@ class Problems:
     def warning(
         self, message: str, place: Place, code: str = 'WARNING', *, is_for_gazebo: bool = False,
     ) -> None:
-        """
-        Add a warning.
-
-        :param code: code of the corresponding error, or ``WARNING``.
-        :param is_for_gazebo: whether it concerns Gazebo only.
-        """
+        """Add a warning; the arguments are the fields of :class:`SdfWarning`."""
         warning = SdfWarning(
             code, shortened_message(message), place, is_for_gazebo or self.are_for_gazebo)
         self._warnings.add(warning, self._key(warning))
@@ -104,25 +94,6 @@ class Problems:
         self._hints += 1
         return self._hints <= MOST_HINTS
 
-    def name_index(self, key: Hashable, names: Iterable[str]) -> NameIndex:
-        """
-        Return an index of names for hints; hints with the same key share it.
-
-        Names are left out if the names in all indices of the load would be too long together.
-        """
-        if self._parent is not None:
-            return self._parent.name_index(key, names)
-        if key not in self._indices:
-            self._indices[key] = NameIndex(self._affordable(names))
-        return self._indices[key]
-
-    def _affordable(self, names: Iterable[str]) -> Iterator[str]:
-        for name in names:
-            self._characters_of_hints += len(name)
-            if self._characters_of_hints > MOST_CHARACTERS_OF_HINTS:
-                return
-            yield name
-
     @property
     def errors(self) -> tuple[SdfError, ...]:
         """
@@ -152,11 +123,7 @@ class Problems:
         return tuple(warnings)
 
     def raise_errors(self) -> None:
-        """
-        Raise the errors, if there are any.
-
-        :raises LoadError: with the errors and warnings.
-        """
+        """Raise the errors with the warnings, if there are any."""
         if self._errors:
             raise LoadError(self.errors, self.warnings)
 
@@ -191,16 +158,12 @@ def folded(problems: Iterable[_Problem]) -> list[tuple[_Problem, str]]:
     for problem in problems:
         key = (problem.place.file, problem.code, problem.message)
         groups.setdefault(key, []).append(problem)
-    return [(group[0], _text_of_lines([str(each.place.line) for each in group[1:]]))
-            for group in groups.values()]
-
-
-def _text_of_lines(lines: Sequence[str]) -> str:
-    if not lines:
-        return ''
-    more = len(lines) - _MOST_LINES_NAMED
-    text = ', '.join(lines[:_MOST_LINES_NAMED]) + (f' and {more} more' if more > 0 else '')
-    return f' (also line{"s" if lines[1:] else ""} {text})'
+    result = []
+    for first, *others in groups.values():
+        lines = listed([str(each.place.line) for each in others], _MOST_LINES_NAMED)
+        text = f' (also line{"s" if others[1:] else ""} {lines})' if others else ''
+        result.append((first, text))
+    return result
 
 
 class _First(dict[Hashable, _Problem]):

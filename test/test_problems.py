@@ -7,7 +7,6 @@ import pytest
 from sdf_pose_bridge.errors import LoadError, ParsingError, Place
 from sdf_pose_bridge.problems import (
     folded,
-    MOST_CHARACTERS_OF_HINTS,
     MOST_HINTS,
     MOST_PROBLEMS,
     Problems,
@@ -90,29 +89,6 @@ def test_number_of_hints_is_limited():
     part = Problems(['a.sdf'], parent=problems)
     assert sum(part.allows_hint() for _ in range(MOST_HINTS + 5)) == MOST_HINTS
     assert not problems.allows_hint()
-
-
-def test_an_index_of_names_is_made_once_for_all_hints_of_a_scope():
-    problems = Problems(['a.sdf'])
-    part = Problems(['a.sdf'], parent=problems)
-    index = part.name_index('scope', ['left', 'right'])
-    assert index.hint('lefd') == '; did you mean "left"?'
-    assert problems.name_index('scope', iter(())) is index
-
-
-def test_names_of_all_indices_of_a_load_are_limited():
-    problems = Problems(['a.sdf'])
-    name = 'x' * 100
-    taken = []
-
-    def names(scope):
-        for number in range(MOST_CHARACTERS_OF_HINTS // 400):
-            taken.append(number)
-            yield f'{name}{scope}_{number}'
-
-    for scope in range(10):
-        problems.name_index(scope, names(scope))
-    assert len(taken) < MOST_CHARACTERS_OF_HINTS // 100 + 10
 
 
 def test_first_error_of_an_included_file_names_the_includes_that_led_there():

@@ -4,10 +4,9 @@
 Rotations, poses and their formats; independent of SDFormat and of ROS.
 
 - :mod:`~sdf_pose_bridge.geometry.rotations`: convert between roll-pitch-yaw, quaternion, matrix
-- :mod:`~sdf_pose_bridge.geometry.poses`: compose and invert poses
+- :mod:`~sdf_pose_bridge.geometry.poses`: compose and invert poses, and move them about axes
 - :mod:`~sdf_pose_bridge.geometry.chains`: follow chains of pointers, multiply poses along them
 - :mod:`~sdf_pose_bridge.geometry.formats`: the formats of poses, and conversions between them
 - :mod:`~sdf_pose_bridge.geometry.converted_rotation`: one rotation in both representations
-- :mod:`~sdf_pose_bridge.geometry.formulas`: the formulas of rotations, for floats and for arrays
-- :mod:`~sdf_pose_bridge.geometry.floats`: functions of numpy for floats, which the formulas call
+- :mod:`~sdf_pose_bridge.geometry.formulas`: evaluate formulas for floats and for arrays
 """

@@ -21,13 +21,7 @@ Indices: TypeAlias = NDArray[np.int32]
 
 
 def ends_from_pointers(pointers: Indices) -> Indices:
-    """
-    Follow every node to the end of its path.
-
-    :param pointers: the node that each node points to; -1 for none.
-    :return: for each node the end of its path; for a node that leads into a cycle, any node of
-        that cycle.
-    """
+    """Return the end of the path of each node; of one that leads into a cycle, any node of it."""
     ends = np.where(pointers < 0, np.arange(len(pointers), dtype=np.int32), pointers)
     for _ in range(len(pointers).bit_length()):
         further = ends[ends]
@@ -38,12 +32,7 @@ def ends_from_pointers(pointers: Indices) -> Indices:
 
 
 def cycles_from_pointers(pointers: Indices) -> list[list[int]]:
-    """
-    Find the cycles.
-
-    :param pointers: the node that each node points to; -1 for none.
-    :return: the nodes of each cycle, each pointing to the next.
-    """
+    """Return the nodes of each cycle, each pointing to the next."""
     ends = ends_from_pointers(pointers)
     cycles: list[list[int]] = []
     found: set[int] = set()

@@ -9,7 +9,8 @@ import enum
 import math
 from typing import NamedTuple
 
-from sdf_pose_bridge.geometry import floats
+import numpy as np
+
 from sdf_pose_bridge.geometry.formats import are_canonical_angles
 from sdf_pose_bridge.geometry.formulas import degrees_from_radians, radians_from_degrees
 from sdf_pose_bridge.geometry.rotations import (
@@ -61,7 +62,7 @@ def converted_rotation(
         rpy_rad: Sequence[float] = rpy
         # Angles that are not finite are not changed: the error shows them as they are given.
         if degrees and all(map(math.isfinite, rpy)):
-            rpy_rad = [radians_from_degrees(floats, angle) for angle in rpy]
+            rpy_rad = radians_from_degrees(np.array(rpy)).tolist()
         quat = quaternion_from_rpy(rpy_rad)
     elif given == Given.QUATERNION:
         quat = canonical_quaternion(quat_xyzw)
@@ -69,8 +70,7 @@ def converted_rotation(
         known = ', '.join(f'{value.value} ({value.name})' for value in Given)
         msg = f'given is {given!r}, which is neither RPY nor quaternion; known are {known}'
         raise RotationError(msg)
-    half_turn = 180.0 if degrees else math.pi
-    if given == Given.RPY and are_canonical_angles(rpy, half_turn):
+    if given == Given.RPY and are_canonical_angles(rpy, 180.0 if degrees else math.pi):
         roll, pitch, yaw = rpy
     else:
         roll, pitch, yaw = rpy_from_quaternion(quat)

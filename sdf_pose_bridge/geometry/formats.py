@@ -70,24 +70,19 @@ class Format(NamedTuple):
     """Converts finite rows (n, row_length) to the common representation; raises RotationError."""
     from_common: Callable[[Floats], Floats]
     """Converts the common representation to rows (n, row_length)."""
-    half_turn: float | None = None
-    """Half a turn in the unit of the last three numbers, if these are roll, pitch and yaw."""
-    unit: float = 1.0
-    """The largest number of a rotation in the format, unless it has roll, pitch and yaw."""
+    largest: float = 1.0
+    """The largest number of a rotation in the format; of angles half a turn."""
+    has_rpy: bool = False
+    """Whether the last three numbers are roll, pitch and yaw."""
     position: tuple[int, ...] = ()
     """The indices of x, y and z of a pose."""
     metre: float = 1.0
     """A metre in the unit of the position."""
 
     def doubt(self, numbers: Sequence[float]) -> UnitDoubt | None:
-        """
-        Return why numbers are probably in another unit than the format has.
-
-        :param numbers: one finite pose or rotation, shape (row_length,).
-        :return: None if they are plausible.
-        """
+        """Return why numbers are probably in another unit than the format has, or None."""
         angles, xyz = numbers[-3:], [numbers[index] for index in self.position]
-        if math.pi in (self.half_turn, self.unit) and max(map(abs, angles)) > LARGEST_ANGLE_RAD:
+        if self.largest == math.pi and max(map(abs, angles)) > LARGEST_ANGLE_RAD:
             return UnitDoubt(f'the angles {_shown(angles)} are radians', 'degrees')
         if self.metre == 1.0 and max(map(abs, xyz), default=0.0) >= FAR_M:
             return UnitDoubt(f'the position {_shown(xyz)} is in metres', 'mm')
@@ -123,8 +118,6 @@ def converted_rotations(
     """
     Convert rotations as :func:`converted_poses` does poses, between :data:`ROTATION_FORMATS`.
 
-    :param values: shape (n * row_length,) or (n, row_length).
-    :return: the rotations, shape (n * row_length,) or (n, row_length) like the values; new memory.
     :raises PoseFormatError: as :func:`converted_poses`.
     """
     return _converted(values, from_format, to_format, ROTATION_FORMATS, 'rotation')
@@ -139,21 +132,15 @@ def without_rounding_errors(values: Floats, source: Format, target: Format) -> F
         of the largest number; between formats with roll, pitch and yaw, which are exact, a copy.
     """
     shown: Floats = values.copy()
-    if source is not target and not (source.half_turn and target.half_turn):
-        largest = target.half_turn or target.unit
-        is_error = np.abs(values) < 4.0 * np.finfo(float).eps * largest
+    if source is not target and not (source.has_rpy and target.has_rpy):
+        is_error = np.abs(values) < 4.0 * np.finfo(float).eps * target.largest
         is_error[:, list(target.position)] = False
         shown[is_error] = 0.0
     return shown
 
 
 def are_canonical_angles(rpy: Any, half_turn: float) -> Any:
-    """
-    Return whether angles are in their ranges and not near gimbal lock.
-
-    :param rpy: roll, pitch, yaw, as floats or as arrays.
-    :param half_turn: half a turn in their unit.
-    """
+    """Return whether angles are in their ranges and not near gimbal lock; floats or arrays."""
     roll, pitch, yaw = rpy
     return (
         (abs(roll) <= half_turn) & (abs(yaw) <= half_turn)
@@ -169,32 +156,40 @@ def _converted(
 ) -> Floats:
     source = _format_from_name(from_format, formats, what)
     target = _format_from_name(to_format, formats, what)
-    rows, is_flat = _rows(values, source, what)
-    _check_finite(rows, source)
+    array = _array(values, source, what)
+    rows = array.reshape(-1, source.row_length)
+    is_finite = np.isfinite(rows)
+    if not is_finite.all():
+        row, column = np.argwhere(~is_finite)[0].tolist()
+        place = f'row {row}, ' if len(rows) > 1 else ''
+        msg = (f'{source.name}: {place}value {column} is {float(rows[row, column])!r};'
+               ' it must be a finite number')
+        raise PoseFormatError(msg)
     try:
         common = source.to_common(rows)
     except RotationError as error:
-        msg = f'{source.name}: {_without_only_row(str(error), len(rows))}'
+        message = str(error).removeprefix('row 0: ' if len(rows) == 1 else '')
+        msg = f'{source.name}: {message}'
         raise PoseFormatError(msg) from error
     with np.errstate(over='ignore'):
         result = target.from_common(common)
-    if source.half_turn and target.half_turn:
+    if source.has_rpy and target.has_rpy:
         # Rounding must not change angles that are already canonical.
         angles = rows[:, -3:]
-        are_canonical = are_canonical_angles(angles.T, source.half_turn)
-        if target.half_turn != source.half_turn:
-            angles = angles * target.half_turn / source.half_turn
+        are_canonical = are_canonical_angles(angles.T, source.largest)
+        if target.largest != source.largest:
+            angles = angles * target.largest / source.largest
         np.copyto(result[:, -3:], angles, where=are_canonical[:, np.newaxis])
     result += 0.0  # no negative zeros
     is_finite = np.isfinite(result)
     if not is_finite.all():
         row = int(np.argmin(is_finite.all(axis=1)))
-        place = _without_only_row(f'row {row}: ', len(rows))
+        place = f'row {row}: ' if len(rows) > 1 else ''
         msg = (
             f'{source.name}: {place}{tuple(rows[row].tolist())} has too large a number for'
             f' {target.name}')
         raise PoseFormatError(msg)
-    return result.reshape(-1) if is_flat else result
+    return result.reshape(-1) if array.ndim == 1 else result
 
 
 def _format_from_name(name: str, formats: Mapping[str, Format], what: str) -> Format:
@@ -205,8 +200,8 @@ def _format_from_name(name: str, formats: Mapping[str, Format], what: str) -> Fo
         raise PoseFormatError(msg) from None
 
 
-def _rows(values: object, source: Format, what: str) -> tuple[Floats, bool]:
-    """Return the values with shape (n, row_length), and whether they were flat."""
+def _array(values: object, source: Format, what: str) -> Floats:
+    """Return the values with shape (n * row_length,) or (n, row_length)."""
     try:
         array = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
@@ -218,126 +213,70 @@ def _rows(values: object, source: Format, what: str) -> tuple[Floats, bool]:
                 f'{array.size} values are not a whole number of {what}s: each {source.name} has'
                 f' {source.row_length} ({source.meaning})')
             raise PoseFormatError(msg)
-        return array.reshape(-1, source.row_length), True
-    if array.ndim != 2 or array.shape[1] != source.row_length:
+    elif array.ndim != 2 or array.shape[1] != source.row_length:
         msg = (
             f'values have shape {array.shape}: each {source.name} has {source.row_length}'
             f' ({source.meaning}), so they must be flat or have shape (n, {source.row_length})')
         raise PoseFormatError(msg)
-    return array, False
-
-
-def _check_finite(rows: Floats, source: Format) -> None:
-    is_finite = np.isfinite(rows)
-    if not is_finite.all():
-        row, column = np.argwhere(~is_finite)[0].tolist()
-        place = f'row {row}, value {column}' if len(rows) > 1 else f'value {column}'
-        msg = f'{source.name}: {place} is {float(rows[row, column])!r}; it must be a finite number'
-        raise PoseFormatError(msg)
-
-
-def _without_only_row(message: str, count: int) -> str:
-    """Return a message without the number of the row if there is only one row."""
-    return message.removeprefix('row 0: ') if count == 1 else message
-
-
-def _quaternion_from_degrees(rpy_deg: Floats) -> Floats:
-    rpy_rad: Floats = radians_from_degrees(np, rpy_deg)
-    return quaternion_from_rpy(rpy_rad)
-
-
-def _degrees_from_quaternion(quat_xyzw: Floats) -> Floats:
-    rpy_deg: Floats = degrees_from_radians(rpy_from_quaternion(quat_xyzw))
-    return rpy_deg
+    return array
 
 
 def _shown(numbers: Sequence[float]) -> str:
     return ' '.join(f'{number:g}' for number in numbers)
 
 
-def _pose(xyz_m: Floats, quat_xyzw: Floats) -> Floats:
-    return np.concatenate((xyz_m, quat_xyzw), axis=1)
+def _pose_format(
+    name: str, meaning: str, rotation: Format, metre: float = 1.0, *,
+    position: tuple[int, ...] = (0, 1, 2), rest: Sequence[int] = (), last_row: Sequence[int] = (),
+) -> Format:
+    """
+    Return a format with a position and a rotation.
 
+    :param position: the indices of x, y and z.
+    :param rest: the indices of the numbers of the rotation, if they do not follow the position.
+    :param last_row: the indices of the last row of a matrix.
+    """
+    rotated = list(rest or range(3, 3 + rotation.row_length))
+    constant, constants = list(last_row), LAST_ROW[:len(last_row)]
+    row_length = 3 + len(rotated) + len(constant)
 
-def _poses_from_matrices(matrices: Floats) -> Floats:
-    """Return poses (n, 7) of matrices (n, 4, 4)."""
-    is_exact = matrices[:, 3] == LAST_ROW
-    if not is_exact.all():
-        row = int(np.argmin(is_exact.all(axis=1)))
-        msg = (
-            f'row {row}: last row of the matrix is {tuple(matrices[row, 3].tolist())}, and must be'
-            f' exactly {LAST_ROW}')
-        raise RotationError(msg)
-    return _pose(matrices[:, :3, 3], quaternion_from_matrix(matrices[:, :3, :3]))
+    def poses_from_rows(rows: Floats) -> Floats:
+        is_exact = rows[:, constant] == constants
+        if not is_exact.all():
+            row = int(np.argmin(is_exact.all(axis=1)))
+            msg = (
+                f'row {row}: last row of the matrix is {tuple(rows[row, constant].tolist())}, and'
+                f' must be exactly {LAST_ROW}')
+            raise RotationError(msg)
+        return np.concatenate(
+            (rows[:, position] / metre, rotation.to_common(rows[:, rotated])), axis=1)
 
+    def rows_from_poses(poses: Floats) -> Floats:
+        rows = np.empty((len(poses), row_length))
+        rows[:, position] = poses[:, :3] * metre
+        rows[:, rotated] = rotation.from_common(poses[:, 3:])
+        rows[:, constant] = constants
+        return rows
 
-def _matrices_from_poses(poses: Floats) -> Floats:
-    """Return matrices (n, 4, 4) of poses (n, 7)."""
-    matrices = np.empty((len(poses), 4, 4))
-    matrices[:, :3, :3] = matrix_from_quaternion(poses[:, 3:])
-    matrices[:, :3, 3] = poses[:, :3]
-    matrices[:, 3] = LAST_ROW
-    return matrices
+    return rotation._replace(
+        name=name, row_length=row_length, meaning=meaning, to_common=poses_from_rows,
+        from_common=rows_from_poses, position=position, metre=metre)
 
 
 def _registry(*formats: Format) -> Mapping[str, Format]:
     return MappingProxyType({entry.name: entry for entry in formats})
 
 
-POSE_FORMATS = _registry(
-    Format(
-        'sdf_rpy', 6, 'x y z in metres, roll pitch yaw in radians',
-        lambda row: _pose(row[:, :3], quaternion_from_rpy(row[:, 3:])),
-        lambda pose: _pose(pose[:, :3], rpy_from_quaternion(pose[:, 3:])),
-        half_turn=math.pi, position=(0, 1, 2),
-    ),
-    Format(
-        'sdf_rpy_degrees', 6, 'x y z in metres, roll pitch yaw in degrees',
-        lambda row: _pose(row[:, :3], _quaternion_from_degrees(row[:, 3:])),
-        lambda pose: _pose(pose[:, :3], _degrees_from_quaternion(pose[:, 3:])),
-        half_turn=180.0, position=(0, 1, 2),
-    ),
-    Format(
-        'sdf_quat_xyzw', 7, 'x y z in metres, quaternion x y z w of any norm but 0',
-        lambda row: _pose(row[:, :3], canonical_quaternion(row[:, 3:])),
-        np.copy, position=(0, 1, 2),
-    ),
-    Format(
-        'matrix_row_major', 16, '4 x 4 matrix row after row, in metres',
-        lambda row: _poses_from_matrices(row.reshape(-1, 4, 4)),
-        lambda pose: _matrices_from_poses(pose).reshape(-1, 16), position=(3, 7, 11),
-    ),
-    Format(
-        'franka_matrix', 16, '4 x 4 matrix column after column, in metres',
-        lambda row: _poses_from_matrices(row.reshape(-1, 4, 4).swapaxes(1, 2)),
-        lambda pose: _matrices_from_poses(pose).swapaxes(1, 2).reshape(-1, 16),
-        position=(12, 13, 14),
-    ),
-    Format(
-        'franka_measured', 6,
-        "x y z in millimetres, rotations x y z in degrees (z-y'-x'': x is roll, z is yaw)",
-        lambda row: _pose(row[:, :3] / 1000.0, _quaternion_from_degrees(row[:, 3:])),
-        lambda pose: _pose(pose[:, :3] * 1000.0, _degrees_from_quaternion(pose[:, 3:])),
-        half_turn=180.0, position=(0, 1, 2), metre=1000.0,
-    ),
-    Format(
-        'ur_pose', 6, 'x y z in metres, rotation vector (axis times angle) in radians',
-        lambda row: _pose(row[:, :3], quaternion_from_rotation_vector(row[:, 3:])),
-        lambda pose: _pose(pose[:, :3], rotation_vector_from_quaternion(pose[:, 3:])),
-        unit=math.pi, position=(0, 1, 2),
-    ),
-)
-"""All formats of poses by name; their common representation has shape (n, 7)."""
-
 ROTATION_FORMATS = _registry(
     Format(
         'rpy', 3, 'roll pitch yaw in radians', quaternion_from_rpy, rpy_from_quaternion,
-        half_turn=math.pi,
+        largest=math.pi, has_rpy=True,
     ),
     Format(
         'rpy_degrees', 3, 'roll pitch yaw in degrees',
-        _quaternion_from_degrees, _degrees_from_quaternion,
-        half_turn=180.0,
+        lambda row: quaternion_from_rpy(radians_from_degrees(row)),
+        lambda quat: degrees_from_radians(rpy_from_quaternion(quat)),
+        largest=180.0, has_rpy=True,
     ),
     Format('quaternion', 4, 'x y z w of any norm but 0', canonical_quaternion, np.copy),
     Format(
@@ -352,12 +291,37 @@ ROTATION_FORMATS = _registry(
     ),
     Format(
         'rotation_vector', 3, 'axis times angle in radians',
-        quaternion_from_rotation_vector, rotation_vector_from_quaternion, unit=math.pi,
+        quaternion_from_rotation_vector, rotation_vector_from_quaternion, largest=math.pi,
     ),
     Format(
         'rotation_vector_degrees', 3, 'axis times angle in degrees',
         lambda row: quaternion_from_rotation_vector(np.radians(row)),
-        lambda quat: degrees_from_radians(rotation_vector_from_quaternion(quat)), unit=180.0,
+        lambda quat: degrees_from_radians(rotation_vector_from_quaternion(quat)), largest=180.0,
     ),
 )
 """All formats of rotations by name; their common representation has shape (n, 4)."""
+
+POSE_FORMATS = _registry(
+    _pose_format(
+        'sdf_rpy', 'x y z in metres, roll pitch yaw in radians', ROTATION_FORMATS['rpy']),
+    _pose_format(
+        'sdf_rpy_degrees', 'x y z in metres, roll pitch yaw in degrees',
+        ROTATION_FORMATS['rpy_degrees']),
+    _pose_format(
+        'sdf_quat_xyzw', 'x y z in metres, quaternion x y z w of any norm but 0',
+        ROTATION_FORMATS['quaternion']),
+    _pose_format(
+        'matrix_row_major', '4 x 4 matrix row after row, in metres', ROTATION_FORMATS['matrix'],
+        position=(3, 7, 11), rest=(0, 1, 2, 4, 5, 6, 8, 9, 10), last_row=(12, 13, 14, 15)),
+    _pose_format(
+        'franka_matrix', '4 x 4 matrix column after column, in metres', ROTATION_FORMATS['matrix'],
+        position=(12, 13, 14), rest=(0, 4, 8, 1, 5, 9, 2, 6, 10), last_row=(3, 7, 11, 15)),
+    _pose_format(
+        'franka_measured',
+        "x y z in millimetres, rotations x y z in degrees (z-y'-x'': x is roll, z is yaw)",
+        ROTATION_FORMATS['rpy_degrees'], metre=1000.0),
+    _pose_format(
+        'ur_pose', 'x y z in metres, rotation vector (axis times angle) in radians',
+        ROTATION_FORMATS['rotation_vector']),
+)
+"""All formats of poses by name; their common representation has shape (n, 7)."""

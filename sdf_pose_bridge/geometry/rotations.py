@@ -16,7 +16,9 @@ Conventions:
 
 Every function takes one rotation or many. One is a tuple or list of floats; the result is a tuple
 and takes a few microseconds. Many are an array of shape (..., 3), (..., 4) or (..., 3, 3), or
-nested sequences; the result is an array with the same leading shape.
+nested sequences; the result is an array with the same leading shape. All raise
+:class:`RotationError` for a wrong shape, numbers that are not finite, a quaternion of zeros, a
+rotation vector of 1e70 or longer, and a matrix that is not orthonormal or has determinant -1.
 
 At gimbal lock, where pitch is a right angle, only roll - yaw (pitch up) or roll + yaw (pitch down)
 is defined: yaw is then 0 and roll has all of it, as in gz-math. Near lock each angle alone is less
@@ -29,177 +31,282 @@ every representation.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 import math
-from typing import NamedTuple, overload, TypeAlias, TypeVar
+from typing import Any, overload, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sdf_pose_bridge.geometry import floats, formulas
+from sdf_pose_bridge.geometry import formulas
+from sdf_pose_bridge.geometry.formulas import (
+    check,
+    Component,
+    conversion,
+    corrected,
+    determinant,
+    dot,
+    FLOATS,
+    LARGEST_SQUARE,
+    NEARLY_UNIT,
+    orthonormality,
+    Representation,
+    scaled,
+    SMALLEST_SQUARE,
+    square_of,
+)
 
-Floats: TypeAlias = NDArray[np.float64]
+Floats: TypeAlias = formulas.Floats
+RotationError = formulas.RotationError
 Triple: TypeAlias = tuple[float, float, float]
 Quaternion: TypeAlias = tuple[float, float, float, float]
 Matrix: TypeAlias = tuple[Triple, Triple, Triple]
 One: TypeAlias = Sequence[float]
-OneMatrix: TypeAlias = Sequence[Sequence[float]]
 Many: TypeAlias = Floats | Sequence[Sequence[float]]
-ManyMatrices: TypeAlias = Floats | Sequence[Sequence[Sequence[float]]]
-
-_Values: TypeAlias = One | OneMatrix | Many | ManyMatrices
-_Result = TypeVar('_Result', Triple, Quaternion, Matrix)
 
 LOCK_TOLERANCE = 1e-15
 """Of gz-math: at gimbal lock the sine of pitch differs from 1 or -1 by less than this."""
 
+_GIMBAL_LOCK = 1e-31
+"""
+Below this (1 - |sin(pitch)|) / 2, roll and yaw cannot be distinguished, and yaw becomes 0.
 
-class RotationError(ValueError):
-    """The numbers are not a rotation; the message names the value and the rule."""
+Pitch is then within 6.4e-16 of a right angle; rounding moves a quaternion at lock by up to 5e-16.
+gz-math's tolerance allows 4.5e-8; yaw set to 0 there would change the rotation by as much.
+"""
 
+_MATRIX_TOLERANCE = 1e-5
+"""Largest error of the norms and products of a matrix; libfranka allows its matrices as much."""
 
-@overload
-def quaternion_from_rpy(rpy_rad: One) -> Quaternion: ...
-@overload
-def quaternion_from_rpy(rpy_rad: Many) -> Floats: ...
-def quaternion_from_rpy(rpy_rad: One | Many) -> Quaternion | Floats:
-    """
-    Convert roll, pitch, yaw to a quaternion.
-
-    :param rpy_rad: roll, pitch, yaw in radians, of any size; shape (3,) or (..., 3).
-    :return: x, y, z, w; unit, w >= 0; shape (4,) or (..., 4).
-    :raises RotationError: wrong shape or not finite.
-    """
-    return _converted(formulas.quaternion_from_rpy, rpy_rad, _RPY, (4,))
+_NEAREST_STEPS = 3
+"""Steps of the power iteration that reduce an error of 1e-5 to less than rounding."""
 
 
-@overload
-def rpy_from_quaternion(quat_xyzw: One) -> Triple: ...
-@overload
-def rpy_from_quaternion(quat_xyzw: Many) -> Floats: ...
-def rpy_from_quaternion(quat_xyzw: One | Many) -> Triple | Floats:
-    """
-    Convert a quaternion to roll, pitch, yaw.
-
-    :param quat_xyzw: x, y, z, w of any norm but zero; shape (4,) or (..., 4).
-    :return: roll, pitch, yaw in radians; roll and yaw in [-pi, pi], pitch in [-pi/2, pi/2], yaw 0
-        at gimbal lock; shape (3,) or (..., 3).
-    :raises RotationError: wrong shape, not finite or zero.
-    """
-    return _converted(formulas.rpy_from_quaternion, quat_xyzw, _QUATERNION, (3,))
+def _quaternion_message(quat_xyzw: Quaternion) -> str:
+    if all(map(math.isfinite, quat_xyzw)):
+        return f'quaternion {quat_xyzw} is zero, which is not a rotation'
+    return f'quaternion {quat_xyzw} (x, y, z, w) is not finite'
 
 
-@overload
-def matrix_from_quaternion(quat_xyzw: One) -> Matrix: ...
-@overload
-def matrix_from_quaternion(quat_xyzw: Many) -> Floats: ...
-def matrix_from_quaternion(quat_xyzw: One | Many) -> Matrix | Floats:
-    """
-    Convert a quaternion to a rotation matrix.
-
-    :param quat_xyzw: x, y, z, w of any norm but zero; shape (4,) or (..., 4).
-    :return: a tuple of the three rows, or an array of shape (..., 3, 3).
-    :raises RotationError: wrong shape, not finite or zero.
-    """
-    return _converted(formulas.matrix_from_quaternion, quat_xyzw, _QUATERNION, (3, 3))
-
-
-@overload
-def quaternion_from_matrix(matrix: OneMatrix) -> Quaternion: ...
-@overload
-def quaternion_from_matrix(matrix: ManyMatrices) -> Floats: ...
-def quaternion_from_matrix(matrix: OneMatrix | ManyMatrices) -> Quaternion | Floats:
-    """
-    Convert a rotation matrix to a quaternion.
-
-    :param matrix: three rows, or shape (..., 3, 3); a rotation to within 1e-5, of which the
-        nearest rotation is used.
-    :return: x, y, z, w; unit, w >= 0; shape (4,) or (..., 4).
-    :raises RotationError: wrong shape, not finite, not orthonormal or with determinant -1.
-    """
-    return _converted(formulas.quaternion_from_matrix, matrix, _MATRIX, (4,))
+def _matrix_message(matrix: Matrix) -> str:
+    rows = tuple(map(tuple, matrix))
+    if not np.isfinite(matrix).all():
+        return f'rotation matrix {rows} is not finite'
+    for value, expected, name in orthonormality(FLOATS, *matrix):
+        if not abs(value - expected) <= _MATRIX_TOLERANCE:
+            return (
+                f'rotation matrix {rows} is not orthonormal: {name} {value!r}, which differs from'
+                f' {expected:g} by more than {_MATRIX_TOLERANCE}')
+    return (
+        f'rotation matrix {rows} has determinant {determinant(*matrix):.6g}: it mirrors;'
+        ' a rotation has determinant +1')
 
 
-@overload
-def quaternion_from_rotation_vector(rotation_vector_rad: One) -> Quaternion: ...
-@overload
-def quaternion_from_rotation_vector(rotation_vector_rad: Many) -> Floats: ...
-def quaternion_from_rotation_vector(rotation_vector_rad: One | Many) -> Quaternion | Floats:
-    """
-    Convert a rotation vector, an axis times an angle, to a quaternion.
-
-    :param rotation_vector_rad: x, y, z; its length is the angle in radians, below 1e70; shape
-        (3,) or (..., 3).
-    :return: x, y, z, w; unit, w >= 0; shape (4,) or (..., 4).
-    :raises RotationError: wrong shape, not finite or too long.
-    """
-    return _converted(
-        formulas.quaternion_from_rotation_vector, rotation_vector_rad, _ROTATION_VECTOR, (4,))
+_RPY = Representation[One, Triple](
+    'roll, pitch, yaw', (3,), 'roll, pitch, yaw {} are not finite'.format)
+_QUATERNION = Representation[One, Quaternion]('quaternion', (4,), _quaternion_message)
+_ROTATION_VECTOR = Representation[One, Triple](
+    'rotation vector', (3,), 'rotation vector {} is not finite, or longer than 1e70'.format)
+_MATRIX = Representation[Sequence[One], Matrix]('rotation matrix', (3, 3), _matrix_message)
 
 
-@overload
-def rotation_vector_from_quaternion(quat_xyzw: One) -> Triple: ...
-@overload
-def rotation_vector_from_quaternion(quat_xyzw: Many) -> Floats: ...
-def rotation_vector_from_quaternion(quat_xyzw: One | Many) -> Triple | Floats:
-    """
-    Convert a quaternion to a rotation vector, an axis times an angle.
-
-    :param quat_xyzw: x, y, z, w of any norm but zero; shape (4,) or (..., 4).
-    :return: x, y, z; its length is the angle in radians, in [0, pi]; of half a turn the first
-        component that is not 0 is positive; shape (3,) or (..., 3).
-    :raises RotationError: wrong shape, not finite or zero.
-    """
-    return _converted(
-        formulas.rotation_vector_from_quaternion, quat_xyzw, _QUATERNION, (3,))
-
-
-@overload
-def matrix_from_rpy(rpy_rad: One) -> Matrix: ...
-@overload
-def matrix_from_rpy(rpy_rad: Many) -> Floats: ...
-def matrix_from_rpy(rpy_rad: One | Many) -> Matrix | Floats:
-    """
-    Convert roll, pitch, yaw to a rotation matrix.
-
-    :param rpy_rad: roll, pitch, yaw in radians, of any size; shape (3,) or (..., 3).
-    :return: a tuple of the three rows, or an array of shape (..., 3, 3).
-    :raises RotationError: wrong shape or not finite.
-    """
-    return _converted(formulas.matrix_from_rpy, rpy_rad, _RPY, (3, 3))
-
-
-@overload
-def rpy_from_matrix(matrix: OneMatrix) -> Triple: ...
-@overload
-def rpy_from_matrix(matrix: ManyMatrices) -> Floats: ...
-def rpy_from_matrix(matrix: OneMatrix | ManyMatrices) -> Triple | Floats:
-    """
-    Convert a rotation matrix to roll, pitch, yaw.
-
-    :param matrix: three rows, or shape (..., 3, 3); a rotation to within 1e-5, of which the
-        nearest rotation is used.
-    :return: roll, pitch, yaw in radians; roll and yaw in [-pi, pi], pitch in [-pi/2, pi/2], yaw 0
-        at gimbal lock; shape (3,) or (..., 3).
-    :raises RotationError: wrong shape, not finite, not orthonormal or with determinant -1.
-    """
-    return rpy_from_quaternion(quaternion_from_matrix(matrix))
-
-
-@overload
-def canonical_quaternion(quat_xyzw: One) -> Quaternion: ...
-@overload
-def canonical_quaternion(quat_xyzw: Many) -> Floats: ...
-def canonical_quaternion(quat_xyzw: One | Many) -> Quaternion | Floats:
+@conversion(_QUATERNION, _QUATERNION)
+def canonical_quaternion(xp: Any, *quat: Component) -> Any:
     """
     Return the canonical one of the two unit quaternions of a rotation.
 
-    :param quat_xyzw: x, y, z, w of any norm but zero; shape (4,) or (..., 4).
-    :return: x, y, z, w; unit; w >= 0, and if w is 0, the first of x, y, z that is not 0 is
-        positive; shape (4,) or (..., 4). A canonical quaternion is returned bit for bit.
-    :raises RotationError: wrong shape, not finite or zero.
+    A canonical quaternion is returned bit for bit.
+
+    :param values: x, y, z, w.
+    :return: x, y, z, w.
     """
-    return _converted(formulas.canonical_quaternion, quat_xyzw, _QUATERNION, (4,))
+    is_nearly_unit = abs(square_of(quat) - 1.0) < NEARLY_UNIT
+    if not xp.all(is_nearly_unit):
+        quat, square = scaled(xp, quat)
+        norm = xp.where(is_nearly_unit, 1.0, xp.sqrt(square))
+        quat = tuple([component / norm for component in quat])
+    return corrected(xp, quat)
+
+
+@conversion(_RPY, _QUATERNION)
+def quaternion_from_rpy(xp: Any, *rpy: Component) -> Any:
+    """
+    Convert roll, pitch, yaw to a quaternion.
+
+    :param values: roll, pitch, yaw in radians, of any size.
+    :return: x, y, z, w.
+    """
+    (sin_r, cos_r), (sin_p, cos_p), (sin_y, cos_y) = _sines_and_cosines(
+        xp, [0.5 * angle for angle in rpy])
+    cos_cos = cos_p * cos_y
+    sin_sin = sin_p * sin_y
+    cos_sin = cos_p * sin_y
+    sin_cos = sin_p * cos_y
+    return corrected(xp, (
+        sin_r * cos_cos - cos_r * sin_sin,
+        cos_r * sin_cos + sin_r * cos_sin,
+        cos_r * cos_sin - sin_r * sin_cos,
+        cos_r * cos_cos + sin_r * sin_sin))
+
+
+@conversion(_QUATERNION, _RPY)
+def rpy_from_quaternion(xp: Any, *quat: Component) -> Any:
+    """
+    Convert a quaternion to roll, pitch, yaw.
+
+    :param values: x, y, z, w.
+    :return: roll, pitch, yaw in radians.
+    """
+    # gz-math takes pitch from an arc sine, which loses half of the digits near a right angle. Here
+    # all angles are arc tangents of numbers that are exact to the last digits everywhere: (a, b)
+    # is the norm times sqrt(1 + sin(pitch)) times the cosine and sine of (roll - yaw) / 2, and
+    # (c, d) the norm times sqrt(1 - sin(pitch)) times those of (roll + yaw) / 2. The products of
+    # the two pairs are proportional to the cosines and sines of roll and yaw.
+    (x, y, z, w), _ = scaled(xp, quat)
+    a, b = w + y, x - z
+    c, d = w - y, x + z
+    up = a * a + b * b
+    down = c * c + d * d
+    ac, ad, bc, bd = a * c, a * d, b * c, b * d
+    # Adding zero makes -0.0 positive; the arc tangent would be -pi instead of pi.
+    roll = xp.arctan2(ad + bc + 0.0, ac - bd)
+    pitch = xp.arctan2(2.0 * (w * y - x * z), xp.sqrt(up * down)) + 0.0
+    yaw = xp.arctan2(ad - bc + 0.0, ac + bd)
+    is_locked = xp.minimum(up, down) < _GIMBAL_LOCK * (up + down)
+    if xp.any(is_locked):
+        is_up = down < up
+        cosine, sine = xp.where(is_up, a, c), xp.where(is_up, b, d)
+        total = xp.arctan2(2.0 * cosine * sine, cosine * cosine - sine * sine) + 0.0
+        roll = xp.where(is_locked, total, roll)
+        pitch = xp.where(is_locked, xp.copysign(0.5 * math.pi, up - down), pitch)
+        yaw = xp.where(is_locked, 0.0, yaw)
+    return roll, pitch, yaw
+
+
+@conversion(_QUATERNION, _MATRIX)
+def matrix_from_quaternion(xp: Any, *quat: Component) -> Any:
+    """
+    Convert a quaternion to a rotation matrix.
+
+    :param values: x, y, z, w.
+    :return: the three rows.
+    """
+    x, y, z, w = canonical_quaternion.formula(xp, *quat)
+    xx, yy, zz, ww = x * x, y * y, z * z, w * w
+    xy, xz, yz = x * y, x * z, y * z
+    wx, wy, wz = w * x, w * y, w * z
+    return (
+        ((ww + xx) - (yy + zz), 2.0 * (xy - wz), 2.0 * (xz + wy)),
+        (2.0 * (xy + wz), (ww + yy) - (xx + zz), 2.0 * (yz - wx)),
+        (2.0 * (xz - wy), 2.0 * (yz + wx), (ww + zz) - (xx + yy)))
+
+
+@conversion(_MATRIX, _QUATERNION)
+def quaternion_from_matrix(xp: Any, *matrix: Sequence[Component]) -> Any:
+    """
+    Convert a rotation matrix to a quaternion.
+
+    :param values: the three rows.
+    :return: x, y, z, w.
+    """
+    is_valid = determinant(*matrix) > 0.0
+    for value, expected, _ in orthonormality(xp, *matrix):
+        is_valid = is_valid & (abs(value - expected) <= _MATRIX_TOLERANCE)
+    check(xp, is_valid)
+    # The elements of a rotation matrix determine four times the products of the components of its
+    # quaternion. Each row of these products is the quaternion times a factor; the row with the
+    # largest diagonal element is exact for every rotation, half turns included.
+    (m00, m01, m02), (m10, m11, m12), (m20, m21, m22) = matrix
+    xy, xz, yz = m01 + m10, m02 + m20, m12 + m21
+    wx, wy, wz = m21 - m12, m02 - m20, m10 - m01
+    products = (
+        (1.0 + m00 - m11 - m22, xy, xz, wx),
+        (xy, 1.0 - m00 + m11 - m22, yz, wy),
+        (xz, yz, 1.0 - m00 - m11 + m22, wz),
+        (wx, wy, wz, 1.0 + m00 + m11 + m22))
+    quat, largest = products[3], products[3][3]
+    for index in range(3):
+        diagonal = products[index][index]
+        quat = xp.where(diagonal > largest, products[index], quat)
+        largest = xp.maximum(diagonal, largest)
+    # For a matrix that is not quite a rotation, the nearest rotation is the eigenvector of the
+    # largest eigenvalue (Bar-Itzhack, "New method for extracting the quaternion from a rotation
+    # matrix", 2000). The other eigenvalues are up to 1e-5 of it, so each step of the power
+    # iteration gains five digits.
+    for _ in range(_NEAREST_STEPS):
+        quat = tuple(dot(row, quat) for row in products)
+    return canonical_quaternion.formula(xp, *quat)
+
+
+@conversion(_RPY, _MATRIX)
+def matrix_from_rpy(xp: Any, *rpy: Component) -> Any:
+    """
+    Convert roll, pitch, yaw to a rotation matrix.
+
+    :param values: roll, pitch, yaw in radians, of any size.
+    :return: the three rows.
+    """
+    # The elements at gimbal lock are exact, unlike those computed from the quaternion.
+    (sin_r, cos_r), (sin_p, cos_p), (sin_y, cos_y) = _sines_and_cosines(xp, rpy)
+    # Adding zero makes -0.0 positive.
+    return (
+        (
+            cos_y * cos_p + 0.0,
+            cos_y * sin_p * sin_r - sin_y * cos_r + 0.0,
+            cos_y * sin_p * cos_r + sin_y * sin_r + 0.0,
+        ),
+        (
+            sin_y * cos_p + 0.0,
+            sin_y * sin_p * sin_r + cos_y * cos_r + 0.0,
+            sin_y * sin_p * cos_r - cos_y * sin_r + 0.0,
+        ),
+        (0.0 - sin_p, cos_p * sin_r + 0.0, cos_p * cos_r + 0.0))
+
+
+@conversion(_MATRIX, _RPY)
+def rpy_from_matrix(xp: Any, *matrix: Sequence[Component]) -> Any:
+    """
+    Convert a rotation matrix to roll, pitch, yaw.
+
+    :param values: the three rows.
+    :return: roll, pitch, yaw in radians.
+    """
+    return rpy_from_quaternion.formula(xp, *quaternion_from_matrix.formula(xp, *matrix))
+
+
+@conversion(_ROTATION_VECTOR, _QUATERNION)
+def quaternion_from_rotation_vector(xp: Any, *vector: Component) -> Any:
+    """
+    Convert a rotation vector, an axis times an angle, to a quaternion.
+
+    :param values: x, y, z; its length is the angle in radians.
+    :return: x, y, z, w.
+    """
+    square = dot(vector, vector)
+    check(xp, square < LARGEST_SQUARE)
+    is_usual = square > SMALLEST_SQUARE
+    angle = xp.where(is_usual, xp.sqrt(square), 1.0)
+    # Of a tiny angle, the sine of its half is its half.
+    factor = xp.where(is_usual, xp.sin(0.5 * angle) / angle, 0.5)
+    cosine = xp.where(is_usual, xp.cos(0.5 * angle), 1.0)
+    return corrected(xp, (*(component * factor for component in vector), cosine))
+
+
+@conversion(_QUATERNION, _ROTATION_VECTOR)
+def rotation_vector_from_quaternion(xp: Any, *quat: Component) -> Any:
+    """
+    Convert a quaternion to a rotation vector, an axis times an angle.
+
+    :param values: x, y, z, w.
+    :return: x, y, z; its length is the angle in radians, in [0, pi]; of half a turn the first
+        component that is not 0 is positive.
+    """
+    x, y, z, w = canonical_quaternion.formula(xp, *quat)
+    square = x * x + y * y + z * z
+    is_usual = square > SMALLEST_SQUARE
+    sine = xp.where(is_usual, xp.sqrt(square), 1.0)
+    factor = xp.where(is_usual, 2.0 * xp.arctan2(sine, w) / sine, 2.0)
+    return x * factor, y * factor, z * factor
 
 
 @overload
@@ -213,100 +320,16 @@ def near_gimbal_lock(quat_xyzw: One | Many) -> bool | NDArray[np.bool_]:
     The rule is gz-math's: the sine of pitch differs from 1 or -1 by less than 1e-15, so pitch is
     within 4.5e-8 radians of a right angle.
 
-    :param quat_xyzw: x, y, z, w of any norm but zero; shape (4,) or (..., 4).
-    :return: a bool, or an array of bool of shape (...).
-    :raises RotationError: wrong shape, not finite or zero.
+    :return: a bool, or an array of bool.
     """
     unit = canonical_quaternion(quat_xyzw)
     x, y, z, w = unit if isinstance(unit, tuple) else np.moveaxis(unit, -1, 0)
     return abs(abs(2.0 * (w * y - x * z)) - 1.0) < LOCK_TOLERANCE
 
 
-def _rpy_message(*rpy: float) -> str:
-    return f'roll, pitch, yaw {rpy} are not finite'
-
-
-def _rotation_vector_message(*rotation_vector_rad: float) -> str:
-    return f'rotation vector {rotation_vector_rad} is not finite, or longer than 1e70'
-
-
-def _quaternion_message(*quat_xyzw: float) -> str:
-    if all(map(math.isfinite, quat_xyzw)):
-        return f'quaternion {quat_xyzw} is zero, which is not a rotation'
-    return f'quaternion {quat_xyzw} (x, y, z, w) is not finite'
-
-
-def _matrix_message(*matrix: Triple) -> str:
-    rows = tuple(map(tuple, matrix))
-    if not np.isfinite(matrix).all():
-        return f'rotation matrix {rows} is not finite'
-    for value, expected, name in formulas.orthonormality(floats, *matrix):
-        if not abs(value - expected) <= formulas.MATRIX_TOLERANCE:
-            return (
-                f'rotation matrix {rows} is not orthonormal: {name} {value!r}, which differs from'
-                f' {expected:g} by more than {formulas.MATRIX_TOLERANCE}')
-    return (
-        f'rotation matrix {rows} has determinant {formulas.determinant(*matrix):.6g}: it mirrors;'
-        ' a rotation has determinant +1')
-
-
-class _Representation(NamedTuple):
-    """A representation of rotations by numbers."""
-
-    name: str
-    shape: tuple[int, ...]
-    message: Callable[..., str]
-    """Returns the error message for invalid numbers."""
-
-
-_RPY = _Representation('roll, pitch, yaw', (3,), _rpy_message)
-_QUATERNION = _Representation('quaternion', (4,), _quaternion_message)
-_ROTATION_VECTOR = _Representation('rotation vector', (3,), _rotation_vector_message)
-_MATRIX = _Representation('rotation matrix', (3, 3), _matrix_message)
-
-
-def _converted(
-    formula: Callable[..., _Result], values: _Values, given: _Representation,
-    shape: tuple[int, ...],
-) -> _Result | Floats:
-    """
-    Evaluate a formula for one rotation, or for all of an array.
-
-    :param formula: takes numpy or floats, and the components of a rotation.
-    :param values: one rotation as a tuple or list, or an array of shape (..., *given.shape).
-    :return: the result of the formula, or an array of shape (..., *shape).
-    :raises RotationError: wrong shape or invalid numbers; names the first row that has them.
-    """
-    if not isinstance(values, np.ndarray):
-        try:
-            return formula(floats, *values)
-        except (TypeError, ValueError, OverflowError):
-            pass  # not one valid rotation
-    array = _array(values, given)
-    leading = array.shape[:array.ndim - len(given.shape)]
-    rows = array.reshape(-1, math.prod(given.shape))
-    results = np.empty((len(rows), math.prod(shape)))
-    with np.errstate(all='ignore'):
-        for block in formulas.row_blocks(len(rows)):
-            columns = np.ascontiguousarray(rows[block].T).reshape(*given.shape, -1)
-            try:
-                components = formula(np, *columns)
-            except formulas.InvalidRotationError as error:
-                row = block.start + int(np.argmin(error.is_valid))
-                message = given.message(*rows[row].reshape(given.shape).tolist())
-                raise RotationError(f'row {row}: {message}' if leading else message) from error
-            results[block] = np.reshape(components, (results.shape[1], -1)).T
-    return results.reshape(leading + shape)
-
-
-def _array(values: _Values, given: _Representation) -> Floats:
-    try:
-        array = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        msg = f'{given.name} must be numbers, but is {values!r}'
-        raise RotationError(msg) from error
-    if array.shape[-len(given.shape):] != given.shape:
-        expected = ', '.join(map(str, given.shape))
-        msg = f'{given.name} must have shape (..., {expected}), but has {array.shape}'
-        raise RotationError(msg)
-    return array
+def _sines_and_cosines(xp: Any, rpy: Sequence[Component]) -> Any:
+    """Return sine and cosine of roll, pitch and yaw."""
+    roll, pitch, yaw = ((xp.sin(angle), xp.cos(angle)) for angle in rpy)
+    # Sines of angles that are not finite are not numbers.
+    check(xp, xp.isfinite(roll[0] + pitch[0] + yaw[0]))
+    return roll, pitch, yaw

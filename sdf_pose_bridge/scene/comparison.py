@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sdf_pose_bridge.geometry.poses import PoseArray, relative_poses
+from sdf_pose_bridge.geometry.poses import distance_and_angle, Pose, relative_pose
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 
@@ -55,23 +55,20 @@ def differences_of_scenes(
         one.
     :raises UnknownFrameError: if there is no such frame in one of the scenes.
     """
-    old_poses, new_poses = _poses(old, relative_to), _poses(new, relative_to)
-    old_keys, new_keys = _indices(old), _indices(new)
+    old_frame, new_frame = (
+        scene.pose_of(scene.index(relative_to)) if relative_to else Pose()
+        for scene in (old, new))
+    old_indices, new_indices = _indices(old), _indices(new)
     renamed = _renamed(
-        old, new, [index for key, index in old_keys.items() if key not in new_keys],
-        [index for key, index in new_keys.items() if key not in old_keys])
+        old, new, [index for key, index in old_indices.items() if key not in new_indices],
+        [index for key, index in new_indices.items() if key not in old_indices])
     old_of_new = renamed | {
-        new_keys[key]: index for key, index in old_keys.items() if key in new_keys}
+        new_indices[key]: index for key, index in old_indices.items() if key in new_indices}
     remaining = set(old_of_new.values())
     differences = [
         Difference(Change.REMOVED, Kind(old.kinds[index]), old.names[index], old.names[index])
-        for index in old_keys.values() if index not in remaining]
-    between = relative_poses(old_poses[list(old_of_new.values())], new_poses[list(old_of_new)])
-    distances = np.linalg.norm(between[:, :3], axis=1)
-    angles = 2.0 * np.arctan2(np.linalg.norm(between[:, 3:6], axis=1), np.abs(between[:, 6]))
-    movements = dict(zip(
-        old_of_new, zip(distances.tolist(), angles.tolist(), strict=True), strict=True))
-    for index in new_keys.values():
+        for index in old_indices.values() if index not in remaining]
+    for index in new_indices.values():
         kind, name = Kind(new.kinds[index]), new.names[index]
         if index not in old_of_new:
             differences.append(Difference(Change.ADDED, kind, name, ''))
@@ -79,8 +76,11 @@ def differences_of_scenes(
         old_name = old.names[old_of_new[index]]
         if index in renamed:
             differences.append(Difference(Change.RENAMED, kind, name, old_name))
-        if max(movements[index]) > tolerance:
-            differences.append(Difference(Change.MOVED, kind, name, old_name, *movements[index]))
+        movement = distance_and_angle(
+            relative_pose(old_frame, old.pose_of(old_of_new[index])),
+            relative_pose(new_frame, new.pose_of(index)))
+        if max(movement) > tolerance:
+            differences.append(Difference(Change.MOVED, kind, name, old_name, *movement))
     return differences
 
 
@@ -96,12 +96,6 @@ def _indices(scene: Scene) -> dict[tuple[str, int, str], int]:
     return {
         (scene.world_of(index), int(scene.kinds[index]), scene.names[index]): index
         for index in np.flatnonzero(scene.parents >= 0).tolist()}
-
-
-def _poses(scene: Scene, relative_to: str) -> PoseArray:
-    if not relative_to:
-        return scene.poses
-    return relative_poses(scene.poses[scene.index(relative_to)], scene.poses)
 
 
 def _renamed(old: Scene, new: Scene, gone: list[int], come: list[int]) -> dict[int, int]:

@@ -8,6 +8,7 @@ Source: ``FrameSemantics.cc`` of libsdformat. The graph that results has no cycl
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from itertools import chain
 from typing import NamedTuple
@@ -29,30 +30,36 @@ from sdf_pose_bridge.names import quoted_names, WORLD_FRAME
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.joints import JointChecks, JointEnds
 from sdf_pose_bridge.scene.name_scopes import IS_FRAME_KIND, NameScopes
-from sdf_pose_bridge.sdformat.elements import Elements, ModelDetails, NO_ELEMENT
+from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
 
 _MOST_NAMES_SHOWN = 5
 _LONGEST_CYCLE_SHOWN = 12
 
+_ERRORS = {
+    'attached_to': AttachedToError,
+    'canonical_link': CanonicalLinkError,
+    'placement_frame': RelativeToError,
+    'relative_to': RelativeToError,
+}
+"""The classes of errors about attributes that name no frame."""
+
+
 class FrameGraph(NamedTuple):
-    """The checked references of all elements. Entry i of a sequence is about element i."""
+    """
+    The checked references of all elements, as in :class:`~sdf_pose_bridge.scene.scene.Scene`.
+
+    Entry i of a sequence is about element i.
+    """
 
     names: Sequence[str]
-    """Absolute names, such as ``robot::arm::hand``."""
     roots: Sequence[int]
-    """The world or implicit root of each element."""
     references: Indices
-    """The frame that each pose is relative to; -1 for roots and unresolved elements."""
+    """-1 for roots and unresolved elements."""
     placements: Mapping[int, int]
-    """The frames that poses place, where these are not the elements themselves: models, and the
-    frames that replace merged models."""
     attachments: Indices
-    """The frame that each frame is attached to; -1 for links, static models and roots."""
     bodies: Indices
-    """The link, static model or root that each frame is attached to in the end; -1 for others."""
     canonical_links: Indices
-    """The canonical link of each model; -1 for a model without one and for other kinds."""
     joints: Sequence[JointEnds]
     """The joints that join two bodies, in file order."""
     unresolved: frozenset[int]
@@ -61,12 +68,7 @@ class FrameGraph(NamedTuple):
 
 
 def frame_graph_from_elements(elements: Elements, problems: Problems) -> FrameGraph:
-    """
-    Look up and check every reference.
-
-    :param problems: takes errors and warnings.
-    :return: the graph; a wrong reference in it is replaced by the default of its kind.
-    """
+    """Look up and check every reference; a wrong one is replaced by the default of its kind."""
     return _Builder(elements, problems).graph()
 
 
@@ -91,16 +93,13 @@ class _Builder:
         self._elements = elements
         self._problems = problems
         self._scopes = NameScopes(elements, problems)
-        self._scope_of: list[int] = elements.scopes.tolist()
         self._reported_cycles: set[frozenset[int]] = set()
-        self._links_with_automatic_inertial = {
-            int(elements.parents[inertial]) for inertial in elements.automatic_inertials}
         self._unresolved: dict[int, str] = {}
         """Unresolved elements, and for each the URI of the missing include that causes it."""
 
     def graph(self) -> FrameGraph:
         elements = self._elements
-        joints = self._joint_ends()
+        joints = {joint: self._joint_ends(joint) for joint in elements.joints}
         canonical = self._canonical_pointers()
         attachments = self._attachments(joints, canonical)
         references = default_references(elements.kinds, elements.parents, attachments)
@@ -121,29 +120,15 @@ class _Builder:
 
     # Attachment
 
-    def _joint_ends(self) -> dict[int, JointEnds]:
-        joints = self._elements.joints
-        for joint, details in joints.items() if self._elements.missing_includes else ():
-            for axis in filter(None, details.axes):
-                for name in filter(None, (axis.expressed_in.name, axis.leader.name)):
-                    self._frame_of_joint(joint, name)
-        return {
-            joint: JointEnds(
-                joint, self._frame_of_joint(joint, details.parent.name, is_parent=True),
-                self._frame_of_joint(joint, details.child.name))
-            for joint, details in joints.items()}
-
-    def _frame_of_joint(self, joint: int, name: str, *, is_parent: bool = False) -> int:
-        scope = self._scope_of[joint]
-        if is_parent and name == WORLD_FRAME:
-            return self._scopes.roots[joint]
-        found = self._scopes.frame(scope, name) if name else None
-        if found is not None:
-            return found
-        uri = self._scopes.missing_uri(scope, name)
-        if uri:
-            self._unresolved[joint] = uri
-        return NO_ELEMENT
+    def _joint_ends(self, joint: int) -> JointEnds:
+        details = self._elements.joints[joint]
+        for axis in filter(None, details.axes if self._elements.missing_includes else ()):
+            for name in (axis.expressed_in.name, axis.leader.name):
+                self._frame(joint, name, NO_ELEMENT)
+        parent, child = details.parent.name, details.child.name
+        return JointEnds(
+            joint, self._scopes.roots[joint] if parent == WORLD_FRAME
+            else self._frame(joint, parent, NO_ELEMENT), self._frame(joint, child, NO_ELEMENT))
 
     def _attachments(
         self, joints: Mapping[int, JointEnds], canonical: Mapping[int, int],
@@ -156,34 +141,31 @@ class _Builder:
             if not details.is_static:
                 attachments[model] = canonical[model]
         for frame, frame_details in elements.frames.items():
-            scope = self._scope_of[frame]
             attachments[frame] = self._frame(
-                AttachedToError, frame, 'attached_to', frame_details.attached_to, scope, scope)
+                frame, frame_details.attached_to, self._scopes.scope_of[frame], 'attached_to')
         return attachments
 
     def _canonical_pointers(self) -> dict[int, int]:
         """Find the canonical link of each model, or the frame that leads to it."""
-        kinds: list[int] = self._elements.kinds.tolist()
-        first_links = self._first_children_of_kind(Kind.LINK)
-        first_models = self._first_children_of_kind(Kind.MODEL)
+        elements = self._elements
+        first_children: dict[int, int] = {}
+        for kind in (Kind.MODEL, Kind.LINK):  # links are preferred
+            indices = np.flatnonzero(elements.kinds == kind)[::-1]
+            first_children.update(
+                zip(elements.parents[indices].tolist(), indices.tolist(), strict=True))
         pointers: dict[int, int] = {}
-        for model in sorted(self._elements.models, reverse=True):  # inner models come first
-            default = first_links.get(model, first_models.get(model, NO_ELEMENT))
+        for model in sorted(elements.models, reverse=True):  # inner models come first
+            default = first_children.get(model, NO_ELEMENT)
             # For a nested model, its own link counts, even if the model is static and its frame is
             # not attached to the link.
             inner = pointers.get(default, NO_ELEMENT)
-            if inner >= 0 and kinds[inner] == Kind.LINK:
+            if inner >= 0 and elements.kinds[inner] == Kind.LINK:
                 default = inner
-            pointers[model] = self._canonical_pointer(
-                model, self._elements.models[model], default)
+            pointers[model] = self._canonical_pointer(model, default)
         return pointers
 
-    def _first_children_of_kind(self, kind: Kind) -> dict[int, int]:
-        """Find the first child of a kind of each element that has one."""
-        indices = np.flatnonzero(self._elements.kinds == kind)[::-1]
-        return dict(zip(self._elements.parents[indices].tolist(), indices.tolist(), strict=True))
-
-    def _canonical_pointer(self, model: int, details: ModelDetails, default: int) -> int:
+    def _canonical_pointer(self, model: int, default: int) -> int:
+        details = self._elements.models[model]
         name = details.canonical_link
         if details.is_static:
             found = self._scopes.frame(model, name) if name else None
@@ -192,7 +174,7 @@ class _Builder:
             msg = (f'model "{self._scopes.names[model]}" has no link and no nested model; only a '
                    'static model may have none')
             self._problems.error(ModelWithoutLinkError(msg, self._elements.place(model)))
-        return self._frame(CanonicalLinkError, model, 'canonical_link', name, model, default)
+        return self._frame(model, name, default, 'canonical_link')
 
     def _canonical_links(self, canonical: Mapping[int, int], bodies: Indices) -> Indices:
         kinds: list[int] = self._elements.kinds.tolist()
@@ -211,72 +193,52 @@ class _Builder:
 
     def _set_references(self, references: Indices) -> None:
         """Replace the default references of elements by those in the file."""
-        for index, name in self._elements.relative_to.items():
-            found = self._scopes.frame(self._scope_of[index], name)
-            references[index] = self._default_reference(index, name) if found is None else found
+        elements = self._elements
+        links = [elements.parents[inertial] for inertial in elements.automatic_inertials]
+        is_needed = IS_FRAME_KIND[elements.kinds] | (
+            (elements.kinds == Kind.COLLISION) & np.isin(elements.parents, links))
+        defaults = np.where(is_needed, elements.parents, NO_ELEMENT).tolist()
+        for index, name in elements.relative_to.items():
+            references[index] = self._frame(index, name, defaults[index], 'relative_to')
         self._break_cycles(references, RelativeToCycleError, 'relative to')
 
-    def _default_reference(self, index: int, name: str) -> int:
-        """Report an unknown ``relative_to``; return the reference to use instead."""
-        elements = self._elements
-        scope = self._scope_of[index]
-        if IS_FRAME_KIND[elements.kinds[index]] or (
-                elements.kinds[index] == Kind.COLLISION
-                and int(elements.parents[index]) in self._links_with_automatic_inertial):
-            self._report_unknown(RelativeToError, index, 'relative_to', name, scope)
-            return int(elements.parents[index])
-        self._unresolved[index] = self._scopes.missing_uri(scope, name)
-        if not self._unresolved[index]:
-            reason = self._scopes.reason_without_frame(scope, name)
-            msg = f'relative_to="{name}" {reason}; the {elements.kind(index).label} is left out'
-            self._problems.warning(msg, elements.place_of_pose(index), RelativeToError.code)
-        return NO_ELEMENT
-
     def _placements(self) -> dict[int, int]:
-        placements: dict[int, int] = {}
-        for model, details in self._elements.models.items():
-            name = details.placement_frame
-            found = self._scopes.frame(model, name) if name else model
-            if found is None:
-                self._report_unknown(RelativeToError, model, 'placement_frame', name, model)
-            elif found != model:
-                placements[model] = found
-        for frame, frame_details in self._elements.frames.items():
-            name, scope = frame_details.placement_frame, self._scope_of[frame]
-            found = self._scopes.frame(scope, name) if name else frame
-            if found is None:
-                # The frame was placed when its model was merged. The name may be gone since.
-                uri = self._scopes.missing_uri(scope, name)
-                self._unresolved.update({frame: uri} if uri else {})
-            elif found != frame:
-                placements[frame] = found
-        return placements
+        found = {
+            model: self._frame(model, details.placement_frame, model, 'placement_frame')
+            for model, details in self._elements.models.items()}
+        # A frame was placed when its model was merged. The name may be gone since.
+        found.update({
+            frame: self._frame(frame, details.placement_frame, frame)
+            for frame, details in self._elements.frames.items()})
+        return {index: placed for index, placed in found.items() if placed != index}
 
     # Reports
 
-    def _frame(
-        self, error_class: type[SdfError], index: int, attribute: str, name: str, scope: int,
-        default: int,
-    ) -> int:
-        """Return the frame that an attribute names, and the default if it is empty or wrong."""
-        found = self._scopes.frame(scope, name) if name else default
-        if found is None:
-            self._report_unknown(error_class, index, attribute, name, scope)
-            return default
-        return found
+    def _frame(self, index: int, name: str, default: int, attribute: str = '') -> int:
+        """
+        Return the frame that an attribute names, and the default if it is empty or wrong.
 
-    def _report_unknown(
-        self, error_class: type[SdfError], index: int, attribute: str, name: str, scope: int,
-    ) -> None:
-        uri = self._scopes.missing_uri(scope, name)
+        :param attribute: its name; empty if a wrong value is not reported here.
+        """
+        elements, scopes = self._elements, self._scopes
+        is_of_pose = attribute == 'relative_to'
+        scope = index if index in elements.models and not is_of_pose else scopes.scope_of[index]
+        found = scopes.frame(scope, name) if name else default
+        if found is not None:
+            return found
+        uri = scopes.missing_uri(scope, name)
         if uri:
             self._unresolved[index] = uri
-            return
-        elements = self._elements
-        reason = self._scopes.reason_without_frame(scope, name)
-        is_of_pose = attribute == 'relative_to'
-        place = elements.place_of_pose(index) if is_of_pose else elements.place(index)
-        self._problems.error(error_class(f'{attribute}="{name}" {reason}', place))
+        elif attribute:
+            msg = f'{attribute}="{name}" {scopes.reason_without_frame(scope, name)}'
+            place = elements.place_of_pose(index) if is_of_pose else elements.place(index)
+            if is_of_pose and default == NO_ELEMENT:
+                self._unresolved[index] = ''
+                msg += f'; the {elements.kind(index).label} is left out'
+                self._problems.warning(msg, place, RelativeToError.code)
+            else:
+                self._problems.error(_ERRORS[attribute](msg, place))
+        return default
 
     def _add_dependents(
         self, references: Indices, attachments: Indices, joints: Sequence[JointEnds],
@@ -285,17 +247,18 @@ class _Builder:
         """Add the elements that depend on an unresolved one, and report their number."""
         if not self._unresolved:
             return
-        columns = self._elements.parents.tolist(), references.tolist(), attachments.tolist()
-        needed_by_joints = {
-            ends.joint: {ends.parent, *chain.from_iterable(ends.axes)} for ends in joints}
-        dependents: dict[int, list[int]] = {}
-        for index, pointers in enumerate(zip(*columns, strict=True)):
-            placement = placements.get(index, NO_ELEMENT)
-            for other in {*pointers, placement, *needed_by_joints.get(index, ())}:
-                dependents.setdefault(other, []).append(index)
+        pairs = chain(
+            *(enumerate(column.tolist())
+              for column in (self._elements.parents, references, attachments)),
+            placements.items(),
+            ((ends.joint, other) for ends in joints
+             for other in (ends.parent, *chain.from_iterable(ends.axes))))
+        dependents = defaultdict[int, set[int]](set)
+        for index, other in pairs:
+            dependents[other].add(index)
         found = list(self._unresolved)
         for other in found:
-            new = [index for index in dependents.get(other, ()) if index not in self._unresolved]
+            new = sorted(dependents[other] - self._unresolved.keys())
             self._unresolved.update(dict.fromkeys(new, self._unresolved[other]))
             found += new
         if self._problems.errors:

@@ -29,23 +29,15 @@ from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
 from sdf_pose_bridge.sdformat.joints import AXIS_TAGS, AxisDetails, DEFAULT_END, Reference
 
 
-class AxisReferences(NamedTuple):
-    """The elements that an axis of a joint refers to, by index."""
-
-    expressed_in: int
-    """The frame that its vector is expressed in."""
-    leader: int
-    """The joint that it mimics; -1 for none."""
-
-
 class JointEnds(NamedTuple):
     """The frames that a joint joins, by index; -1 for a name that names no frame."""
 
     joint: int
     parent: int
     child: int
-    axes: tuple[AxisReferences, ...] = ()
-    """The references of both axes, with defaults; empty before the joint is checked."""
+    axes: tuple[tuple[int, int], ...] = ()
+    """The frame in which the vector of each axis is expressed, and the joint that the axis mimics,
+    -1 for none; empty before the joint is checked."""
 
 
 class JointChecks:
@@ -60,38 +52,34 @@ class JointChecks:
     ) -> None:
         self._elements = elements
         self._scopes = scopes
-        self._scope_of: list[int] = elements.scopes.tolist()
         self._bodies: list[int] = bodies.tolist()
         self._problems = problems
 
     def checked(self, ends: JointEnds) -> JointEnds | None:
         """Return a joint with the references of its axes; None if it does not join two bodies."""
         axes = tuple(
-            AxisReferences(
-                self._expressed_in(ends.joint, axis), self._leader(ends.joint, index, axis))
-            if axis is not None else AxisReferences(ends.joint, NO_ELEMENT)
+            (ends.joint, NO_ELEMENT) if axis is None else
+            (self._expressed_in(ends.joint, axis.expressed_in),
+             self._leader(ends.joint, index, axis))
             for index, axis in enumerate(self._elements.joints[ends.joint].axes))
-        is_valid = self._are_ends_valid(ends) and self._are_bodies_valid(ends)
-        return ends._replace(axes=axes) if is_valid else None
+        return ends._replace(axes=axes) if self._are_valid(ends) else None
 
-    def _expressed_in(self, joint: int, axis: AxisDetails) -> int:
-        reference = axis.expressed_in
-        if not reference.name:
-            return joint
-        found = self._scopes.frame(self._scope_of[joint], reference.name)
+    def _expressed_in(self, joint: int, reference: Reference) -> int:
+        found = joint if not reference.name else self._scopes.frame(
+            self._scopes.scope_of[joint], reference.name)
         if found is None:
             self._report_unknown(ExpressedInError, joint, reference, 'expressed_in', 'axis')
             return joint
         return found
 
     def _leader(self, joint: int, index: int, axis: AxisDetails) -> int:
-        mimic, name = axis.axis.mimic, axis.leader.name
+        mimic, name, scope = axis.axis.mimic, axis.leader.name, self._scopes.scope_of[joint]
         if mimic is None:
             return NO_ELEMENT
-        leader = self._scopes.frame(self._scope_of[joint], name) if name else None
+        leader = self._scopes.frame(scope, name) if name else None
         if leader is None or leader not in self._elements.joints:
             msg = f'mimic joint="{name}" names no joint'
-        elif not self._is_found_by_parts(leader, self._scope_of[joint], name):
+        elif not self._is_found_by_parts(leader, scope, name):
             msg = (f'mimic joint="{name}" names no joint: libsdformat finds none in a model whose '
                    f'own name holds "{SEPARATOR}"')
         elif self._elements.joints[leader].axes[mimic.axis] is None:
@@ -112,48 +100,42 @@ class JointChecks:
             leader = int(parents[leader])
         return True
 
-    def _are_ends_valid(self, ends: JointEnds) -> bool:
-        joint, parent_index, child_index = ends.joint, ends.parent, ends.child
+    def _are_valid(self, ends: JointEnds) -> bool:
+        """Check that a joint joins two bodies."""
+        joint, root = ends.joint, self._scopes.roots[ends.joint]
         details = self._elements.joints[joint]
         parent, child = details.parent, details.child
         if child.name == WORLD_FRAME:
             msg = '"world" cannot be the child of a joint, only its parent'
             self._report(JointChildError, msg, joint, child.line, 'child')
-        elif child_index < 0 and child.name:
+        elif ends.child < 0 and child.name:
             self._report_unknown(JointChildError, joint, child, 'child')
         if parent.name and parent.name == child.name:
             msg = f'parent and child are both "{child.name}"; a joint joins two bodies'
-            self._report(JointSameLinkError, msg, joint, is_checked=True)
+            # libsdformat checks this in nested models too.
+            self._problems.error(JointSameLinkError(msg, self._elements.place(joint)))
             return False
-        if parent_index < 0 and parent.name:
+        if ends.parent < 0 and parent.name:
             # libsdformat looks for other parents before it resolves them.
             is_model_frame = parent.name.rpartition(SEPARATOR)[2] == MODEL_FRAME
             self._report_unknown(
                 AttachedToError if is_model_frame else JointParentError, joint, parent, 'parent')
-        elif parent_index == joint:
+        elif ends.parent == joint:
             msg = f'the joint names itself, "{parent.name}", as its parent'
             self._report(JointParentError, msg, joint, parent.line, 'parent')
-        return (
-            min(parent_index, child_index) >= 0 and joint not in (parent_index, child_index)
-            and child.name != WORLD_FRAME)
-
-    def _are_bodies_valid(self, ends: JointEnds) -> bool:
-        joint = ends.joint
+        if (min(ends.parent, ends.child) < 0 or joint in (ends.parent, ends.child)
+                or child.name == WORLD_FRAME):
+            return False
         parent_body, child_body = self._bodies[ends.parent], self._bodies[ends.child]
-        root = self._scopes.roots[joint]
-        if child_body not in (parent_body, root):
-            return True
-        details = self._elements.joints[joint]
-        parent, child = details.parent, details.child
-        if child_body != parent_body:
-            msg = f'child "{child.name}" is attached to the world, so nothing can move it'
-            self._report(JointChildError, msg, joint, child.line, 'child')
-        else:
+        if child_body == parent_body:
             body = WORLD_FRAME if child_body == root else self._scopes.names[child_body]
             msg = (f'parent "{parent.name}" and child "{child.name}" are both attached to '
                    f'"{body}"; a joint joins two bodies')
             self._report(JointSameLinkError, msg, joint)
-        return False
+        elif child_body == root:
+            msg = f'child "{child.name}" is attached to the world, so nothing can move it'
+            self._report(JointChildError, msg, joint, child.line, 'child')
+        return child_body not in (parent_body, root)
 
     def _report_unknown(
         self, error_class: type[SdfError], joint: int, reference: Reference, what: str,
@@ -162,23 +144,18 @@ class JointChecks:
         if reference.name == DEFAULT_END:
             msg = f'the joint has no <{what}>; it must name a frame'
         else:
-            reason = self._scopes.reason_without_frame(self._scope_of[joint], reference.name)
-            msg = f'{what} "{reference.name}" {reason}'
+            name, scope = reference.name, self._scopes.scope_of[joint]
+            msg = f'{what} "{name}" {self._scopes.reason_without_frame(scope, name)}'
         self._report(error_class, msg, joint, reference.line, part or what)
 
     def _report(
         self, error_class: type[SdfError], message: str, joint: int, line: int = 0,
-        part: str = '', *, is_checked: bool = False,
+        part: str = '',
     ) -> None:
-        """
-        Report an error, or a warning if libsdformat does not check this.
-
-        :param is_checked: whether libsdformat checks this in nested models too, as for children.
-        """
-        scope, root = self._scope_of[joint], self._scopes.roots[joint]
+        """Report an error, or a warning if libsdformat does not check this in nested models."""
+        scope, root = self._scopes.scope_of[joint], self._scopes.roots[joint]
         place = self._elements.place(joint, line, part)
-        if is_checked or error_class is JointChildError or (
-                root in (scope, self._elements.parents[scope])):
+        if error_class is JointChildError or root in (scope, self._elements.parents[scope]):
             self._problems.error(error_class(message, place))
         else:
             self._problems.warning(

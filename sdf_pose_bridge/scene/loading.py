@@ -135,12 +135,7 @@ def _scene(
 
 
 def _model_by_itself(root: XmlElement, sources: Sources) -> ModelByItself | None:
-    """
-    Check a model file by itself.
-
-    :param sources: the places of its elements; takes the errors of the file.
-    :return: the facts about the model that a merge needs; None if there are errors.
-    """
+    """Check a model file by itself; return what a merge needs, or None if there are errors."""
     part = sources.with_own_problems()
     elements = elements_from_tree(root, part)
     graph = frame_graph_from_elements(elements, part.problems)

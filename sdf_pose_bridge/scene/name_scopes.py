@@ -15,7 +15,14 @@ from itertools import chain, islice
 import numpy as np
 
 from sdf_pose_bridge.geometry.chains import ends_from_pointers
-from sdf_pose_bridge.names import MODEL_FRAME, ROOT_FRAME, scoped_name, SEPARATOR, WORLD_FRAME
+from sdf_pose_bridge.names import (
+    MODEL_FRAME,
+    NameIndex,
+    ROOT_FRAME,
+    scoped_name,
+    SEPARATOR,
+    WORLD_FRAME,
+)
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.elements import Elements, NO_ELEMENT
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -35,48 +42,33 @@ class NameScopes:
 
     A scope is the index of the model, world or root in which a reference is written.
 
-    :param problems: the problems of the load, which limit the number of hints.
-
     ``names[i]`` is the absolute name of element i, such as ``robot::arm::hand``, without the name
-    of the world. ``roots[i]`` is the index of its world or implicit root; each of these is a name
-    space of its own.
+    of the world, ``scope_of[i]`` the scope of its references, and ``roots[i]`` its world or
+    implicit root; each of these is a name space of its own.
     """
 
     def __init__(self, elements: Elements, problems: Problems) -> None:
         self._elements = elements
         self._problems = problems
-        # Key of the indices for hints. Using the object itself would make a circle of references.
-        self._key = object()
+        self._indices: dict[int, NameIndex] = {}
         self.names = _absolute_names(elements)
+        self.scope_of: list[int] = elements.scopes.tolist()
         self.roots: list[int] = ends_from_pointers(elements.parents).tolist()
         self._is_model: list[bool] = (elements.kinds == Kind.MODEL).tolist()
         self._frames = defaultdict[int, dict[str, int]](dict)
         # If names are equal, which is an error, the first one counts.
         for index in np.flatnonzero(IS_FRAME_KIND[elements.kinds])[::-1].tolist():
-            self._frames[self.roots[index]][self.names[index]] = index
+            frames = self._frames[self.roots[index]]
+            frames[self.names[index]] = index
+            if self._is_model[index]:
+                frames[self.names[index] + _OWN_FRAME] = index
+        for world in np.flatnonzero(elements.kinds == Kind.WORLD).tolist():
+            self._frames[world][WORLD_FRAME] = world
 
     def frame(self, scope: int, reference: str) -> int | None:
-        """
-        Find the frame that a reference names.
-
-        :param reference: the name as written, not empty.
-        :return: index of the frame, or None if there is none.
-        """
-        if self._is_model[scope]:
-            if reference == MODEL_FRAME:
-                return scope
-            name = f'{self.names[scope]}{SEPARATOR}{reference}'
-        else:
-            if reference == WORLD_FRAME and self._elements.kinds[scope] == Kind.WORLD:
-                return scope
-            name = reference
-        frames = self._frames[self.roots[scope]]
-        found = frames.get(name)
-        if found is None and name.endswith(_OWN_FRAME):
-            found = frames.get(name[:-len(_OWN_FRAME)])
-            if found is not None and not self._is_model[found]:
-                return None
-        return found
+        """Find the frame that a reference names, as written and not empty."""
+        outer = self.names[scope] if self._is_model[scope] else ''
+        return self._frames[self.roots[scope]].get(scoped_name(outer, reference))
 
     def missing_uri(self, scope: int, reference: str) -> str:
         """Return the URI of the missing include that a reference leads into, or ''."""
@@ -103,11 +95,7 @@ class NameScopes:
         return f'{kind.label} "{name}"'
 
     def reason_without_frame(self, scope: int, reference: str) -> str:
-        """
-        Return the end of a message about a reference that names no frame.
-
-        :return: the scope, and the likely reason or the nearest name.
-        """
+        """Return the scope of a reference that names no frame, and the likely reason."""
         hint = self._hint(scope, reference) if self._problems.allows_hint() else ''
         return f'names no frame in {self._described(scope)}{hint}'
 
@@ -129,23 +117,23 @@ class NameScopes:
                 return (f'; {self._described(outer)} has a frame "{scoped}", but names of '
                         'enclosing scopes cannot be used here')
             outer = int(self._elements.parents[outer])
-        own, prefix = (MODEL_FRAME, self.names[scope] + SEPARATOR) if self._is_model[scope] else (
-            WORLD_FRAME, '')
-        visible = (name[len(prefix):] for name in self._frames[self.roots[scope]]
-                   if name.startswith(prefix))
-        names = chain([own], islice(visible, _MOST_NAMES_COMPARED - 1))
-        return self._problems.name_index((self._key, scope), names).hint(reference)
+        if scope not in self._indices:
+            own, prefix = (
+                (MODEL_FRAME, self.names[scope] + SEPARATOR) if self._is_model[scope]
+                else (WORLD_FRAME, ''))
+            visible = (name[len(prefix):] for name in self._frames[self.roots[scope]]
+                       if name.startswith(prefix) and not name.endswith(_OWN_FRAME))
+            self._indices[scope] = NameIndex(
+                chain([own], islice(visible, _MOST_NAMES_COMPARED - 1)))
+        return self._indices[scope].hint(reference)
 
 
 def _absolute_names(elements: Elements) -> list[str]:
     names: list[str] = []
-    scopes: list[str] = []
-    for name, parent, kind in zip(
-            elements.names, elements.parents.tolist(), elements.kinds.tolist(), strict=True):
-        if parent >= 0:
-            names.append(scoped_name(scopes[parent], name))
-            scopes.append(names[-1])
-        else:
+    parents, kinds = elements.parents.tolist(), elements.kinds.tolist()
+    for name, parent, kind in zip(elements.names, parents, kinds, strict=True):
+        if parent < 0:
             names.append(WORLD_FRAME if kind == Kind.WORLD else ROOT_FRAME)
-            scopes.append('')
+        else:
+            names.append(scoped_name('' if parents[parent] < 0 else names[parent], name))
     return names

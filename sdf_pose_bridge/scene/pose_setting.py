@@ -10,7 +10,6 @@ its reference, and the new numbers are checked by reading the changed file.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-import math
 import os
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
@@ -19,7 +18,7 @@ import numpy as np
 
 from sdf_pose_bridge.errors import Place, PoseNotSetError, SdfError
 from sdf_pose_bridge.geometry.poses import (
-    canonical_relative_pose,
+    distance_and_angle,
     Pose,
     pose_inverse,
     pose_product,
@@ -177,7 +176,7 @@ def _check_joints(scene: Scene, element: int, in_reference: Pose, at: Place) -> 
     reference = int(scene.references[element])
     expected = scene.relative_pose_of(element, reference)
     size_m = float(np.abs(scene.poses[:, :3]).max())
-    if _distance(in_reference, expected) > TOLERANCE * (1.0 + size_m):
+    if max(distance_and_angle(in_reference, expected)) > TOLERANCE * (1.0 + size_m):
         msg = (f'a joint has moved "{scene.names[element]}" away from "{scene.names[reference]}", '
                'which its pose in the file is relative to; move the joint back, or set the pose '
                'of another frame')
@@ -186,10 +185,4 @@ def _check_joints(scene: Scene, element: int, in_reference: Pose, at: Place) -> 
 
 def are_close(a: Pose, b: Pose) -> bool:
     """Return whether two poses are equal to 1e-9 metres and radians."""
-    return _distance(a, b) <= TOLERANCE
-
-
-def _distance(a: Pose, b: Pose) -> float:
-    """Return the larger one of the distance of two poses in metres and their angle in radians."""
-    between = canonical_relative_pose(a, b)
-    return max(math.hypot(*between[:3]), 2.0 * math.atan2(math.hypot(*between[3:6]), between.qw))
+    return max(distance_and_angle(a, b)) <= TOLERANCE

@@ -39,14 +39,7 @@ def scene_from_graph(
     path: str, elements: Elements, graph: FrameGraph, problems: Problems,
     urdf_root: str | None = None,
 ) -> Scene:
-    """
-    Resolve all poses, and leave out unresolved elements.
-
-    :param path: path of the file, as it was opened.
-    :param graph: the references of the elements, which are valid.
-    :param problems: has the warnings of the load.
-    :param urdf_root: of URDF that is read as ROS reads it: the link that has no parent.
-    """
+    """Resolve all poses, and leave out unresolved elements."""
     poses = _root_poses(elements, graph)
     computed_inertials = _place_automatic_inertials(poses, elements)
     count = len(elements.names)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from sdf_pose_bridge.errors import Place, SdfWarning, UnknownFrameError
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.geometry.poses import canonical_relative_pose, Pose, PoseArray
-from sdf_pose_bridge.names import hint_from_names, scoped_name, SEPARATOR
+from sdf_pose_bridge.names import hint_from_names, listed, scoped_name, SEPARATOR
 from sdf_pose_bridge.scene.frame_graph import default_references
 from sdf_pose_bridge.sdformat.elements import SensorDetails
 from sdf_pose_bridge.sdformat.grammar import Kind
@@ -242,11 +242,9 @@ class Scene:
     def _unknown(self, name: str, world: str, found: list[int]) -> UnknownFrameError:
         place = Place(self.path)
         if found:
-            kinds = ', '.join(
-                f'a {Kind(self.kinds[i]).label} in {self.world_of(i) or "the file"}'
-                for i in found[:_MOST_NAMED])
-            if len(found) > _MOST_NAMED:
-                kinds += f' and {len(found) - _MOST_NAMED} more'
+            kinds = listed(
+                [f'a {Kind(self.kinds[i]).label} in {self.world_of(i) or "the file"}'
+                 for i in found], _MOST_NAMED)
             msg = f'"{name}" is the name of more than one element: {kinds}'
         else:
             where = f'world "{world}"' if world else 'the file'

@@ -25,7 +25,7 @@ from sdf_pose_bridge.errors import (
     ReservedNameError,
     SdfError,
 )
-from sdf_pose_bridge.names import ROOT_FRAME, SEPARATOR, shortened
+from sdf_pose_bridge.names import hint_from_names, ROOT_FRAME, SEPARATOR, shortened
 from sdf_pose_bridge.sdformat.elements import (
     Elements,
     ElementsBuilder,
@@ -316,9 +316,8 @@ class _Reader:
                     self._sources.error(AttributeInvalidError, xml, msg)
             elif choice is not None and (fault := choice_fault(value, choice)):
                 error = ElementInvalidError if definition.kind is None else AttributeInvalidError
-                problems = self._sources.problems
-                hint = problems.name_index(choice, choice.texts).hint(
-                    value) if problems.allows_hint() else ''
+                hint = hint_from_names(value, choice.texts) if (
+                    self._sources.problems.allows_hint()) else ''
                 msg = f'{name}="{value}" of <{written_tag(xml)}> {fault}{hint}'
                 self._sources.error(error, xml, msg)
 

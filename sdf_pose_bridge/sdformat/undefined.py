@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from sdf_pose_bridge.names import NameIndex
 from sdf_pose_bridge.sdformat.grammar import Definition, Kind
 from sdf_pose_bridge.sdformat.sources import Sources
 from sdf_pose_bridge.sdformat.specification import URDF_TAGS
@@ -98,8 +99,7 @@ class UndefinedReporter:
         # Most undefined elements of a file have one of a few names.
         key = form, parent, name
         if key not in self._nearest and self._sources.problems.allows_hint():
-            index = self._sources.problems.name_index((form, parent), names)
-            self._nearest[key] = index.nearest(name)
+            self._nearest[key] = NameIndex(names).nearest(name)
         nearest = self._nearest.get(key, '')
         return f'did you mean {form.format(nearest)}?' if nearest else ''
 

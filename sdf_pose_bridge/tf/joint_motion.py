@@ -24,10 +24,10 @@ from sdf_pose_bridge.geometry.poses import (
     pose_products,
     PoseArray,
     relative_poses,
+    ScrewMotions,
     transformed_points,
 )
 from sdf_pose_bridge.geometry.rotations import canonical_quaternion, Floats
-from sdf_pose_bridge.geometry.screws import ScrewMotions
 from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.joints import JointAxis
 from sdf_pose_bridge.sdformat.specification import JOINT_TYPES, Motion

@@ -1,8 +1,9 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Composing and inverting poses: laws of a group, and many give the same as one by one."""
+"""Compose and invert poses, one or many, as a group; move them about axes."""
 
-from matrices import matrix_from_pose
+from joint_trees import exponential
+from matrices import assert_same_pose, matrix_from_pose
 import numpy as np
 import pytest
 
@@ -20,8 +21,10 @@ from sdf_pose_bridge.geometry.poses import (
     pose_products,
     relative_pose,
     relative_poses,
+    ScrewMotions,
     transformed_points,
 )
+from sdf_pose_bridge.geometry.rotations import canonical_quaternion
 
 NUMBERS = st.floats(-100.0, 100.0, allow_subnormal=False)
 QUATERNIONS = st.tuples(*[st.floats(-1.0, 1.0)] * 4).filter(
@@ -36,6 +39,12 @@ def unit(quaternion):
 POSES = st.builds(
     lambda origin, quaternion: Pose(*origin, *unit(quaternion)),
     st.tuples(NUMBERS, NUMBERS, NUMBERS), QUATERNIONS)
+
+
+TURNS = st.floats(-3.0, 3.0)
+VECTORS = st.tuples(*[TURNS] * 3)
+AXES = VECTORS.filter(lambda axis: np.linalg.norm(axis) > 1e-3).map(
+    lambda axis: np.array(axis) / np.linalg.norm(axis))
 
 
 def assert_near(a, b, tolerance=1e-10):
@@ -134,3 +143,25 @@ def test_arguments_are_not_modified(count):
     a.setflags(write=False)
     pose_products(a, a)
     relative_poses(a, a)
+
+
+@given(POSES, AXES, VECTORS, TURNS, TURNS, POSES, TURNS)
+def test_a_motion_is_the_exponential_of_its_twist(
+    before, axis, point, rad_per_unit, m_per_unit, after, position,
+):
+    motions = ScrewMotions(
+        rows([before]), axis[np.newaxis], np.array([point]), np.array([rad_per_unit]),
+        np.array([m_per_unit]), rows([after]))
+    pose, = motions.poses(np.array([position]))
+    twist = np.zeros((4, 4))
+    twist[:3, :3] = rad_per_unit * np.cross(np.eye(3), axis)
+    twist[:3, 3] = m_per_unit * axis - twist[:3, :3] @ point
+    motion = exponential(twist * position)
+    pose[3:] = canonical_quaternion(pose[3:])
+    assert_same_pose(pose, matrix_from_pose(before) @ motion @ matrix_from_pose(after))
+
+
+def test_no_motions():
+    none = np.empty((0, 7))
+    motions = ScrewMotions(none, none[:, :3], none[:, :3], none[:, 0], none[:, 0], none)
+    assert motions.poses(none[:, 0]).shape == (0, 7)

@@ -133,6 +133,14 @@ def test_matrices_must_be_three_by_three(function, matrix):
         function(matrix)
 
 
+@pytest.mark.parametrize('place', range(9))
+def test_every_element_of_a_matrix_is_checked(place):
+    wrong = np.eye(3)
+    wrong.flat[place] += 2e-5
+    with pytest.raises(RotationError, match='row 1: '):
+        rotations.quaternion_from_matrix(np.array([EYE, wrong]))
+
+
 # Conventions.
 
 @given(st.tuples(*[st.floats(-10.0, 10.0)] * 3))

@@ -25,7 +25,7 @@ from sdf_pose_bridge.errors import (
     ElementInvalidError,
     ElementMissingError,
 )
-from sdf_pose_bridge.names import scoped_name, SEPARATOR
+from sdf_pose_bridge.names import hint_from_names, scoped_name, SEPARATOR
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.sdformat.grammar import Definition, definition_of, STANDALONE_ELEMENTS
 from sdf_pose_bridge.sdformat.joints import DEFAULT_END
@@ -356,7 +356,7 @@ def hint_for_id(top: XmlElement, element_id: str, problems: Problems, tag: str =
     """
     Return the end of a message about an id that was not found: a likely reason, or the nearest id.
 
-    :param problems: the problems of the load, which limit the comparisons.
+    :param problems: the problems of the load, which limit the number of hints.
     """
     if not problems.allows_hint() or len(element_id) > _LONGEST_ID_COMPARED:
         return ''
@@ -370,8 +370,7 @@ def hint_for_id(top: XmlElement, element_id: str, problems: Problems, tag: str =
     if tags:
         return f'; that is a <{tags[0]}>'
     wanted = (found_id for found_id, found_tag in ids if tag in ('', found_tag))
-    # Each parameter may change the elements, so each has a separate index.
-    return problems.name_index(object(), wanted).hint(element_id)
+    return hint_from_names(element_id, wanted)
 
 
 def _ids(xml: XmlElement, scope: str) -> Iterator[tuple[str, str]]:
