@@ -5,22 +5,22 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 import os
 import re
 import sys
 
 from sdf_pose_bridge.cli.loading import add_file_arguments, load_file
-from sdf_pose_bridge.cli.printing import in_order, print_problems
-from sdf_pose_bridge.cli.records import (
+from sdf_pose_bridge.cli.printing import (
     add_format_argument,
     GITHUB,
+    in_order,
     JSON,
-    print_annotations,
     print_json,
+    print_problems,
 )
 from sdf_pose_bridge.errors import Place, SdfError, SdfWarning
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import resource_finder, ResourceFinder
@@ -28,6 +28,9 @@ from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 _END_OF_FOLDER = re.compile('(?<=[^/:])/')
 """The end of a package, model or folder in a URI."""
+
+_ESCAPES = str.maketrans({'%': '%25', '\r': '%0D', '\n': '%0A'})
+_ESCAPES_OF_PROPERTIES = {**_ESCAPES, **str.maketrans({':': '%3A', ',': '%2C'})}
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -51,18 +54,18 @@ def run(options: argparse.Namespace) -> int:
     """
     exit_code = 0
     for path in options.files:
-        loaded = load_file(path, options, shapes=True)
-        if loaded.scene is not None:
-            loaded = loaded._replace(warnings=in_order(
-                loaded.warnings, _doubts_about_frames(loaded.scene),
-                _doubts_about_shapes(loaded.scene, options.resource_paths)))
+        scene, errors, warnings = load_file(path, options, shapes=True)
+        if scene is not None:
+            warnings = in_order(
+                warnings, _doubts_about_frames(scene),
+                _doubts_about_shapes(scene, options.resource_paths))
         if options.format == JSON:
-            print_json(path, loaded.errors, loaded.warnings)
+            print_json(path, errors, warnings)
         elif options.format == GITHUB:
-            print_annotations(in_order(loaded.errors, loaded.warnings))
+            _print_annotations(in_order(errors, warnings))
         else:
-            print_problems(loaded.errors, loaded.warnings, sys.stdout, for_gazebo=True)
-        if loaded.errors or (options.strict and loaded.warnings):
+            print_problems(errors, warnings, sys.stdout, for_gazebo=True)
+        if errors or (options.strict and warnings):
             exit_code = 1
     return exit_code
 
@@ -104,8 +107,10 @@ def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[S
         if finder.file_from_uri(uri, file) is None:
             missing.setdefault((_missing_part(uri, file, finder), file), []).append(uri)
     for (folder, file), uris in missing.items():
+        others = f', like {len(uris) - 1} more of "{shortened(folder)}"' if uris[1:] else ''
         problems.warning(
-            _reason_without_meshes(folder, uris, file, finder), places[uris[0], file])
+            f'the mesh "{shortened(uris[0])}" is not found{others}: '
+            f'{finder.reason_not_found(uris[0], file)}', places[uris[0], file])
     return problems.warnings
 
 
@@ -117,9 +122,16 @@ def _missing_part(uri: str, file: str, finder: ResourceFinder) -> str:
     return next((each for each in folders if finder.path_from_uri(each, file) is None), uri)
 
 
-def _reason_without_meshes(
-    folder: str, uris: Sequence[str], file: str, finder: ResourceFinder,
-) -> str:
-    others = f', like {len(uris) - 1} more of "{shortened(folder)}"' if len(uris) > 1 else ''
-    return (f'the mesh "{shortened(uris[0])}" is not found{others}: '
-            f'{finder.reason_not_found(uris[0], file)}')
+def _print_annotations(problems: Iterable[SdfError | SdfWarning]) -> None:
+    """
+    Print problems as workflow commands of GitHub Actions, for annotations in a review.
+
+    Source of the syntax and the escapes: "Workflow commands for GitHub Actions" of its
+    documentation, and ``command.ts`` of its toolkit.
+    """
+    for problem in problems:
+        level = 'error' if isinstance(problem, SdfError) else 'warning'
+        place = problem.place
+        line = f',line={place.line}' if place.line else ''
+        print(f'::{level} file={printable(place.file).translate(_ESCAPES_OF_PROPERTIES)}{line},'
+              f'title={problem.code}::{printable(problem.message).translate(_ESCAPES)}')

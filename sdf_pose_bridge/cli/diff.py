@@ -15,21 +15,18 @@ from sdf_pose_bridge.cli.loading import (
     sdf_name,
 )
 from sdf_pose_bridge.cli.printing import (
+    add_format_argument,
     add_unit_arguments,
+    CSV,
     DEGREES,
+    JSON,
+    print_csv,
+    print_json,
     print_problems,
     print_table,
     TableRow,
-    Units,
-)
-from sdf_pose_bridge.cli.records import (
-    add_format_argument,
-    CSV,
-    JSON,
-    print_csv,
-    print_csv_header,
-    print_json,
     TEXT,
+    Units,
 )
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.scene.comparison import Change, Difference, differences_of_scenes, TOLERANCE
@@ -85,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
     else:
         print_problems(errors, warnings, sys.stderr)
     if options.format == CSV:
-        print_csv_header(Difference._fields)
+        print(*Difference._fields, sep=',')
         print_csv(Difference._fields, records)
     elif options.format == TEXT and differences:
         units = Units(options.length_unit, options.angle_unit)
@@ -108,6 +105,5 @@ def _table_row(difference: Difference, units: Units) -> TableRow:
     if difference.change is Change.MOVED:
         values[1:] = [f'{round(value, 9) * unit.factor:.6g}' for value, unit in zip(
             (difference.distance_m, difference.angle_rad), units, strict=True)]
-    is_renamed = difference.change is Change.RENAMED
-    return TableRow(difference.name, difference.kind.label, values,
-                    [f'was {difference.old_name}'] if is_renamed else ())
+    note = f'was {difference.old_name}' if difference.change is Change.RENAMED else ''
+    return TableRow(difference.name, difference.kind.label, values, note)

@@ -77,11 +77,7 @@ def run(options: argparse.Namespace) -> int:
     :raises CommandError: if it cannot be written or drawn.
     """
     scene = scene_of(options.files[0], options)
-    text = dot_from_scene(scene, options.kinds, options.model)
-    if options.output is None:
-        print(text, end='')
-    else:
-        _write(text, options.output)
+    _write(dot_from_scene(scene, options.kinds, options.model), options.output)
     return 0
 
 
@@ -154,9 +150,9 @@ def _escaped(name: str) -> str:
     return printable(shortened(name)).replace('\\', '\\\\').replace('"', '\\"')
 
 
-def _write(text: str, path: Path) -> None:
+def _write(text: str, path: Path | None) -> None:
     """Write a graph in the format of the path."""
-    if path.suffix.lower() == '.dot':
+    if path is None or path.suffix.lower() == '.dot':
         write_text(text, path)
         return
     if shutil.which('dot') is None:

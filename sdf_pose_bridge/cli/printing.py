@@ -1,18 +1,20 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Print problems and poses: colors, units and output files."""
+"""Print problems and poses, for people or other programs: colors, units, formats and files."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+import csv
 from itertools import chain
+import json
 import math
 import os
 from pathlib import Path
 import shutil
 import sys
-from typing import NamedTuple, TextIO, TypeVar
+from typing import Any, NamedTuple, TextIO, TypeAlias, TypeVar
 
 from sdf_pose_bridge.errors import SdfError, SdfWarning, UriLookupError
 from sdf_pose_bridge.geometry.poses import Pose
@@ -22,6 +24,16 @@ from sdf_pose_bridge.problems import folded
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.tree import TfTree
+
+TEXT, CSV, JSON, GITHUB = 'text', 'csv', 'json', 'github'
+"""The values of ``--format``."""
+
+_MEANINGS = {
+    TEXT: 'for people, the default',
+    CSV: 'comma-separated values with a header, in metres and radians',
+    JSON: 'one object per file and line, in metres and radians',
+    GITHUB: 'annotations that GitHub shows in a review',
+}
 
 _Problem = TypeVar('_Problem', bound='SdfError | SdfWarning')
 
@@ -39,7 +51,7 @@ def is_colored(stream: TextIO) -> bool:
 
 
 def print_problems(
-    errors: tuple[SdfError, ...], warnings: tuple[SdfWarning, ...], stream: TextIO, *,
+    errors: Sequence[SdfError], warnings: Sequence[SdfWarning], stream: TextIO, *,
     for_gazebo: bool = False,
 ) -> None:
     """
@@ -49,7 +61,7 @@ def print_problems(
     """
     hidden = [] if for_gazebo else [each for each in warnings if each.is_for_gazebo]
     if hidden:
-        warnings = tuple(each for each in warnings if not each.is_for_gazebo)
+        warnings = [each for each in warnings if not each.is_for_gazebo]
         count = f'{len(hidden)} warning{"s" if hidden[1:] else ""}'
         print(f'{printable(hidden[0].place.file)}: "sdf_pose check" has {count} about Gazebo',
               file=stream)
@@ -68,7 +80,7 @@ def print_problems(
               file=stream)
 
 
-def in_order(*problems: tuple[_Problem, ...]) -> tuple[_Problem, ...]:
+def in_order(*problems: Sequence[_Problem]) -> tuple[_Problem, ...]:
     """
     Sort errors and warnings.
 
@@ -91,12 +103,15 @@ class CommandError(Exception):
     """A command fails; the text is the reason."""
 
 
-def write_text(text: str, path: Path) -> None:
+def write_text(text: str, path: Path | None) -> None:
     """
-    Write a file.
+    Write a file; without a path, the standard output.
 
-    :raises CommandError: if it cannot be written.
+    :raises CommandError: if the file cannot be written.
     """
+    if path is None:
+        print(text, end='')
+        return
     try:
         path.write_text(text, encoding='utf-8')
     except OSError as error:
@@ -119,7 +134,9 @@ RADIANS, DEGREES = Unit('rad', 1.0, 4), Unit('deg', math.degrees(1.0), 2)
 
 _WIDEST_NAME, _NARROWEST_NAME = 80, 8
 _SHORT_KINDS = {'optical frame': 'optical', 'particle_emitter': 'emitter'}
-_BRANCHES, _ASCII_BRANCHES = ('├ ', '└ ', '│ ', '  '), ('|-', '`-', '| ', '  ')
+BELOW = str.maketrans('├└`-', '│   ')
+"""What is below the branches of a line."""
+
 _DIM = '\x1b[2m'
 _COLORS = {
     'model': '\x1b[35m', 'link': '\x1b[32m', 'joint': '\x1b[33m', 'frame': '\x1b[36m',
@@ -133,20 +150,15 @@ class TableRow(NamedTuple):
     kind: str
     values: Sequence[str] = ()
     """The texts of the other columns; none if they are blank."""
-    notes: Sequence[str] = ()
-    """Texts for the line below."""
+    note: str = ''
+    """The text of the line below."""
     branches: str = ''
-    """The branches of a tree that are before the name."""
+    """The branches of a tree that are before the name, each with a space."""
     is_bold: bool = False
 
 
-def branches_of_tree() -> Sequence[str]:
-    """Return the branches to one of several children and to the last, and the lines below them."""
-    try:
-        ''.join(_BRANCHES).encode(sys.stdout.encoding or 'ascii')
-    except UnicodeEncodeError:
-        return _ASCII_BRANCHES
-    return _BRANCHES
+Frame: TypeAlias = tuple[Mapping[str, Any], TableRow]
+"""What other programs read about a frame, and what people read."""
 
 
 def print_table(labels: Sequence[str], rows: Sequence[TableRow]) -> None:
@@ -158,19 +170,21 @@ def print_table(labels: Sequence[str], rows: Sequence[TableRow]) -> None:
     rows = [TableRow('frame', 'kind', labels), *rows]
     kinds = [_SHORT_KINDS.get(row.kind, row.kind) for row in rows]
     names = [printable(row.name) for row in rows]
-    blank = ('',) * len(labels)
-    widths = [max(map(len, column)) for column in zip(
-        *(row.values or blank for row in rows), strict=True)]
+    values = [row.values or ('',) * len(labels) for row in rows]
+    widths = [max(map(len, column)) for column in zip(*values, strict=True)]
     kind_width = max(map(len, kinds))
     columns = shutil.get_terminal_size().columns if sys.stdout.isatty() else 2 * _WIDEST_NAME
     width = min(
         max(len(row.branches) + len(name) for row, name in zip(rows, names, strict=True)),
         _WIDEST_NAME, max(columns - kind_width - sum(widths) - len(widths) - 3, _NARROWEST_NAME))
     dim, bold, plain = (_DIM, _BOLD, _PLAIN) if is_colored(sys.stdout) else ('', '', '')
-    tee, corner, bar, space = branches_of_tree()
-    for row, name, kind in zip(rows, names, kinds, strict=True):
+    is_ascii = _is_ascii(sys.stdout)
+    for row, name, kind, texts in zip(rows, names, kinds, values, strict=True):
         room = width - min(len(name), _NARROWEST_NAME)
-        branches = row.branches[max(len(row.branches) - room, 0):]
+        branches = row.branches
+        if is_ascii:
+            branches = branches.replace('├ ', '|-').replace('└ ', '`-').replace('│', '|')
+        branches = branches[max(len(branches) - room, 0):]
         longest = width - len(branches)
         # The end of a scoped name tells most.
         name = name if len(name) <= longest else f'...{name[3 - longest:]}'
@@ -178,11 +192,19 @@ def print_table(labels: Sequence[str], rows: Sequence[TableRow]) -> None:
         print(
             f'{dim}{branches}{plain}{bold if row.is_bold else ""}{name:{longest}}'
             f'{plain if row.is_bold else ""}  {color}{kind:{kind_width}}{plain}  '
-            f'{" ".join(map(str.rjust, row.values or blank, widths))}'.rstrip())
-        if row.notes:
-            below = branches.replace(tee, bar).replace(corner, space) + space
-            note = shortened(printable(', '.join(row.notes)), columns - len(below))
-            print(f'{dim}{below}{note}{plain}')
+            f'{" ".join(map(str.rjust, texts, widths))}'.rstrip())
+        if row.note:
+            below = branches.translate(BELOW) + '  '
+            print(f'{dim}{below}{shortened(printable(row.note), columns - len(below))}{plain}')
+
+
+def _is_ascii(stream: TextIO) -> bool:
+    """Return whether the branches of a tree cannot be printed."""
+    try:
+        '├└│'.encode(stream.encoding or 'ascii')
+    except UnicodeEncodeError:
+        return True
+    return False
 
 
 POSE_LABELS = ('x', 'y', 'z', 'roll', 'pitch', 'yaw')
@@ -212,13 +234,13 @@ class Units(NamedTuple):
         :param fewer_digits: the number of digits to leave out.
         :return: x, y, z, roll, pitch and yaw, rounded.
         """
+        texts = []
         values = (*pose[:3], *rpy_from_quaternion(pose[3:]))
-        # Adding zero removes negative zeros.
-        return [
-            f'{round(value * unit.factor, digits) + 0.0:.{digits}f}'
-            for value, unit, digits in zip(
-                values, self.of_pose, (unit.digits - fewer_digits for unit in self.of_pose),
-                strict=True)]
+        for value, unit in zip(values, self.of_pose, strict=True):
+            digits = unit.digits - fewer_digits
+            # Adding zero removes negative zeros.
+            texts.append(f'{round(value * unit.factor, digits) + 0.0:.{digits}f}')
+        return texts
 
 
 def add_unit_arguments(parser: argparse.ArgumentParser, angle: Unit = RADIANS) -> None:
@@ -234,6 +256,17 @@ def add_unit_arguments(parser: argparse.ArgumentParser, angle: Unit = RADIANS) -
     parser.add_argument(
         '--mm', dest='length_unit', action='store_const', const=MILLIMETRES, default=METRES,
         help='lengths in millimetres, not metres')
+
+
+def add_format_argument(parser: argparse.ArgumentParser, *formats: str) -> None:
+    """
+    Add the argument ``--format``.
+
+    :param formats: its values besides ``text``.
+    """
+    meanings = ', '.join(f'{name}: {_MEANINGS[name]}' for name in (TEXT, *formats))
+    parser.add_argument(
+        '--format', choices=(TEXT, *formats), default=TEXT, help=f'output format: {meanings}')
 
 
 def add_output_argument(
@@ -256,6 +289,32 @@ def add_output_argument(
         '-o', dest='output', metavar='PATH', type=path_from_text, help=f'where to write {what}')
 
 
+def print_json(
+    path: str, errors: Sequence[SdfError], warnings: Sequence[SdfWarning], **content: Any,
+) -> None:
+    """
+    Print a line with a JSON object about a file.
+
+    :param content: further members of the object.
+    """
+    print(json.dumps({
+        'file': path, 'ok': not errors, 'errors': [*map(_problem, errors)],
+        'warnings': [*map(_problem, warnings)], **content}))
+
+
+def print_csv(columns: Sequence[str], records: Iterable[Mapping[str, Any]]) -> None:
+    """
+    Print comma-separated values without a header.
+
+    Numbers have all their digits. Characters that control a terminal are escaped.
+
+    :param columns: keys of the records, in the order of printing; a missing value is left empty.
+    """
+    csv.writer(sys.stdout, lineterminator='\n').writerows(
+        [printable(value) if isinstance(value, str) else value
+         for value in map(record.get, columns)] for record in records)
+
+
 def kind_labels_of(scene: Scene, tree: TfTree) -> list[str]:
     """
     Return the kind of each frame in words.
@@ -265,3 +324,7 @@ def kind_labels_of(scene: Scene, tree: TfTree) -> list[str]:
     return [
         'optical frame' if element < 0 else Kind(scene.kinds[element]).label
         for element in tree.elements.tolist()]
+
+
+def _problem(problem: SdfError | SdfWarning) -> dict[str, Any]:
+    return {'code': problem.code, 'message': problem.message, **problem.place._asdict()}

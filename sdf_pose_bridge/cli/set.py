@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
+from functools import partial
 import sys
 
 from sdf_pose_bridge.cli.convert import (
@@ -97,9 +97,6 @@ def run(options: argparse.Namespace) -> int:
     def measured(scene: Scene, element: int) -> Pose:
         return pose_lookup(scene).pose_of_element(element, options.relative_to)
 
-    def loaded(texts: Mapping[str, bytes]) -> Scene:
-        return scene_from_file(options.files[0], options, texts=texts)
-
     lookup = pose_lookup(scene)
     element, _ = lookup.element(options.frame)
     part = options.by or options.frame
@@ -112,7 +109,7 @@ def run(options: argparse.Namespace) -> int:
         asked = Pose(*lookup.pose(part, options.relative_to).pose[:3], *quat_xyzw)
     change = pose_change(
         scene, element, pose_product(asked, lookup.pose_of_element(element, part)), measured,
-        loaded, all_instances=options.all_instances)
+        partial(scene_from_file, options.files[0], options), all_instances=options.all_instances)
     name = printable(scene.names[element])
     if options.by and not are_close(
             pose_lookup(change.scene).pose(part, options.relative_to).pose, asked):

@@ -5,69 +5,52 @@
 from __future__ import annotations
 
 import argparse
+from collections import Counter
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from itertools import compress
 import math
-import sys
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from sdf_pose_bridge.cli.loading import (
     add_file_arguments,
     add_frame_arguments,
-    load_file,
+    print_frames,
     SHOWN_KINDS,
     tf_options_from_arguments,
 )
 from sdf_pose_bridge.cli.printing import (
-    branches_of_tree,
-    DEGREES,
-    kind_labels_of,
-    print_problems,
-    print_table,
-    TableRow,
-    Units,
-)
-from sdf_pose_bridge.cli.records import (
     add_format_argument,
+    add_unit_arguments,
+    BELOW,
     CSV,
+    DEGREES,
+    Frame,
     JSON,
-    print_csv,
-    print_csv_header,
-    print_json,
+    kind_labels_of,
+    TableRow,
 )
-from sdf_pose_bridge.errors import SdfError, SdfWarning
+from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
-from sdf_pose_bridge.names import printable
 from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.parents import NO_PARENT
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, elements_in_model, tf_tree_from_scene
 
-_COLUMNS = ('file', 'name', 'kind', 'parent', 'x', 'y', 'z', 'qx', 'qy', 'qz', 'qw', 'note')
 _WIDEST_INDENT = 60
 
 
 class _Row(NamedTuple):
     name: str
-    """The printed name."""
+    """The name in a table."""
     full_name: str
-    """The name that is compared with a pattern."""
     kind: str
     parent: int
     """Index of the row of the parent; -1 for none."""
     pose: Pose | None
     note: str = ''
-
-
-class _Line(NamedTuple):
-    branches: str
-    row: _Row
-    hidden: int
-    """Number of rows below this one that are too deep to be printed."""
-    is_match: bool
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -83,7 +66,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         '--scope', action='store_true',
         help='print elements as they are nested in the file, of all kinds unless --kinds is '
              'given, with poses in the frames that they are relative to')
-    add_frame_arguments(parser, DEGREES)
+    add_frame_arguments(parser)
+    add_unit_arguments(parser, DEGREES)
     parser.add_argument(
         '--depth', metavar='N', type=_depth_from_text, default=math.inf,
         help='print N levels below the root, and the number of frames below them')
@@ -99,51 +83,10 @@ def run(options: argparse.Namespace) -> int:
 
     :return: exit code: 0 if all files are valid, else 1.
     """
-    exit_code = 0
     options.kinds = options.kinds or (SHOWN_KINDS if options.scope else DEFAULT_KINDS)
-    if options.format == CSV:
-        print_csv_header(_COLUMNS)
-    for path in options.files:
-        loaded = load_file(path, options)
-        lines: list[_Line] = []
-        if loaded.scene is not None:
-            try:
-                rows, warnings = (_rows_by_scope if options.scope else _rows_of_frames)(
-                    loaded.scene, options)
-                loaded = loaded._replace(warnings=loaded.warnings + warnings)
-                lines = _lines(rows, options)
-            except SdfError as error:
-                loaded = loaded._replace(errors=error.errors)
-        exit_code |= bool(loaded.errors)
-        if options.format == JSON:
-            print_json(
-                path, loaded.errors, loaded.warnings,
-                frames=[_record(line.row, rows) for line in lines])
-            continue
-        print_problems(loaded.errors, loaded.warnings, sys.stderr)
-        if options.format == CSV:
-            print_csv(_COLUMNS, (
-                {'file': path, **record, **dict(
-                    zip(_COLUMNS[4:], record['pose'] or (), strict=False))}
-                for record in (_record(line.row, rows) for line in lines)))
-        elif not loaded.errors:
-            if len(options.files) > 1:
-                print(printable(path))
-            if lines:
-                units = Units(options.length_unit, options.angle_unit)
-                print_table(units.labels, [_table_row(line, units) for line in lines])
-            else:
-                print(f'sdf_pose tree: no whole name in {printable(path)} matches '
-                      f'"{printable(options.match)}"', file=sys.stderr)
-    return exit_code
-
-
-def _table_row(line: _Line, units: Units) -> TableRow:
-    branches, row, hidden, is_match = line
-    notes = [row.note] if row.note else []
-    notes += [f'{hidden} more below'] if hidden else []
-    values = () if row.pose is None else units.texts(row.pose, fewer_digits=1)
-    return TableRow(row.name, row.kind, values, notes, branches, is_match)
+    return print_frames(
+        options, 'frames', ('file', 'name', 'kind', 'parent', *Pose._fields, 'note'),
+        _elements_by_scope if options.scope else _frames_of_tf, options.match)
 
 
 def _depth_from_text(text: str) -> int:
@@ -153,31 +96,26 @@ def _depth_from_text(text: str) -> int:
     return int(text)
 
 
-def _record(row: _Row, rows: Sequence[_Row]) -> dict[str, Any]:
-    """Return a row with the name of its parent and its pose as x y z qx qy qz qw."""
-    return {
-        'name': row.full_name, 'kind': row.kind,
-        'parent': rows[row.parent].full_name if row.parent >= 0 else None,
-        'pose': row.pose, 'note': row.note}
-
-
-def _rows_of_frames(
-    scene: Scene, options: argparse.Namespace,
-) -> tuple[list[_Row], tuple[SdfWarning, ...]]:
+def _frames_of_tf(
+    scene: Scene, options: argparse.Namespace, warnings: list[SdfWarning],
+) -> list[Frame]:
     tree = tf_tree_from_scene(scene, tf_options_from_arguments(options))
-    root = _Row(tree.root_frame, tree.root_frame, 'root', -1, None)
+    warnings += tree.warnings
     # The root frame is row 0, so the index of a row is the index of its frame plus one.
-    return [root, *(
-        _Row(frame_id, frame_id, kind, -1, None) if parent == NO_PARENT
-        else _Row(frame_id, frame_id, kind, parent + 1, Pose(*pose))
-        for frame_id, kind, parent, pose in zip(
+    rows = [_Row(tree.root_frame, tree.root_frame, 'root', -1, None)]
+    for frame_id, kind, parent, pose in zip(
             tree.frame_ids, kind_labels_of(scene, tree), tree.parents.tolist(),
-            tree.transforms.tolist(), strict=True))], tree.warnings
+            tree.transforms.tolist(), strict=True):
+        has_parent = parent != NO_PARENT
+        rows.append(_Row(
+            frame_id, frame_id, kind, parent + 1 if has_parent else -1,
+            Pose(*pose) if has_parent else None))
+    return _in_branches(rows, options)
 
 
-def _rows_by_scope(
-    scene: Scene, options: argparse.Namespace,
-) -> tuple[list[_Row], tuple[SdfWarning, ...]]:
+def _elements_by_scope(
+    scene: Scene, options: argparse.Namespace, _warnings: list[SdfWarning],
+) -> list[Frame]:
     """Return the elements of all worlds as they are nested."""
     joints = {joint.element: joint for joint in scene.joints}
     is_shown = (scene.parents < 0) | (
@@ -196,7 +134,7 @@ def _rows_by_scope(
                 None if reference < 0 else scene.relative_pose_of(element, reference),
                 _note(scene, element, joints.get(element))))
             indices[element] = len(rows) - 1
-    return rows, ()
+    return _in_branches(rows, options)
 
 
 def _note(scene: Scene, element: int, joint: Joint | None) -> str:
@@ -212,7 +150,9 @@ def _note(scene: Scene, element: int, joint: Joint | None) -> str:
     return ', '.join(parts)
 
 
-def _lines(rows: Sequence[_Row], options: argparse.Namespace) -> list[_Line]:
+def _in_branches(
+    rows: Sequence[_Row], options: argparse.Namespace,
+) -> list[Frame]:
     """Walk the rows from parents to children, in the order of the file, without recursion."""
     is_match = [fnmatchcase(row.full_name, options.match) for row in rows]
     is_shown = [not options.match] * len(rows)
@@ -227,20 +167,30 @@ def _lines(rows: Sequence[_Row], options: argparse.Namespace) -> list[_Line]:
     if not children.get(0) and len(children.get(-1, ())) > 1:
         # Nothing is below the root frame, as in the file of a robot that odometry places.
         children[-1].remove(0)
-    tee, corner, bar, blank = branches_of_tree()
-    lines: list[_Line] = []
-    waiting = [(index, 0, '', '') for index in reversed(children.get(-1, ()))]
+    lines: list[tuple[int, str]] = []
+    # How many rows below each line are too deep to be printed.
+    hidden: Counter[int] = Counter()
+    waiting = [(index, 0, '') for index in reversed(children.get(-1, ()))]
     while waiting:
-        index, depth, indent, branch = waiting.pop()
-        below = children.get(index, [])
+        index, depth, branches = waiting.pop()
         if depth > options.depth:
-            lines[-1] = lines[-1]._replace(hidden=lines[-1].hidden + 1)
+            hidden[len(lines)] += 1
         else:
-            lines.append(_Line(indent + branch, rows[index], 0, is_match[index]))
-        if branch:
-            # A chain of thousands of links would be indented by thousands of characters.
-            indent = (indent + (blank if branch == corner else bar))[-_WIDEST_INDENT:]
+            lines.append((index, branches))
+        # A chain of thousands of links would be indented by thousands of characters.
+        indent = branches.translate(BELOW)[-_WIDEST_INDENT:]
+        below = children.get(index, [])
         waiting += [
-            (child, depth + 1, indent, corner if child == below[-1] else tee)
+            (child, depth + 1, indent + ('└ ' if child == below[-1] else '├ '))
             for child in reversed(below)]
-    return lines
+    frames: list[Frame] = []
+    for number, (index, branches) in enumerate(lines, start=1):
+        name, full_name, kind, parent, pose, note = rows[index]
+        more = f'{hidden[number]} more below' if hidden[number] else ''
+        frames.append((
+            {'name': full_name, 'kind': kind,
+             'parent': rows[parent].full_name if parent >= 0 else None, 'pose': pose,
+             'note': note},
+            TableRow(name, kind, (), ', '.join(filter(None, (note, more))), branches,
+                     is_match[index])))
+    return frames

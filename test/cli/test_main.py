@@ -22,7 +22,7 @@ def test_without_a_command_all_are_listed_with_a_line_each(sdf_pose):
     listed = re.findall(r'^    ([a-z]+) +\S.*$', done.stdout, re.MULTILINE)
     modules = (ROOT / 'sdf_pose_bridge/cli').glob('*.py')
     assert set(listed) == {module.stem for module in modules} - {
-        '__init__', 'loading', 'main', 'printing', 'records'}
+        '__init__', 'loading', 'main', 'printing'}
 
 
 def test_version(sdf_pose):
