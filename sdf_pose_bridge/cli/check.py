@@ -13,9 +13,7 @@ import sys
 from sdf_pose_bridge.cli.loading import add_file_arguments, load_file
 from sdf_pose_bridge.cli.printing import (
     add_format_argument,
-    GITHUB,
     in_order,
-    JSON,
     print_json,
     print_problems,
 )
@@ -40,7 +38,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description='Print every error and warning of files, one per line: FILE:LINE: CODE: '
                     'MESSAGE. The exit code is 1 if a file has an error.')
     add_file_arguments(parser)
-    add_format_argument(parser, JSON, GITHUB)
+    add_format_argument(parser, 'json', 'github')
     parser.add_argument(
         '--strict', action='store_true', help='the exit code is 1 for a warning too')
     parser.set_defaults(run=run)
@@ -59,9 +57,9 @@ def run(options: argparse.Namespace) -> int:
             warnings = in_order(
                 warnings, _doubts_about_frames(scene),
                 _doubts_about_shapes(scene, options.resource_paths))
-        if options.format == JSON:
+        if options.format == 'json':
             print_json(path, errors, warnings)
-        elif options.format == GITHUB:
+        elif options.format == 'github':
             _print_annotations(in_order(errors, warnings))
         else:
             print_problems(errors, warnings, sys.stdout, for_gazebo=True)

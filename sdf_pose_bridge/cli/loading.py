@@ -9,12 +9,9 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 import sys
 import threading
-from typing import NamedTuple
 
 from sdf_pose_bridge.cli.printing import (
-    CSV,
     Frame,
-    JSON,
     print_csv,
     print_json,
     print_problems,
@@ -41,15 +38,6 @@ STANDARD_INPUT = '-'
 
 _SHOWN_BY_NAME = {kind.label: kind for kind in SHOWN_KINDS}
 _KIND_NAMES = ', '.join(_SHOWN_BY_NAME)
-
-
-class LoadedFile(NamedTuple):
-    """Result of loading a file."""
-
-    scene: Scene | None
-    """None if the file is not valid."""
-    errors: tuple[SdfError, ...]
-    warnings: tuple[SdfWarning, ...]
 
 
 def add_file_arguments(parser: argparse.ArgumentParser, *, takes_many: bool = True) -> None:
@@ -104,17 +92,19 @@ def scene_from_file(
         timer.cancel()
 
 
-def load_file(path: str, options: argparse.Namespace, *, shapes: bool = False) -> LoadedFile:
+def load_file(
+    path: str, options: argparse.Namespace, *, shapes: bool = False,
+) -> tuple[Scene | None, tuple[SdfError, ...], tuple[SdfWarning, ...]]:
     """
     Load a file as :func:`scene_from_file` does.
 
-    :return: the scene with its warnings, or the errors of the file.
+    :return: the scene, or None if the file is not valid; the errors and the warnings.
     """
     try:
         scene = scene_from_file(path, options, shapes=shapes)
     except SdfError as error:
-        return LoadedFile(None, error.errors, error.warnings)
-    return LoadedFile(scene, (), scene.warnings)
+        return None, error.errors, error.warnings
+    return scene, (), scene.warnings
 
 
 def scene_of(path: str, options: argparse.Namespace, *, shapes: bool = False) -> Scene:
@@ -144,7 +134,7 @@ def print_frames(
     :return: exit code: 0 if all files are valid, else 1.
     """
     exit_code, units = 0, Units(options.length_unit, options.angle_unit)
-    if options.format == CSV:
+    if options.format == 'csv':
         print(*columns, sep=',')
     for path in options.files:
         scene, errors, (*warnings,) = load_file(path, options)
@@ -155,11 +145,11 @@ def print_frames(
             except SdfError as error:
                 errors = error.errors
         exit_code |= bool(errors)
-        if options.format == JSON:
+        if options.format == 'json':
             print_json(path, errors, warnings, **{member: [record for record, _ in frames]})
             continue
         print_problems(errors, warnings, sys.stderr)
-        if options.format == CSV:
+        if options.format == 'csv':
             print_csv(columns, (
                 {'file': path, **record, **(record['pose']._asdict() if record['pose'] else {})}
                 for record, _ in frames))
@@ -257,9 +247,8 @@ def _directory_from_text(text: str) -> str:
 
 
 def _kinds_from_text(text: str) -> tuple[Kind, ...]:
-    names = text.split(',')
-    for name in names:
-        if name not in _SHOWN_BY_NAME:
-            msg = f'"{name}" is not a kind of element; known are {_KIND_NAMES}'
-            raise argparse.ArgumentTypeError(msg)
-    return tuple(map(_SHOWN_BY_NAME.__getitem__, names))
+    try:
+        return tuple(_SHOWN_BY_NAME[name] for name in text.split(','))
+    except KeyError as error:
+        msg = f'"{error.args[0]}" is not a kind of element; known are {_KIND_NAMES}'
+        raise argparse.ArgumentTypeError(msg) from None

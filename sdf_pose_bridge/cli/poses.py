@@ -17,10 +17,7 @@ from sdf_pose_bridge.cli.loading import (
 from sdf_pose_bridge.cli.printing import (
     add_format_argument,
     add_unit_arguments,
-    CSV,
-    DEGREES,
     Frame,
-    JSON,
     TableRow,
 )
 from sdf_pose_bridge.errors import SdfWarning
@@ -38,9 +35,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
                     'or in the implicit root of a model file; --format csv and json have all '
                     'digits and quaternions. The exit code is 1 if a file has an error.')
     add_file_arguments(parser)
-    add_format_argument(parser, CSV, JSON)
+    add_format_argument(parser, 'csv', 'json')
     parser.add_argument(
-        '--json', dest='format', action='store_const', const=JSON,
+        '--json', dest='format', action='store_const', const='json',
         help='the same as --format json')
     parser.add_argument(
         '--relative-to', metavar='FRAME', default='',
@@ -52,7 +49,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='position of a joint, in radians or metres; all others stay at zero. May be '
              'repeated. Names are as in joint_states: elbow, arm/elbow, wrist_axis2, ball_roll')
     add_kinds_argument(parser, 'print only')
-    add_unit_arguments(parser, DEGREES)
+    add_unit_arguments(parser, 'degrees')
     parser.set_defaults(run=run)
 
 

@@ -25,14 +25,11 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.tree import TfTree
 
-TEXT, CSV, JSON, GITHUB = 'text', 'csv', 'json', 'github'
-"""The values of ``--format``."""
-
-_MEANINGS = {
-    TEXT: 'for people, the default',
-    CSV: 'comma-separated values with a header, in metres and radians',
-    JSON: 'one object per file and line, in metres and radians',
-    GITHUB: 'annotations that GitHub shows in a review',
+_FORMATS = {
+    'text': 'for people, the default',
+    'csv': 'comma-separated values with a header, in metres and radians',
+    'json': 'one object per file and line, in metres and radians',
+    'github': 'annotations that GitHub shows in a review',
 }
 
 _Problem = TypeVar('_Problem', bound='SdfError | SdfWarning')
@@ -88,10 +85,9 @@ def in_order(*problems: Sequence[_Problem]) -> tuple[_Problem, ...]:
     :return: all of them, by file as the first ones, and by line; of one line the first argument
         comes first.
     """
-    files = [problem.place.file for some in problems for problem in some]
-    ranks = {file: rank for rank, file in reversed([*enumerate(files)])}
+    files = [problem.place.file for problem in chain(*problems)]
     return (*sorted(chain(*problems), key=lambda problem: (
-        ranks[problem.place.file], problem.place.line)),)
+        files.index(problem.place.file), problem.place.line)),)
 
 
 def discard_output() -> None:
@@ -167,44 +163,41 @@ def print_table(labels: Sequence[str], rows: Sequence[TableRow]) -> None:
 
     :param labels: the labels of the columns behind the kinds, such as x, y and z.
     """
-    rows = [TableRow('frame', 'kind', labels), *rows]
-    kinds = [_SHORT_KINDS.get(row.kind, row.kind) for row in rows]
-    names = [printable(row.name) for row in rows]
-    values = [row.values or ('',) * len(labels) for row in rows]
-    widths = [max(map(len, column)) for column in zip(*values, strict=True)]
-    kind_width = max(map(len, kinds))
+    rows = [
+        row._replace(
+            name=printable(row.name), kind=_SHORT_KINDS.get(row.kind, row.kind),
+            values=row.values or ('',) * len(labels), branches=_branches(row.branches))
+        for row in (TableRow('frame', 'kind', labels), *rows)]
+    widths = [max(map(len, column)) for column in zip(*(row.values for row in rows), strict=True)]
+    kind_width = max(len(row.kind) for row in rows)
     columns = shutil.get_terminal_size().columns if sys.stdout.isatty() else 2 * _WIDEST_NAME
     width = min(
-        max(len(row.branches) + len(name) for row, name in zip(rows, names, strict=True)),
-        _WIDEST_NAME, max(columns - kind_width - sum(widths) - len(widths) - 3, _NARROWEST_NAME))
+        max(len(row.branches + row.name) for row in rows), _WIDEST_NAME,
+        max(columns - kind_width - sum(widths) - len(widths) - 3, _NARROWEST_NAME))
     dim, bold, plain = (_DIM, _BOLD, _PLAIN) if is_colored(sys.stdout) else ('', '', '')
-    is_ascii = _is_ascii(sys.stdout)
-    for row, name, kind, texts in zip(rows, names, kinds, values, strict=True):
+    for name, kind, values, note, branches, is_bold in rows:
         room = width - min(len(name), _NARROWEST_NAME)
-        branches = row.branches
-        if is_ascii:
-            branches = branches.replace('├ ', '|-').replace('└ ', '`-').replace('│', '|')
         branches = branches[max(len(branches) - room, 0):]
         longest = width - len(branches)
         # The end of a scoped name tells most.
         name = name if len(name) <= longest else f'...{name[3 - longest:]}'
         color = _COLORS.get(kind, '') if plain else ''
         print(
-            f'{dim}{branches}{plain}{bold if row.is_bold else ""}{name:{longest}}'
-            f'{plain if row.is_bold else ""}  {color}{kind:{kind_width}}{plain}  '
-            f'{" ".join(map(str.rjust, texts, widths))}'.rstrip())
-        if row.note:
+            f'{dim}{branches}{plain}{bold if is_bold else ""}{name:{longest}}'
+            f'{plain if is_bold else ""}  {color}{kind:{kind_width}}{plain}  '
+            f'{" ".join(map(str.rjust, values, widths))}'.rstrip())
+        if note:
             below = branches.translate(BELOW) + '  '
-            print(f'{dim}{below}{shortened(printable(row.note), columns - len(below))}{plain}')
+            print(f'{dim}{below}{shortened(printable(note), columns - len(below))}{plain}')
 
 
-def _is_ascii(stream: TextIO) -> bool:
-    """Return whether the branches of a tree cannot be printed."""
+def _branches(branches: str) -> str:
+    """Return the branches of a tree in characters that can be printed."""
     try:
-        '├└│'.encode(stream.encoding or 'ascii')
+        branches.encode(sys.stdout.encoding or 'ascii')
     except UnicodeEncodeError:
-        return True
-    return False
+        return branches.replace('├ ', '|-').replace('└ ', '`-').replace('│', '|')
+    return branches
 
 
 POSE_LABELS = ('x', 'y', 'z', 'roll', 'pitch', 'yaw')
@@ -243,16 +236,18 @@ class Units(NamedTuple):
         return texts
 
 
-def add_unit_arguments(parser: argparse.ArgumentParser, angle: Unit = RADIANS) -> None:
+def add_unit_arguments(parser: argparse.ArgumentParser, default: str = 'radians') -> None:
     """
     Add the arguments ``--degrees``, ``--radians`` and ``--mm``.
 
-    :param angle: the unit of angles without an argument.
+    :param default: the unit of angles without an argument.
     """
-    for unit, name in ((DEGREES, 'degrees'), (RADIANS, 'radians')):
+    units = {'degrees': DEGREES, 'radians': RADIANS}
+    for name, unit in units.items():
         parser.add_argument(
-            f'--{name}', dest='angle_unit', action='store_const', const=unit, default=angle,
-            help=f'angles in {name}{", the default" if unit is angle else ""}')
+            f'--{name}', dest='angle_unit', action='store_const', const=unit,
+            default=units[default],
+            help=f'angles in {name}{", the default" if name == default else ""}')
     parser.add_argument(
         '--mm', dest='length_unit', action='store_const', const=MILLIMETRES, default=METRES,
         help='lengths in millimetres, not metres')
@@ -264,9 +259,10 @@ def add_format_argument(parser: argparse.ArgumentParser, *formats: str) -> None:
 
     :param formats: its values besides ``text``.
     """
-    meanings = ', '.join(f'{name}: {_MEANINGS[name]}' for name in (TEXT, *formats))
+    choices = ('text', *formats)
+    meanings = ', '.join(f'{name}: {_FORMATS[name]}' for name in choices)
     parser.add_argument(
-        '--format', choices=(TEXT, *formats), default=TEXT, help=f'output format: {meanings}')
+        '--format', choices=choices, default='text', help=f'output format: {meanings}')
 
 
 def add_output_argument(

@@ -25,10 +25,7 @@ from sdf_pose_bridge.cli.printing import (
     add_format_argument,
     add_unit_arguments,
     BELOW,
-    CSV,
-    DEGREES,
     Frame,
-    JSON,
     kind_labels_of,
     TableRow,
 )
@@ -61,13 +58,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
                     'its pose in the parent, x y z roll pitch yaw. The exit code is 1 if a file '
                     'has an error.')
     add_file_arguments(parser)
-    add_format_argument(parser, CSV, JSON)
+    add_format_argument(parser, 'csv', 'json')
     parser.add_argument(
         '--scope', action='store_true',
         help='print elements as they are nested in the file, of all kinds unless --kinds is '
              'given, with poses in the frames that they are relative to')
     add_frame_arguments(parser)
-    add_unit_arguments(parser, DEGREES)
+    add_unit_arguments(parser, 'degrees')
     parser.add_argument(
         '--depth', metavar='N', type=_depth_from_text, default=math.inf,
         help='print N levels below the root, and the number of frames below them')

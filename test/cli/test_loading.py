@@ -35,9 +35,9 @@ def make_options(files, monkeypatch):
 
 
 def test_an_invalid_file_has_errors_and_no_scene(options):
-    loaded = load_file('bad.sdf', options('bad.sdf'))
-    assert loaded.scene is None
-    assert [error.line for error in loaded.errors] == [3, 4]
+    scene, errors, _ = load_file('bad.sdf', options('bad.sdf'))
+    assert scene is None
+    assert [error.line for error in errors] == [3, 4]
 
 
 def test_a_command_that_needs_a_scene_ends_with_the_errors_of_its_file(options):
@@ -75,7 +75,7 @@ def test_a_long_load_is_told_on_a_terminal(files):
     ('.', 'name a file in it'), ('$HOME/cell.sdf', '$ and ~ stay as they are'),
     ('~/cell.sdf', '$ and ~ stay as they are'), ('model://table', 'this is a URI')])
 def test_a_path_that_the_shell_left_as_it_is_has_a_cure(options, path, cure):
-    (error,) = load_file(path, options('good.sdf')).errors
+    _, (error,), _ = load_file(path, options('good.sdf'))
     assert cure in error.message
 
 

@@ -26,14 +26,20 @@ def test_pose_is_written_in_units():
 COMMANDS = ('check', 'poses', 'tree', 'graph', 'view', 'urdf', 'convert', 'diff', 'set')
 
 
-TABLES = [
-    ('tree', '{cell}'), ('tree', '--scope', '{cell}'), ('poses', '{cell}', '--radians'),
-    ('poses', '--mm', '{cell}'), ('diff', '{moved}', '{cell}')]
-HELP = [(command, '--help') for command in COMMANDS]
+@pytest.mark.parametrize('columns', ['80', '120'])
+@pytest.mark.parametrize('command', COMMANDS)
+def test_lines_of_help_are_as_long_as_those_of_the_terminal(
+        run_main, monkeypatch, columns, command):
+    monkeypatch.setenv('COLUMNS', columns)
+    lines = run_main(command, '--help').stdout.splitlines()
+    assert len(lines) > 2
+    assert max(map(len, lines)) <= int(columns)
 
 
 @pytest.mark.parametrize(('columns', 'arguments'), [
-    *((80, arguments) for arguments in (*TABLES, *HELP)), (120, TABLES[0]), (120, HELP[0])])
+    (80, ('tree', '{cell}')), (120, ('tree', '{cell}')), (80, ('tree', '--scope', '{cell}')),
+    (80, ('poses', '{cell}', '--radians')), (80, ('poses', '--mm', '{cell}')),
+    (80, ('diff', '{moved}', '{cell}'))])
 def test_lines_are_as_long_as_those_of_the_terminal(on_terminal, files, columns, arguments):
     cell = Path(__file__).resolve().parents[2] / 'examples/work_cell.sdf'
     moved = files / 'moved.sdf'
@@ -56,8 +62,8 @@ def test_unknown_format_is_refused(run_main, command, formats):
     assert f"invalid choice: '{formats}'" in done.stderr
 
 
-def test_check_prints_a_json_object_for_each_file(sdf_pose):
-    done = sdf_pose('check', '--format', 'json', 'bad.sdf', 'warned.sdf')
+def test_check_prints_a_json_object_for_each_file(run_main):
+    done = run_main('check', '--format', 'json', 'bad.sdf', 'warned.sdf')
     bad, warned = map(json.loads, done.stdout.splitlines())
     assert done.returncode == 1
     assert [error['line'] for error in bad['errors']] == [3, 4]
