@@ -227,7 +227,8 @@ def test_tests_are_collected_where_modules_are_missing():
         'viser', 'yaml']
     code = (
         f'import pytest, sys; sys.modules.update(dict.fromkeys({missing})); '
-        'sys.exit(pytest.main(["--collect-only", "--quiet", "-p", "no:cacheprovider"]))')
+        'sys.exit(pytest.main(["--collect-only", "--quiet", "--assert", "plain", '
+        '"-p", "no:cacheprovider"]))')
     done = subprocess.run(
         [sys.executable, '-c', code], cwd=ROOT, capture_output=True, text=True, check=False,
         timeout=120, env={**os.environ, 'PYTEST_DISABLE_PLUGIN_AUTOLOAD': '1'})

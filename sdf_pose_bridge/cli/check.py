@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 import os
 import re
@@ -69,11 +70,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _doubts_about_frames(scene: Scene) -> tuple[SdfWarning, ...]:
-    """
-    Return the warnings of the TF tree.
-
-    An error of the tree is one of them; with other parameters the tree may be valid.
-    """
+    # An error of the tree is a warning, as with other parameters the tree may be valid.
     try:
         return tf_tree_from_scene(scene).warnings
     except SdfError as error:
@@ -83,11 +80,7 @@ def _doubts_about_frames(scene: Scene) -> tuple[SdfWarning, ...]:
 
 
 def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[SdfWarning, ...]:
-    """
-    Return warnings about shapes without extent, and about meshes that are not found.
-
-    A shape of a file that is included often has one, and so have all meshes of a missing package.
-    """
+    # A shape of a file that is included often has one warning, as all meshes of a missing package.
     finder = resource_finder(resource_paths, os.environ)
     problems = Problems(scene.files)
     places: dict[tuple[str, str], Place] = {}
@@ -100,10 +93,10 @@ def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[S
         elif shape.mesh_uri:
             key = shape.mesh_uri, place.file
             places[key] = min(place, places.get(key, place), key=lambda each: each.line)
-    missing: dict[tuple[str, str], list[str]] = {}
+    missing: defaultdict[tuple[str, str], list[str]] = defaultdict(list)
     for uri, file in sorted(places, key=lambda key: places[key].line):
         if finder.file_from_uri(uri, file) is None:
-            missing.setdefault((_missing_part(uri, file, finder), file), []).append(uri)
+            missing[_missing_part(uri, file, finder), file].append(uri)
     for (folder, file), uris in missing.items():
         others = f', like {len(uris) - 1} more of "{shortened(folder)}"' if uris[1:] else ''
         problems.warning(
@@ -121,12 +114,8 @@ def _missing_part(uri: str, file: str, finder: ResourceFinder) -> str:
 
 
 def _print_annotations(problems: Iterable[SdfError | SdfWarning]) -> None:
-    """
-    Print problems as workflow commands of GitHub Actions, for annotations in a review.
-
-    Source of the syntax and the escapes: "Workflow commands for GitHub Actions" of its
-    documentation, and ``command.ts`` of its toolkit.
-    """
+    # Source of the syntax and the escapes: "Workflow commands for GitHub Actions" of its
+    # documentation, and ``command.ts`` of its toolkit.
     for problem in problems:
         level = 'error' if isinstance(problem, SdfError) else 'warning'
         place = problem.place

@@ -181,12 +181,7 @@ def _converted(
     source: Format, targets: Sequence[Format], given_length: Unit, printed_length: Unit,
     texts: Sequence[str],
 ) -> list[str]:
-    """
-    Convert poses or rotations together.
-
-    :return: for each a line for each format, with the name of the format if there are several.
-    :raises PoseFormatError: if one of them is wrong.
-    """
+    """Return, for each pose or rotation, a line for each format, with its name if several."""
     convert = converted_poses if source.name in POSE_FORMATS else converted_rotations
     rows = [numbers_from_text(text, source, given_length) for text in texts]
     width = max(len(target.name) for target in targets)

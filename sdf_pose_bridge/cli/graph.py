@@ -9,6 +9,7 @@ The graph is written in the language DOT; the program ``dot`` of Graphviz lays i
 from __future__ import annotations
 
 import argparse
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from itertools import chain
 import os
@@ -105,7 +106,7 @@ def dot_from_scene(scene: Scene, kinds: Sequence[Kind] = _KINDS, model: str = ''
 
 def _edges(scene: Scene, is_chosen: NDArray[np.bool_]) -> dict[tuple[int, int], list[str]]:
     """Return the colors of the arrows from one element to another."""
-    edges: dict[tuple[int, int], list[str]] = {}
+    edges: defaultdict[tuple[int, int], list[str]] = defaultdict(list)
     joints = {joint.element for joint in scene.joints}
     for joint in scene.joints:
         if is_chosen[joint.element]:
@@ -115,11 +116,11 @@ def _edges(scene: Scene, is_chosen: NDArray[np.bool_]) -> dict[tuple[int, int], 
         reference, default = scene.references.item(element), scene.default_references.item(element)
         is_attached = scene.kinds[element] == Kind.FRAME and default != scene.parents[element]
         if is_attached:
-            edges.setdefault((default, element), []).append(_ATTACHED_TO)
+            edges[default, element].append(_ATTACHED_TO)
         if reference != default:
-            edges.setdefault((reference, element), []).append(_RELATIVE_TO)
+            edges[reference, element].append(_RELATIVE_TO)
         elif not is_attached and element not in joints:
-            edges.setdefault((reference, element), []).append(_DEFAULT)
+            edges[reference, element].append(_DEFAULT)
     return edges
 
 

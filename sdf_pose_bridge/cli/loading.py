@@ -6,11 +6,12 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Collection, Mapping, Sequence
-from pathlib import Path
+import os
 import sys
 import threading
 
 from sdf_pose_bridge.cli.printing import (
+    argument_type,
     Frame,
     print_csv,
     print_json,
@@ -41,11 +42,7 @@ _KIND_NAMES = ', '.join(_SHOWN_BY_NAME)
 
 
 def add_file_arguments(parser: argparse.ArgumentParser, *, takes_many: bool = True) -> None:
-    """
-    Add the files of a command, and the arguments of :func:`load_file`.
-
-    :param takes_many: whether the command takes several files.
-    """
+    """Add the file or the files of a command, and the arguments of :func:`load_file`."""
     parser.add_argument(
         'files', metavar='FILE', nargs='+' if takes_many else 1,
         help='an SDFormat file; - reads the standard input')
@@ -55,8 +52,8 @@ def add_file_arguments(parser: argparse.ArgumentParser, *, takes_many: bool = Tr
 def add_loading_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of :func:`load_file`."""
     parser.add_argument(
-        '-I', dest='resource_paths', metavar='DIR', type=_directory_from_text, action='append',
-        default=[],
+        '-I', dest='resource_paths', metavar='DIR', action='append', default=[],
+        type=argument_type(str, os.path.isdir, 'is not a directory'),
         help='a directory to search for included models, before GZ_SIM_RESOURCE_PATH '
              'and SDF_PATH; may be given more than once')
     parser.add_argument(
@@ -191,12 +188,7 @@ def sdf_name(scene: Scene, name: str) -> str:
 def add_kinds_argument(
     parser: argparse.ArgumentParser, what: str, default: Collection[Kind] = SHOWN_KINDS,
 ) -> None:
-    """
-    Add the argument ``--kinds``, a list of kinds.
-
-    :param what: the beginning of the help, such as ``print only``.
-    :param default: the kinds without the argument.
-    """
+    """Add the argument ``--kinds``; ``what`` is its purpose, such as ``print only``."""
     labels = ','.join(kind.label for kind in SHOWN_KINDS if kind in default)
     instead = '' if default is SHOWN_KINDS else f'instead of {labels} '
     parser.add_argument(
@@ -207,12 +199,7 @@ def add_kinds_argument(
 def add_frame_arguments(
     parser: argparse.ArgumentParser, what: str = 'show frames of', verb: str = 'show',
 ) -> None:
-    """
-    Add the arguments of :func:`tf_options_from_arguments`, named like parameters of the node.
-
-    :param what: as for :func:`add_kinds_argument`.
-    :param verb: as for :func:`add_model_argument`.
-    """
+    """Add the arguments of :func:`tf_options_from_arguments`, named as parameters of the node."""
     add_kinds_argument(parser, what, DEFAULT_KINDS)
     add_model_argument(parser, verb)
     parser.add_argument(
@@ -223,11 +210,7 @@ def add_frame_arguments(
 
 
 def add_model_argument(parser: argparse.ArgumentParser, verb: str = 'show') -> None:
-    """
-    Add the argument ``--model``.
-
-    :param verb: the verb of the help.
-    """
+    """Add the argument ``--model``, whose help begins with a verb."""
     parser.add_argument(
         '--model', metavar='NAME', default='', help=f'{verb} only this model, such as robot::arm')
 
@@ -237,13 +220,6 @@ def tf_options_from_arguments(options: argparse.Namespace) -> TfOptions:
     return TfOptions(
         model=options.model, kinds=frozenset(options.kinds),
         frame_names=FrameNames(options.frame_names))
-
-
-def _directory_from_text(text: str) -> str:
-    if not Path(text).is_dir():
-        msg = f'"{text}" is not a directory'
-        raise argparse.ArgumentTypeError(msg)
-    return text
 
 
 def _kinds_from_text(text: str) -> tuple[Kind, ...]:

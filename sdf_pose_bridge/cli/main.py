@@ -86,11 +86,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 @contextlib.contextmanager
 def _limited() -> Iterator[None]:
-    """
-    Limit processor time and memory while the block runs.
-
-    :raises LimitExceededError: if it needs more.
-    """
+    """Limit processor time and memory while the block runs; raise LimitExceededError."""
     def end(_number: int, _frame: object) -> NoReturn:
         msg = f'more than {time.process_time():.0f} s of processor time'
         raise LimitExceededError(msg)

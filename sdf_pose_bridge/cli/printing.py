@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 import csv
 from itertools import chain
 import json
@@ -34,17 +34,13 @@ _FORMATS = {
 
 _Problem = TypeVar('_Problem', bound='SdfError | SdfWarning')
 
-_RED, _YELLOW, _BOLD, _PLAIN = '\x1b[31m', '\x1b[33m', '\x1b[1m', '\x1b[0m'
+_RED, _YELLOW, _BOLD, _DIM = '\x1b[31m', '\x1b[33m', '\x1b[1m', '\x1b[2m'
 
 
-def is_colored(stream: TextIO) -> bool:
-    """
-    Return whether to print colors.
-
-    :param stream: the stream to print to.
-    :return: True for a terminal, unless the variable ``NO_COLOR`` is set (https://no-color.org).
-    """
-    return stream.isatty() and not os.environ.get('NO_COLOR')
+def _styled(text: str, style: str, stream: TextIO) -> str:
+    """Add a style on a terminal, unless ``NO_COLOR`` is set (https://no-color.org)."""
+    has_styles = stream.isatty() and not os.environ.get('NO_COLOR')
+    return f'{style}{text}\x1b[0m' if has_styles else text
 
 
 def print_problems(
@@ -56,24 +52,21 @@ def print_problems(
 
     :param for_gazebo: whether to print warnings that concern Gazebo only; else their number.
     """
-    hidden = [] if for_gazebo else [each for each in warnings if each.is_for_gazebo]
+    hidden = [each for each in warnings if each.is_for_gazebo and not for_gazebo]
     if hidden:
-        warnings = [each for each in warnings if not each.is_for_gazebo]
         count = f'{len(hidden)} warning{"s" if hidden[1:] else ""}'
         print(f'{printable(hidden[0].place.file)}: "sdf_pose check" has {count} about Gazebo',
               file=stream)
     # Earlier output comes first, also if both streams go to one place.
     sys.stdout.flush()
-    has_colors = is_colored(stream)
-    bold, plain = (_BOLD, _PLAIN) if has_colors else ('', '')
-    for problem, other_lines in folded(in_order(errors, warnings)):
+    shown = [each for each in warnings if each not in hidden]
+    for problem, other_lines in folded(in_order(errors, shown)):
         is_error = isinstance(problem, SdfError)
-        color = '' if not has_colors else _RED if is_error else _YELLOW
         kind = '' if is_error or problem.code == 'WARNING' else 'WARNING: '
         place, message = printable(str(problem.place)), printable(problem.message)
         hint = '; --skip-missing leaves it out' if isinstance(problem, UriLookupError) else ''
-        print(f'{bold}{place}:{plain} {color}{kind}{problem.code}:{plain} {message}{hint}'
-              f'{other_lines}',
+        code = _styled(f'{kind}{problem.code}:', _RED if is_error else _YELLOW, stream)
+        print(f'{_styled(f"{place}:", _BOLD, stream)} {code} {message}{hint}{other_lines}',
               file=stream)
 
 
@@ -131,9 +124,8 @@ RADIANS, DEGREES = Unit('rad', 1.0, 4), Unit('deg', math.degrees(1.0), 2)
 _WIDEST_NAME, _NARROWEST_NAME = 80, 8
 _SHORT_KINDS = {'optical frame': 'optical', 'particle_emitter': 'emitter'}
 BELOW = str.maketrans('├└`-', '│   ')
-"""What is below the branches of a line."""
+"""Translates the branches of a line into those below it."""
 
-_DIM = '\x1b[2m'
 _COLORS = {
     'model': '\x1b[35m', 'link': '\x1b[32m', 'joint': '\x1b[33m', 'frame': '\x1b[36m',
     'sensor': '\x1b[34m', 'optical': '\x1b[34m'}
@@ -154,7 +146,7 @@ class TableRow(NamedTuple):
 
 
 Frame: TypeAlias = tuple[Mapping[str, Any], TableRow]
-"""What other programs read about a frame, and what people read."""
+"""The record of a frame for other programs, and its row in a table."""
 
 
 def print_table(labels: Sequence[str], rows: Sequence[TableRow]) -> None:
@@ -174,21 +166,22 @@ def print_table(labels: Sequence[str], rows: Sequence[TableRow]) -> None:
     width = min(
         max(len(row.branches + row.name) for row in rows), _WIDEST_NAME,
         max(columns - kind_width - sum(widths) - len(widths) - 3, _NARROWEST_NAME))
-    dim, bold, plain = (_DIM, _BOLD, _PLAIN) if is_colored(sys.stdout) else ('', '', '')
     for name, kind, values, note, branches, is_bold in rows:
         room = width - min(len(name), _NARROWEST_NAME)
         branches = branches[max(len(branches) - room, 0):]
         longest = width - len(branches)
         # The end of a scoped name tells most.
         name = name if len(name) <= longest else f'...{name[3 - longest:]}'
-        color = _COLORS.get(kind, '') if plain else ''
+        name = f'{name:{longest}}'
         print(
-            f'{dim}{branches}{plain}{bold if is_bold else ""}{name:{longest}}'
-            f'{plain if is_bold else ""}  {color}{kind:{kind_width}}{plain}  '
+            _styled(branches, _DIM, sys.stdout)
+            + (_styled(name, _BOLD, sys.stdout) if is_bold else name)
+            + f'  {_styled(f"{kind:{kind_width}}", _COLORS.get(kind, ""), sys.stdout)}  '
             f'{" ".join(map(str.rjust, values, widths))}'.rstrip())
         if note:
             below = branches.translate(BELOW) + '  '
-            print(f'{dim}{below}{shortened(printable(note), columns - len(below))}{plain}')
+            note = shortened(printable(note), columns - len(below))
+            print(_styled(below + note, _DIM, sys.stdout))
 
 
 def _branches(branches: str) -> str:
@@ -236,12 +229,20 @@ class Units(NamedTuple):
         return texts
 
 
-def add_unit_arguments(parser: argparse.ArgumentParser, default: str = 'radians') -> None:
-    """
-    Add the arguments ``--degrees``, ``--radians`` and ``--mm``.
+def argument_type(
+    convert: Callable[[str], Any], is_valid: Callable[[str], bool], rule: str,
+) -> Callable[[str], Any]:
+    """Return a type of an argument; a text that is not valid gives the error ``"TEXT" RULE``."""
+    def value_from_text(text: str) -> Any:
+        if not is_valid(text):
+            msg = f'"{text}" {rule}'
+            raise argparse.ArgumentTypeError(msg)
+        return convert(text)
+    return value_from_text
 
-    :param default: the unit of angles without an argument.
-    """
+
+def add_unit_arguments(parser: argparse.ArgumentParser, default: str = 'radians') -> None:
+    """Add the arguments ``--degrees``, ``--radians`` and ``--mm``; ``default`` is for angles."""
     units = {'degrees': DEGREES, 'radians': RADIANS}
     for name, unit in units.items():
         parser.add_argument(
@@ -254,11 +255,7 @@ def add_unit_arguments(parser: argparse.ArgumentParser, default: str = 'radians'
 
 
 def add_format_argument(parser: argparse.ArgumentParser, *formats: str) -> None:
-    """
-    Add the argument ``--format``.
-
-    :param formats: its values besides ``text``.
-    """
+    """Add the argument ``--format`` with formats besides ``text``."""
     choices = ('text', *formats)
     meanings = ', '.join(f'{name}: {_FORMATS[name]}' for name in choices)
     parser.add_argument(
@@ -268,31 +265,17 @@ def add_format_argument(parser: argparse.ArgumentParser, *formats: str) -> None:
 def add_output_argument(
     parser: argparse.ArgumentParser, formats: Sequence[str], what: str,
 ) -> None:
-    """
-    Add the argument ``-o``, a path whose ending gives the format.
-
-    :param formats: the endings, such as ``.svg``.
-    :param what: the content of the file.
-    """
-    def path_from_text(text: str) -> Path:
-        path = Path(text)
-        if path.suffix.lower() not in formats:
-            msg = f'"{text}" must end with one of {", ".join(formats)}'
-            raise argparse.ArgumentTypeError(msg)
-        return path
-
+    """Add the argument ``-o``, a path whose ending, such as ``.svg``, gives the format."""
     parser.add_argument(
-        '-o', dest='output', metavar='PATH', type=path_from_text, help=f'where to write {what}')
+        '-o', dest='output', metavar='PATH', help=f'where to write {what}', type=argument_type(
+            Path, lambda text: Path(text).suffix.lower() in formats,
+            f'must end with one of {", ".join(formats)}'))
 
 
 def print_json(
     path: str, errors: Sequence[SdfError], warnings: Sequence[SdfWarning], **content: Any,
 ) -> None:
-    """
-    Print a line with a JSON object about a file.
-
-    :param content: further members of the object.
-    """
+    """Print a line with a JSON object about a file, and its content."""
     print(json.dumps({
         'file': path, 'ok': not errors, 'errors': [*map(_problem, errors)],
         'warnings': [*map(_problem, warnings)], **content}))
@@ -312,11 +295,7 @@ def print_csv(columns: Sequence[str], records: Iterable[Mapping[str, Any]]) -> N
 
 
 def kind_labels_of(scene: Scene, tree: TfTree) -> list[str]:
-    """
-    Return the kind of each frame in words.
-
-    :return: the labels of their kinds; ``optical frame`` for optical frames of cameras.
-    """
+    """Return the label of the kind of each frame; ``optical frame`` for those of cameras."""
     return [
         'optical frame' if element < 0 else Kind(scene.kinds[element]).label
         for element in tree.elements.tolist()]

@@ -5,12 +5,10 @@
 from __future__ import annotations
 
 import argparse
-from collections import Counter
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from itertools import compress
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +22,7 @@ from sdf_pose_bridge.cli.loading import (
 from sdf_pose_bridge.cli.printing import (
     add_format_argument,
     add_unit_arguments,
+    argument_type,
     BELOW,
     Frame,
     kind_labels_of,
@@ -33,21 +32,10 @@ from sdf_pose_bridge.errors import SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.scene.scene import Joint, Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
-from sdf_pose_bridge.tf.parents import NO_PARENT
+from sdf_pose_bridge.tf.parents import ROOT_IS_PARENT
 from sdf_pose_bridge.tf.tree import DEFAULT_KINDS, elements_in_model, tf_tree_from_scene
 
 _WIDEST_INDENT = 60
-
-
-class _Row(NamedTuple):
-    name: str
-    """The name in a table."""
-    full_name: str
-    kind: str
-    parent: int
-    """Index of the row of the parent; -1 for none."""
-    pose: Pose | None
-    note: str = ''
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -66,7 +54,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_frame_arguments(parser)
     add_unit_arguments(parser, 'degrees')
     parser.add_argument(
-        '--depth', metavar='N', type=_depth_from_text, default=math.inf,
+        '--depth', metavar='N', default=math.inf,
+        type=argument_type(int, str.isdecimal, 'is not a number of levels'),
         help='print N levels below the root, and the number of frames below them')
     parser.add_argument(
         '--match', metavar='GLOB', default='',
@@ -86,28 +75,21 @@ def run(options: argparse.Namespace) -> int:
         _elements_by_scope if options.scope else _frames_of_tf, options.match)
 
 
-def _depth_from_text(text: str) -> int:
-    if not text.isdecimal():
-        msg = f'"{text}" is not a number of levels'
-        raise argparse.ArgumentTypeError(msg)
-    return int(text)
-
-
 def _frames_of_tf(
     scene: Scene, options: argparse.Namespace, warnings: list[SdfWarning],
 ) -> list[Frame]:
     tree = tf_tree_from_scene(scene, tf_options_from_arguments(options))
     warnings += tree.warnings
-    # The root frame is row 0, so the index of a row is the index of its frame plus one.
-    rows = [_Row(tree.root_frame, tree.root_frame, 'root', -1, None)]
-    for frame_id, kind, parent, pose in zip(
-            tree.frame_ids, kind_labels_of(scene, tree), tree.parents.tolist(),
-            tree.transforms.tolist(), strict=True):
-        has_parent = parent != NO_PARENT
-        rows.append(_Row(
-            frame_id, frame_id, kind, parent + 1 if has_parent else -1,
-            Pose(*pose) if has_parent else None))
-    return _in_branches(rows, options)
+    # The root frame comes first, so the index of each parent is one more than in the tree.
+    names = (tree.root_frame, *tree.frame_ids)
+    kinds = ('root', *kind_labels_of(scene, tree))
+    parents = [-1, *(tree.parents - ROOT_IS_PARENT).tolist()]
+    return _in_branches([
+        ({'name': name, 'kind': kind, 'parent': names[parent] if parent >= 0 else None,
+          'pose': Pose(*pose) if parent >= 0 else None, 'note': ''}, TableRow(name, kind))
+        for name, kind, parent, pose in zip(
+            names, kinds, parents, ((), *tree.transforms.tolist()), strict=True)],
+        parents, options)
 
 
 def _elements_by_scope(
@@ -117,21 +99,24 @@ def _elements_by_scope(
     joints = {joint.element: joint for joint in scene.joints}
     is_shown = (scene.parents < 0) | (
         elements_in_model(scene, options.model) & np.isin(scene.kinds, options.kinds))
-    rows: list[_Row] = []
+    frames: list[Frame] = []
+    parents = []
     # Children of a hidden element are shown below its nearest shown ancestor. The last entry is
     # for the parent -1.
     indices = [-1] * (len(scene.names) + 1)
     for element, parent in enumerate(scene.parents.tolist()):
-        indices[element] = indices[parent]
+        index = indices[element] = indices[parent]
         if is_shown[element]:
-            reference = int(scene.references[element])
-            rows.append(_Row(
-                scene.own_name(element), scene.names[element], Kind(scene.kinds[element]).label,
-                indices[parent],
-                None if reference < 0 else scene.relative_pose_of(element, reference),
-                _note(scene, element, joints.get(element))))
-            indices[element] = len(rows) - 1
-    return _in_branches(rows, options)
+            reference, kind = int(scene.references[element]), Kind(scene.kinds[element]).label
+            indices[element] = len(frames)
+            frames.append(({
+                'name': scene.names[element], 'kind': kind,
+                'parent': frames[index][0]['name'] if index >= 0 else None,
+                'pose': None if reference < 0 else scene.relative_pose_of(element, reference),
+                'note': _note(scene, element, joints.get(element)),
+            }, TableRow(scene.own_name(element), kind)))
+            parents.append(index)
+    return _in_branches(frames, parents, options)
 
 
 def _note(scene: Scene, element: int, joint: Joint | None) -> str:
@@ -148,46 +133,47 @@ def _note(scene: Scene, element: int, joint: Joint | None) -> str:
 
 
 def _in_branches(
-    rows: Sequence[_Row], options: argparse.Namespace,
+    frames: Sequence[Frame], parents: Sequence[int], options: argparse.Namespace,
 ) -> list[Frame]:
-    """Walk the rows from parents to children, in the order of the file, without recursion."""
-    is_match = [fnmatchcase(row.full_name, options.match) for row in rows]
-    is_shown = [not options.match] * len(rows)
-    for index in compress(range(len(rows)), is_match):
+    """
+    Walk the frames from parents to children, in the order of the file, without recursion.
+
+    :param parents: the index of the parent of each frame; -1 for none.
+    """
+    is_match = [fnmatchcase(record['name'], options.match) for record, _ in frames]
+    is_shown = [not options.match] * len(frames)
+    for index in compress(range(len(frames)), is_match):
         while index >= 0 and not is_shown[index]:
             is_shown[index] = True
-            index = rows[index].parent
+            index = parents[index]
     children: dict[int, list[int]] = {}
-    for index, row in enumerate(rows):
-        if is_shown[index]:
-            children.setdefault(row.parent, []).append(index)
+    for index in compress(range(len(frames)), is_shown):
+        children.setdefault(parents[index], []).append(index)
     if not children.get(0) and len(children.get(-1, ())) > 1:
         # Nothing is below the root frame, as in the file of a robot that odometry places.
         children[-1].remove(0)
     lines: list[tuple[int, str]] = []
-    # How many rows below each line are too deep to be printed.
-    hidden: Counter[int] = Counter()
+    # How many frames below each line are too deep to be printed.
+    hidden: list[int] = []
     waiting = [(index, 0, '') for index in reversed(children.get(-1, ()))]
     while waiting:
         index, depth, branches = waiting.pop()
         if depth > options.depth:
-            hidden[len(lines)] += 1
+            hidden[-1] += 1
         else:
             lines.append((index, branches))
+            hidden.append(0)
         # A chain of thousands of links would be indented by thousands of characters.
         indent = branches.translate(BELOW)[-_WIDEST_INDENT:]
         below = children.get(index, [])
         waiting += [
             (child, depth + 1, indent + ('└ ' if child == below[-1] else '├ '))
             for child in reversed(below)]
-    frames: list[Frame] = []
-    for number, (index, branches) in enumerate(lines, start=1):
-        name, full_name, kind, parent, pose, note = rows[index]
-        more = f'{hidden[number]} more below' if hidden[number] else ''
-        frames.append((
-            {'name': full_name, 'kind': kind,
-             'parent': rows[parent].full_name if parent >= 0 else None, 'pose': pose,
-             'note': note},
-            TableRow(name, kind, (), ', '.join(filter(None, (note, more))), branches,
-                     is_match[index])))
-    return frames
+    found: list[Frame] = []
+    for (index, branches), count in zip(lines, hidden, strict=True):
+        record, row = frames[index]
+        more = f'{count} more below' if count else ''
+        note = ', '.join(filter(None, (record['note'], more)))
+        found.append(
+            (record, row._replace(note=note, branches=branches, is_bold=is_match[index])))
+    return found

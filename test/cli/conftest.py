@@ -5,6 +5,7 @@
 import contextlib
 import fcntl
 import os
+from pathlib import Path
 import pty
 import shlex
 import struct
@@ -85,11 +86,17 @@ def run_main(files, monkeypatch, capsys):
     for name in ('GZ_SIM_RESOURCE_PATH', 'SDF_PATH'):
         monkeypatch.delenv(name, raising=False)
 
-    def run(*arguments):
+    def run(*arguments, stdin=os.devnull):
+        before = os.dup(0)
+        with Path(stdin).open('rb') as file:
+            os.dup2(file.fileno(), 0)
         try:
             code = main(arguments)
         except SystemExit as stop:
             code = stop.code
+        finally:
+            os.dup2(before, 0)
+            os.close(before)
         out, err = capsys.readouterr()
         return SimpleNamespace(returncode=code, stdout=out, stderr=err)
     return run

@@ -98,13 +98,14 @@ def test_a_missing_directory_of_models_is_an_error(options, capsys):
 
 @pytest.mark.parametrize('command', [
     ('check', '-'), ('poses', '-'), ('tree', '-'), ('graph', '-'), ('diff', '-', 'good.sdf')])
-def test_standard_input_is_read(sdf_pose_in_shell, command):
-    done = sdf_pose_in_shell(f'{" ".join(command)} < good.sdf')
+def test_standard_input_is_read(run_main, command):
+    done = run_main(*command, stdin='good.sdf')
     assert (done.returncode, done.stderr) == (0, '')
 
 
-def test_errors_of_the_standard_input_name_it(sdf_pose_in_shell):
-    assert sdf_pose_in_shell('check - < bad.sdf').stdout.startswith('<stdin>:3: ELEMENT_INVALID: ')
+def test_errors_of_the_standard_input_name_it(run_main):
+    done = run_main('check', '-', stdin='bad.sdf')
+    assert done.stdout.startswith('<stdin>:3: ELEMENT_INVALID: ')
 
 
 def test_includes_of_the_standard_input_are_searched_in_the_working_directory(sdf_pose_in_shell):
@@ -114,7 +115,7 @@ def test_includes_of_the_standard_input_are_searched_in_the_working_directory(sd
 
 
 @pytest.mark.parametrize('command', ['set - f 1 2 3 0 0 0', 'view --edit -'])
-def test_standard_input_cannot_be_changed(sdf_pose_in_shell, command):
-    done = sdf_pose_in_shell(f'{command} < good.sdf')
+def test_standard_input_cannot_be_changed(run_main, command):
+    done = run_main(*command.split(), stdin='good.sdf')
     assert done.returncode == 1
     assert 'the standard input cannot be changed' in done.stderr

@@ -16,8 +16,8 @@ from sdf_texts import model_file
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_without_a_command_all_are_listed_with_a_line_each(sdf_pose):
-    done = sdf_pose()
+def test_without_a_command_all_are_listed_with_a_line_each(run_main):
+    done = run_main()
     assert (done.returncode, done.stderr) == (0, '')
     listed = re.findall(r'^    ([a-z]+) +\S.*$', done.stdout, re.MULTILINE)
     modules = (ROOT / 'sdf_pose_bridge/cli').glob('*.py')
@@ -41,14 +41,14 @@ def test_the_shell_completes_commands(files):
     assert (files / 'answer').read_text().split() == ['check']
 
 
-def test_an_unknown_command_is_an_error_that_lists_the_known_ones(sdf_pose):
-    done = sdf_pose('chekc')
+def test_an_unknown_command_is_an_error_that_lists_the_known_ones(run_main):
+    done = run_main('chekc')
     assert done.returncode == 2
     assert all(name in done.stderr for name in ('poses', 'convert', 'did you mean "check"?'))
 
 
-def test_an_option_is_not_abbreviated(sdf_pose):
-    done = sdf_pose('check', 'good.sdf', '--stric')
+def test_an_option_is_not_abbreviated(run_main):
+    done = run_main('check', 'good.sdf', '--stric')
     assert (done.returncode, done.stdout) == (2, '')
     assert 'unrecognized arguments: --stric' in done.stderr
 
