@@ -40,22 +40,13 @@ def folder_of_files(tmp_path):
 
 
 @pytest.fixture
-def sdf_pose(files):
-    """Runs the installed command line in that folder: ``sdf_pose(*arguments)``."""
-    def run(*arguments):
-        return subprocess.run(
-            [*COMMAND, *arguments], cwd=files, env=ENVIRONMENT, capture_output=True, text=True,
-            timeout=60, check=False)
-    return run
-
-
-@pytest.fixture
 def sdf_pose_in_shell(files):
-    """Runs it there from a shell: ``sdf_pose_in_shell('arguments > output')``."""
-    def run(command):
+    """Runs the installed one there from a shell: ``sdf_pose_in_shell('arguments > output')``."""
+    def run(command, before='', **environment):
         return subprocess.run(
-            f'{shlex.join(map(str, COMMAND))} {command}', shell=True, cwd=files, env=ENVIRONMENT,
-            capture_output=True, text=True, timeout=60, check=False)
+            f'{before} {shlex.join(map(str, COMMAND))} {command}', shell=True, cwd=files,
+            env={**ENVIRONMENT, **environment}, capture_output=True, text=True, timeout=60,
+            check=False)
     return run
 
 

@@ -76,12 +76,6 @@ def test_an_unknown_frame_is_an_error_of_the_file(run_main):
     assert '"ff" names nothing in world "w"; did you mean "f"?' in done.stderr
 
 
-def test_an_unknown_kind_is_an_error_that_lists_the_known_ones(run_main):
-    done = run_main('poses', '--kinds', 'link,lnik', 'good.sdf')
-    assert done.returncode == 2
-    assert '"lnik" is not a kind of element; known are model, link' in done.stderr
-
-
 ARM = ('<sdf version="1.9"><model name="m"><link name="a"/><link name="b"/>'
        '<joint name="j" type="prismatic"><parent>a</parent><child>b</child></joint></model></sdf>')
 
