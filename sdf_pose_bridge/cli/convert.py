@@ -100,19 +100,14 @@ def run(options: argparse.Namespace) -> int:
     at_a_time = 1 if sys.stdin.isatty() else LINES_AT_A_TIME
     while batch := list(islice(lines, at_a_time)):
         results = _converted_or_errors([text for _, text in batch], convert)
-        output = []
         for (number, _), result in zip(batch, results, strict=True):
             if isinstance(result, PoseFormatError):
                 exit_code = 1
                 print(f'sdf_pose convert: line {number}: {printable(str(result))}',
                       file=sys.stderr)
                 # A comment keeps the numbers of lines of output and input equal.
-                output.append(f'# line {number} is not converted\n')
-            else:
-                output.append(f'{result}\n')
-            if not options.to_format:
-                output.append('\n')
-        sys.stdout.write(''.join(output))
+                result = f'# line {number} is not converted'
+            print(result, end='\n' if options.to_format else '\n\n')
     return exit_code
 
 
