@@ -13,6 +13,9 @@ VERSIONS ?=
 RCLPY ?=
 export ROS VERSIONS RCLPY
 
+# Without bytecode, each process of the tests would compile everything again.
+unexport PYTHONDONTWRITEBYTECODE
+
 # Another ROS in the caller's shell would be found before the one that is meant.
 ifneq ($(filter-out $(ROS),$(ROS_DISTRO)),)
 unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH LD_LIBRARY_PATH PYTHONPATH

@@ -3,6 +3,7 @@
 """The package files agree with each other, and install everything in its place."""
 
 import ast
+from functools import cache
 import importlib
 import json
 import os
@@ -52,6 +53,7 @@ def installed_files():
         for target, sources in arguments_of_setup()['data_files'] for source in sources}
 
 
+@cache
 def arguments_of_setup(*command):
     """Return what setup.py calls setuptools with, for a command."""
     skip_without('setuptools')
@@ -145,11 +147,18 @@ def test_names_of_other_programs_are_used_in_a_ros_workspace_only(command, node)
     assert {script.split(' = ')[0] for script in scripts} == {'sdf_pose', *node}
 
 
+@pytest.fixture(name='scripts', scope='module')
+def installed_scripts(tmp_path_factory):
+    """Folder of the scripts as they are installed for ROS."""
+    folder = tmp_path_factory.mktemp('scripts')
+    run_setup('egg_info', '--egg-base', folder, 'install_scripts', '--install-dir', folder)
+    return folder
+
+
 @pytest.mark.parametrize(('name', 'function'), [
     ('bridge', 'main'), ('robot_state_publisher', 'robot_state_publisher'), ('sdf_pose', 'main')])
-def test_scripts_import_what_they_call(name, function, tmp_path):
-    run_setup('egg_info', '--egg-base', tmp_path, 'install_scripts', '--install-dir', tmp_path)
-    first, mark, guard, *lines = map(str.strip, (tmp_path / name).read_text().splitlines())
+def test_scripts_import_what_they_call(name, function, scripts):
+    first, mark, guard, *lines = map(str.strip, (scripts / name).read_text().splitlines())
     assert first.startswith('#!')
     assert mark == '# PYTHON_ARGCOMPLETE_OK'
     assert guard == "if __name__ == '__main__':"
@@ -227,7 +236,8 @@ def test_tests_are_collected_where_modules_are_missing():
         'viser', 'yaml']
     code = (
         f'import pytest, sys; sys.modules.update(dict.fromkeys({missing})); '
-        'sys.exit(pytest.main(["--collect-only", "--quiet", "-p", "no:cacheprovider"]))')
+        'sys.exit(pytest.main(["--collect-only", "--quiet", "--assert", "plain", '
+        '"-p", "no:cacheprovider"]))')
     done = subprocess.run(
         [sys.executable, '-c', code], cwd=ROOT, capture_output=True, text=True, check=False,
         timeout=120, env={**os.environ, 'PYTEST_DISABLE_PLUGIN_AUTOLOAD': '1'})

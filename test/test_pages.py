@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pages of the documentation are built, have no dead links, and know where they will be."""
 
+from importlib.util import find_spec
 import os
 from pathlib import Path
 import re
@@ -13,9 +14,9 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-pytest.importorskip('sphinx', reason='needs Sphinx')
-pytest.importorskip('myst_parser', reason='needs MyST')
-pytest.importorskip('furo', reason='needs furo')
+pytestmark = pytest.mark.skipif(
+    not all(map(find_spec, ('sphinx', 'myst_parser', 'furo'))),
+    reason='needs Sphinx, MyST and furo')
 
 ROOT = Path(__file__).resolve().parents[1]
 URL = 'https://example.org/a/b/'

@@ -5,22 +5,21 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
 import os
 import re
 import sys
 
 from sdf_pose_bridge.cli.loading import add_file_arguments, load_file
-from sdf_pose_bridge.cli.printing import in_order, print_problems
-from sdf_pose_bridge.cli.records import (
+from sdf_pose_bridge.cli.printing import (
     add_format_argument,
-    GITHUB,
-    JSON,
-    print_annotations,
+    in_order,
     print_json,
+    print_problems,
 )
 from sdf_pose_bridge.errors import Place, SdfError, SdfWarning
-from sdf_pose_bridge.names import shortened
+from sdf_pose_bridge.names import printable, shortened
 from sdf_pose_bridge.problems import Problems
 from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.include.uris import resource_finder, ResourceFinder
@@ -28,6 +27,9 @@ from sdf_pose_bridge.tf.tree import tf_tree_from_scene
 
 _END_OF_FOLDER = re.compile('(?<=[^/:])/')
 """The end of a package, model or folder in a URI."""
+
+_ESCAPES = str.maketrans({'%': '%25', '\r': '%0D', '\n': '%0A'})
+_ESCAPES_OF_PROPERTIES = {**_ESCAPES, **str.maketrans({':': '%3A', ',': '%2C'})}
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -37,7 +39,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description='Print every error and warning of files, one per line: FILE:LINE: CODE: '
                     'MESSAGE. The exit code is 1 if a file has an error.')
     add_file_arguments(parser)
-    add_format_argument(parser, JSON, GITHUB)
+    add_format_argument(parser, 'json', 'github')
     parser.add_argument(
         '--strict', action='store_true', help='the exit code is 1 for a warning too')
     parser.set_defaults(run=run)
@@ -51,28 +53,24 @@ def run(options: argparse.Namespace) -> int:
     """
     exit_code = 0
     for path in options.files:
-        loaded = load_file(path, options, shapes=True)
-        if loaded.scene is not None:
-            loaded = loaded._replace(warnings=in_order(
-                loaded.warnings, _doubts_about_frames(loaded.scene),
-                _doubts_about_shapes(loaded.scene, options.resource_paths)))
-        if options.format == JSON:
-            print_json(path, loaded.errors, loaded.warnings)
-        elif options.format == GITHUB:
-            print_annotations(in_order(loaded.errors, loaded.warnings))
+        scene, errors, warnings = load_file(path, options, shapes=True)
+        if scene is not None:
+            warnings = in_order(
+                warnings, _doubts_about_frames(scene),
+                _doubts_about_shapes(scene, options.resource_paths))
+        if options.format == 'json':
+            print_json(path, errors, warnings)
+        elif options.format == 'github':
+            _print_annotations(in_order(errors, warnings))
         else:
-            print_problems(loaded.errors, loaded.warnings, sys.stdout, for_gazebo=True)
-        if loaded.errors or (options.strict and loaded.warnings):
+            print_problems(errors, warnings, sys.stdout, for_gazebo=True)
+        if errors or (options.strict and warnings):
             exit_code = 1
     return exit_code
 
 
 def _doubts_about_frames(scene: Scene) -> tuple[SdfWarning, ...]:
-    """
-    Return the warnings of the TF tree.
-
-    An error of the tree is one of them; with other parameters the tree may be valid.
-    """
+    # An error of the tree is a warning, as with other parameters the tree may be valid.
     try:
         return tf_tree_from_scene(scene).warnings
     except SdfError as error:
@@ -82,11 +80,7 @@ def _doubts_about_frames(scene: Scene) -> tuple[SdfWarning, ...]:
 
 
 def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[SdfWarning, ...]:
-    """
-    Return warnings about shapes without extent, and about meshes that are not found.
-
-    A shape of a file that is included often has one, and so have all meshes of a missing package.
-    """
+    # A shape of a file that is included often has one warning, as all meshes of a missing package.
     finder = resource_finder(resource_paths, os.environ)
     problems = Problems(scene.files)
     places: dict[tuple[str, str], Place] = {}
@@ -99,13 +93,15 @@ def _doubts_about_shapes(scene: Scene, resource_paths: Sequence[str]) -> tuple[S
         elif shape.mesh_uri:
             key = shape.mesh_uri, place.file
             places[key] = min(place, places.get(key, place), key=lambda each: each.line)
-    missing: dict[tuple[str, str], list[str]] = {}
+    missing: defaultdict[tuple[str, str], list[str]] = defaultdict(list)
     for uri, file in sorted(places, key=lambda key: places[key].line):
         if finder.file_from_uri(uri, file) is None:
-            missing.setdefault((_missing_part(uri, file, finder), file), []).append(uri)
+            missing[_missing_part(uri, file, finder), file].append(uri)
     for (folder, file), uris in missing.items():
+        others = f', like {len(uris) - 1} more of "{shortened(folder)}"' if uris[1:] else ''
         problems.warning(
-            _reason_without_meshes(folder, uris, file, finder), places[uris[0], file])
+            f'the mesh "{shortened(uris[0])}" is not found{others}: '
+            f'{finder.reason_not_found(uris[0], file)}', places[uris[0], file])
     return problems.warnings
 
 
@@ -117,9 +113,12 @@ def _missing_part(uri: str, file: str, finder: ResourceFinder) -> str:
     return next((each for each in folders if finder.path_from_uri(each, file) is None), uri)
 
 
-def _reason_without_meshes(
-    folder: str, uris: Sequence[str], file: str, finder: ResourceFinder,
-) -> str:
-    others = f', like {len(uris) - 1} more of "{shortened(folder)}"' if len(uris) > 1 else ''
-    return (f'the mesh "{shortened(uris[0])}" is not found{others}: '
-            f'{finder.reason_not_found(uris[0], file)}')
+def _print_annotations(problems: Iterable[SdfError | SdfWarning]) -> None:
+    # Source of the syntax and the escapes: "Workflow commands for GitHub Actions" of its
+    # documentation, and ``command.ts`` of its toolkit.
+    for problem in problems:
+        level = 'error' if isinstance(problem, SdfError) else 'warning'
+        place = problem.place
+        line = f',line={place.line}' if place.line else ''
+        print(f'::{level} file={printable(place.file).translate(_ESCAPES_OF_PROPERTIES)}{line},'
+              f'title={problem.code}::{printable(problem.message).translate(_ESCAPES)}')

@@ -5,12 +5,13 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 import io
 from itertools import islice
 import sys
 import textwrap
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -36,15 +37,8 @@ from sdf_pose_bridge.names import printable, shortened
 LINES_AT_A_TIME = 10_000
 """Number of lines that are converted together, so that memory is bounded for any input."""
 
-_Result: TypeAlias = tuple[list[float], ...]
-"""The numbers of a pose or a rotation in several formats."""
-
-
-class _Conversion(NamedTuple):
-    source: Format
-    targets: Sequence[Format]
-    given_length: Unit
-    printed_length: Unit
+_Convert: TypeAlias = Callable[[Sequence[str]], Sequence[str]]
+"""Returns what to print for each text."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -87,16 +81,14 @@ def run(options: argparse.Namespace) -> int:
             f' --to {options.to_format} a {other}; a {kind} converts to {", ".join(formats)}',
             file=sys.stderr)
         return 2
-    conversion = _Conversion(
-        format_with_unit(options.from_format, options.angle_unit), list(formats.values()),
-        options.length_unit, METRES)
+    source = format_with_unit(options.from_format, options.angle_unit)
+    targets, printed_length = list(formats.values()), METRES
     if options.to_format:
-        conversion = conversion._replace(
-            targets=[format_with_unit(options.to_format, options.angle_unit)],
-            printed_length=options.length_unit)
+        targets = [format_with_unit(options.to_format, options.angle_unit)]
+        printed_length = options.length_unit
+    convert = partial(_converted, source, targets, options.length_unit, printed_length)
     if options.numbers:
-        (result,) = _converted([' '.join(options.numbers)], conversion)
-        print(*_texts(result, conversion.targets), sep='\n')
+        print(*convert([' '.join(options.numbers)]))
         return 0
     if isinstance(sys.stdin, io.TextIOWrapper):
         # Invalid bytes are an error in their line only.
@@ -107,7 +99,15 @@ def run(options: argparse.Namespace) -> int:
         if text.strip() and not text.lstrip().startswith('#'))
     at_a_time = 1 if sys.stdin.isatty() else LINES_AT_A_TIME
     while batch := list(islice(lines, at_a_time)):
-        exit_code |= _print_lines(batch, conversion)
+        results = _converted_or_errors([text for _, text in batch], convert)
+        for (number, _), result in zip(batch, results, strict=True):
+            if isinstance(result, PoseFormatError):
+                exit_code = 1
+                print(f'sdf_pose convert: line {number}: {printable(str(result))}',
+                      file=sys.stderr)
+                # A comment keeps the numbers of lines of output and input equal.
+                result = f'# line {number} is not converted'
+            print(result, end='\n' if options.to_format else '\n\n')
     return exit_code
 
 
@@ -172,57 +172,35 @@ def question_about_unit(source: Format, numbers: Sequence[float]) -> str:
     return f'{doubt.reason}; did you mean --{doubt.likely_unit}?' if doubt else ''
 
 
-def _print_lines(lines: Sequence[tuple[int, str]], conversion: _Conversion) -> int:
-    """Print the result or the error of each line, with its number, and return the exit code."""
-    exit_code = 0
-    output = []
-    results = _converted_or_errors([text for _, text in lines], conversion)
-    for (number, _), result in zip(lines, results, strict=True):
-        if isinstance(result, str):
-            exit_code = 1
-            print(f'sdf_pose convert: line {number}: {printable(result)}', file=sys.stderr)
-            # A comment keeps the numbers of lines of output and input equal.
-            output.append(f'# line {number} is not converted')
-        else:
-            output += _texts(result, conversion.targets)
-        if len(conversion.targets) > 1:
-            output.append('')
-    sys.stdout.write(''.join(f'{text}\n' for text in output))
-    return exit_code
-
-
-def _texts(result: _Result, targets: Sequence[Format]) -> list[str]:
-    """Return a line for each format, with its name if there are several."""
-    width = max(len(target.name) for target in targets)
-    return [
-        (f'{target.name:{width}}  ' if len(targets) > 1 else '') + ' '.join(map(repr, numbers))
-        for target, numbers in zip(targets, result, strict=True)]
-
-
-def _converted(texts: Sequence[str], conversion: _Conversion) -> list[_Result]:
-    source, targets, given_length, printed_length = conversion
+def _converted(
+    source: Format, targets: Sequence[Format], given_length: Unit, printed_length: Unit,
+    texts: Sequence[str],
+) -> list[str]:
+    """Return, for each pose or rotation, a line for each format, with its name if several."""
     convert = converted_poses if source.name in POSE_FORMATS else converted_rotations
     rows = [numbers_from_text(text, source, given_length) for text in texts]
+    width = max(len(target.name) for target in targets)
     values, columns = np.array(rows), []
     for target in targets:
         shown = without_rounding_errors(convert(values, source.name, target.name), source, target)
         if printed_length is MILLIMETRES:
             shown[:, list(target.position)] *= printed_length.factor / target.metre
-        columns.append(shown.tolist())
+        title = f'{target.name:{width}}  ' if targets[1:] else ''
+        columns.append([title + ' '.join(map(repr, numbers)) for numbers in shown.tolist()])
     question = next(filter(None, (question_about_unit(source, row) for row in rows)), '')
     if question:
         print(f'sdf_pose convert: {question}', file=sys.stderr)
-    return list(zip(*columns, strict=True))
+    return list(map('\n'.join, zip(*columns, strict=True)))
 
 
 def _converted_or_errors(
-    texts: Sequence[str], conversion: _Conversion,
-) -> Sequence[_Result | str]:
+    texts: Sequence[str], convert: _Convert,
+) -> Sequence[str | PoseFormatError]:
     try:
-        return _converted(texts, conversion)
+        return convert(texts)
     except PoseFormatError as error:
         if len(texts) == 1:
-            return [str(error)]
+            return [error]
         half = len(texts) // 2
-        return [*_converted_or_errors(texts[:half], conversion),
-                *_converted_or_errors(texts[half:], conversion)]
+        return [*_converted_or_errors(texts[:half], convert),
+                *_converted_or_errors(texts[half:], convert)]

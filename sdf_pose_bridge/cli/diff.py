@@ -15,21 +15,14 @@ from sdf_pose_bridge.cli.loading import (
     sdf_name,
 )
 from sdf_pose_bridge.cli.printing import (
+    add_format_argument,
     add_unit_arguments,
-    DEGREES,
+    print_csv,
+    print_json,
     print_problems,
     print_table,
     TableRow,
     Units,
-)
-from sdf_pose_bridge.cli.records import (
-    add_format_argument,
-    CSV,
-    JSON,
-    print_csv,
-    print_csv_header,
-    print_json,
-    TEXT,
 )
 from sdf_pose_bridge.errors import SdfError
 from sdf_pose_bridge.scene.comparison import Change, Difference, differences_of_scenes, TOLERANCE
@@ -45,7 +38,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument('old', metavar='OLD', help='an SDFormat file; - reads the standard input')
     parser.add_argument('new', metavar='NEW', help='the file to compare it with')
     add_loading_arguments(parser)
-    add_format_argument(parser, CSV, JSON)
+    add_format_argument(parser, 'csv', 'json')
     parser.add_argument(
         '--relative-to', metavar='FRAME', default='',
         help='compare poses relative to this frame, by its name in SDF (robot::hand) or TF '
@@ -55,7 +48,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help='the largest distance in metres, and angle in radians, of a frame that has not '
              f'moved; by default {TOLERANCE:g}')
     add_kinds_argument(parser, 'compare only')
-    add_unit_arguments(parser, DEGREES)
+    add_unit_arguments(parser, 'degrees')
     parser.set_defaults(run=run)
 
 
@@ -65,14 +58,15 @@ def run(options: argparse.Namespace) -> int:
 
     :return: exit code: 0 if there is no difference, 1 if there is one, 2 if a file has an error.
     """
-    old, new = (load_file(path, options) for path in (options.old, options.new))
-    errors, warnings = old.errors + new.errors, old.warnings + new.warnings
+    (old, errors, warnings), (new, more_errors, more_warnings) = (
+        load_file(path, options) for path in (options.old, options.new))
+    errors, warnings = errors + more_errors, warnings + more_warnings
     differences: list[Difference] = []
-    if old.scene is not None and new.scene is not None:
+    if old is not None and new is not None:
         try:
             differences = [
                 difference for difference in differences_of_scenes(
-                    old.scene, new.scene, relative_to=sdf_name(old.scene, options.relative_to),
+                    old, new, relative_to=sdf_name(old, options.relative_to),
                     tolerance=options.tolerance)
                 if difference.kind in options.kinds]
         except SdfError as error:
@@ -80,14 +74,14 @@ def run(options: argparse.Namespace) -> int:
     records = [
         {**difference._asdict(), 'change': difference.change.value, 'kind': difference.kind.label}
         for difference in differences]
-    if options.format == JSON:
+    if options.format == 'json':
         print_json(options.new, errors, warnings, old=options.old, differences=records)
     else:
         print_problems(errors, warnings, sys.stderr)
-    if options.format == CSV:
-        print_csv_header(Difference._fields)
+    if options.format == 'csv':
+        print(*Difference._fields, sep=',')
         print_csv(Difference._fields, records)
-    elif options.format == TEXT and differences:
+    elif options.format == 'text' and differences:
         units = Units(options.length_unit, options.angle_unit)
         print_table(
             ('change', f'distance {units.length.name}', f'angle {units.angle.name}'),
@@ -108,6 +102,5 @@ def _table_row(difference: Difference, units: Units) -> TableRow:
     if difference.change is Change.MOVED:
         values[1:] = [f'{round(value, 9) * unit.factor:.6g}' for value, unit in zip(
             (difference.distance_m, difference.angle_rad), units, strict=True)]
-    is_renamed = difference.change is Change.RENAMED
-    return TableRow(difference.name, difference.kind.label, values,
-                    [f'was {difference.old_name}'] if is_renamed else ())
+    note = f'was {difference.old_name}' if difference.change is Change.RENAMED else ''
+    return TableRow(difference.name, difference.kind.label, values, note)

@@ -9,13 +9,16 @@ The graph is written in the language DOT; the program ``dot`` of Graphviz lays i
 from __future__ import annotations
 
 import argparse
-from collections.abc import Container, Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from itertools import chain
 import os
 from pathlib import Path
 import shutil
 import subprocess
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sdf_pose_bridge.cli.loading import (
     add_file_arguments,
@@ -77,11 +80,7 @@ def run(options: argparse.Namespace) -> int:
     :raises CommandError: if it cannot be written or drawn.
     """
     scene = scene_of(options.files[0], options)
-    text = dot_from_scene(scene, options.kinds, options.model)
-    if options.output is None:
-        print(text, end='')
-    else:
-        _write(text, options.output)
+    _write(dot_from_scene(scene, options.kinds, options.model), options.output)
     return 0
 
 
@@ -93,11 +92,10 @@ def dot_from_scene(scene: Scene, kinds: Sequence[Kind] = _KINDS, model: str = ''
     :return: the text, one node or arrow in a line.
     :raises UnknownFrameError: if there is no such model.
     """
-    chosen = np.flatnonzero(
-        elements_in_model(scene, model) & np.isin(scene.kinds, kinds)).tolist()
-    edges = _edges(scene, set(chosen))
+    is_chosen = elements_in_model(scene, model) & np.isin(scene.kinds, kinds)
+    edges = _edges(scene, is_chosen)
     # Both ends of each arrow are drawn too, such as the world.
-    shown = sorted({*chosen, *(end for ends in edges for end in ends)})
+    shown = sorted({*np.flatnonzero(is_chosen).tolist(), *chain.from_iterable(edges)})
     lines = [f'  label="{_LEGEND}"', *_nodes(scene, shown)]
     for (start, end), colors in edges.items():
         width = ' penwidth=2.5' if colors[0] == _JOINT else ''
@@ -106,26 +104,23 @@ def dot_from_scene(scene: Scene, kinds: Sequence[Kind] = _KINDS, model: str = ''
     return _HEAD + '\n'.join(lines) + '\n}\n'
 
 
-def _edges(scene: Scene, chosen: Container[int]) -> dict[tuple[int, int], list[str]]:
+def _edges(scene: Scene, is_chosen: NDArray[np.bool_]) -> dict[tuple[int, int], list[str]]:
     """Return the colors of the arrows from one element to another."""
-    edges: dict[tuple[int, int], list[str]] = {}
+    edges: defaultdict[tuple[int, int], list[str]] = defaultdict(list)
     joints = {joint.element for joint in scene.joints}
     for joint in scene.joints:
-        if joint.element in chosen:
+        if is_chosen[joint.element]:
             edges[joint.parent, joint.element] = [_JOINT]
             edges[joint.element, joint.child] = [_JOINT]
-    for element, (reference, default, parent) in enumerate(zip(
-            scene.references.tolist(), scene.default_references.tolist(), scene.parents.tolist(),
-            strict=True)):
-        if element not in chosen or reference < 0:
-            continue
-        is_attached = scene.kinds[element] == Kind.FRAME and default != parent
+    for element in np.flatnonzero(is_chosen & (scene.references >= 0)).tolist():
+        reference, default = scene.references.item(element), scene.default_references.item(element)
+        is_attached = scene.kinds[element] == Kind.FRAME and default != scene.parents[element]
         if is_attached:
-            edges.setdefault((default, element), []).append(_ATTACHED_TO)
+            edges[default, element].append(_ATTACHED_TO)
         if reference != default:
-            edges.setdefault((reference, element), []).append(_RELATIVE_TO)
+            edges[reference, element].append(_RELATIVE_TO)
         elif not is_attached and element not in joints:
-            edges.setdefault((reference, element), []).append(_DEFAULT)
+            edges[reference, element].append(_DEFAULT)
     return edges
 
 
@@ -154,9 +149,9 @@ def _escaped(name: str) -> str:
     return printable(shortened(name)).replace('\\', '\\\\').replace('"', '\\"')
 
 
-def _write(text: str, path: Path) -> None:
+def _write(text: str, path: Path | None) -> None:
     """Write a graph in the format of the path."""
-    if path.suffix.lower() == '.dot':
+    if path is None or path.suffix.lower() == '.dot':
         write_text(text, path)
         return
     if shutil.which('dot') is None:

@@ -1,18 +1,24 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Load the files of a command, and choose their frames, by its arguments."""
+"""Load the files of a command, and choose and print their frames, by its arguments."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Collection, Iterator, Mapping
-import contextlib
-from pathlib import Path
+from collections.abc import Callable, Collection, Mapping, Sequence
+import os
 import sys
 import threading
-from typing import NamedTuple
 
-from sdf_pose_bridge.cli.printing import add_unit_arguments, print_problems, RADIANS, Unit
+from sdf_pose_bridge.cli.printing import (
+    argument_type,
+    Frame,
+    print_csv,
+    print_json,
+    print_problems,
+    print_table,
+    Units,
+)
 from sdf_pose_bridge.errors import SdfError, SdfWarning
 from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.names import printable
@@ -35,21 +41,8 @@ _SHOWN_BY_NAME = {kind.label: kind for kind in SHOWN_KINDS}
 _KIND_NAMES = ', '.join(_SHOWN_BY_NAME)
 
 
-class LoadedFile(NamedTuple):
-    """Result of loading a file."""
-
-    scene: Scene | None
-    """None if the file is not valid."""
-    errors: tuple[SdfError, ...]
-    warnings: tuple[SdfWarning, ...]
-
-
 def add_file_arguments(parser: argparse.ArgumentParser, *, takes_many: bool = True) -> None:
-    """
-    Add the files of a command, and the arguments of :func:`load_file`.
-
-    :param takes_many: whether the command takes several files.
-    """
+    """Add the file or the files of a command, and the arguments of :func:`load_file`."""
     parser.add_argument(
         'files', metavar='FILE', nargs='+' if takes_many else 1,
         help='an SDFormat file; - reads the standard input')
@@ -59,8 +52,8 @@ def add_file_arguments(parser: argparse.ArgumentParser, *, takes_many: bool = Tr
 def add_loading_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of :func:`load_file`."""
     parser.add_argument(
-        '-I', dest='resource_paths', metavar='DIR', type=_directory_from_text, action='append',
-        default=[],
+        '-I', dest='resource_paths', metavar='DIR', action='append', default=[],
+        type=argument_type(str, os.path.isdir, 'is not a directory'),
         help='a directory to search for included models, before GZ_SIM_RESOURCE_PATH '
              'and SDF_PATH; may be given more than once')
     parser.add_argument(
@@ -69,8 +62,8 @@ def add_loading_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def scene_from_file(
-    path: str, options: argparse.Namespace, *, shapes: bool = False,
-    texts: Mapping[str, bytes] | None = None,
+    path: str, options: argparse.Namespace, texts: Mapping[str, bytes] | None = None, *,
+    shapes: bool = False,
 ) -> Scene:
     """
     Load a file, or a pipe such as the shell's ``<(command)``.
@@ -81,40 +74,34 @@ def scene_from_file(
     :raises SdfError: if the file is not valid.
     """
     is_input = path == STANDARD_INPUT
-    with _told_after_a_second(path):
+    # Tells people why nothing happens.
+    timer = threading.Timer(
+        1.0, print, (f'reading {printable(path)} ...',), {'file': sys.stderr})
+    if sys.stderr.isatty():
+        timer.start()
+    try:
         text = bytes_from_file('/dev/stdin' if is_input else path, Usage(), allows_pipe=True)
         return load_text(
             text, '<stdin>' if is_input else path,
             resource_paths=options.resource_paths, shapes=shapes, texts=texts,
             on_missing_include='skip' if options.skip_missing else 'error')
-
-
-@contextlib.contextmanager
-def _told_after_a_second(path: str) -> Iterator[None]:
-    """Print to a terminal that a file is being read, if this takes longer than a second."""
-    if not sys.stderr.isatty():
-        yield
-        return
-    timer = threading.Timer(
-        1.0, print, (f'reading {printable(path)} ...',), {'file': sys.stderr})
-    timer.start()
-    try:
-        yield
     finally:
         timer.cancel()
 
 
-def load_file(path: str, options: argparse.Namespace, *, shapes: bool = False) -> LoadedFile:
+def load_file(
+    path: str, options: argparse.Namespace, *, shapes: bool = False,
+) -> tuple[Scene | None, tuple[SdfError, ...], tuple[SdfWarning, ...]]:
     """
     Load a file as :func:`scene_from_file` does.
 
-    :return: the scene with its warnings, or the errors of the file.
+    :return: the scene, or None if the file is not valid; the errors and the warnings.
     """
     try:
         scene = scene_from_file(path, options, shapes=shapes)
     except SdfError as error:
-        return LoadedFile(None, error.errors, error.warnings)
-    return LoadedFile(scene, (), scene.warnings)
+        return None, error.errors, error.warnings
+    return scene, (), scene.warnings
 
 
 def scene_of(path: str, options: argparse.Namespace, *, shapes: bool = False) -> Scene:
@@ -126,6 +113,54 @@ def scene_of(path: str, options: argparse.Namespace, *, shapes: bool = False) ->
     scene = scene_from_file(path, options, shapes=shapes)
     print_problems((), scene.warnings, sys.stderr)
     return scene
+
+
+def print_frames(
+    options: argparse.Namespace, member: str, columns: Sequence[str],
+    frames_of_scene: Callable[[Scene, argparse.Namespace, list[SdfWarning]], Sequence[Frame]],
+    pattern: str = '',
+) -> int:
+    """
+    Print the frames of files; continue after an invalid file.
+
+    :param member: the member of the JSON object that has the records.
+    :param columns: the columns of CSV: ``file``, members of the records, and numbers of poses.
+    :param frames_of_scene: returns the record of each frame, whose member ``pose`` is None if it
+        has no pose, and its row in a table without the pose; adds warnings to those of the file.
+    :param pattern: the pattern of names that the frames match, for a message if there are none.
+    :return: exit code: 0 if all files are valid, else 1.
+    """
+    exit_code, units = 0, Units(options.length_unit, options.angle_unit)
+    if options.format == 'csv':
+        print(*columns, sep=',')
+    for path in options.files:
+        scene, errors, (*warnings,) = load_file(path, options)
+        frames: Sequence[Frame] = ()
+        if scene is not None:
+            try:
+                frames = frames_of_scene(scene, options, warnings)
+            except SdfError as error:
+                errors = error.errors
+        exit_code |= bool(errors)
+        if options.format == 'json':
+            print_json(path, errors, warnings, **{member: [record for record, _ in frames]})
+            continue
+        print_problems(errors, warnings, sys.stderr)
+        if options.format == 'csv':
+            print_csv(columns, (
+                {'file': path, **record, **(record['pose']._asdict() if record['pose'] else {})}
+                for record, _ in frames))
+        elif not errors:
+            if len(options.files) > 1:
+                print(printable(path))
+            if pattern and not frames:
+                print(f'sdf_pose {options.command}: no whole name in {printable(path)} matches '
+                      f'"{printable(pattern)}"', file=sys.stderr)
+                continue
+            print_table(units.labels, [
+                row._replace(values=units.texts(record['pose'], fewer_digits=1))
+                if record['pose'] else row for record, row in frames])
+    return exit_code
 
 
 def pose_lookup(scene: Scene) -> PoseLookup:
@@ -153,12 +188,7 @@ def sdf_name(scene: Scene, name: str) -> str:
 def add_kinds_argument(
     parser: argparse.ArgumentParser, what: str, default: Collection[Kind] = SHOWN_KINDS,
 ) -> None:
-    """
-    Add the argument ``--kinds``, a list of kinds.
-
-    :param what: the beginning of the help, such as ``print only``.
-    :param default: the kinds without the argument.
-    """
+    """Add the argument ``--kinds``; ``what`` is its purpose, such as ``print only``."""
     labels = ','.join(kind.label for kind in SHOWN_KINDS if kind in default)
     instead = '' if default is SHOWN_KINDS else f'instead of {labels} '
     parser.add_argument(
@@ -166,37 +196,23 @@ def add_kinds_argument(
         help=f'{instead}{what} these kinds: {_KIND_NAMES}')
 
 
-def add_frame_arguments(parser: argparse.ArgumentParser, angle: Unit = RADIANS) -> None:
-    """
-    Add the arguments of :func:`tf_options_from_arguments`, and the units of poses.
-
-    The first are named like parameters of the node.
-
-    :param angle: the unit of angles without an argument.
-    """
-    add_kinds_argument(parser, 'show frames of', DEFAULT_KINDS)
-    add_model_argument(parser)
-    add_naming_argument(parser)
-    add_unit_arguments(parser, angle)
-
-
-def add_model_argument(parser: argparse.ArgumentParser, verb: str = 'show') -> None:
-    """
-    Add the argument ``--model``.
-
-    :param verb: the verb of the help.
-    """
-    parser.add_argument(
-        '--model', metavar='NAME', default='', help=f'{verb} only this model, such as robot::arm')
-
-
-def add_naming_argument(parser: argparse.ArgumentParser) -> None:
-    """Add the argument ``--frame-names``."""
+def add_frame_arguments(
+    parser: argparse.ArgumentParser, what: str = 'show frames of', verb: str = 'show',
+) -> None:
+    """Add the arguments of :func:`tf_options_from_arguments`, named as parameters of the node."""
+    add_kinds_argument(parser, what, DEFAULT_KINDS)
+    add_model_argument(parser, verb)
     parser.add_argument(
         '--frame-names', choices=[names.value for names in FrameNames],
         default=FrameNames.AUTO.value,
         help='scoped: frame ids with the names of all models around an element; relative: '
              'without the top-level model; auto: relative for a model file')
+
+
+def add_model_argument(parser: argparse.ArgumentParser, verb: str = 'show') -> None:
+    """Add the argument ``--model``, whose help begins with a verb."""
+    parser.add_argument(
+        '--model', metavar='NAME', default='', help=f'{verb} only this model, such as robot::arm')
 
 
 def tf_options_from_arguments(options: argparse.Namespace) -> TfOptions:
@@ -206,17 +222,9 @@ def tf_options_from_arguments(options: argparse.Namespace) -> TfOptions:
         frame_names=FrameNames(options.frame_names))
 
 
-def _directory_from_text(text: str) -> str:
-    if not Path(text).is_dir():
-        msg = f'"{text}" is not a directory'
-        raise argparse.ArgumentTypeError(msg)
-    return text
-
-
 def _kinds_from_text(text: str) -> tuple[Kind, ...]:
-    names = text.split(',')
-    for name in names:
-        if name not in _SHOWN_BY_NAME:
-            msg = f'"{name}" is not a kind of element; known are {_KIND_NAMES}'
-            raise argparse.ArgumentTypeError(msg)
-    return tuple(map(_SHOWN_BY_NAME.__getitem__, names))
+    try:
+        return tuple(_SHOWN_BY_NAME[name] for name in text.split(','))
+    except KeyError as error:
+        msg = f'"{error.args[0]}" is not a kind of element; known are {_KIND_NAMES}'
+        raise argparse.ArgumentTypeError(msg) from None

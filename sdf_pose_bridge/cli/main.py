@@ -66,34 +66,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if error.filename is not None:
             raise
         discard_output()
-        reason = (error.strerror or str(error)).lower()
-        print(f'sdf_pose {options.command}: the output cannot be written: {reason}',
-              file=sys.stderr)
-        return 1
+        reason = f'the output cannot be written: {(error.strerror or str(error)).lower()}'
     except (CommandError, PoseFormatError) as error:
-        print(f'sdf_pose {options.command}: {printable(str(error))}', file=sys.stderr)
-        return 1
+        reason = printable(str(error))
     except SdfError as error:
         print_problems(error.errors, error.warnings, sys.stderr)
         return 1
     except LimitExceededError as error:
-        print(f'sdf_pose {options.command}: this needs {error}', file=sys.stderr)
-        return 1
+        reason = f'this needs {error}'
     except MemoryError:
-        print(f'sdf_pose {options.command}: there is not enough memory', file=sys.stderr)
-        return 1
+        reason = 'there is not enough memory'
     except KeyboardInterrupt:
         return 130
-    return code
+    else:
+        return code
+    print(f'sdf_pose {options.command}: {reason}', file=sys.stderr)
+    return 1
 
 
 @contextlib.contextmanager
 def _limited() -> Iterator[None]:
-    """
-    Limit processor time and memory while the block runs.
-
-    :raises LimitExceededError: if it needs more.
-    """
+    """Limit processor time and memory while the block runs; raise LimitExceededError."""
     def end(_number: int, _frame: object) -> NoReturn:
         msg = f'more than {time.process_time():.0f} s of processor time'
         raise LimitExceededError(msg)

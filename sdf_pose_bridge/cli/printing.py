@@ -1,18 +1,20 @@
 # Copyright 2026 The sdf_pose_bridge authors
 # SPDX-License-Identifier: Apache-2.0
-"""Print problems and poses: colors, units and output files."""
+"""Print problems and poses, for people or other programs: colors, units, formats and files."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+import csv
 from itertools import chain
+import json
 import math
 import os
 from pathlib import Path
 import shutil
 import sys
-from typing import NamedTuple, TextIO, TypeVar
+from typing import Any, NamedTuple, TextIO, TypeAlias, TypeVar
 
 from sdf_pose_bridge.errors import SdfError, SdfWarning, UriLookupError
 from sdf_pose_bridge.geometry.poses import Pose
@@ -23,23 +25,26 @@ from sdf_pose_bridge.scene.scene import Scene
 from sdf_pose_bridge.sdformat.grammar import Kind
 from sdf_pose_bridge.tf.tree import TfTree
 
+_FORMATS = {
+    'text': 'for people, the default',
+    'csv': 'comma-separated values with a header, in metres and radians',
+    'json': 'one object per file and line, in metres and radians',
+    'github': 'annotations that GitHub shows in a review',
+}
+
 _Problem = TypeVar('_Problem', bound='SdfError | SdfWarning')
 
-_RED, _YELLOW, _BOLD, _PLAIN = '\x1b[31m', '\x1b[33m', '\x1b[1m', '\x1b[0m'
+_RED, _YELLOW, _BOLD, _DIM = '\x1b[31m', '\x1b[33m', '\x1b[1m', '\x1b[2m'
 
 
-def is_colored(stream: TextIO) -> bool:
-    """
-    Return whether to print colors.
-
-    :param stream: the stream to print to.
-    :return: True for a terminal, unless the variable ``NO_COLOR`` is set (https://no-color.org).
-    """
-    return stream.isatty() and not os.environ.get('NO_COLOR')
+def _styled(text: str, style: str, stream: TextIO) -> str:
+    """Add a style on a terminal, unless ``NO_COLOR`` is set (https://no-color.org)."""
+    has_styles = stream.isatty() and not os.environ.get('NO_COLOR')
+    return f'{style}{text}\x1b[0m' if has_styles else text
 
 
 def print_problems(
-    errors: tuple[SdfError, ...], warnings: tuple[SdfWarning, ...], stream: TextIO, *,
+    errors: Sequence[SdfError], warnings: Sequence[SdfWarning], stream: TextIO, *,
     for_gazebo: bool = False,
 ) -> None:
     """
@@ -47,28 +52,25 @@ def print_problems(
 
     :param for_gazebo: whether to print warnings that concern Gazebo only; else their number.
     """
-    hidden = [] if for_gazebo else [each for each in warnings if each.is_for_gazebo]
+    hidden = [each for each in warnings if each.is_for_gazebo and not for_gazebo]
     if hidden:
-        warnings = tuple(each for each in warnings if not each.is_for_gazebo)
         count = f'{len(hidden)} warning{"s" if hidden[1:] else ""}'
         print(f'{printable(hidden[0].place.file)}: "sdf_pose check" has {count} about Gazebo',
               file=stream)
     # Earlier output comes first, also if both streams go to one place.
     sys.stdout.flush()
-    has_colors = is_colored(stream)
-    bold, plain = (_BOLD, _PLAIN) if has_colors else ('', '')
-    for problem, other_lines in folded(in_order(errors, warnings)):
+    shown = [each for each in warnings if each not in hidden]
+    for problem, other_lines in folded(in_order(errors, shown)):
         is_error = isinstance(problem, SdfError)
-        color = '' if not has_colors else _RED if is_error else _YELLOW
         kind = '' if is_error or problem.code == 'WARNING' else 'WARNING: '
         place, message = printable(str(problem.place)), printable(problem.message)
         hint = '; --skip-missing leaves it out' if isinstance(problem, UriLookupError) else ''
-        print(f'{bold}{place}:{plain} {color}{kind}{problem.code}:{plain} {message}{hint}'
-              f'{other_lines}',
+        code = _styled(f'{kind}{problem.code}:', _RED if is_error else _YELLOW, stream)
+        print(f'{_styled(f"{place}:", _BOLD, stream)} {code} {message}{hint}{other_lines}',
               file=stream)
 
 
-def in_order(*problems: tuple[_Problem, ...]) -> tuple[_Problem, ...]:
+def in_order(*problems: Sequence[_Problem]) -> tuple[_Problem, ...]:
     """
     Sort errors and warnings.
 
@@ -76,10 +78,9 @@ def in_order(*problems: tuple[_Problem, ...]) -> tuple[_Problem, ...]:
     :return: all of them, by file as the first ones, and by line; of one line the first argument
         comes first.
     """
-    files = [problem.place.file for some in problems for problem in some]
-    ranks = {file: rank for rank, file in reversed([*enumerate(files)])}
+    files = [problem.place.file for problem in chain(*problems)]
     return (*sorted(chain(*problems), key=lambda problem: (
-        ranks[problem.place.file], problem.place.line)),)
+        files.index(problem.place.file), problem.place.line)),)
 
 
 def discard_output() -> None:
@@ -91,12 +92,15 @@ class CommandError(Exception):
     """A command fails; the text is the reason."""
 
 
-def write_text(text: str, path: Path) -> None:
+def write_text(text: str, path: Path | None) -> None:
     """
-    Write a file.
+    Write a file; without a path, the standard output.
 
-    :raises CommandError: if it cannot be written.
+    :raises CommandError: if the file cannot be written.
     """
+    if path is None:
+        print(text, end='')
+        return
     try:
         path.write_text(text, encoding='utf-8')
     except OSError as error:
@@ -119,8 +123,9 @@ RADIANS, DEGREES = Unit('rad', 1.0, 4), Unit('deg', math.degrees(1.0), 2)
 
 _WIDEST_NAME, _NARROWEST_NAME = 80, 8
 _SHORT_KINDS = {'optical frame': 'optical', 'particle_emitter': 'emitter'}
-_BRANCHES, _ASCII_BRANCHES = ('├ ', '└ ', '│ ', '  '), ('|-', '`-', '| ', '  ')
-_DIM = '\x1b[2m'
+BELOW = str.maketrans('├└`-', '│   ')
+"""Translates the branches of a line into those below it."""
+
 _COLORS = {
     'model': '\x1b[35m', 'link': '\x1b[32m', 'joint': '\x1b[33m', 'frame': '\x1b[36m',
     'sensor': '\x1b[34m', 'optical': '\x1b[34m'}
@@ -133,20 +138,15 @@ class TableRow(NamedTuple):
     kind: str
     values: Sequence[str] = ()
     """The texts of the other columns; none if they are blank."""
-    notes: Sequence[str] = ()
-    """Texts for the line below."""
+    note: str = ''
+    """The text of the line below."""
     branches: str = ''
-    """The branches of a tree that are before the name."""
+    """The branches of a tree that are before the name, each with a space."""
     is_bold: bool = False
 
 
-def branches_of_tree() -> Sequence[str]:
-    """Return the branches to one of several children and to the last, and the lines below them."""
-    try:
-        ''.join(_BRANCHES).encode(sys.stdout.encoding or 'ascii')
-    except UnicodeEncodeError:
-        return _ASCII_BRANCHES
-    return _BRANCHES
+Frame: TypeAlias = tuple[Mapping[str, Any], TableRow]
+"""The record of a frame for other programs, and its row in a table."""
 
 
 def print_table(labels: Sequence[str], rows: Sequence[TableRow]) -> None:
@@ -155,34 +155,42 @@ def print_table(labels: Sequence[str], rows: Sequence[TableRow]) -> None:
 
     :param labels: the labels of the columns behind the kinds, such as x, y and z.
     """
-    rows = [TableRow('frame', 'kind', labels), *rows]
-    kinds = [_SHORT_KINDS.get(row.kind, row.kind) for row in rows]
-    names = [printable(row.name) for row in rows]
-    blank = ('',) * len(labels)
-    widths = [max(map(len, column)) for column in zip(
-        *(row.values or blank for row in rows), strict=True)]
-    kind_width = max(map(len, kinds))
+    rows = [
+        row._replace(
+            name=printable(row.name), kind=_SHORT_KINDS.get(row.kind, row.kind),
+            values=row.values or ('',) * len(labels), branches=_branches(row.branches))
+        for row in (TableRow('frame', 'kind', labels), *rows)]
+    widths = [max(map(len, column)) for column in zip(*(row.values for row in rows), strict=True)]
+    kind_width = max(len(row.kind) for row in rows)
     columns = shutil.get_terminal_size().columns if sys.stdout.isatty() else 2 * _WIDEST_NAME
     width = min(
-        max(len(row.branches) + len(name) for row, name in zip(rows, names, strict=True)),
-        _WIDEST_NAME, max(columns - kind_width - sum(widths) - len(widths) - 3, _NARROWEST_NAME))
-    dim, bold, plain = (_DIM, _BOLD, _PLAIN) if is_colored(sys.stdout) else ('', '', '')
-    tee, corner, bar, space = branches_of_tree()
-    for row, name, kind in zip(rows, names, kinds, strict=True):
+        max(len(row.branches + row.name) for row in rows), _WIDEST_NAME,
+        max(columns - kind_width - sum(widths) - len(widths) - 3, _NARROWEST_NAME))
+    for name, kind, values, note, branches, is_bold in rows:
         room = width - min(len(name), _NARROWEST_NAME)
-        branches = row.branches[max(len(row.branches) - room, 0):]
+        branches = branches[max(len(branches) - room, 0):]
         longest = width - len(branches)
         # The end of a scoped name tells most.
         name = name if len(name) <= longest else f'...{name[3 - longest:]}'
-        color = _COLORS.get(kind, '') if plain else ''
+        name = f'{name:{longest}}'
         print(
-            f'{dim}{branches}{plain}{bold if row.is_bold else ""}{name:{longest}}'
-            f'{plain if row.is_bold else ""}  {color}{kind:{kind_width}}{plain}  '
-            f'{" ".join(map(str.rjust, row.values or blank, widths))}'.rstrip())
-        if row.notes:
-            below = branches.replace(tee, bar).replace(corner, space) + space
-            note = shortened(printable(', '.join(row.notes)), columns - len(below))
-            print(f'{dim}{below}{note}{plain}')
+            _styled(branches, _DIM, sys.stdout)
+            + (_styled(name, _BOLD, sys.stdout) if is_bold else name)
+            + f'  {_styled(f"{kind:{kind_width}}", _COLORS.get(kind, ""), sys.stdout)}  '
+            f'{" ".join(map(str.rjust, values, widths))}'.rstrip())
+        if note:
+            below = branches.translate(BELOW) + '  '
+            note = shortened(printable(note), columns - len(below))
+            print(_styled(below + note, _DIM, sys.stdout))
+
+
+def _branches(branches: str) -> str:
+    """Return the branches of a tree in characters that can be printed."""
+    try:
+        branches.encode(sys.stdout.encoding or 'ascii')
+    except UnicodeEncodeError:
+        return branches.replace('├ ', '|-').replace('└ ', '`-').replace('│', '|')
+    return branches
 
 
 POSE_LABELS = ('x', 'y', 'z', 'roll', 'pitch', 'yaw')
@@ -212,56 +220,86 @@ class Units(NamedTuple):
         :param fewer_digits: the number of digits to leave out.
         :return: x, y, z, roll, pitch and yaw, rounded.
         """
+        texts = []
         values = (*pose[:3], *rpy_from_quaternion(pose[3:]))
-        # Adding zero removes negative zeros.
-        return [
-            f'{round(value * unit.factor, digits) + 0.0:.{digits}f}'
-            for value, unit, digits in zip(
-                values, self.of_pose, (unit.digits - fewer_digits for unit in self.of_pose),
-                strict=True)]
+        for value, unit in zip(values, self.of_pose, strict=True):
+            digits = unit.digits - fewer_digits
+            # Adding zero removes negative zeros.
+            texts.append(f'{round(value * unit.factor, digits) + 0.0:.{digits}f}')
+        return texts
 
 
-def add_unit_arguments(parser: argparse.ArgumentParser, angle: Unit = RADIANS) -> None:
-    """
-    Add the arguments ``--degrees``, ``--radians`` and ``--mm``.
+def argument_type(
+    convert: Callable[[str], Any], is_valid: Callable[[str], bool], rule: str,
+) -> Callable[[str], Any]:
+    """Return a type of an argument; a text that is not valid gives the error ``"TEXT" RULE``."""
+    def value_from_text(text: str) -> Any:
+        if not is_valid(text):
+            msg = f'"{text}" {rule}'
+            raise argparse.ArgumentTypeError(msg)
+        return convert(text)
+    return value_from_text
 
-    :param angle: the unit of angles without an argument.
-    """
-    for unit, name in ((DEGREES, 'degrees'), (RADIANS, 'radians')):
+
+def add_unit_arguments(parser: argparse.ArgumentParser, default: str = 'radians') -> None:
+    """Add the arguments ``--degrees``, ``--radians`` and ``--mm``; ``default`` is for angles."""
+    units = {'degrees': DEGREES, 'radians': RADIANS}
+    for name, unit in units.items():
         parser.add_argument(
-            f'--{name}', dest='angle_unit', action='store_const', const=unit, default=angle,
-            help=f'angles in {name}{", the default" if unit is angle else ""}')
+            f'--{name}', dest='angle_unit', action='store_const', const=unit,
+            default=units[default],
+            help=f'angles in {name}{", the default" if name == default else ""}')
     parser.add_argument(
         '--mm', dest='length_unit', action='store_const', const=MILLIMETRES, default=METRES,
         help='lengths in millimetres, not metres')
 
 
+def add_format_argument(parser: argparse.ArgumentParser, *formats: str) -> None:
+    """Add the argument ``--format`` with formats besides ``text``."""
+    choices = ('text', *formats)
+    meanings = ', '.join(f'{name}: {_FORMATS[name]}' for name in choices)
+    parser.add_argument(
+        '--format', choices=choices, default='text', help=f'output format: {meanings}')
+
+
 def add_output_argument(
     parser: argparse.ArgumentParser, formats: Sequence[str], what: str,
 ) -> None:
-    """
-    Add the argument ``-o``, a path whose ending gives the format.
-
-    :param formats: the endings, such as ``.svg``.
-    :param what: the content of the file.
-    """
-    def path_from_text(text: str) -> Path:
-        path = Path(text)
-        if path.suffix.lower() not in formats:
-            msg = f'"{text}" must end with one of {", ".join(formats)}'
-            raise argparse.ArgumentTypeError(msg)
-        return path
-
+    """Add the argument ``-o``, a path whose ending, such as ``.svg``, gives the format."""
     parser.add_argument(
-        '-o', dest='output', metavar='PATH', type=path_from_text, help=f'where to write {what}')
+        '-o', dest='output', metavar='PATH', help=f'where to write {what}', type=argument_type(
+            Path, lambda text: Path(text).suffix.lower() in formats,
+            f'must end with one of {", ".join(formats)}'))
+
+
+def print_json(
+    path: str, errors: Sequence[SdfError], warnings: Sequence[SdfWarning], **content: Any,
+) -> None:
+    """Print a line with a JSON object about a file, and its content."""
+    print(json.dumps({
+        'file': path, 'ok': not errors, 'errors': [*map(_problem, errors)],
+        'warnings': [*map(_problem, warnings)], **content}))
+
+
+def print_csv(columns: Sequence[str], records: Iterable[Mapping[str, Any]]) -> None:
+    """
+    Print comma-separated values without a header.
+
+    Numbers have all their digits. Characters that control a terminal are escaped.
+
+    :param columns: keys of the records, in the order of printing; a missing value is left empty.
+    """
+    csv.writer(sys.stdout, lineterminator='\n').writerows(
+        [printable(value) if isinstance(value, str) else value
+         for value in map(record.get, columns)] for record in records)
 
 
 def kind_labels_of(scene: Scene, tree: TfTree) -> list[str]:
-    """
-    Return the kind of each frame in words.
-
-    :return: the labels of their kinds; ``optical frame`` for optical frames of cameras.
-    """
+    """Return the label of the kind of each frame; ``optical frame`` for those of cameras."""
     return [
         'optical frame' if element < 0 else Kind(scene.kinds[element]).label
         for element in tree.elements.tolist()]
+
+
+def _problem(problem: SdfError | SdfWarning) -> dict[str, Any]:
+    return {'code': problem.code, 'message': problem.message, **problem.place._asdict()}

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
+from functools import partial
 import sys
 
 from sdf_pose_bridge.cli.convert import (
@@ -97,14 +97,12 @@ def run(options: argparse.Namespace) -> int:
     def measured(scene: Scene, element: int) -> Pose:
         return pose_lookup(scene).pose_of_element(element, options.relative_to)
 
-    def loaded(texts: Mapping[str, bytes]) -> Scene:
-        return scene_from_file(options.files[0], options, texts=texts)
-
     lookup = pose_lookup(scene)
     element, _ = lookup.element(options.frame)
+    own_name = scene.names[element]
     part = options.by or options.frame
-    if options.by and scene.has(scoped_name(scene.names[element], options.by)):
-        part = scoped_name(scene.names[element], options.by)
+    if options.by and scene.has(scoped_name(own_name, options.by)):
+        part = scoped_name(own_name, options.by)
     if source.name in POSE_FORMATS:
         asked = Pose(*converted_poses(numbers, source.name, 'sdf_quat_xyzw').tolist())
     else:
@@ -112,29 +110,27 @@ def run(options: argparse.Namespace) -> int:
         asked = Pose(*lookup.pose(part, options.relative_to).pose[:3], *quat_xyzw)
     change = pose_change(
         scene, element, pose_product(asked, lookup.pose_of_element(element, part)), measured,
-        loaded, all_instances=options.all_instances)
-    name = printable(scene.names[element])
+        partial(scene_from_file, options.files[0], options), all_instances=options.all_instances)
     if options.by and not are_close(
             pose_lookup(change.scene).pose(part, options.relative_to).pose, asked):
-        msg = f'"{part}" does not move with "{name}"'
+        msg = f'"{part}" does not move with "{printable(own_name)}"'
         raise CommandError(msg)
     if not options.dry_run:
         change.file.write()
-    moved = [
-        printable(name) for name in names_of_moved(scene, change.scene)
-        if name != scene.names[element]]
+    moved = [name for name in names_of_moved(scene, change.scene) if name != own_name]
+    path = printable(change.file.path)
     try:
         if change.file.path != scene.files[0]:
-            print(f'the pose is in {printable(change.file.path)}')
-        print(change.file.diff or f'"{name}" has this pose already; the file stays as it is\n',
-              end='')
+            print(f'the pose is in {path}')
+        print(change.file.diff or (
+            f'"{printable(own_name)}" has this pose already; the file stays as it is\n'), end='')
         if moved:
-            print(f'moved with it: {", ".join(moved)}')
+            print(f'moved with it: {", ".join(map(printable, moved))}')
         sys.stdout.flush()
     except OSError as error:
         if options.dry_run:
             raise
         discard_output()
-        print(f'sdf_pose set: {printable(change.file.path)} has the new pose, but the change '
-              f'cannot be printed: {(error.strerror or str(error)).lower()}', file=sys.stderr)
+        print(f'sdf_pose set: {path} has the new pose, but the change cannot be printed: '
+              f'{(error.strerror or str(error)).lower()}', file=sys.stderr)
     return 0

@@ -8,15 +8,8 @@ import argparse
 from pathlib import Path
 import sys
 
-from sdf_pose_bridge.cli.loading import (
-    add_file_arguments,
-    add_kinds_argument,
-    add_model_argument,
-    add_naming_argument,
-    scene_of,
-)
+from sdf_pose_bridge.cli.loading import add_file_arguments, add_frame_arguments, scene_of
 from sdf_pose_bridge.cli.printing import print_problems, write_text
-from sdf_pose_bridge.tf.tree import DEFAULT_KINDS
 from sdf_pose_bridge.tf.urdf_text import urdf_from_scene
 
 
@@ -32,9 +25,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument(
         '-o', dest='output', metavar='PATH', type=Path,
         help='the file to write, instead of the standard output')
-    add_kinds_argument(parser, 'make links of', DEFAULT_KINDS)
-    add_model_argument(parser, 'write')
-    add_naming_argument(parser)
+    add_frame_arguments(parser, 'make links of', 'write')
     parser.add_argument(
         '--frame-separator', metavar='TEXT', type=_separator_from_text, default='/',
         help='the text instead of "::" in the names of links; by default /')
@@ -66,8 +57,5 @@ def run(options: argparse.Namespace) -> int:
         frame_separator=options.frame_separator, resource_paths=options.resource_paths,
         has_capsules=options.capsules)
     print_problems((), urdf.warnings, sys.stderr)
-    if options.output is None:
-        print(urdf.text, end='')
-    else:
-        write_text(urdf.text, options.output)
+    write_text(urdf.text, options.output)
     return 0

@@ -30,6 +30,7 @@ from sdf_pose_bridge.cli.loading import (
 )
 from sdf_pose_bridge.cli.printing import (
     add_output_argument,
+    add_unit_arguments,
     CommandError,
     print_problems,
     Units,
@@ -74,6 +75,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_file_arguments(parser, takes_many=False)
     add_output_argument(parser, _FORMATS, 'a page for .html, or a picture for .png')
     add_frame_arguments(parser)
+    add_unit_arguments(parser)
     parser.add_argument(
         '--port', type=int, default=_PORT, metavar='N',
         help=f'the port of the page, or the next free one; by default {_PORT}')

@@ -5,6 +5,7 @@
 import contextlib
 import fcntl
 import os
+from pathlib import Path
 import pty
 import shlex
 import struct
@@ -39,22 +40,13 @@ def folder_of_files(tmp_path):
 
 
 @pytest.fixture
-def sdf_pose(files):
-    """Runs the installed command line in that folder: ``sdf_pose(*arguments)``."""
-    def run(*arguments):
-        return subprocess.run(
-            [*COMMAND, *arguments], cwd=files, env=ENVIRONMENT, capture_output=True, text=True,
-            timeout=60, check=False)
-    return run
-
-
-@pytest.fixture
 def sdf_pose_in_shell(files):
-    """Runs it there from a shell: ``sdf_pose_in_shell('arguments > output')``."""
-    def run(command):
+    """Runs the installed one there from a shell: ``sdf_pose_in_shell('arguments > output')``."""
+    def run(command, before='', **environment):
         return subprocess.run(
-            f'{shlex.join(map(str, COMMAND))} {command}', shell=True, cwd=files, env=ENVIRONMENT,
-            capture_output=True, text=True, timeout=60, check=False)
+            f'{before} {shlex.join(map(str, COMMAND))} {command}', shell=True, cwd=files,
+            env={**ENVIRONMENT, **environment}, capture_output=True, text=True, timeout=60,
+            check=False)
     return run
 
 
@@ -85,11 +77,17 @@ def run_main(files, monkeypatch, capsys):
     for name in ('GZ_SIM_RESOURCE_PATH', 'SDF_PATH'):
         monkeypatch.delenv(name, raising=False)
 
-    def run(*arguments):
+    def run(*arguments, stdin=os.devnull):
+        before = os.dup(0)
+        with Path(stdin).open('rb') as file:
+            os.dup2(file.fileno(), 0)
         try:
             code = main(arguments)
         except SystemExit as stop:
             code = stop.code
+        finally:
+            os.dup2(before, 0)
+            os.close(before)
         out, err = capsys.readouterr()
         return SimpleNamespace(returncode=code, stdout=out, stderr=err)
     return run

@@ -3,92 +3,79 @@
 """``sdf_pose check``: errors, warnings and the exit code."""
 
 import os
-import subprocess
 
-from command_line import COMMAND, ENVIRONMENT
 import pytest
 from sdf_texts import model_file
 
 
-def test_check_prints_errors_in_the_order_of_the_file(sdf_pose):
-    done = sdf_pose('check', 'bad.sdf')
+def test_check_prints_errors_in_the_order_of_the_file(run_main):
+    done = run_main('check', 'bad.sdf')
     assert done.returncode == 1
+    assert '\x1b' not in done.stdout
     first, second = done.stdout.splitlines()
     assert first.startswith('bad.sdf:3: ELEMENT_INVALID: ')
     assert second.startswith('bad.sdf:4: POSE_RELATIVE_TO_INVALID: relative_to="ff" names no ')
 
 
-def test_check_prints_nothing_for_a_valid_file(sdf_pose):
-    done = sdf_pose('check', 'good.sdf')
-    assert (done.returncode, done.stdout, done.stderr) == (0, '', '')
-
-
-def test_check_prints_warnings_and_exits_with_0(sdf_pose):
-    done = sdf_pose('check', 'warned.sdf')
+def test_check_prints_warnings_and_exits_with_0(run_main):
+    done = run_main('check', 'warned.sdf')
     assert done.returncode == 0
     assert done.stdout.startswith('warned.sdf:5: WARNING: POSE_RELATIVE_TO_INVALID: ')
 
 
-def test_check_continues_after_an_invalid_file(sdf_pose):
-    done = sdf_pose('check', 'missing.sdf', 'bad.sdf')
+def test_check_continues_after_an_invalid_file(run_main):
+    done = run_main('check', 'missing.sdf', 'bad.sdf')
     assert done.returncode == 1
     assert [line.split(':')[0] for line in done.stdout.splitlines()] == [
         'missing.sdf', 'bad.sdf', 'bad.sdf']
 
 
-def test_check_prints_no_colors_to_a_pipe(sdf_pose):
-    assert '\x1b' not in sdf_pose('check', 'bad.sdf').stdout
-
-
-def test_text_of_a_file_cannot_control_the_terminal(sdf_pose, files):
+def test_text_of_a_file_cannot_control_the_terminal(run_main, files):
     (files / 'evil.sdf').write_text(
         '<sdf version="1.9"><model name="m"><link name="l"/><frame name="f" attached_to="x&#10;'
         'b.sdf:1: \x9b\u202e"/></model></sdf>')
-    (line,) = sdf_pose('check', 'evil.sdf').stdout.splitlines()
+    (line,) = run_main('check', 'evil.sdf').stdout.splitlines()
     assert r'attached_to="x\nb.sdf:1: \x9b\u202e"' in line
 
 
-def test_message_of_the_parser_cannot_control_the_terminal(sdf_pose, files):
+def test_message_of_the_parser_cannot_control_the_terminal(run_main, files):
     (files / 'evil.sdf').write_text('<sdf version="1.9"><a\u202e></b></sdf>')
-    assert '\u202e' not in sdf_pose('check', 'evil.sdf').stdout
+    assert '\u202e' not in run_main('check', 'evil.sdf').stdout
 
 
-def test_process_substitution_is_read(sdf_pose, files):
+def test_process_substitution_is_read(run_main, files):
     reader, writer = os.pipe()
     os.write(writer, (files / 'good.sdf').read_bytes())
     os.close(writer)
-    done = subprocess.run(
-        [*COMMAND, 'check', f'/dev/fd/{reader}'], cwd=files, env=ENVIRONMENT,
-        capture_output=True, check=False, pass_fds=[reader])
+    done = run_main('check', f'/dev/fd/{reader}')
     os.close(reader)
-    assert (done.returncode, done.stdout) == (0, b'')
+    assert (done.returncode, done.stdout) == (0, '')
 
 
-def test_device_is_refused(sdf_pose):
-    assert 'not a regular file' in sdf_pose('check', '/dev/zero').stdout
+def test_device_is_refused(run_main):
+    assert 'not a regular file' in run_main('check', '/dev/zero').stdout
 
 
-def test_includes_are_searched_in_given_directories(sdf_pose, files):
+def test_includes_are_searched_in_given_directories(run_main, files):
     (files / 'models').mkdir()
     (files / 'models' / 'm.sdf').write_text('<sdf version="1.9"><model name="m"><link name="l"/>'
                                             '</model></sdf>')
     (files / 'world.sdf').write_text('<sdf version="1.9"><world name="w"><include><uri>model://m.sdf'
                                      '</uri></include></world></sdf>')
-    missing = sdf_pose('check', 'world.sdf')
+    missing = run_main('check', 'world.sdf')
     assert missing.returncode == 1
     assert missing.stdout.endswith('; --skip-missing leaves it out\n')
-    assert sdf_pose('check', '-I', 'models', 'world.sdf').returncode == 0
-    skipped = sdf_pose('check', '--skip-missing', 'world.sdf')
+    assert run_main('check', '-I', 'models', 'world.sdf').returncode == 0
+    skipped = run_main('check', '--skip-missing', 'world.sdf')
     assert skipped.returncode == 0
     assert 'WARNING: "model://m.sdf" cannot be included' in skipped.stdout
 
 
-def test_strict_check_exits_with_1_for_a_warning(sdf_pose):
-    assert sdf_pose('check', '--strict', 'warned.sdf').returncode == 1
-
-
-def test_strict_check_exits_with_0_without_warnings(sdf_pose):
-    assert sdf_pose('check', '--strict', 'good.sdf').returncode == 0
+@pytest.mark.parametrize(('arguments', 'code'), [
+    (('--strict', 'warned.sdf'), 1), (('--strict', 'good.sdf'), 0), (('good.sdf',), 0)])
+def test_a_warning_counts_in_a_strict_check(run_main, arguments, code):
+    done = run_main('check', *arguments)
+    assert (done.returncode, bool(done.stdout), done.stderr) == (code, bool(code), '')
 
 
 def test_errors_and_warnings_are_in_the_order_of_lines(run_main, files):

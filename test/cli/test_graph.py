@@ -79,28 +79,13 @@ def test_nodes_are_frames_and_the_root():
         '__root__', 'm', 'base', 'hand', r'j\nrevolute', r'k\nfixed', 'eye', 'tip', 'tap', 'top'])
 
 
-def test_pose_is_relative_to_what_holds_it_by_default():
-    dot = dot_of(ARM)
-    assert arrows_to('base', dot) == {'m': 'gray70'}
-    assert arrows_to('top', dot) == {'m': 'gray70'}
-
-
-def test_joint_is_between_parent_and_child():
-    dot = dot_of(ARM)
-    assert arrows_to('k', dot) == {'base': 'black'}
-    assert arrows_to('eye', dot) == {'k': 'black', 'm': 'gray70'}
-
-
-def test_pose_may_be_relative_to_a_joint_and_a_joint_to_its_parent():
-    dot = dot_of(ARM)
-    assert arrows_to('j', dot) == {'base': 'black:royalblue'}
-    assert arrows_to('hand', dot) == {'j': 'black:royalblue'}
-
-
-def test_frame_is_attached_and_relative_to_something():
-    dot = dot_of(ARM)
-    assert arrows_to('tip', dot) == {'hand': 'forestgreen'}
-    assert arrows_to('tap', dot) == {'hand': 'forestgreen', 'base': 'royalblue'}
+def test_arrows_come_from_references_attachments_and_joints():
+    dot, arrows = dot_of(ARM), {
+        'base': {'m': 'gray70'}, 'top': {'m': 'gray70'}, 'k': {'base': 'black'},
+        'eye': {'k': 'black', 'm': 'gray70'}, 'j': {'base': 'black:royalblue'},
+        'hand': {'j': 'black:royalblue'}, 'tip': {'hand': 'forestgreen'},
+        'tap': {'hand': 'forestgreen', 'base': 'royalblue'}}
+    assert {name: arrows_to(name, dot) for name in arrows} == arrows
 
 
 def test_kinds_are_chosen_with_what_they_are_relative_to():

@@ -35,9 +35,9 @@ def make_options(files, monkeypatch):
 
 
 def test_an_invalid_file_has_errors_and_no_scene(options):
-    loaded = load_file('bad.sdf', options('bad.sdf'))
-    assert loaded.scene is None
-    assert [error.line for error in loaded.errors] == [3, 4]
+    scene, errors, _ = load_file('bad.sdf', options('bad.sdf'))
+    assert scene is None
+    assert [error.line for error in errors] == [3, 4]
 
 
 def test_a_command_that_needs_a_scene_ends_with_the_errors_of_its_file(options):
@@ -75,7 +75,7 @@ def test_a_long_load_is_told_on_a_terminal(files):
     ('.', 'name a file in it'), ('$HOME/cell.sdf', '$ and ~ stay as they are'),
     ('~/cell.sdf', '$ and ~ stay as they are'), ('model://table', 'this is a URI')])
 def test_a_path_that_the_shell_left_as_it_is_has_a_cure(options, path, cure):
-    (error,) = load_file(path, options('good.sdf')).errors
+    _, (error,), _ = load_file(path, options('good.sdf'))
     assert cure in error.message
 
 
@@ -98,13 +98,14 @@ def test_a_missing_directory_of_models_is_an_error(options, capsys):
 
 @pytest.mark.parametrize('command', [
     ('check', '-'), ('poses', '-'), ('tree', '-'), ('graph', '-'), ('diff', '-', 'good.sdf')])
-def test_standard_input_is_read(sdf_pose_in_shell, command):
-    done = sdf_pose_in_shell(f'{" ".join(command)} < good.sdf')
+def test_standard_input_is_read(run_main, command):
+    done = run_main(*command, stdin='good.sdf')
     assert (done.returncode, done.stderr) == (0, '')
 
 
-def test_errors_of_the_standard_input_name_it(sdf_pose_in_shell):
-    assert sdf_pose_in_shell('check - < bad.sdf').stdout.startswith('<stdin>:3: ELEMENT_INVALID: ')
+def test_errors_of_the_standard_input_name_it(run_main):
+    done = run_main('check', '-', stdin='bad.sdf')
+    assert done.stdout.startswith('<stdin>:3: ELEMENT_INVALID: ')
 
 
 def test_includes_of_the_standard_input_are_searched_in_the_working_directory(sdf_pose_in_shell):
@@ -114,7 +115,7 @@ def test_includes_of_the_standard_input_are_searched_in_the_working_directory(sd
 
 
 @pytest.mark.parametrize('command', ['set - f 1 2 3 0 0 0', 'view --edit -'])
-def test_standard_input_cannot_be_changed(sdf_pose_in_shell, command):
-    done = sdf_pose_in_shell(f'{command} < good.sdf')
+def test_standard_input_cannot_be_changed(run_main, command):
+    done = run_main(*command.split(), stdin='good.sdf')
     assert done.returncode == 1
     assert 'the standard input cannot be changed' in done.stderr

@@ -4,7 +4,6 @@
 
 from pathlib import Path
 import re
-import shlex
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
@@ -16,17 +15,17 @@ from sdf_texts import model_file
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_without_a_command_all_are_listed_with_a_line_each(sdf_pose):
-    done = sdf_pose()
+def test_without_a_command_all_are_listed_with_a_line_each(run_main):
+    done = run_main()
     assert (done.returncode, done.stderr) == (0, '')
     listed = re.findall(r'^    ([a-z]+) +\S.*$', done.stdout, re.MULTILINE)
     modules = (ROOT / 'sdf_pose_bridge/cli').glob('*.py')
     assert set(listed) == {module.stem for module in modules} - {
-        '__init__', 'loading', 'main', 'printing', 'records'}
+        '__init__', 'loading', 'main', 'printing'}
 
 
-def test_version(sdf_pose):
-    done = sdf_pose('--version')
+def test_version(sdf_pose_in_shell):
+    done = sdf_pose_in_shell('--version')
     version = ET.parse(ROOT / 'package.xml').getroot().findtext('version')
     assert (done.returncode, done.stdout, done.stderr) == (0, f'sdf_pose {version}\n', '')
 
@@ -41,14 +40,14 @@ def test_the_shell_completes_commands(files):
     assert (files / 'answer').read_text().split() == ['check']
 
 
-def test_an_unknown_command_is_an_error_that_lists_the_known_ones(sdf_pose):
-    done = sdf_pose('chekc')
+def test_an_unknown_command_is_an_error_that_lists_the_known_ones(run_main):
+    done = run_main('chekc')
     assert done.returncode == 2
     assert all(name in done.stderr for name in ('poses', 'convert', 'did you mean "check"?'))
 
 
-def test_an_option_is_not_abbreviated(sdf_pose):
-    done = sdf_pose('check', 'good.sdf', '--stric')
+def test_an_option_is_not_abbreviated(run_main):
+    done = run_main('check', 'good.sdf', '--stric')
     assert (done.returncode, done.stdout) == (2, '')
     assert 'unrecognized arguments: --stric' in done.stderr
 
@@ -77,23 +76,17 @@ def test_a_file_that_needs_too_much_is_one_sentence(files, limit, message):
     assert re.fullmatch(f'{message}\n', done.stderr)
 
 
-def test_a_lack_of_memory_is_one_sentence(files):
+def test_a_lack_of_memory_is_one_sentence(sdf_pose_in_shell, files):
     (files / 'large.sdf').write_text(model_file(''.join(
         f'<link name="l{i}"/>' for i in range(200_000))), encoding='utf-8')
     # Libraries alone have about 200 MB of addresses.
-    done = subprocess.run(
-        ['bash', '-c', f'ulimit -v 300000; exec {shlex.join(COMMAND)} tree large.sdf'], cwd=files,
-        env={**ENVIRONMENT, 'OPENBLAS_NUM_THREADS': '1'}, capture_output=True, text=True,
-        timeout=60, check=False)
+    done = sdf_pose_in_shell('tree large.sdf', 'ulimit -v 300000;', OPENBLAS_NUM_THREADS='1')
     assert done.returncode == 1
     assert done.stderr == 'sdf_pose tree: there is not enough memory\n'
 
 
-def test_errors_of_a_file_are_printed_behind_what_was_printed_before(files):
-    command = f'{shlex.join(COMMAND)} tree good.sdf bad.sdf 2>&1'
-    done = subprocess.run(
-        ['bash', '-c', command], cwd=files, env=ENVIRONMENT, capture_output=True, text=True,
-        timeout=60, check=False)
+def test_errors_of_a_file_are_printed_behind_what_was_printed_before(sdf_pose_in_shell):
+    done = sdf_pose_in_shell('tree good.sdf bad.sdf 2>&1')
     assert done.returncode == 1
     first, *_, before_last, last = done.stdout.splitlines()
     assert first == 'good.sdf'
@@ -101,9 +94,5 @@ def test_errors_of_a_file_are_printed_behind_what_was_printed_before(files):
     assert last.startswith('bad.sdf:4: ')
 
 
-def test_a_closed_pipe_prints_no_error(files):
-    command = f'{shlex.join(COMMAND)} poses {"good.sdf " * 2000}| head -1'
-    done = subprocess.run(
-        ['bash', '-c', command], cwd=files, env=ENVIRONMENT, capture_output=True, text=True,
-        timeout=60, check=False)
-    assert done.stderr == ''
+def test_a_closed_pipe_prints_no_error(sdf_pose_in_shell):
+    assert sdf_pose_in_shell(f'poses {"good.sdf " * 2000}| head -1').stderr == ''

@@ -2,9 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """``sdf_pose tree``: the TF tree and the tree of scopes."""
 
-import subprocess
-
-from command_line import COMMAND, ENVIRONMENT
 import pytest
 
 ARM = """<sdf version="1.10">
@@ -70,14 +67,12 @@ def test_frames_are_below_their_parents(tree):
     assert [line[:7].rstrip() for line in lines] == ['base', '├ arm', '└ hand', '  └ tip']
 
 
-def test_pose_is_in_the_parent(tree):
-    hand = next(line for line in tree() if ' hand ' in line)
-    assert hand.split()[-6:] == ['0.500', '0.000', '0.000', '0.0', '0.0', '90.0']
-
-
-def test_pose_in_other_units(tree):
-    hand = next(line for line in tree('--mm', '--radians') if ' hand ' in line)
-    assert hand.split()[-6:] == ['500', '0', '0', '0.000', '0.000', '1.571']
+@pytest.mark.parametrize(('options', 'pose'), [
+    ((), ['0.500', '0.000', '0.000', '0.0', '0.0', '90.0']),
+    (('--mm', '--radians'), ['500', '0', '0', '0.000', '0.000', '1.571'])])
+def test_pose_is_in_the_parent(tree, options, pose):
+    hand = next(line for line in tree(*options) if ' hand ' in line)
+    assert hand.split()[-6:] == pose
 
 
 def test_scope_has_elements_below_those_that_hold_them(tree):
@@ -114,12 +109,9 @@ def test_match_of_nothing_is_reported(run_main):
         '', 'sdf_pose tree: no whole name in good.sdf matches "nothing"\n')
 
 
-def test_terminal_without_the_characters_has_others(files):
+def test_terminal_without_the_characters_has_others(sdf_pose_in_shell, files):
     (files / 'arm.sdf').write_text(ARM)
-    done = subprocess.run(
-        [*COMMAND, 'tree', 'arm.sdf'], cwd=files, env={**ENVIRONMENT, 'PYTHONIOENCODING': 'ascii'},
-        capture_output=True, text=True, check=True)
-    assert '\n`-hand' in done.stdout
+    assert '\n`-hand' in sdf_pose_in_shell('tree arm.sdf', PYTHONIOENCODING='ascii').stdout
 
 
 @pytest.mark.parametrize('environment', [{}, {'NO_COLOR': '1'}])

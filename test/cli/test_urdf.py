@@ -44,8 +44,8 @@ def test_separator_must_not_be_empty(run_main):
 
 
 @pytest.mark.usefixtures('arm')
-def test_urdf_is_printed_and_warnings_beside_it(sdf_pose):
-    result = sdf_pose('urdf', 'arm.sdf')
+def test_urdf_is_printed_and_warnings_beside_it(run_main):
+    result = run_main('urdf', 'arm.sdf')
     assert result.returncode == 0
     assert result.stdout.startswith('<?xml version="1.0"?>\n<robot name="m">\n')
     assert 'joint name="elbow" type="continuous"' in result.stdout

@@ -24,7 +24,7 @@ TESTED_ELSEWHERE = {
     'ros2 param set': 'test_readme.py and test_bridge_changes.py set parameters',
     'sdf_pose diff': 'test_diff.py compares files, also for git',
     'git difftool': 'test_diff.py has git compare two commits',
-    'sdf_pose check --format github': 'test_records.py compares annotations',
+    'sdf_pose check --format github': 'test_printing.py compares annotations',
     'sdf_pose tree cell.sdf': 'test_readme.py compares the output',
     'sdf_pose check broken.sdf': 'test_readme.py compares the output',
     'sdf_pose check --strict cell.sdf': 'test_readme.py compares the output',

@@ -410,7 +410,7 @@ def test_what_sdformat_does_not_define_is_reported_only_in_gazebo_elements():
 # Hostile files
 
 def test_deep_chain_is_converted():
-    count = 5000
+    count = 1500
     links = ''.join(link(f'l{i}') for i in range(count + 1))
     joints = ''.join(
         joint(f'j{i}', f'l{i}', f'l{i + 1}', 'fixed', origin('1 0 0')) for i in range(count))
