@@ -70,7 +70,7 @@ class JointStateTopic:
         """Take a message; return None if there is none."""
         return take_message(self.subscription)
 
-    def read(self, data: bytes, meanings: Meanings, positions: JointPositions) -> Message | None:
+    def read(self, data: bytes, meanings: Meanings) -> Message | None:
         """Read a serialized message; return None with a warning if it cannot be used."""
         last = meanings.last(self.name)
         try:
@@ -92,7 +92,7 @@ class JointStateTopic:
             return None
         if last is None or names is not last.names:
             last, unknown = meanings.find(names, self.name, self.model)
-            self._warn_about_unknown(unknown, positions)
+            self._warn_about_unknown(unknown, meanings.positions)
         return Message(last, values, sec * NANOSECONDS + nanosec)
 
     def warn_about_invalid(self, names: Sequence[str]) -> None:

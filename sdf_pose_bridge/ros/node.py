@@ -128,7 +128,7 @@ class SdfPoseBridge:
                 frames.publish_tf_static()
             await frames.publish_topics()
             if self._joint_states is not None:
-                self._joint_states.thread.publish_topics()
+                self._joint_states.publish_topics()
         if loaded is not before:
             lines = await run_in_thread(
                 self._node, lambda: lines_about_lost_frames(before.tree, loaded.tree))
@@ -151,13 +151,11 @@ class SdfPoseBridge:
             settings.joint_states_topics, self._loaded.tree.world, moving.positions.models,
             self._node.resolve_topic_name)
         # Imported here because it takes 8 ms, and joints do not move by default.
-        from sdf_pose_bridge.ros.joint_state_thread import Rule
         from sdf_pose_bridge.ros.joint_states import JointStates
-        rule = Rule(settings.publish_frequency, settings.ignore_timestamp)
         if current is not None:
-            current.follow(moving, topics, rule)
+            current.follow(moving, topics, settings)
         else:
-            self._joint_states = JointStates(self._node, moving, topics, rule)
+            self._joint_states = JointStates(self._node, moving, topics, settings)
 
     async def _current_lookup(self) -> PoseLookup:
         """Return the current look-up of poses, with the positions of all messages so far."""
@@ -167,11 +165,11 @@ class SdfPoseBridge:
     async def _process_messages(self) -> None:
         """Wait until the messages of joint states so far are processed."""
         if self._joint_states is not None:
-            await self._joint_states.thread.catch_up()
+            await self._joint_states.catch_up()
 
     def _unreported_joints(self) -> MissingJoints:
         return MissingJoints() if self._joint_states is None else (
-            self._joint_states.thread.unreported)
+            self._joint_states.unreported)
 
     def _follow_switches(self) -> None:
         self._diagnostics.switch(on=self._settings.publish_diagnostics)
