@@ -269,8 +269,8 @@ class PublishedMovingFrames:
             return
         self._is_waiting[rows] = False
         self._transforms.set_poses(self.frames.transforms(self.positions.values))
-        self._tf.publish(
-            self._transforms.tf_message_of_rows(rows, _stamps_from_ns(stamps_ns)))
+        self._transforms.set_stamps(_stamps_from_ns(stamps_ns), rows)
+        self._tf.publish(self._transforms.tf_message(rows))
 
     def publish_topics(self, *, only_listeners: bool) -> None:
         """

@@ -73,12 +73,6 @@ def tf_message_object(rows, stamp):
     return TFMessage(transforms=[transform_message(row, stamp) for row in rows])
 
 
-@pytest.mark.parametrize('ids', [[['a\0b'], ['a']], [['a'], ['a\0b']], [['a\0b']]])
-def test_a_zero_character_is_refused(ids):
-    with pytest.raises(ValueError, match='zero character'):
-        StampedRecords(ids, np.zeros((1, 7)))
-
-
 @given(rows=ROWS, stamp=STAMPS)
 def test_a_tf_message_is_read_by_rclpy(rows, stamp):
     assert_read_by_rclpy(tf_message(*columns(rows), stamp), tf_message_object(rows, stamp))
@@ -127,11 +121,10 @@ def test_each_pose_can_have_its_stamp(rows):
 @given(rows=ROWS.filter(len), data=st.data())
 def test_a_tf_message_of_some_transforms_is_that_of_a_scene_with_these_alone(rows, data):
     records = StampedRecords(*columns(rows))
-    for _ in range(2):
-        chosen = sorted(data.draw(st.sets(st.integers(0, len(rows) - 1), min_size=1)))
-        for stamp in ((3, 4), (5, 6)):
-            assert records.tf_message_of_rows(np.array(chosen), stamp) == tf_message(
-                *columns([rows[row] for row in chosen]), stamp)
+    chosen = sorted(data.draw(st.sets(st.integers(0, len(rows) - 1), min_size=1)))
+    records.set_stamps((3, 4), np.array(chosen))
+    assert records.tf_message(np.array(chosen)) == tf_message(
+        *columns([rows[row] for row in chosen]), (3, 4))
 
 
 def test_no_transforms_are_one_empty_message():
@@ -191,30 +184,30 @@ def test_another_encoding_is_refused():
 def test_content_is_that_of_the_message(names, positions, frame_id, sec, velocities):
     data = joint_state(
         names, positions, frame_id=frame_id, sec=sec, nanosec=sec // 3, velocities=velocities)
-    found = joint_state_from_bytes(data)
-    assert found.stamp == (sec, sec // 3)
-    assert list(found.names.names) == names
-    np.testing.assert_array_equal(found.positions, positions)
-    again = joint_state_from_bytes(data, found.names)
-    assert again.names is found.names
-    np.testing.assert_array_equal(again.positions, positions)
+    stamp, found, values = joint_state_from_bytes(data)
+    assert stamp == (sec, sec // 3)
+    assert list(found.names) == names
+    np.testing.assert_array_equal(values, positions)
+    _, again, values = joint_state_from_bytes(data, found)
+    assert again is found
+    np.testing.assert_array_equal(values, positions)
 
 
 @given(st.lists(NAMES, min_size=1, max_size=5), st.lists(NAMES, max_size=5), POSITIONS)
 def test_names_of_another_message_do_not_mislead(known, names, positions):
-    before = joint_state_from_bytes(joint_state(known, []))
-    found = joint_state_from_bytes(joint_state(names, positions), before.names)
-    assert list(found.names.names) == names
-    np.testing.assert_array_equal(found.positions, positions)
+    _, before, _ = joint_state_from_bytes(joint_state(known, []))
+    _, found, values = joint_state_from_bytes(joint_state(names, positions), before)
+    assert list(found.names) == names
+    np.testing.assert_array_equal(values, positions)
 
 
 def test_a_name_that_is_not_utf_8_is_read_as_far_as_it_is():
     data = joint_state(['elbow'], [2.5]).replace(b'elbow', b'elb\xffw')
-    assert joint_state_from_bytes(data).names.names == ('elb\ufffdw',)
+    assert joint_state_from_bytes(data)[1].names == ('elb\ufffdw',)
 
 
 def test_big_endian_is_read():
     header_and_names = struct.pack('>iII4xII2s2x', 7, 8, 1, 1, 2, b'j\0')
     data = b'\0\0\0\0' + header_and_names + struct.pack('>Id', 1, 2.5)
-    found = joint_state_from_bytes(data)
-    assert (found.stamp, found.names.names, found.positions.tolist()) == ((7, 8), ('j',), [2.5])
+    stamp, names, positions = joint_state_from_bytes(data)
+    assert (stamp, names.names, positions.tolist()) == ((7, 8), ('j',), [2.5])
