@@ -231,9 +231,9 @@ class JointStates:
         has_ended = self._is_in_period and (
             self._has_jumped or self._now_ns >= self._period_ends_ns)
         if ready and not has_ended:
-            self._take([self._awaited[index] for index in ready], self._publish_at_once)
+            self._take([self._awaited[index] for index in ready], at_once=True)
         if self._is_in_period and (has_ended or caller_count or not ready):
-            self._take(self._target.topics, self._target.frames.wait)
+            self._take(self._target.topics, at_once=False)
         if has_ended:
             self._end_period()
         self._answer(caller_count)
@@ -304,15 +304,13 @@ class JointStates:
 
     # Messages
 
-    def _take(
-        self, topics: Sequence[JointStateTopic], finish: Callable[[NDArray[np.intp]], None],
-    ) -> None:
+    def _take(self, topics: Sequence[JointStateTopic], *, at_once: bool) -> None:
         """
-        Take all messages that wait, and set their positions.
+        Take messages of topics, and set their positions.
 
-        With a highest rate, the newest of those with the same names counts.
-
-        :param finish: takes the moving transforms to publish.
+        :param at_once: whether to publish what they move, and to leave the others as soon as a
+            period has begun. Otherwise it waits, and of those with the same names the newest
+            counts.
         """
         newest: dict[Meaning, tuple[JointStateTopic, Message]] = {}
         # Messages may come faster than they are taken. Topics take turns, so that one with too
@@ -327,10 +325,16 @@ class JointStates:
                     if not 0 < message.stamp_ns < known.stamp_ns:
                         newest[message.meaning] = topic, message
             topics = [topic for topic, _ in taken] if time.monotonic() < ends_at else []
-            if newest and not (topics and self._target.period_ns):
+            if newest and (at_once or not topics):
                 moved = [self._move(topic, message) for topic, message in newest.values()]
-                finish(moved[0] if len(moved) == 1 else np.unique(np.concatenate(moved)))
+                rows = moved[0] if len(moved) == 1 else np.unique(np.concatenate(moved))
+                if not at_once:
+                    self._target.frames.wait(rows)
+                elif len(rows):
+                    self._publish_at_once(rows)
                 newest.clear()
+            if at_once and self._is_in_period:
+                break
 
     def _follow_clock(self) -> None:
         """Accept any stamp after time has jumped back, for example when a bag starts again."""
@@ -368,8 +372,6 @@ class JointStates:
 
     def _publish_at_once(self, rows: NDArray[np.intp]) -> None:
         """Publish moving transforms; with a highest rate, a period begins if there is none."""
-        if not len(rows):
-            return
         self._target.frames.publish_tf(rows)
         self._publish_topics_soon()
         if self._is_in_period:

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 import contextlib
-from functools import cached_property
 from itertools import compress
 
 from geometry_msgs.msg import PoseStamped, TransformStamped
@@ -48,32 +47,34 @@ async def frames_from_scene(
 
     :param before: the frames that these ones replace.
     """
-    name = node.get_fully_qualified_name()
+    name, logger, publishers = (
+        node.get_fully_qualified_name(), node.get_logger(), before.publishers)
+    if loaded.tree.moving is not None:
+        publishers.opened(TF)
 
-    def prepared_topics() -> PoseTopics:
+    def frames_and_topics() -> tuple[PublishedFrames, PoseTopics]:
         # The first search for a name makes the index of all names.
         loaded.scene.has('')
-        return pose_topics_from_patterns(loaded.tree.frame_ids, settings.pose_topics, name)
+        topics = pose_topics_from_patterns(loaded.tree.frame_ids, settings.pose_topics, name)
+        frames = PublishedFrames(
+            publishers, loaded.tree, loaded.joint_positions, topics.names, before,
+            has_transforms=settings.publish_transforms)
+        return frames, topics
 
-    topics: PoseTopics = await run_in_thread(node, prepared_topics)
+    # The messages of many frames take long.
+    made: tuple[PublishedFrames, PoseTopics] = await run_in_thread(node, frames_and_topics)
+    frames, topics = made
     if topics.warning:
-        node.get_logger().warning(topics.warning)
-    if node.get_logger().is_enabled_for(LoggingSeverity.DEBUG):
+        logger.warning(topics.warning)
+    if logger.is_enabled_for(LoggingSeverity.DEBUG):
         for frame_id, name in topics.names.items():
-            node.get_logger().debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
-    frames = PublishedFrames(
-        before.publishers, loaded.tree, loaded.joint_positions, topics.names, before,
-        has_transforms=settings.publish_transforms)
-    await run_in_thread(node, lambda: frames.lay_out(with_tf=before.tree is not loaded.tree))
+            logger.debug(f'frame "{frame_id}" has the topic ~/poses/{name}')
     return frames
 
 
 class PublishedFrames:
     """
     The frames of a tree on their topics.
-
-    Messages are made when they are first needed, so that nothing delays ``/tf_static``, or earlier
-    by :meth:`lay_out` in another thread.
 
     :param publishers: the publishers of the node. Publishers of the frames before are kept if
         these frames have the same topics.
@@ -93,37 +94,32 @@ class PublishedFrames:
         self.stamp: Stamp = publishers.now() if before is None or before.tree is not tree else (
             before.stamp)
         self._tf_static = publishers.opened(TF_STATIC)
+        self._fixed_transforms = _records_of_transforms(tree, tree.fixed_indices)
         self._transforms_topics = [
             _transforms_topic(len(tree.fixed_indices), 'fixed')] if has_transforms else []
         posed = () if tree.moving is None else tree.moving.posed_indices
-        self._moving_ids = {tree.frame_ids[index] for index in posed}
+        moving_ids = {tree.frame_ids[index] for index in posed}
         # A frame that begins to move has another publisher, which does not keep its last pose.
         self._pose_topics = {
             frame_id: Topic(
-                f'~/poses/{name}', PoseStamped,
-                part='moving' if frame_id in self._moving_ids else '')
+                f'~/poses/{name}', PoseStamped, part='moving' if frame_id in moving_ids else '')
             for frame_id, name in pose_topics.items()}
+        fixed = [
+            index for index, frame_id in enumerate(tree.frame_ids)
+            if frame_id in pose_topics and frame_id not in moving_ids]
+        self._fixed_pose_topics = [self._pose_topics[tree.frame_ids[index]] for index in fixed]
+        self._fixed_poses = StampedRecords(
+            [[tree.pose_frame] * len(fixed)], tree.poses_in_pose_frame[fixed])
         self.moving: PublishedMovingFrames | None = None
         """The moving frames; None if joints move nothing."""
         if tree.moving is not None and positions is not None:
             self.moving = PublishedMovingFrames(
                 publishers, tree, tree.moving, positions, self._pose_topics)
 
-    def lay_out(self, *, with_tf: bool) -> None:
-        """
-        Make the messages of fixed frames, which takes long for many frames.
-
-        :param with_tf: whether to make the message of ``/tf_static`` too.
-        """
-        if with_tf or self._transforms_topics:
-            self._fixed_transforms  # noqa: B018 - to look at it makes it
-        self._fixed_poses  # noqa: B018
-
     def publish_tf_static(self) -> None:
         """Publish all fixed frames on ``/tf_static``."""
-        records = self._fixed_transforms
-        records.set_stamps(self.stamp)
-        self._tf_static.publish(records.tf_message())
+        self._fixed_transforms.set_stamps(self.stamp)
+        self._tf_static.publish(self._fixed_transforms.tf_message())
 
     async def publish_topics(self) -> None:
         """Publish all fixed frames on all other topics, and make those of moving frames."""
@@ -137,14 +133,14 @@ class PublishedFrames:
             self.publishers.opened(topic)
         await self._send_transforms()
         await self.publishers.replace(dict.fromkeys(topics))
-        await self._send(*self._fixed_poses)
+        await self._send(self._fixed_pose_topics, self._fixed_poses)
 
     async def publish_fixed_again(self) -> None:
         """Publish all fixed frames on all topics with a new stamp."""
         self.stamp = self.publishers.now()
         self.publish_tf_static()
         await self._send_transforms()
-        await self._send(*self._fixed_poses)
+        await self._send(self._fixed_pose_topics, self._fixed_poses)
 
     async def _send_transforms(self) -> None:
         for topic in self._transforms_topics:
@@ -154,20 +150,6 @@ class PublishedFrames:
     async def _send(self, topics: Sequence[Topic], records: StampedRecords) -> None:
         records.set_stamps(self.stamp)
         await self.publishers.send(topics, records.messages())
-
-    @cached_property
-    def _fixed_transforms(self) -> StampedRecords:
-        return _records_of_transforms(self.tree, self.tree.fixed_indices)
-
-    @cached_property
-    def _fixed_poses(self) -> tuple[Sequence[Topic], StampedRecords]:
-        tree = self.tree
-        posed = [
-            (index, self._pose_topics[frame_id]) for index, frame_id in enumerate(tree.frame_ids)
-            if frame_id in self._pose_topics and frame_id not in self._moving_ids]
-        poses = tree.poses_in_pose_frame[[index for index, _ in posed]]
-        return [topic for _, topic in posed], StampedRecords(
-            [[tree.pose_frame] * len(posed)], poses)
 
 
 class PublishedMovingFrames:

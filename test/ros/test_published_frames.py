@@ -154,15 +154,6 @@ def test_poses_in_a_frame_that_moves_have_the_stamp_of_its_joints(node, poses):
     assert (stamp.sec, stamp.nanosec) == (5, 6)
 
 
-def test_messages_that_were_laid_out_before_are_published(node, poses):
-    frames = frames_of_arm(Publishers(node))
-    frames.lay_out(with_tf=True)
-    laid_out = frames._fixed_poses
-    node.executor.create_task(frames.publish_topics)
-    wait_until(node, lambda: 'base' in dict(poses), poses)
-    assert frames._fixed_poses is laid_out
-
-
 def test_what_a_joint_without_a_position_moves_is_not_published(node, poses):
     publishers, transforms = Publishers(node), []
     node.create_subscription(TransformStamped, '/bridge/transforms', transforms.append, LATCHED)
