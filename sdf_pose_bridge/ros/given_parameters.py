@@ -122,22 +122,9 @@ def warnings_about_unknown_parameters(
 
 def _given_parameters(node: Node) -> Mapping[str, Parameter]:
     """Return the parameters that were given when the node was started, by names."""
-    given: Mapping[str, Parameter] | None = getattr(node, '_parameter_overrides', None)
-    return _given_declared_parameters(node) if given is None else given
-
-
-def _given_declared_parameters(node: Node) -> Mapping[str, Parameter]:
-    """
-    Return values of the parameters that are declared here, by the public interface of rclpy.
-
-    It takes longer, and does not show parameters that are not declared here.
-    """
-    values = {}
-    for name, declaration in DECLARATIONS.items():
-        values[name] = node.declare_parameter(
-            name, declaration.default, ParameterDescriptor(dynamic_typing=True))
-        node.undeclare_parameter(name)
-    return values
+    # No public name shows those that are not declared. rclpy 7 to 10 have this one.
+    given: Mapping[str, Parameter] = node._parameter_overrides  # noqa: SLF001
+    return given
 
 
 def _parameters_at_start(
@@ -176,15 +163,22 @@ def _declare(node: Node, parameter: Parameter) -> None:
 
 def _converted(given: Parameter, *, shows_command_line: bool) -> Any:
     declaration = DECLARATIONS[given.name]
-    if given.type_ is not declaration.type_:
-        words = words_about_wrong_type(given, declaration.type_)
-        if shows_command_line:
-            words += hint_about_command_line(given, declaration.type_)
-        raise ValueError(words)
-    return declaration.convert(given.value)
-
-
-# Types
+    if given.type_ is declaration.type_:
+        return declaration.convert(given.value)
+    if given.type_ is Parameter.Type.NOT_SET:
+        msg = 'cannot be without a value'
+        raise ValueError(msg)
+    value = list(given.value) if isinstance(given.value, array.array) else given.value
+    shown = printable(shortened(str(value)))
+    msg = (f'is {shown}, which is {_NAMES_OF_TYPES[given.type_]}; it must be '
+           f'{_NAMES_OF_TYPES[declaration.type_]}')
+    if shows_command_line and declaration.type_ is Parameter.Type.STRING:
+        msg += f', so quote it twice: -p "{given.name}:=\'{shown}\'"'
+    elif (shows_command_line and declaration.type_ is Parameter.Type.STRING_ARRAY
+            and given.type_ is Parameter.Type.STRING):
+        items = ', '.join(f"'{item.strip()}'" for item in given.value.split(','))
+        msg += f': -p "{given.name}:=[{items}]"'
+    raise ValueError(msg)
 
 
 def parameter_with_type(given: Parameter, wanted: Parameter.Type) -> Parameter:
@@ -200,34 +194,3 @@ def parameter_with_type(given: Parameter, wanted: Parameter.Type) -> Parameter:
             and not len(given.value)):
         return Parameter(given.name, wanted, [])
     return given
-
-
-def words_about_wrong_type(given: Parameter, wanted: Parameter.Type) -> str:
-    """
-    Return a message about a value of the wrong type.
-
-    :return: the words that follow "parameter <name>" in a sentence.
-    """
-    if given.type_ is Parameter.Type.NOT_SET:
-        return 'cannot be without a value'
-    return (f'is {_shown_value(given)}, which is {_NAMES_OF_TYPES[given.type_]}; it must be '
-            f'{_NAMES_OF_TYPES[wanted]}')
-
-
-def hint_about_command_line(given: Parameter, wanted: Parameter.Type) -> str:
-    """
-    Return a hint for writing a value of the wrong type on the command line.
-
-    :return: the end of a sentence; empty if there is nothing to show.
-    """
-    if wanted is Parameter.Type.STRING:
-        return f', so quote it twice: -p "{given.name}:=\'{_shown_value(given)}\'"'
-    if given.type_ is Parameter.Type.STRING and wanted is Parameter.Type.STRING_ARRAY:
-        items = ', '.join(f"'{item.strip()}'" for item in given.value.split(','))
-        return f': -p "{given.name}:=[{items}]"'
-    return ''
-
-
-def _shown_value(given: Parameter) -> str:
-    value = list(given.value) if isinstance(given.value, array.array) else given.value
-    return printable(shortened(str(value)))
