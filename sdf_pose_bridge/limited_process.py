@@ -136,10 +136,9 @@ class LimitedProcess:
         :raises LimitExceededError: as :meth:`call`.
         :raises ProcessEndedError: as :meth:`call`.
         """
-        begin, pid = time.monotonic(), 0
-
-        def received() -> tuple[bytes, int, float]:
-            while True:
+        begin, pid, event = time.monotonic(), 0, _BEGUN
+        try:
+            while event == _BEGUN:
                 longest_s = allowance.processor_s + WAITING_S
                 with contextlib.suppress(OSError):  # the process has ended
                     if pid:
@@ -158,17 +157,14 @@ class LimitedProcess:
                         msg = ('the process that starts the reading of files has ended; start '
                                'this program again')
                         raise ProcessEndedError(msg, may_pass=False)
-                    return _STATUS.unpack(message)
-
-        event, number, processor_s = received()
-        if event == _BEGUN:
-            pid = number
-            try:
-                event, number, processor_s = received()
-            except BaseException:
+                    event, number, processor_s = _STATUS.unpack(message)
+                    if event == _BEGUN:
+                        pid = number
+        except BaseException:
+            if pid:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(pid, signal.SIGKILL)
-                raise
+            raise
         if event == _NOT_STARTED:
             msg = f'the process that reads files cannot be started: {os.strerror(number)}'
             raise ProcessEndedError(msg, may_pass=True)

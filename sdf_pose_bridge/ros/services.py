@@ -22,7 +22,7 @@ from sdf_pose_bridge.geometry.poses import Pose
 from sdf_pose_bridge.geometry.rotations import RotationError
 from sdf_pose_bridge.ros.background import CoroutineLock, run_in_thread
 from sdf_pose_bridge.ros.scene_reader import SceneReader
-from sdf_pose_bridge.tf.loaded_scene import LoadedScene
+from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadedScene
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose, SetPose
 
@@ -160,8 +160,12 @@ def set_pose(
     if not loaded.request.sdf_file:
         msg = 'the pose is in the parameter robot_description, not in a file'
         raise PoseNotSetError(msg, Place(str(loaded.path)))
-    change = reader.frame_change(
-        loaded, request.frame, _pose_from_request(request, loaded), request.pose.header.frame_id)
+    # Imported here because it takes 7 ms, and few nodes write files.
+    from sdf_pose_bridge.tf.frame_setting import frame_change_from_request
+    change = reader.result(
+        loaded.request, frame_change_from_request, loaded.request,
+        fingerprint_of_scene(loaded.scene), request.frame, _pose_from_request(request, loaded),
+        request.pose.header.frame_id, loaded.joint_positions)
     if not request.dry_run:
         change.file.write()
     return SetPose.Response(
