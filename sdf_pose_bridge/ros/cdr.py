@@ -36,8 +36,11 @@ _NUMBERS = 7 * 8
 _BEGIN = b'\0\1\0\0'
 """The first bytes of a message."""
 
-_BYTE_ORDERS = {b'\0\0': '>', b'\0\1': '<'}
-"""Those of plain CDR, by the first two bytes of a message."""
+_FORMATS = {
+    begin: (struct.Struct(f'{order}iII'), struct.Struct(f'{order}I'), np.dtype(f'{order}f8'))
+    for begin, order in ((b'\0\0', '>'), (b'\0\1', '<'))}
+"""Those of a stamp with a length, of a length and of a number in plain CDR, by the first two bytes
+of a message."""
 
 MOST_BYTES = 1_000_000
 """Largest size of a message that is read; other callbacks wait meanwhile."""
@@ -142,15 +145,14 @@ def joint_state_from_bytes(
     if len(data) > MOST_BYTES:
         msg = f'it has {len(data)} bytes, more than {MOST_BYTES}'
         raise ValueError(msg)
-    order = _BYTE_ORDERS.get(data[:2])
-    if order is None:
+    if data[:2] not in _FORMATS:
         msg = f'it begins with 0x{data[:2].hex()}, which is not plain CDR'
         raise ValueError(msg)
-    unpacked = struct.Struct(f'{order}I').unpack_from
+    stamp_and_length, length_format, number = _FORMATS[data[:2]]
     try:
-        sec, nanosec, length = struct.unpack_from(f'{order}iII', data, _START)
+        sec, nanosec, length = stamp_and_length.unpack_from(data, _START)
         begin = _aligned(_START + 12 + length, 4)
-        (name_count,) = unpacked(data, begin)
+        (name_count,) = length_format.unpack_from(data, begin)
         if known is not None and data.startswith(known.data, begin):
             names, end = known, begin + len(known.data)
         else:
@@ -158,15 +160,15 @@ def joint_state_from_bytes(
             read = []
             for _ in range(name_count):
                 place = _aligned(end, 4)
-                (length,) = unpacked(data, place)
+                (length,) = length_format.unpack_from(data, place)
                 end = place + 4 + length
                 # The length counts a zero at the end.
                 read.append(data[place + 4:end - 1].decode(errors='replace'))
             names = SerializedNames(tuple(read), data[begin:end])
-        (count,) = unpacked(data, _aligned(end, 4))
+        (count,) = length_format.unpack_from(data, _aligned(end, 4))
         # Numbers are aligned to eight bytes, counted from the beginning of the fields.
         numbers = _aligned(_aligned(end, 4) + 4 - _START, 8) + _START
-        positions = np.frombuffer(data, f'{order}f8', count, numbers)
+        positions = np.frombuffer(data, number, count, numbers)
     except (struct.error, ValueError) as error:
         msg = f'it ends too early: {error}'
         raise ValueError(msg) from error
