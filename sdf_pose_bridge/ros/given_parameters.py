@@ -133,14 +133,13 @@ def _parameters_at_start(
     """Return all parameters with the values that they are given, or with their defaults."""
     parameters = []
     for name, declaration in DECLARATIONS.items():
-        type_, value = declaration.type_, defaults.get(name, declaration.default)
-        parameter = given.get(name)
-        if parameter is not None and parameter.type_ is not Parameter.Type.NOT_SET:
-            type_, value = parameter.type_, parameter.value
-        elif parameter is not None and type_ is Parameter.Type.STRING_ARRAY:
+        type_, default = declaration.type_, defaults.get(name, declaration.default)
+        parameter = given.get(name, Parameter(name, type_, default))
+        if parameter.type_ is Parameter.Type.NOT_SET:
             # rclpy treats an empty list on the command line as no value.
-            value = []
-        parameters.append(parameter_with_type(Parameter(name, type_, value), declaration.type_))
+            is_list = type_ is Parameter.Type.STRING_ARRAY
+            parameter = Parameter(name, type_, [] if is_list else default)
+        parameters.append(parameter_with_type(parameter, type_))
     return parameters
 
 

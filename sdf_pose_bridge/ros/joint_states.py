@@ -68,7 +68,7 @@ _CLOCK_PERIOD_S = 0.01
 
 
 class _Target(NamedTuple):
-    """What the thread follows."""
+    """The frames, topics and settings that the thread follows."""
 
     frames: PublishedMovingFrames
     topics: Sequence[JointStateTopic]
@@ -85,8 +85,8 @@ class JointStates:
     """
     Follows topics of joint states, and publishes the frames that their messages move.
 
-    A thread does this from its construction to :meth:`end`. The executor of the node calls all
-    methods, and none of them waits for a message or a publication.
+    A thread does this from its construction to :meth:`end`; the executor of the node calls all
+    public methods.
     """
 
     def __init__(
@@ -104,8 +104,7 @@ class JointStates:
         self._callers: deque[Future] = deque()
         self._has_to_publish_topics = False
         self._has_to_end = False
-        # The thread alone changes everything else.
-        # The functions that are due at some monotonic time.
+        # The thread alone changes everything else. First, what is due at some monotonic time.
         self._due: dict[Callable[[], None], float] = {}
         self._topics_due = 0.0
         self._now_ns = 0

@@ -26,7 +26,7 @@ from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.ros.background import run_in_thread
 from sdf_pose_bridge.ros.cdr import StampedRecords, Stamps
 from sdf_pose_bridge.ros.parameters import Settings
-from sdf_pose_bridge.ros.publishers import NANOSECONDS, Publishers, Stamp, Topic
+from sdf_pose_bridge.ros.publishers import NANOSECONDS, Publishers, Topic
 from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns, PoseTopics
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import JointPositions, NEVER
@@ -91,8 +91,8 @@ class PublishedFrames:
     ) -> None:
         self.publishers = publishers
         self.tree = tree
-        self.stamp: Stamp = publishers.now() if before is None or before.tree is not tree else (
-            before.stamp)
+        self.stamp_ns: int = publishers.now_ns() if (
+            before is None or before.tree is not tree) else before.stamp_ns
         self._tf_static = publishers.opened(TF_STATIC)
         self._fixed_transforms = _records_of_transforms(tree, tree.fixed_indices)
         self._transforms_topics = [
@@ -118,7 +118,7 @@ class PublishedFrames:
 
     def publish_tf_static(self) -> None:
         """Publish all fixed frames on ``/tf_static``."""
-        self._fixed_transforms.set_stamps(self.stamp)
+        self._fixed_transforms.set_stamps(divmod(self.stamp_ns, NANOSECONDS))
         self._tf_static.publish(self._fixed_transforms.tf_message())
 
     async def publish_topics(self) -> None:
@@ -137,7 +137,7 @@ class PublishedFrames:
 
     async def publish_fixed_again(self) -> None:
         """Publish all fixed frames on all topics with a new stamp."""
-        self.stamp = self.publishers.now()
+        self.stamp_ns = self.publishers.now_ns()
         self.publish_tf_static()
         await self._send_transforms()
         await self._send(self._fixed_pose_topics, self._fixed_poses)
@@ -148,7 +148,7 @@ class PublishedFrames:
             await self._send([topic] * len(records), records)
 
     async def _send(self, topics: Sequence[Topic], records: StampedRecords) -> None:
-        records.set_stamps(self.stamp)
+        records.set_stamps(divmod(self.stamp_ns, NANOSECONDS))
         await self.publishers.send(topics, records.messages())
 
 
@@ -169,10 +169,8 @@ class PublishedMovingFrames:
         self._publishers = publishers
         self.frames = moving
         self.positions = positions
-        # The last stamp of each moving transform, the newest of these, and which have to be
-        # published.
+        # The last stamp of each moving transform, and which have to be published.
         self._stamps_ns = np.full(len(moving.indices), NEVER)
-        self._newest_ns = NEVER
         self._is_waiting = np.zeros(len(moving.indices), np.bool_)
         self._tf = publishers.opened(TF)
         self.transforms_topic = _transforms_topic(len(moving.indices), 'moving')
@@ -200,10 +198,9 @@ class PublishedMovingFrames:
         :param ignore_stamps: whether it need not be newer.
         :return: those for which it is newer.
         """
-        if stamp_ns <= self._newest_ns and not ignore_stamps:
+        if not ignore_stamps:
             rows = rows[self._stamps_ns[rows] < stamp_ns]
         self._stamps_ns[rows] = stamp_ns
-        self._newest_ns = max(self._newest_ns, stamp_ns)
         return rows
 
     def wait(self, rows: NDArray[np.intp]) -> None:
@@ -212,7 +209,7 @@ class PublishedMovingFrames:
 
     def forget_stamps(self) -> None:
         """Accept any stamp next, after time has jumped back."""
-        self._stamps_ns[:] = self._newest_ns = NEVER
+        self._stamps_ns[:] = NEVER
         self._is_waiting[:] = False
         self.positions.forget_stamps()
 
@@ -234,24 +231,24 @@ class PublishedMovingFrames:
         is_stamped = last_ns != NEVER
         # TF would reject other transforms with the same stamps.
         self._stamps_ns[rows[is_stamped]] = last_ns[is_stamped] + 1
-        self._newest_ns = int(self._stamps_ns.max(initial=NEVER))
-        self._publish_tf(rows, np.where(is_stamped, last_ns + 1, self._publishers.now_ns()))
+        self.publish_tf(rows, np.where(is_stamped, last_ns + 1, self._publishers.now_ns()))
         return len(rows) > 0 and not is_stamped.any()
 
-    def publish_tf(self, rows: NDArray[np.intp]) -> None:
+    def publish_tf(
+        self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64] | None = None,
+    ) -> None:
         """
-        Publish moving transforms in one message on ``/tf``, with their stamps.
+        Publish moving transforms in one message on ``/tf``.
 
         :param rows: their indices, in ascending order; without any, nothing is published.
+        :param stamps_ns: their stamps in nanoseconds; by default those of :meth:`stamp`.
         """
-        self._publish_tf(rows, self._stamps_ns[rows])
-
-    def _publish_tf(self, rows: NDArray[np.intp], stamps_ns: NDArray[np.int64]) -> None:
         if not len(rows):
             return
         self._is_waiting[rows] = False
         self._transforms.set_poses(self.frames.transforms(self.positions.values))
-        self._transforms.set_stamps(_stamps_from_ns(stamps_ns), rows)
+        self._transforms.set_stamps(
+            _stamps_from_ns(self._stamps_ns[rows] if stamps_ns is None else stamps_ns), rows)
         self._tf.publish(self._transforms.tf_message(rows))
 
     def publish_topics(self, *, only_listeners: bool) -> None:
@@ -311,9 +308,7 @@ class PublishedMovingFrames:
 
 def _stamps_from_ns(stamps_ns: NDArray[np.int64]) -> Stamps:
     """Return seconds and nanoseconds, shape (n, 2)."""
-    stamps = np.empty((len(stamps_ns), 2), np.int64)
-    np.divmod(stamps_ns, NANOSECONDS, stamps[:, 0], stamps[:, 1])
-    return stamps
+    return np.stack(np.divmod(stamps_ns, NANOSECONDS), axis=-1)
 
 
 def _records_of_transforms(tree: TfTree, indices: NDArray[np.intp]) -> StampedRecords:

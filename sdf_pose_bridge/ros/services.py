@@ -46,10 +46,7 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
     # Requests that may take long are answered in a thread, one after the other.
     turn = CoroutineLock(node)
 
-    async def answered(answer: Answer, request: Any, response: Any, *, is_quick: bool) -> Any:
-        answer = never_raising(answer, logger.error)
-        if is_quick:
-            return answer(request, response)
+    async def in_thread(answer: Answer, request: Any, response: Any) -> Any:
         async with turn:
             try:
                 return await run_in_thread(node, lambda: answer(request, response))
@@ -57,32 +54,30 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
                 response.message = str(error)
                 return response
 
-    async def convert_rotation(
-        request: ConvertRotation.Request, response: ConvertRotation.Response,
-    ) -> Any:
-        return await answered(answer_to_convert_rotation, request, response, is_quick=True)
-
     async def convert_poses(
         request: ConvertPoses.Request, response: ConvertPoses.Response,
     ) -> Any:
-        return await answered(answer_to_convert_poses, request, response, is_quick=False)
+        answer = never_raising(answer_to_convert_poses, logger.error)
+        return await in_thread(answer, request, response)
 
     async def lookup_pose(request: LookupPose.Request, response: LookupPose.Response) -> Any:
         current = await lookup()
-        reference = request.relative_to
-        # Finding the nearest name takes long if there are many.
-        return await answered(
+        answer = never_raising(
             lambda request, response: answer_to_lookup_pose(request, response, current, clock),
-            request, response,
-            is_quick=current.knows(request.frame) and (not reference or current.knows(reference)))
+            logger.error)
+        if current.knows(request.frame) and (
+                not request.relative_to or current.knows(request.relative_to)):
+            return answer(request, response)
+        # Finding the nearest name takes long if there are many.
+        return await in_thread(answer, request, response)
 
-    for service_type, callback in (
-        (ConvertRotation, convert_rotation), (ConvertPoses, convert_poses),
-        (LookupPose, lookup_pose),
+    for service_type, name, callback in (
+        (ConvertRotation, 'convert_rotation',
+         never_raising(answer_to_convert_rotation, logger.error)),
+        (ConvertPoses, 'convert_poses', convert_poses), (LookupPose, 'lookup_pose', lookup_pose),
     ):
         node.create_service(
-            service_type, f'~/{callback.__name__}', callback, qos_profile=SERVICE_QOS,
-            callback_group=group)
+            service_type, f'~/{name}', callback, qos_profile=SERVICE_QOS, callback_group=group)
 
 
 def answer_to_convert_rotation(
