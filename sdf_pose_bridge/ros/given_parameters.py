@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import array
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
@@ -103,13 +103,13 @@ def changed_settings(
 
 
 def warnings_about_unknown_parameters(
-    node: Node, known_elsewhere: Container[str] = (), *, only_misspelt: bool = False,
+    node: Node, known_elsewhere: Collection[str] = (),
 ) -> list[str]:
     """
     Find parameters that were given when the node was started, but that it does not have.
 
-    :param known_elsewhere: names of parameters of other nodes, which cause no warning.
-    :param only_misspelt: whether to leave out names that resemble no name of a parameter.
+    :param known_elsewhere: names of parameters of other nodes, which cause no warning. If there
+        are any, names that resemble no name of a parameter are left out, too.
     """
     hints = {
         name: hint_from_names(name, DECLARATIONS) for name in _given_parameters(node)
@@ -117,7 +117,7 @@ def warnings_about_unknown_parameters(
         and not name.startswith(QOS_OVERRIDES) and name not in known_elsewhere}
     return [
         f'there is no parameter "{name}", so it has no effect{hint}'
-        for name, hint in hints.items() if hint or not only_misspelt]
+        for name, hint in hints.items() if hint or not known_elsewhere]
 
 
 def _given_parameters(node: Node) -> Mapping[str, Parameter]:

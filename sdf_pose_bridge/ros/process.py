@@ -9,7 +9,7 @@ fails in many ways, and do not interrupt the reading of a file.
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 import contextlib
 from contextlib import contextmanager
 import gc
@@ -59,7 +59,7 @@ class Program(NamedTuple):
     usage: str
     takes_file: bool = False
     """Whether the command line may name a file, before the arguments of ROS."""
-    known_elsewhere: Container[str] = ()
+    known_elsewhere: Collection[str] = ()
     """Names of parameters of older releases, which cause no warning. If there are any, files of
     parameters may be for other nodes too."""
 
@@ -143,8 +143,7 @@ def run(args: Sequence[str], program_name: str, reader: SceneReader) -> int:
 def _exit_code_from_node(
     node: Node, program: Program, reader: SceneReader, file: str = '',
 ) -> int:
-    _log_warnings(node, warnings_about_unknown_parameters(
-        node, program.known_elsewhere, only_misspelt=bool(program.known_elsewhere)))
+    _log_warnings(node, warnings_about_unknown_parameters(node, program.known_elsewhere))
     try:
         settings = settings_from_node(node, program.defaults, file)
         publishers = Publishers(node)

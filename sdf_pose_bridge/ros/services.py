@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import array
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterable
 import traceback
 from typing import Any, TypeAlias
 
@@ -84,17 +84,15 @@ def answer_to_convert_rotation(
     request: ConvertRotation.Request, response: ConvertRotation.Response,
 ) -> ConvertRotation.Response:
     """Convert one rotation."""
-    rpy, quaternion = request.rpy, request.quaternion
     try:
         answer = converted_rotation(
-            request.given, (rpy.x, rpy.y, rpy.z),
-            (quaternion.x, quaternion.y, quaternion.z, quaternion.w), degrees=request.degrees)
+            request.given, _numbers(request.rpy, 'xyz'), _numbers(request.quaternion, 'xyzw'),
+            degrees=request.degrees)
     except RotationError as error:
         response.message = str(error)
         return response
-    rpy, quaternion = response.rpy, response.quaternion
-    rpy.x, rpy.y, rpy.z = answer.rpy
-    quaternion.x, quaternion.y, quaternion.z, quaternion.w = answer.quat_xyzw
+    _fill(response.rpy, answer.rpy)
+    _fill(response.quaternion, answer.quat_xyzw)
     response.gimbal_lock = answer.gimbal_lock
     response.success = True
     return response
@@ -129,11 +127,8 @@ def answer_to_lookup_pose(
     except (UnknownFrameError, JointPositionError) as error:
         response.message = error.message
         return response
-    # Filling the existing messages is faster than making new ones.
-    pose = response.pose.pose
-    position, orientation = pose.position, pose.orientation
-    position.x, position.y, position.z = found.pose[:3]
-    orientation.x, orientation.y, orientation.z, orientation.w = found.pose[3:]
+    _fill(response.pose.pose.position, found.pose[:3])
+    _fill(response.pose.pose.orientation, found.pose[3:])
     response.pose.header.frame_id = found.frame_id
     response.pose.header.stamp = clock.now().to_msg()
     response.success = True
@@ -169,10 +164,8 @@ def set_pose(
 
 
 def _pose_from_request(request: SetPose.Request, loaded: LoadedScene) -> Pose:
-    position, quaternion = request.pose.pose.position, request.pose.pose.orientation
-    numbers = [
-        position.x, position.y, position.z,
-        quaternion.x, quaternion.y, quaternion.z, quaternion.w]
+    given = request.pose.pose
+    numbers = [*_numbers(given.position, 'xyz'), *_numbers(given.orientation, 'xyzw')]
     place = Place(str(loaded.path))
     try:
         pose = Pose(*converted_poses(numbers, 'sdf_quat_xyzw', 'sdf_quat_xyzw').tolist())
@@ -182,6 +175,15 @@ def _pose_from_request(request: SetPose.Request, loaded: LoadedScene) -> Pose:
         msg = f'{doubt.reason}; is it in {doubt.likely_unit}? "sdf_pose set --force" writes it'
         raise PoseNotSetError(msg, place)
     return pose
+
+
+def _numbers(message: Any, fields: str) -> Any:
+    return tuple(getattr(message, field) for field in fields)
+
+
+def _fill(message: Any, numbers: Iterable[float]) -> None:
+    for field, number in zip('xyzw', numbers, strict=False):
+        setattr(message, field, number)
 
 
 def never_raising(answer: Answer, log_error: Callable[[str], object]) -> Answer:
