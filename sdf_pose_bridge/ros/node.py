@@ -298,10 +298,8 @@ class SdfPoseBridge:
             self._again_timer.reset()
 
     async def _publish_again(self) -> None:
-        if self._publishing.is_held:
-            return
-        begin = time.perf_counter()
         async with self._publishing:
+            begin = time.perf_counter()
             await self._frames.publish_fixed_again()
         seconds = time.perf_counter() - begin
         if seconds * self._settings.publish_rate > 1.0:
