@@ -121,7 +121,6 @@ def warnings_about_unknown_parameters(
 
 
 def _given_parameters(node: Node) -> Mapping[str, Parameter]:
-    """Return the parameters that were given when the node was started, by names."""
     # No public name shows those that are not declared. rclpy 7 to 10 have this one.
     given: Mapping[str, Parameter] = node._parameter_overrides  # noqa: SLF001
     return given
@@ -130,7 +129,6 @@ def _given_parameters(node: Node) -> Mapping[str, Parameter]:
 def _parameters_at_start(
     given: Mapping[str, Parameter], defaults: Mapping[str, Value],
 ) -> list[Parameter]:
-    """Return all parameters with the values that they are given, or with their defaults."""
     parameters = []
     for name, declaration in DECLARATIONS.items():
         type_, default = declaration.type_, defaults.get(name, declaration.default)

@@ -117,7 +117,6 @@ class JointStateTopic:
             run_in_thread(self._node, warn)
 
     def _may_warn(self, about: str) -> bool:
-        """Return whether the last warning about something was long ago."""
         now = time.monotonic()
         if now < self._warnings_due.get(about, 0.0):
             return False

@@ -395,7 +395,6 @@ class JointStates:
         self._target.frames.publish_topics(only_listeners=True)
 
     def _publish_at_rest(self) -> None:
-        """Publish the last positions once more, for later listeners."""
         self._target.frames.publish_topics(only_listeners=False)
 
     def _end_grace(self) -> None:

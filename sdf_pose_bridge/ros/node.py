@@ -158,7 +158,6 @@ class SdfPoseBridge:
             self._joint_states = JointStates(self._node, moving, topics, settings)
 
     async def _current_lookup(self) -> PoseLookup:
-        """Return the current look-up of poses, with the positions of all messages so far."""
         await self._process_messages()
         return self._loaded.lookup
 
@@ -215,7 +214,6 @@ class SdfPoseBridge:
         return [f'internal error, see the log of the node: {error!r}']
 
     def _report_failure(self, lines: list[str]) -> None:
-        """Report errors, unless there are none."""
         if lines:
             source = self._settings.load_request.source
             self._logger.error(f'{source} is rejected; the frames published before stay')
@@ -249,7 +247,6 @@ class SdfPoseBridge:
         return answer
 
     async def _check_files(self) -> None:
-        """Read the files again if they have changed."""
         with contextlib.suppress(MemoryError):  # they are checked again after a period
             failure = None
             if await run_in_thread(self._node, self._follower.has_to_read):

@@ -307,12 +307,10 @@ class PublishedMovingFrames:
 
 
 def _stamps_from_ns(stamps_ns: NDArray[np.int64]) -> Stamps:
-    """Return seconds and nanoseconds, shape (n, 2)."""
     return np.stack(np.divmod(stamps_ns, NANOSECONDS), axis=-1)
 
 
 def _records_of_transforms(tree: TfTree, indices: NDArray[np.intp]) -> StampedRecords:
-    """Return transforms with the ids of their parents and children."""
     return StampedRecords(tree.ids_of_transforms(indices), tree.transforms[indices])
 
 
