@@ -51,20 +51,15 @@ GRACE_S = 2.0
 """Seconds until joints that no message has named are reported."""
 
 TOPICS_PERIOD_S = 1.0 / 30.0
-"""Shortest period of the topics of moving frames, and longest time for which waiting messages are
-taken before others get their turn."""
+"""Shortest period of the topics of moving frames, and longest time to take messages at once."""
 
 SILENCE_S = 1.0
 """Seconds without a message, and two periods at least, after which a topic is silent. With fewer,
 each message of many slow robots would be published by itself."""
 
 _REST_S = 0.5
-
-_LONGEST_SLEEP_S = 0.1
-"""Messages of a long period are taken before there are too many."""
-
-_CLOCK_PERIOD_S = 0.01
-"""Time between two looks at a simulated clock, whose steps may end a period."""
+_LONGEST_SLEEP_S, _CLOCK_PERIOD_S = 0.1, 0.01
+"""Longest waits in a period: before too many messages wait, and for a simulated clock."""
 
 
 class _Target(NamedTuple):
@@ -117,7 +112,6 @@ class JointStates:
         self.follow(frames, topics, settings)
         self._thread = threading.Thread(target=self._run, name='joint states', daemon=True)
         self._thread.start()
-        # The node may be destroyed with its context only.
         node.context.on_shutdown(self.end)
 
     # Calls of the executor
@@ -247,12 +241,10 @@ class JointStates:
     def _longest_wait(self) -> float:
         seconds = min(self._due.values(), default=math.inf) - time.monotonic()
         if self._is_in_period:
-            if self._node.get_clock().ros_time_is_active:
-                seconds = min(seconds, _CLOCK_PERIOD_S)
-            else:
-                seconds = min(
-                    seconds, _LONGEST_SLEEP_S,
-                    (self._period_ends_ns - time.time_ns()) / NANOSECONDS)
+            is_simulated = self._node.get_clock().ros_time_is_active
+            seconds = min(
+                seconds, _LONGEST_SLEEP_S, _CLOCK_PERIOD_S if is_simulated
+                else (self._period_ends_ns - time.time_ns()) / NANOSECONDS)
         return max(seconds, 0.0)
 
     def _answer(self, count: int) -> None:
@@ -395,6 +387,7 @@ class JointStates:
         self._target.frames.publish_topics(only_listeners=True)
 
     def _publish_at_rest(self) -> None:
+        # Later listeners get the last positions.
         self._target.frames.publish_topics(only_listeners=False)
 
     def _end_grace(self) -> None:
