@@ -17,16 +17,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 import struct
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sdf_pose_bridge.geometry.poses import PoseArray
 
-Stamps: TypeAlias = NDArray[np.int64] | tuple[int, int]
-"""Shape (n, 2), seconds and nanoseconds from 0 to 999,999,999 of each record; shape (2,) if they
-are the same for all."""
+NANOSECONDS = 1_000_000_000
+"""In a second."""
 
 # Sizes in bytes.
 _LENGTH = 4
@@ -88,14 +87,16 @@ class StampedRecords:
         self._buffer.view('<f8')[self._numbers] = poses
 
     def set_stamps(
-        self, stamps: Stamps, rows: NDArray[np.intp] | slice = slice(None),
+        self, stamps_ns: NDArray[np.int64] | int, rows: NDArray[np.intp] | slice = slice(None),
     ) -> None:
         """
         Replace the stamps.
 
+        :param stamps_ns: a stamp in nanoseconds for each record, or one for all.
         :param rows: the indices of the records that get them.
         """
-        self._buffer.view('<i4')[self._stamps[rows]] = stamps
+        self._buffer.view('<i4')[self._stamps[rows]] = np.stack(
+            np.divmod(stamps_ns, NANOSECONDS), axis=-1)
 
     def messages(self) -> list[bytes]:
         """Return a geometry_msgs/TransformStamped or PoseStamped for each record."""

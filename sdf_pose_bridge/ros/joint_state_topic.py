@@ -15,10 +15,9 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
-from sdf_pose_bridge.ros.cdr import joint_state_from_bytes
+from sdf_pose_bridge.ros.cdr import joint_state_from_bytes, NANOSECONDS
 from sdf_pose_bridge.ros.joint_names import Meaning, Meanings
 from sdf_pose_bridge.ros.log_lines import names_in_line
-from sdf_pose_bridge.ros.publishers import NANOSECONDS
 from sdf_pose_bridge.ros.qos_overrides import SUBSCRIPTION_OVERRIDES
 from sdf_pose_bridge.ros.wait_set import NoExecutor, take_message
 from sdf_pose_bridge.tf.joint_positions import LARGEST_POSITION

@@ -32,12 +32,12 @@ from rclpy.node import Node
 from rclpy.task import Future
 
 from sdf_pose_bridge.ros.background import wake
+from sdf_pose_bridge.ros.cdr import NANOSECONDS
 from sdf_pose_bridge.ros.joint_names import Meaning, Meanings
 from sdf_pose_bridge.ros.joint_state_topic import JointStateTopic, Message
 from sdf_pose_bridge.ros.log_lines import line_about_unreported_joints, MissingJoints
 from sdf_pose_bridge.ros.parameters import Settings
 from sdf_pose_bridge.ros.published_frames import PublishedMovingFrames
-from sdf_pose_bridge.ros.publishers import NANOSECONDS
 from sdf_pose_bridge.ros.topic_names import JointStateTopics
 from sdf_pose_bridge.ros.wait_set import WaitSet
 
@@ -281,7 +281,9 @@ class JointStates:
 
     def _end_period(self) -> None:
         """Publish what has waited; without any, publish the next message at once."""
-        if self._target.frames.publish_waiting():
+        rows = np.flatnonzero(self._target.frames.is_waiting)
+        if len(rows):
+            self._target.frames.publish_tf(rows)
             self._publish_topics_soon()
             longest = max(2.0, SILENCE_S * NANOSECONDS / self._target.period_ns)
             self._begin_period([
@@ -320,7 +322,7 @@ class JointStates:
                 moved = [self._move(topic, message) for topic, message in newest.values()]
                 rows = moved[0] if len(moved) == 1 else np.unique(np.concatenate(moved))
                 if not at_once:
-                    self._target.frames.wait(rows)
+                    self._target.frames.is_waiting[rows] = True
                 elif len(rows):
                     self._publish_at_once(rows)
                 newest.clear()

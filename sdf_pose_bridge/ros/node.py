@@ -21,6 +21,7 @@ from std_srvs.srv import Trigger
 from sdf_pose_bridge.errors import AddressError, SdfError
 from sdf_pose_bridge.problems import folded
 from sdf_pose_bridge.ros.background import CoroutineLock, PollingThread, run_in_thread
+from sdf_pose_bridge.ros.cdr import NANOSECONDS
 from sdf_pose_bridge.ros.diagnostics import Diagnostics, PERIOD_S
 from sdf_pose_bridge.ros.file_follower import FileFollower
 from sdf_pose_bridge.ros.given_parameters import changed_settings
@@ -36,7 +37,7 @@ from sdf_pose_bridge.ros.log_lines import (
 from sdf_pose_bridge.ros.parameter_services import add_setting_services
 from sdf_pose_bridge.ros.parameters import Settings, SettingsError
 from sdf_pose_bridge.ros.published_frames import frames_from_scene, PublishedFrames
-from sdf_pose_bridge.ros.publishers import NANOSECONDS, TextPublisher
+from sdf_pose_bridge.ros.publishers import TextPublisher
 from sdf_pose_bridge.ros.scene_reader import SceneReader
 from sdf_pose_bridge.ros.services import add_services, SERVICE_QOS, set_pose
 from sdf_pose_bridge.ros.topic_names import (

@@ -24,9 +24,9 @@ from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge.geometry.chains import Indices
 from sdf_pose_bridge.ros.background import run_in_thread
-from sdf_pose_bridge.ros.cdr import StampedRecords, Stamps
+from sdf_pose_bridge.ros.cdr import StampedRecords
 from sdf_pose_bridge.ros.parameters import Settings
-from sdf_pose_bridge.ros.publishers import NANOSECONDS, Publishers, Topic
+from sdf_pose_bridge.ros.publishers import Publishers, Topic
 from sdf_pose_bridge.ros.topic_names import pose_topics_from_patterns, PoseTopics
 from sdf_pose_bridge.tf.joint_motion import NO_DOF
 from sdf_pose_bridge.tf.joint_positions import JointPositions, NEVER
@@ -118,7 +118,7 @@ class PublishedFrames:
 
     def publish_tf_static(self) -> None:
         """Publish all fixed frames on ``/tf_static``."""
-        self._fixed_transforms.set_stamps(divmod(self.stamp_ns, NANOSECONDS))
+        self._fixed_transforms.set_stamps(self.stamp_ns)
         self._tf_static.publish(self._fixed_transforms.tf_message())
 
     async def publish_topics(self) -> None:
@@ -148,7 +148,7 @@ class PublishedFrames:
             await self._send([topic] * len(records), records)
 
     async def _send(self, topics: Sequence[Topic], records: StampedRecords) -> None:
-        records.set_stamps(divmod(self.stamp_ns, NANOSECONDS))
+        records.set_stamps(self.stamp_ns)
         await self.publishers.send(topics, records.messages())
 
 
@@ -169,9 +169,10 @@ class PublishedMovingFrames:
         self._publishers = publishers
         self.frames = moving
         self.positions = positions
-        # The last stamp of each moving transform, and which have to be published.
+        # The last stamp of each moving transform.
         self._stamps_ns = np.full(len(moving.indices), NEVER)
-        self._is_waiting = np.zeros(len(moving.indices), np.bool_)
+        self.is_waiting = np.zeros(len(moving.indices), np.bool_)
+        """Which of the moving transforms wait for the end of a period."""
         self._tf = publishers.opened(TF)
         self.transforms_topic = _transforms_topic(len(moving.indices), 'moving')
         self._transforms = _records_of_transforms(tree, moving.indices)
@@ -203,21 +204,11 @@ class PublishedMovingFrames:
         self._stamps_ns[rows] = stamp_ns
         return rows
 
-    def wait(self, rows: NDArray[np.intp]) -> None:
-        """Have moving transforms wait for :meth:`publish_waiting`."""
-        self._is_waiting[rows] = True
-
     def forget_stamps(self) -> None:
         """Accept any stamp next, after time has jumped back."""
         self._stamps_ns[:] = NEVER
-        self._is_waiting[:] = False
+        self.is_waiting[:] = False
         self.positions.forget_stamps()
-
-    def publish_waiting(self) -> bool:
-        """Publish the moving transforms that wait; return whether there are any."""
-        rows = np.flatnonzero(self._is_waiting)
-        self.publish_tf(rows)
-        return len(rows) > 0
 
     def publish_all(self) -> bool:
         """
@@ -245,10 +236,10 @@ class PublishedMovingFrames:
         """
         if not len(rows):
             return
-        self._is_waiting[rows] = False
+        self.is_waiting[rows] = False
         self._transforms.set_poses(self.frames.transforms(self.positions.values))
         self._transforms.set_stamps(
-            _stamps_from_ns(self._stamps_ns[rows] if stamps_ns is None else stamps_ns), rows)
+            self._stamps_ns[rows] if stamps_ns is None else stamps_ns, rows)
         self._tf.publish(self._transforms.tf_message(rows))
 
     def publish_topics(self, *, only_listeners: bool) -> None:
@@ -293,9 +284,9 @@ class PublishedMovingFrames:
             return None
         return publisher
 
-    def _stamps(self, dofs: Indices, dof_of_reference: int = NO_DOF) -> Stamps:
+    def _stamps(self, dofs: Indices, dof_of_reference: int = NO_DOF) -> NDArray[np.int64]:
         """
-        Return the stamps of poses, as messages take them.
+        Return the stamps of poses in nanoseconds.
 
         :param dofs: the last degree of freedom before each frame; -1 for none.
         :param dof_of_reference: that before the frame in which all of them are given.
@@ -303,11 +294,7 @@ class PublishedMovingFrames:
         """
         known = np.append(self.positions.stamps_ns, NEVER)
         newest = np.maximum(known[dofs], known[dof_of_reference])
-        return _stamps_from_ns(np.where(newest == NEVER, self._publishers.now_ns(), newest))
-
-
-def _stamps_from_ns(stamps_ns: NDArray[np.int64]) -> Stamps:
-    return np.stack(np.divmod(stamps_ns, NANOSECONDS), axis=-1)
+        return np.where(newest == NEVER, self._publishers.now_ns(), newest)
 
 
 def _records_of_transforms(tree: TfTree, indices: NDArray[np.intp]) -> StampedRecords:

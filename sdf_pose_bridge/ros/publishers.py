@@ -23,9 +23,6 @@ MOST_PUBLISHERS = 1010
 """The recipes for networks in docs/ros_interface.md were measured with so many: the topics of the
 poses of 1000 frames, and a few others."""
 
-NANOSECONDS = 1_000_000_000
-"""In a second."""
-
 
 class Topic(NamedTuple):
     """A topic with the settings of its publisher. Equal topics share a publisher."""

@@ -17,13 +17,14 @@ from sdf_pose_bridge.ros.cdr import (
     StampedRecords,
 )
 
-STAMPS = st.tuples(st.integers(0, 2**31 - 1), st.integers(0, 999_999_999))
+STAMPS = st.integers(0, 2**31 * 10**9 - 1)
 NAMES = st.text(st.characters(codec='utf-8', exclude_characters='\0'), max_size=20)
 NUMBERS = st.lists(
     st.floats(allow_nan=False) | st.sampled_from([-0.0, 5e-324, -2.3e-308]),
     min_size=7, max_size=7)
 ROWS = st.lists(st.tuples(NAMES, NAMES, NUMBERS), max_size=6)
 LENGTHS = st.integers(0, 9).map('n'.__mul__)
+STAMP = 1_000_000_002
 POSITIONS = st.lists(st.floats(allow_nan=False), max_size=5)
 
 
@@ -33,13 +34,13 @@ def columns(rows):
     return ([row[0] for row in rows], [row[1] for row in rows]), numbers
 
 
-def tf_message(ids, numbers, stamp=(1, 2)):
+def tf_message(ids, numbers, stamp=STAMP):
     records = StampedRecords(ids, numbers)
     records.set_stamps(stamp)
     return records.tf_message()
 
 
-def stamped_messages(ids, numbers, stamps=(1, 2)):
+def stamped_messages(ids, numbers, stamps=STAMP):
     records = StampedRecords(ids, numbers)
     records.set_stamps(stamps)
     return records.messages()
@@ -54,7 +55,7 @@ def assert_read_by_rclpy(data, message):
 
 
 def stamped(message, stamp, frame_id):
-    message.header.stamp.sec, message.header.stamp.nanosec = stamp
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 10**9)
     message.header.frame_id = frame_id
     return message
 
@@ -99,7 +100,7 @@ def test_poses_are_read_by_rclpy(rows, stamp):
 def test_long_names_are_read_by_rclpy():
     lengths = [0, 1, 3, *range(50, 64), *range(108, 116), 1000]
     rows = [('p' * first, 'c' * second, [1.0] * 7) for first in lengths for second in lengths]
-    assert_read_by_rclpy(tf_message(*columns(rows)), tf_message_object(rows, (1, 2)))
+    assert_read_by_rclpy(tf_message(*columns(rows)), tf_message_object(rows, STAMP))
 
 
 @given(rows=ROWS, first=STAMPS, second=STAMPS)
@@ -112,19 +113,19 @@ def test_messages_can_be_stamped_again(rows, first, second):
 
 @given(rows=ROWS)
 def test_each_pose_can_have_its_stamp(rows):
-    stamps = np.stack([np.arange(len(rows)), np.arange(len(rows)) + 7], axis=-1)
+    stamps = np.arange(len(rows)) * 1_000_000_007
     assert stamped_messages(*columns(rows), stamps) == [
-        stamped_messages(*columns([row]), (number, number + 7))[0]
-        for number, row in enumerate(rows)]
+        stamped_messages(*columns([row]), stamp)[0]
+        for stamp, row in zip(stamps.tolist(), rows, strict=True)]
 
 
 @given(rows=ROWS.filter(len), data=st.data())
 def test_a_tf_message_of_some_transforms_is_that_of_a_scene_with_these_alone(rows, data):
     records = StampedRecords(*columns(rows))
     chosen = sorted(data.draw(st.sets(st.integers(0, len(rows) - 1), min_size=1)))
-    records.set_stamps((3, 4), np.array(chosen))
+    records.set_stamps(3_000_000_004, np.array(chosen))
     assert records.tf_message(np.array(chosen)) == tf_message(
-        *columns([rows[row] for row in chosen]), (3, 4))
+        *columns([rows[row] for row in chosen]), 3_000_000_004)
 
 
 def test_no_transforms_are_one_empty_message():
@@ -140,7 +141,7 @@ def test_poses_can_be_replaced(rows):
     ids, numbers = columns(rows)
     records = StampedRecords(ids, np.zeros_like(numbers))
     records.set_poses(numbers)
-    assert records.messages() == stamped_messages(ids, numbers, (0, 0))
+    assert records.messages() == stamped_messages(ids, numbers, 0)
 
 
 def joint_state(names, positions, *, frame_id='', sec=0, nanosec=0, velocities=()):
