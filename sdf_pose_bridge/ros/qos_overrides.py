@@ -26,7 +26,10 @@ LARGEST_DEPTH = 2**31 - 1
 """Largest depth of a queue that rclpy and Fast DDS accept."""
 
 _VALUES = {
-    'reliability': ReliabilityPolicy, 'durability': DurabilityPolicy, 'history': HistoryPolicy}
+    policy: [value.name.lower() for value in values if value.name != 'UNKNOWN']
+    for policy, values in (
+        ('reliability', ReliabilityPolicy), ('durability', DurabilityPolicy),
+        ('history', HistoryPolicy))}
 
 
 def sentences_about_overrides(given: Mapping[str, Parameter]) -> list[str]:
@@ -38,20 +41,13 @@ def sentences_about_overrides(given: Mapping[str, Parameter]) -> list[str]:
     """
     sentences = []
     for name, parameter in given.items():
-        policy = name.rpartition('.')[2]
-        if not name.startswith(QOS_OVERRIDES):
-            continue
+        policy, value = name.rpartition('.')[2], parameter.value
         if policy in _VALUES:
-            known = [
-                value.name.lower() for value in _VALUES[policy] if value.name != 'UNKNOWN']
-            if parameter.value not in known:
-                sentences.append(
-                    f'parameter {name} is {parameter.value}; it must be one of '
-                    f'{", ".join(known)}')
-        elif policy == 'depth' and (
-                parameter.type_ is not Parameter.Type.INTEGER
-                or not 0 <= parameter.value <= LARGEST_DEPTH):
-            sentences.append(
-                f'parameter {name} is {parameter.value}; it must be an integer from 0 to '
-                f'{LARGEST_DEPTH}')
+            rule, is_allowed = f'one of {", ".join(_VALUES[policy])}', value in _VALUES[policy]
+        else:
+            rule = f'an integer from 0 to {LARGEST_DEPTH}'
+            is_allowed = policy != 'depth' or (
+                parameter.type_ is Parameter.Type.INTEGER and 0 <= value <= LARGEST_DEPTH)
+        if name.startswith(QOS_OVERRIDES) and not is_allowed:
+            sentences.append(f'parameter {name} is {value}; it must be {rule}')
     return sentences
