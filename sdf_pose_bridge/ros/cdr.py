@@ -69,10 +69,11 @@ class StampedRecords:
             self._sizes_before_numbers.append(len(record))
             records.append(record + bytes(-len(record) % 8 + _NUMBERS))
         self._buffer = np.frombuffer(bytearray().join(records), np.uint8)
-        self._bounds = np.cumsum([0, *map(len, records)])
+        bounds = np.cumsum([0, *map(len, records)])
+        self._bounds: list[int] = bounds.tolist()
         # Indices in the buffer as one of integers, and as one of numbers.
-        self._stamps = self._bounds[:-1, np.newaxis] // 4 + np.arange(2)
-        self._numbers = (self._bounds[1:] - _NUMBERS)[:, np.newaxis] // 8 + np.arange(7)
+        self._stamps = bounds[:-1, np.newaxis] // 4 + np.arange(2)
+        self._numbers = (bounds[1:] - _NUMBERS)[:, np.newaxis] // 8 + np.arange(7)
         self.set_poses(poses)
 
     def __len__(self) -> int:
@@ -101,7 +102,7 @@ class StampedRecords:
     def messages(self) -> list[bytes]:
         """Return a geometry_msgs/TransformStamped or PoseStamped for each record."""
         data = self._buffer.tobytes()
-        return [_BEGIN + data[begin:end] for begin, end in pairwise(self._bounds.tolist())]
+        return [_BEGIN + data[begin:end] for begin, end in pairwise(self._bounds)]
 
     def tf_message(self, rows: NDArray[np.intp] | None = None) -> bytes:
         """
@@ -109,11 +110,9 @@ class StampedRecords:
 
         :param rows: their indices; all by default.
         """
-        chosen = np.arange(len(self)) if rows is None else rows
+        chosen = range(len(self)) if rows is None else rows.tolist()
         data = self._buffer.data
-        bounds = zip(
-            self._bounds[chosen].tolist(), self._bounds[chosen + 1].tolist(), strict=True)
-        records = [data[begin:end] for begin, end in bounds]
+        records = [data[self._bounds[row]:self._bounds[row + 1]] for row in chosen]
         parts: list[bytes | memoryview] = [_BEGIN, struct.pack('<I', len(records)), *records]
         if records:
             # Behind the length of the sequence, the first record is not at a multiple of eight,
@@ -150,31 +149,31 @@ def joint_state_from_bytes(
         msg = f'it begins with 0x{data[:2].hex()}, which is not plain CDR'
         raise ValueError(msg)
     stamp_and_length, length_format, number = _FORMATS[data[:2]]
+
+    def length_at(place: int) -> tuple[int, int]:
+        """Return a length, and the place behind it."""
+        place += -place % 4
+        return length_format.unpack_from(data, place)[0], place + 4
+
     try:
         sec, nanosec, length = stamp_and_length.unpack_from(data, _START)
-        begin = _aligned(_START + 12 + length, 4)
-        (name_count,) = length_format.unpack_from(data, begin)
+        begin = _START + 12 + length
+        begin += -begin % 4
         if known is not None and data.startswith(known.data, begin):
             names, end = known, begin + len(known.data)
         else:
-            end = begin + 4
+            count, end = length_at(begin)
             read = []
-            for _ in range(name_count):
-                place = _aligned(end, 4)
-                (length,) = length_format.unpack_from(data, place)
-                end = place + 4 + length
+            for _ in range(count):
+                length, place = length_at(end)
+                end = place + length
                 # The length counts a zero at the end.
-                read.append(data[place + 4:end - 1].decode(errors='replace'))
+                read.append(data[place:end - 1].decode(errors='replace'))
             names = SerializedNames(tuple(read), data[begin:end])
-        (count,) = length_format.unpack_from(data, _aligned(end, 4))
+        count, place = length_at(end)
         # Numbers are aligned to eight bytes, counted from the beginning of the fields.
-        numbers = _aligned(_aligned(end, 4) + 4 - _START, 8) + _START
-        positions = np.frombuffer(data, number, count, numbers)
+        positions = np.frombuffer(data, number, count, place + (_START - place) % 8)
     except (struct.error, ValueError) as error:
         msg = f'it ends too early: {error}'
         raise ValueError(msg) from error
     return (sec, nanosec), names, positions
-
-
-def _aligned(offset: int, size: int) -> int:
-    return (offset + size - 1) // size * size
