@@ -131,10 +131,9 @@ class SdfPoseBridge:
             if self._joint_states is not None:
                 self._joint_states.publish_topics()
         if loaded is not before:
-            lines = await run_in_thread(
-                self._node, lambda: lines_about_lost_frames(before.tree, loaded.tree))
             await run_in_thread(self._node, lambda: self._follower.follow(loaded))
-            for line in lines:
+            for line in await run_in_thread(
+                    self._node, lambda: lines_about_lost_frames(before.tree, loaded.tree)):
                 self._logger.warning(line)
             self._report_success()
             self._publish_robot_description()

@@ -26,7 +26,7 @@ def _loaded_scene(request: LoadRequest) -> LoadedScene:
     return loaded_scene_from_request(request)
 
 
-class SceneReader:
+class SceneReader(LimitedProcess):
     """
     Reads files, each in a process of its own that is forked from this one.
 
@@ -40,11 +40,7 @@ class SceneReader:
     """
 
     def __init__(self) -> None:
-        self._process = LimitedProcess(_prepare)
-
-    def close(self) -> None:
-        """End the processes; nothing can be read any more."""
-        self._process.close()
+        super().__init__(_prepare)
 
     def loaded_scene(
         self, request: LoadRequest, meanwhile: Callable[[], None] | None = None,
@@ -68,7 +64,7 @@ class SceneReader:
         """
         place = Place(request.source)
         try:
-            return self._process.call(FOR_FILES, function, *arguments, meanwhile=meanwhile)
+            return self.call(FOR_FILES, function, *arguments, meanwhile=meanwhile)
         except LimitExceededError as error:
             msg = f'the file needs {error} to be read'
             raise LimitError(msg, place) from None

@@ -15,7 +15,13 @@ from rclpy.clock import Clock
 from rclpy.node import Node
 from rclpy.qos import qos_profile_parameters
 
-from sdf_pose_bridge.errors import JointPositionError, Place, PoseNotSetError, UnknownFrameError
+from sdf_pose_bridge.errors import (
+    JointPositionError,
+    Place,
+    PoseNotSetError,
+    SdfError,
+    UnknownFrameError,
+)
 from sdf_pose_bridge.geometry.converted_rotation import converted_rotation
 from sdf_pose_bridge.geometry.formats import converted_poses, POSE_FORMATS, PoseFormatError
 from sdf_pose_bridge.geometry.poses import Pose
@@ -26,8 +32,11 @@ from sdf_pose_bridge.tf.loaded_scene import fingerprint_of_scene, LoadedScene
 from sdf_pose_bridge.tf.lookup import PoseLookup
 from sdf_pose_bridge_interfaces.srv import ConvertPoses, ConvertRotation, LookupPose, SetPose
 
-Answer: TypeAlias = Callable[[Any, Any], Any]
-"""Fills the response to a request and returns it."""
+Answer: TypeAlias = Callable[[Any, Any], None]
+"""Fills the response to a request."""
+
+REFUSALS = (RotationError, PoseFormatError, UnknownFrameError, JointPositionError)
+"""Exceptions about requests that are not valid."""
 
 SERVICE_QOS = qos_profile_parameters
 """Keeps 1000 requests; the default keeps ten, so that requests of more callers would be lost."""
@@ -46,7 +55,9 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
     # Requests that may take long are answered in a thread, one after the other.
     turn = CoroutineLock(node)
 
-    async def in_thread(answer: Answer, request: Any, response: Any) -> Any:
+    async def in_thread(
+        answer: Callable[[Any, Any], Any], request: Any, response: Any,
+    ) -> Any:
         async with turn:
             try:
                 return await run_in_thread(node, lambda: answer(request, response))
@@ -82,57 +93,38 @@ def add_services(node: Node, lookup: Callable[[], Awaitable[PoseLookup]]) -> Non
 
 def answer_to_convert_rotation(
     request: ConvertRotation.Request, response: ConvertRotation.Response,
-) -> ConvertRotation.Response:
+) -> None:
     """Convert one rotation."""
-    try:
-        answer = converted_rotation(
-            request.given, _numbers(request.rpy, 'xyz'), _numbers(request.quaternion, 'xyzw'),
-            degrees=request.degrees)
-    except RotationError as error:
-        response.message = str(error)
-        return response
+    answer = converted_rotation(
+        request.given, _numbers(request.rpy, 'xyz'), _numbers(request.quaternion, 'xyzw'),
+        degrees=request.degrees)
     _fill(response.rpy, answer.rpy)
     _fill(response.quaternion, answer.quat_xyzw)
     response.gimbal_lock = answer.gimbal_lock
-    response.success = True
-    return response
 
 
 def answer_to_convert_poses(
     request: ConvertPoses.Request, response: ConvertPoses.Response,
-) -> ConvertPoses.Response:
+) -> None:
     """Convert poses with at most ``MOST_NUMBERS`` numbers."""
     if len(request.values) > MOST_NUMBERS:
-        response.message = (
-            f'values has {len(request.values)} numbers; a call can have at most {MOST_NUMBERS}')
-        return response
-    try:
-        converted = converted_poses(
-            np.asarray(request.values), request.from_format, request.to_format)
-    except PoseFormatError as error:
-        response.message = str(error)
-        return response
+        msg = f'values has {len(request.values)} numbers; a call can have at most {MOST_NUMBERS}'
+        raise PoseFormatError(msg)
+    converted = converted_poses(
+        np.asarray(request.values), request.from_format, request.to_format)
     # The message would check every element of anything but an array.array.
     response.values = array.array('d', converted.tobytes())
-    response.success = True
-    return response
 
 
 def answer_to_lookup_pose(
     request: LookupPose.Request, response: LookupPose.Response, lookup: PoseLookup, clock: Clock,
-) -> LookupPose.Response:
+) -> None:
     """Look up a pose."""
-    try:
-        found = lookup.pose(request.frame, request.relative_to)
-    except (UnknownFrameError, JointPositionError) as error:
-        response.message = error.message
-        return response
+    found = lookup.pose(request.frame, request.relative_to)
     _fill(response.pose.pose.position, found.pose[:3])
     _fill(response.pose.pose.orientation, found.pose[3:])
     response.pose.header.frame_id = found.frame_id
     response.pose.header.stamp = clock.now().to_msg()
-    response.success = True
-    return response
 
 
 def set_pose(
@@ -186,20 +178,25 @@ def _fill(message: Any, numbers: Iterable[float]) -> None:
         setattr(message, field, number)
 
 
-def never_raising(answer: Answer, log_error: Callable[[str], object]) -> Answer:
+def never_raising(answer: Answer, log_error: Callable[[str], object]) -> Callable[[Any, Any], Any]:
     """
-    Return a callback that also answers after a defect; an exception would end the node.
+    Return a callback that also answers after a refusal or a defect.
 
-    :param answer: answers a request.
-    :param log_error: takes the traceback of an exception.
-    :return: a callback that answers ``success: false`` instead of raising.
+    :param answer: fills the response to a request, or raises one of ``REFUSALS``.
+    :param log_error: takes the traceback of another exception.
+    :return: a callback that answers ``success: false`` instead of raising, which would end the
+        node.
     """
     def callback(request: Any, response: Any) -> Any:
         try:
-            return answer(request, response)
+            answer(request, response)
+        except REFUSALS as error:
+            response.message = error.message if isinstance(error, SdfError) else str(error)
         except Exception as error:  # noqa: BLE001 - whatever it is, the client must be answered
             log_error(f'internal error in a service:\n{traceback.format_exc()}')
-            refusal = type(response)()
-            refusal.message = f'internal error, see the log of the node: {error!r}'
-            return refusal
+            response = type(response)()
+            response.message = f'internal error, see the log of the node: {error!r}'
+        else:
+            response.success = True
+        return response
     return callback
