@@ -20,6 +20,7 @@ from tf2_msgs.msg import TFMessage
 
 from sdf_pose_bridge import load_text
 from sdf_pose_bridge.ros.joint_states import (
+    INITIAL_PERIOD_S,
     JointStates,
     SUBSCRIPTIONS_AT_ONCE,
     TOPICS_PERIOD_S,
@@ -147,6 +148,7 @@ def arm(following):
     """Return an arm that is connected, all joints of which are known."""
     following.start(unreported=UnreportedJoints.ZERO)
     following.connect(joints=('turn', 'lift', 'grip'))
+    following.spin(2.0 * INITIAL_PERIOD_S)  # until all frames are published once more
     return following
 
 
