@@ -96,8 +96,9 @@ class StampedRecords:
         :param stamps_ns: a stamp in nanoseconds for each record, or one for all.
         :param rows: the indices of the records that get them.
         """
-        self._buffer.view('<i4')[self._stamps[rows]] = np.stack(
-            np.divmod(stamps_ns, NANOSECONDS), axis=-1)
+        stamps = np.empty((*np.shape(stamps_ns), 2), np.int64)
+        np.divmod(stamps_ns, NANOSECONDS, stamps[..., 0], stamps[..., 1])
+        self._buffer.view('<i4')[self._stamps[rows]] = stamps
 
     def messages(self) -> list[bytes]:
         """Return a geometry_msgs/TransformStamped or PoseStamped for each record."""
