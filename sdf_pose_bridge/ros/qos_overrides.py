@@ -26,10 +26,7 @@ LARGEST_DEPTH = 2**31 - 1
 """Largest depth of a queue that rclpy and Fast DDS accept."""
 
 _VALUES = {
-    policy: [value.name.lower() for value in values if value.name != 'UNKNOWN']
-    for policy, values in (
-        ('reliability', ReliabilityPolicy), ('durability', DurabilityPolicy),
-        ('history', HistoryPolicy))}
+    'reliability': ReliabilityPolicy, 'durability': DurabilityPolicy, 'history': HistoryPolicy}
 
 
 def sentences_about_overrides(given: Mapping[str, Parameter]) -> list[str]:
@@ -42,12 +39,13 @@ def sentences_about_overrides(given: Mapping[str, Parameter]) -> list[str]:
     sentences = []
     for name, parameter in given.items():
         policy, value = name.rpartition('.')[2], parameter.value
-        if policy in _VALUES:
-            rule, is_allowed = f'one of {", ".join(_VALUES[policy])}', value in _VALUES[policy]
-        else:
+        known = [each.name.lower() for each in _VALUES.get(policy, ()) if each.name != 'UNKNOWN']
+        rule = ''
+        if known and value not in known:
+            rule = f'one of {", ".join(known)}'
+        elif policy == 'depth' and (
+                parameter.type_ is not Parameter.Type.INTEGER or not 0 <= value <= LARGEST_DEPTH):
             rule = f'an integer from 0 to {LARGEST_DEPTH}'
-            is_allowed = policy != 'depth' or (
-                parameter.type_ is Parameter.Type.INTEGER and 0 <= value <= LARGEST_DEPTH)
-        if name.startswith(QOS_OVERRIDES) and not is_allowed:
+        if rule and name.startswith(QOS_OVERRIDES):
             sentences.append(f'parameter {name} is {value}; it must be {rule}')
     return sentences
